@@ -176,7 +176,7 @@ def test_a_slot_narrower_than_the_link_itself_is_proved(tmp_path):
     robot = flat_link(tmp_path)
     result = er.plan_arm(robot, slot(0.01), A, B, seconds=2.0)
     assert result.status == "not_connected"
-    assert "(shown for capsules inside of the robot's shapes)" in result.message
+    assert "(shown for bodies inside of the robot's shapes)" in result.message
 
 
 def test_a_goal_that_only_capsules_keep_out_of_is_not_left_out_of_a_proof(tmp_path):

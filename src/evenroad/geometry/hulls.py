@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -27,22 +27,30 @@ _SIDES_TRIED = 8
 _ROUNDING = 1e-9
 _AS_LARGE = 1e-4
 """Largest share of its hull's volume by which a convex mesh differs from the hull."""
+_DEEP = 1e-6
+"""Depth in a hull from which on its convex mesh fills it [m]; a proof keeps a hundred times that."""
+_MOST_COMPARED = 10_000_000
+"""Largest number of pairs of a triangle and a side of the hull; a mesh of more is not said to be solid."""
 
 
 @dataclass(frozen=True, eq=False)
 class Hull:
-    """All points within `radius` of the convex hull of `points`, (n, 3), in the frame of a link [m]; equal by value."""
+    """All points within `radius` of the convex hull of `points`, (n, 3), in the frame of a link [m]; equal by value.
+
+    `solid` says that the convex hull of the points, not widened, lies within the link's true shape.
+    """
 
     points: Floats
     radius: float
     link: str
+    solid: bool = field(default=False, compare=False)
 
     def __post_init__(self) -> None:
         set_fields(self, points=np.array(self.points, dtype=np.float64).reshape(-1, 3))
 
     @cached_property
     def _hash(self) -> int:
-        return hash((self.points.tobytes(), self.radius, self.link))
+        return hash((self.points.tobytes(), self.radius, self.link, self.solid))
 
     def __hash__(self) -> int:
         return self._hash
@@ -50,7 +58,7 @@ class Hull:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Hull):
             return NotImplemented
-        same = self.link == other.link and self.radius == other.radius
+        same = (self.link, self.radius, self.solid) == (other.link, other.radius, other.solid)
         return self is other or (same and np.array_equal(self.points, other.points))
 
     @property
@@ -59,9 +67,9 @@ class Hull:
         return len(self.points) <= 2
 
 
-def hull_around(points: Floats, radius: float, link: str) -> Hull:
+def hull_around(points: Floats, radius: float, link: str, *, solid: bool = False) -> Hull:
     """Return the hull of points, (n, 3), widened by `radius`, and by what rounding may lose."""
-    return Hull(points, radius + _ROUNDING * (1.0 + float(np.abs(points).max())), link)
+    return Hull(points, radius + _ROUNDING * (1.0 + float(np.abs(points).max())), link, solid)
 
 
 def _thinned(corners: Floats, little: float) -> tuple[Floats, float]:
@@ -145,10 +153,12 @@ def piece_of(shape: Shape) -> Piece:
         if not _is_convex(mesh):
             return piece
         # Split, it would lose its inside, and gain nothing.
-        return Piece(piece.hull, extreme(piece.parts.reshape(-1, 3))[np.newaxis])
+        hull = replace(piece.hull, solid=_is_on_its_hull(mesh))
+        return Piece(hull, extreme(piece.parts.reshape(-1, 3))[np.newaxis])
     else:
         raise InvalidValue(f"no hull is made around a {shape}")
-    hull = hull_around(shape.pose.apply(points * (outward, outward, 1.0)), radius, shape.link)
+    corners = shape.pose.apply(points * (outward, outward, 1.0))
+    hull = hull_around(corners, radius, shape.link, solid=isinstance(shape, Box))
     return Piece(hull, shape.pose.apply(points)[np.newaxis], radius)
 
 
@@ -165,6 +175,23 @@ def _is_convex(mesh: TriangleMesh) -> bool:
     return abs(own - whole) <= _AS_LARGE * whole and bool(closed_parts(mesh)[0].all())
 
 
+def _is_on_its_hull(mesh: TriangleMesh) -> bool:
+    """Return whether all that lies a micrometre deep in a convex mesh's hull is inside of the mesh.
+
+    It is where every triangle is as near to one side of the hull: none of them lies deeper, so the mesh goes around all
+    of that equally often, and as its volume is the hull's, once.
+    """
+    from scipy.spatial import ConvexHull
+
+    corners = mesh.vertices[mesh.triangles]
+    sides = np.unique(ConvexHull(mesh.vertices).equations.round(12), axis=0)
+    if len(corners) * len(sides) > _MOST_COMPARED or not closed_parts(mesh)[1]:
+        return False
+    return all(
+        float((-sides[:, :3] @ triangle.T - sides[:, 3:]).max(axis=1).min()) <= _DEEP for triangle in corners
+    )
+
+
 def halves(piece: Piece) -> tuple[Piece, ...]:
     """Return two pieces of a mesh in place of one, of a convex one a piece with more of its corners.
 
@@ -172,7 +199,8 @@ def halves(piece: Piece) -> tuple[Piece, ...]:
     """
     if len(piece.parts) == 1 and len(piece.hull.points) < len(piece.parts[0]) <= _MOST_CORNERS:
         points, beyond = _thinned(piece.parts[0], 0.25 * piece.hull.radius)
-        return (Piece(hull_around(points, beyond, piece.hull.link), piece.parts),)
+        hull = hull_around(points, beyond, piece.hull.link, solid=piece.hull.solid)
+        return (Piece(hull, piece.parts),)
     corners = divided(piece.parts) if piece.parts.shape[1] == 3 else piece.parts[:0]
     below = best_cut(corners, _box_volume) if len(corners) > 1 else None
     if below is None:

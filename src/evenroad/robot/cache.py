@@ -28,7 +28,7 @@ from evenroad.robot.planes import Plane
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
 from evenroad.robot.urdf import Urdf
 
-_FORMAT = 16
+_FORMAT = 17
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 
@@ -84,7 +84,7 @@ def _model(record: dict[str, Any]) -> RobotModel:
 def robot_of(record: dict[str, Any]) -> Robot:
     """Return the robot that ``asdict`` made this record of, read back from JSON."""
     joints = [joint | {"mimic": joint["mimic"] and Mimic(**joint["mimic"])} for joint in record.pop("joints")]
-    hulls = [Hull(each["points"], each["radius"], each["link"]) for each in record.pop("hulls")]
+    hulls = [Hull(**each) for each in record.pop("hulls")]
     planes = [Plane(**_with_tuples(each)) for each in record.pop("planes", ())]
     # Where a file does not know what lies within the shapes, nothing does.
     inner = record.pop("inner", [])

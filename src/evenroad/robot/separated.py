@@ -14,6 +14,7 @@ from evenroad.robot.inverse_kinematics import task_of
 from evenroad.robot.locked import BEYOND, Bodies, Piece, piece_of
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.robot import Robot
+from evenroad.robot.walls import pieces_between_walls
 from evenroad.world.protocol import Apart
 
 ONE = (1, (np.inf,), 2_000)
@@ -76,16 +77,15 @@ def apart(
     robot, tries = world.robot, QUICK if quickly else THOROUGH
     tasks = [task_of(robot, goal) for goal in poses]
     bodies, others = outer_bodies(world), False
-    joints = truly = 0
+    names: tuple[str, ...] = ()
     if robot.inner is not None:
         inner = Bodies(replace(robot, capsules=robot.inner, inner=None), world.with_bodies, world.margin)
-        truly, others = shown_by(inner, start, goals, tasks, tries)
-    if not truly:
-        joints, others = shown_by(bodies, start, goals, tasks, tries)
-        truly = joints if robot.inner is None else 0
-    if not (truly or joints):
+        names, others = shown_by(inner, start, goals, tasks, tries)
+    truly = bool(names) or robot.inner is None
+    if not names:
+        names, others = shown_by(bodies, start, goals, tasks, tries)
+    if not names:
         return None
-    names = robot.group[: truly or joints]
     alone = (
         f"joint {names[0]} alone cannot get there, whatever the others do"
         if len(names) == 1
@@ -97,7 +97,7 @@ def apart(
             " that is not proved"
         )
         return Apart(message, proved=False)
-    of = "the robot's capsules" if robot.inner is None else "capsules inside of the robot's shapes"
+    of = "the robot's capsules" if robot.inner is None else "bodies inside of the robot's shapes"
     of += f", {world.clearance:g} m from obstacles" if world.clearance else ""
     if others or not whole:
         found = (
@@ -116,11 +116,26 @@ def outer_bodies(world: InScene) -> Bodies:
 
 def shown_by(
     bodies: Bodies, start: Floats, goals: Floats, tasks: Sequence[Task], tries: Tries
-) -> tuple[int, bool]:
-    """Return by how many joints no goal can be reached, 0 where by none; and whether other postures of poses may be."""
-    shown, unreached, undecided = 0, list(goals), list(tasks)
+) -> tuple[tuple[str, ...], bool]:
+    """Return which joints cannot reach any goal, none where that is not shown; and whether other postures of poses may.
+
+    Walls come first: they say which single joints cannot.
+    """
+    group = bodies.robot.group
+    used, shown = dict[str, None](), tuple[str, ...]()
+    unreached, undecided = list(goals), list(tasks)
+    for k, room in pieces_between_walls(bodies.robot, start):
+        before = len(unreached) + len(undecided)
+        unreached = [goal for goal in unreached if room.holds(goal)]
+        undecided = [task for task in undecided if not is_beyond(room, *task)]
+        if len(unreached) + len(undecided) < before:
+            used[group[k]] = None
+    if used and not unreached:
+        shown = tuple(used)
+        if not undecided:
+            return shown, False
     for joints, reach, cells in tries:
-        if joints > len(bodies.robot.group):
+        if joints > len(group):
             break
         piece = piece_of(bodies, start, reach, cells)
         if piece is not None:
@@ -129,9 +144,10 @@ def shown_by(
         if np.isfinite(reach).any() and len(unreached) <= MOST_GOALS:
             unreached = [goal for goal in unreached if not _is_walled(bodies, goal, start, reach, cells)]
         if not unreached:
-            shown = shown or joints
+            names = tuple(dict.fromkeys((*group[:joints], *used)))
             if not undecided:
-                return joints, False
+                return names, False
+            shown = shown or names
     return shown, bool(undecided)
 
 
