@@ -36,7 +36,7 @@ def test_what_is_right_is_done_as_before():
         (lambda: steer(), InvalidValue, "missing 1 required positional argument: 'speed'"),
         (lambda: steer([1], speed=[2]), InvalidValue, "multiple values for argument 'speed'"),
         (lambda: Wheel(raduis=1), UnknownName, "keyword of Wheel: 'raduis'; known: radius"),
-        (lambda: Wheel(1).turned(to=1), UnknownName, "keyword of Wheel.turned: 'to'; known: by"),
+        (lambda: Wheel(1).turned(to=1), UnknownName, "keyword of turned: 'to'; known: by"),
     ],
 )
 def test_a_wrong_call_is_told_what_there_is(call, error, text):

@@ -20,7 +20,8 @@ def explains_calls(called: Called) -> Called:
     """
     if isinstance(called, type):
         for name, each in vars(called).copy().items():
-            if isinstance(each, FunctionType) and (name == "__init__" or not name.startswith("_")):
+            public = name == "__init__" or not name.startswith("_")
+            if public and isinstance(each, FunctionType) and not hasattr(each, "__wrapped__"):
                 setattr(called, name, explains_calls(each))
         return called
 
@@ -39,7 +40,7 @@ def explains_calls(called: Called) -> Called:
 
 def _explained(function: Callable[..., Any], named: dict[str, Any], text: str) -> EvenroadError:
     """Return what is wrong with a call, of which Python says `text`."""
-    name = function.__qualname__.removesuffix(".__init__")
+    name = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
     taken = {key: each for key, each in signature(function).parameters.items() if key != "self"}
     keywords = [key for key, each in taken.items() if each.kind is not Parameter.POSITIONAL_ONLY]
     strange = [key for key in named if key not in keywords]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Container, Sequence
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -74,6 +76,14 @@ def as_row(
     if max(map(abs, row)) > within:
         raise InvalidValue(f"{name} must lie between -{within:g} and {within:g}, got {shown(values)}")
     return row
+
+
+def as_file(what: str, path: object, instead: str = "") -> Path:
+    """Return the name of a file as a Path, or raise InvalidValue; `instead` says what else is made otherwise."""
+    if not isinstance(path, str | os.PathLike):
+        hint = f"; {instead}" if instead else ""
+        raise InvalidValue(f"{what} must be the name of a file, a text or a Path, got {shown(path)}{hint}")
+    return Path(path)
 
 
 def require_extra(module: str, extra: str, what: str) -> Any:

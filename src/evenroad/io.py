@@ -8,7 +8,6 @@ import platform
 from collections.abc import Sequence
 from dataclasses import asdict
 from importlib import metadata
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ import numpy.typing as npt
 
 from evenroad import __version__
 from evenroad._arrays import set_fields
-from evenroad._checks import require_known
+from evenroad._checks import as_file, require_known
 from evenroad._files import atomic_write, read_json_file
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points import Origin
@@ -59,7 +58,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
 
 def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
     """Do what :meth:`PlanResult.save` does."""
-    suffix = Path(path).suffix.lower()
+    suffix = as_file("what a plan is saved to", path).suffix.lower()
     require_known(f"kind of file for a plan, {os.fspath(path)!r}: suffix", suffix, (".json", ".csv", ".png"))
     if suffix == ".png":
         result.plot(path)
@@ -79,7 +78,7 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
 
     Raises BrokenFile if the file is missing, or is no such record.
     """
-    record = read_json_file(path, "plan")
+    record = read_json_file(as_file("a plan", path), "plan")
     if not isinstance(record, dict) or not {"status", "query", "path"} <= set(record):
         raise BrokenFile(f"{path} is not a plan of evenroad: it must have status, query, path and more")
     try:

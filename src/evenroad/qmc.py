@@ -27,6 +27,7 @@ from scipy.stats.qmc import geometric_discrepancy as geometric_discrepancy
 from scipy.stats.qmc import scale as scale
 
 from evenroad._arrays import Floats
+from evenroad._call import explains_calls
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
 from evenroad._shared import OwnLock
@@ -50,6 +51,9 @@ class _SharedEngine(QMCEngine):
 
     _lock: OwnLock
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(d={self.d}, num_generated={self.num_generated})"
+
     def random(self, n: Any = 1, *, workers: Any = 1) -> Floats:
         """Return the next n points, (n, d)."""
         with self._lock:
@@ -71,6 +75,7 @@ class _SharedEngine(QMCEngine):
         raise NotImplementedError
 
 
+@explains_calls
 class SequenceEngine(_SharedEngine):
     """An engine over a sequence; a subclass names the ``family``, a name of ``SAMPLERS`` that takes ``start``.
 
@@ -115,6 +120,7 @@ class SequenceEngine(_SharedEngine):
         return count
 
 
+@explains_calls
 class FamilyEngine(_SharedEngine):
     """An engine over one set of a family; a subclass names the ``family``, any name of ``SAMPLERS``.
 

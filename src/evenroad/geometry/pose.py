@@ -17,8 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import FARTHEST, as_row
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, shown
 
 Vector = tuple[float, float, float]
 NO_ROTATION = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
@@ -121,6 +122,17 @@ def _three(xyz: Sequence[float]) -> Vector:
     return x, y, z
 
 
+def _rows_of_three(points: npt.ArrayLike) -> Floats:
+    try:
+        array = np.asarray(points, dtype=np.float64)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.ndim not in (1, 2) or array.shape[-1] != 3:
+        raise InvalidValue(f"points must be numbers of shape (3,) or (n, 3), got {shown(points)}")
+    return array
+
+
+@explains_calls
 @dataclass(frozen=True, init=False, repr=False)
 class Pose:
     """A rotation, then a translation: ``p -> R p + xyz``.
@@ -161,6 +173,12 @@ class Pose:
     ) -> None:
         if (rotation is not NO_ROTATION) + (rpy is not None) + (xyzw is not None) > 1:
             raise InvalidValue("a pose must have one of rotation, rpy and xyzw, got more than one")
+        if isinstance(xyz, np.ndarray) and xyz.ndim == 2:
+            raise InvalidValue(
+                "xyz must be 3 finite numbers; a 4x4 matrix is taken by Pose.from_matrix(matrix)"
+            )
+        if rotation is not NO_ROTATION and np.size(rotation) == 4:
+            raise InvalidValue(_BY_KEYWORD)
         if rpy is not None:
             rotation = rotation_from_rpy(*as_row("rpy", rpy, 3))
         elif xyzw is not None:
@@ -254,12 +272,12 @@ class Pose:
 
     def apply(self, points: npt.ArrayLike) -> Floats:
         """Return points of the own frame, (3,) or (n, 3), in the frame that the pose is given in."""
-        p = np.asarray(points, dtype=np.float64)
+        p = _rows_of_three(points)
         return (self.rotation_matrix @ p if p.ndim == 1 else p @ self.rotation_matrix.T) + np.array(self.xyz)
 
     def local(self, points: npt.ArrayLike) -> Floats:
         """Return points, (3,) or (n, 3), in the pose's own frame: what undoes :meth:`apply`."""
-        p = np.asarray(points, dtype=np.float64) - np.array(self.xyz)
+        p = _rows_of_three(points) - np.array(self.xyz)
         return self.rotation_matrix.T @ p if p.ndim == 1 else p @ self.rotation_matrix
 
     def inverse(self) -> Pose:
@@ -269,6 +287,10 @@ class Pose:
 
     def __matmul__(self, other: Pose) -> Pose:
         """Return the pose that applies `other` first, then this one."""
+        if not isinstance(other, Pose):
+            raise InvalidValue(
+                f"a pose times a Pose, as Pose.from_matrix(matrix), is a pose, got {shown(other)}"
+            )
         rotation = self.rotation_matrix @ other.rotation_matrix
         return Pose(_three(self.apply(other.xyz).tolist()), tuple(rotation.ravel().tolist()))
 

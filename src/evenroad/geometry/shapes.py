@@ -18,6 +18,7 @@ from typing import Any, ClassVar, Unpack, overload
 import numpy as np
 
 from evenroad._arrays import Floats, set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import FARTHEST, as_batch, as_row, require_known, require_positive
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.cloud_file import load_cloud
@@ -31,6 +32,7 @@ CLOUD_RADIUS = 0.01
 """Default radius of the balls of a point cloud [m]."""
 
 
+@explains_calls
 @dataclass(frozen=True, init=False, repr=False)
 class Box(Shape):
     """A box around the origin of its frame: `size` are its full extents (x, y, z), > 0 [m].
@@ -62,6 +64,7 @@ class Box(Shape):
         return f"({', '.join(f'{extent:g}' for extent in self.size)})"
 
 
+@explains_calls
 @dataclass(frozen=True, init=False, repr=False)
 class Sphere(Shape):
     """All points within `radius`, > 0 [m], of the origin of its frame."""
@@ -81,6 +84,7 @@ class Sphere(Shape):
         return _ball(self.radius)
 
 
+@explains_calls
 @dataclass(frozen=True, init=False, repr=False)
 class Cylinder(Shape):
     """A cylinder along the z axis of its frame, its middle in the origin: `radius` and `length`, > 0 [m]."""
@@ -164,6 +168,7 @@ class Capsule(Shape):
         return f"{self.a!r}, {self.b!r}, {self.radius!r}"
 
 
+@explains_calls
 @dataclass(frozen=True, init=False, repr=False)
 class Mesh(Shape):
     """A surface of triangles.
@@ -227,6 +232,7 @@ def _surface(source: Any) -> Path | TriangleMesh:
     )
 
 
+@explains_calls
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class PointCloud(Shape):
     """Balls of one radius around points, (n, 3) [m], as a depth camera sees them.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-import pathlib
 from dataclasses import asdict
 from typing import get_args, get_type_hints
 
 import numpy as np
 
-from evenroad._checks import require_known
+from evenroad._call import explains_calls
+from evenroad._checks import as_file, require_known
 from evenroad._files import atomic_write
 from evenroad._npz import Arrays, Path, read_array, read_json, read_npz, reading, write_npz
 from evenroad.errors import BrokenFile, shown
@@ -36,7 +36,7 @@ def save_array(path: Path, points: PointSet) -> None:
 
 def write_points(points: PointSet, path: str | os.PathLike[str]) -> None:
     """Do what :meth:`PointSet.save` does."""
-    file = pathlib.Path(path)
+    file = as_file("what points are saved to", path)
     suffix = file.suffix.lower()
     require_known(f"kind of file for points, {os.fspath(path)!r}: suffix", suffix, (".npz", ".npy", ".csv"))
     if suffix == ".npz":
@@ -61,18 +61,20 @@ def read_points(path: Path) -> PointSet:
     return PointSet(array)
 
 
+@explains_calls
 def load_points(path: str | os.PathLike[str]) -> PointSet:
     """Read a point set: an ``.npz`` with its origin, whose names, types, shape, range and hash are checked.
 
     A plain ``.npy`` array or ``.csv``, which have no origin, are read, too.  Raises BrokenFile if the file is missing,
     is no such file, or any of the checks fails, the text says which; InvalidValue if a plain array is no point set.
     """
-    if pathlib.Path(path).suffix == ".csv":
+    suffix = as_file("what points are read from", path, "points of an array are PointSet(array)").suffix
+    if suffix == ".csv":
         try:
             return PointSet(np.loadtxt(path, delimiter=",", ndmin=2))
         except (OSError, UnicodeDecodeError) as error:
             raise BrokenFile(f"cannot read the points {path}: {error}") from error
-    if pathlib.Path(path).suffix == ".npy":
+    if suffix == ".npy":
         return read_points(path)
     arrays = read_npz(path, "point set", ("points", "origin", "hash"))
     if arrays["points"].dtype != np.float64:

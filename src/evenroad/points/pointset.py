@@ -16,6 +16,7 @@ import numpy.typing as npt
 from evenroad import __version__
 from evenroad._above import above
 from evenroad._arrays import Floats, set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, shown
 
@@ -52,6 +53,7 @@ class Origin:
         return " ".join(parts)
 
 
+@explains_calls
 @dataclass(frozen=True, eq=False)
 class PointSet:
     """`n` points of the unit cube [0, 1)^d, frozen, with their origin.
@@ -168,6 +170,10 @@ def as_unit_points(points: object) -> Floats:
 
     Raises InvalidValue naming what is no real number, the shape, or the first bad coordinate and its place.
     """
+    if isinstance(points, str | os.PathLike):
+        raise InvalidValue(
+            f"points must be an (n, d) array, got {shown(points)}; a file is read by load_points"
+        )
     try:
         given = np.asarray(points)
         # NumPy itself drops imaginary parts, parses text and counts seconds; a duration is an integer to its scalars.

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from evenroad._above import above
 from evenroad._arrays import Floats
+from evenroad._call import explains_calls
 from evenroad.errors import InvalidValue
 from evenroad.space.path import path_length, resample
 from evenroad.world import World
 
 
+@explains_calls
 class ResultMethods:
     """Methods of :class:`evenroad.PlanResult`."""
 

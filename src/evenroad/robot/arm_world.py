@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
@@ -49,6 +50,7 @@ twice that clear of contact, so that it refuses hardly a motion that touches not
 """
 
 
+@explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
 class ArmWorld(OneOrMany):
     """The configurations in which a robot touches neither a scene's obstacles nor itself.

@@ -25,7 +25,7 @@ class Mimic:
     offset: float = 0.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Joint:
     """How a link, the `child`, moves on its `parent`, as URDF has it.
 
@@ -56,6 +56,9 @@ class Joint:
     def neutral(self) -> float:
         """0, or the nearest to it within limits."""
         return float(min(max(0.0, self.lower), self.upper))
+
+    def __repr__(self) -> str:
+        return f"Joint({self.name!r}, {self.kind}, [{self.lower:.6g}, {self.upper:.6g}])"
 
 
 def require_within(joint: Joint, value: float, what: str, limits: str = "") -> None:

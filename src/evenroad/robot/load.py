@@ -9,7 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypedDict, Unpack
 
-from evenroad._checks import require_known, require_positive
+from evenroad._call import explains_calls
+from evenroad._checks import as_file, require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.fit import fit_capsules
@@ -45,6 +46,7 @@ class RobotOptions(TypedDict, total=False):
     progress: Callable[[int, int, str], None] | None
 
 
+@explains_calls
 def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     """Return a robot; see :func:`load_model`, which also tells how it was made.
 
@@ -64,6 +66,7 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     return model.robot
 
 
+@explains_calls
 def load_model(
     source: PathLike,
     *,
@@ -138,7 +141,7 @@ def find_robot(source: PathLike) -> tuple[Path, Path | None]:
 
     Raises UnknownName if there is neither such a file nor such a robot.
     """
-    path = Path(source)
+    path = as_file("a robot", source, "a URDF, xacro or MJCF, or the name of a shipped robot")
     if path.is_file() or path.suffix or len(path.parts) > 1:
         return path, None
     if str(source) not in ROBOTS:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evenroad._arrays import set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import as_row, require_positive
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
@@ -19,6 +20,7 @@ _UNIT = 1e-3
 """How far the norm of a quaternion that is written may be from 1."""
 
 
+@explains_calls
 @dataclass(frozen=True)
 class PoseGoal:
     """Where a link of the robot is to be.

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from evenroad._arrays import set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import require_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, shown
@@ -26,6 +27,7 @@ from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
 
 
+@explains_calls
 @dataclass(frozen=True, repr=False)
 class Robot(RobotMethods):
     """A kinematic tree with bodies.
@@ -88,7 +90,12 @@ class Robot(RobotMethods):
         the robot.
         """
         require_known(f"link of {self.name!r}:", at, self.links)
+        tool = (tool,) if isinstance(tool, Shape) else tool
         if not isinstance(tool, Robot):
+            if not isinstance(tool, list | tuple) or not all(isinstance(each, Shape) for each in tool):
+                raise InvalidValue(
+                    f"a tool must be a Robot, as load_robot(file) gives it, or shapes, got {shown(tool)}"
+                )
             shapes = [replace(shape, link="tool") for shape in tool]
             capsules = tuple(capsule for shape in shapes for capsule in fit_capsules(shape))
             hulls = tuple(piece_of(shape).hull for shape in shapes)

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from evenroad._above import above
 from evenroad._arrays import Floats
+from evenroad._call import explains_calls
 from evenroad._rng import RngLike
 from evenroad.geometry.pose import Pose
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from evenroad.robot.scene import Scene
 
 
+@explains_calls
 class RobotMethods:
     """Methods of :class:`evenroad.robot.Robot`."""
 

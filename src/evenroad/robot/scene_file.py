@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from evenroad._checks import require_known, require_positive
+from evenroad._call import explains_calls
+from evenroad._checks import as_file, require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName, shown
 from evenroad.geometry.cloud_file import load_cloud
@@ -39,12 +40,13 @@ def is_scene(path: str | os.PathLike[str]) -> bool:
 
 def find_scene(source: str | os.PathLike[str]) -> Path:
     """Return the file of a scene: `source` itself or, where there is no such file, the shipped one of that name."""
-    path = Path(source)
+    path = as_file("a scene", source, "a scene of shapes, or of a mapping, is er.Scene(...)")
     if not path.is_file() and path.parent == Path() and path.stem in SCENES and path.suffix in ("", ".yaml"):
         return DATA / f"{path.stem}.yaml"
     return path
 
 
+@explains_calls
 def load_scene(source: str | os.PathLike[str]) -> Scene:
     """Return a scene from its file, or a shipped one by name: ``box-reach.yaml``, ``box-reach-narrow.yaml``.
 

@@ -184,10 +184,8 @@ def _from_pairs(robot: Robot, text: str, degrees: bool) -> Floats:
 def _from_list(robot: Robot, text: str, states: Mapping[str, object], degrees: bool) -> Floats:
     words = text.replace(",", " ").split()
     if len(words) == 1 and not _is_number(words[0]):
-        raise UnknownName(
-            f"unknown state {text.strip()!r}; known: {', '.join(sorted(states)) or 'none'}; or give"
-            f" {len(robot.group)} numbers: {','.join(robot.group)}"
-        )
+        unknown = UnknownName.among("state", text.strip(), states)
+        raise UnknownName(f"{unknown}; or give {len(robot.group)} numbers: {','.join(robot.group)}")
     if len(words) != len(robot.group):
         raise InvalidValue(
             f"a configuration of {robot.name!r} has {len(robot.group)} numbers, {','.join(robot.group)};"

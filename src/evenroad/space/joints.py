@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._call import explains_calls
+from evenroad._checks import counted
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_bounds, as_cube_batch, as_fractions, as_weights
 from evenroad.space.flat import FlatMetric
@@ -99,6 +101,7 @@ class FlatSpace(Space):
         return np.where(outside, np.where(wrapped < self._high, wrapped, self._low), q)
 
 
+@explains_calls
 @dataclass(frozen=True)
 class BoxSpace(FlatSpace):
     """The box ``[low_1, high_1] x ... x [low_dim, high_dim]``; straight lines are its shortest paths.
@@ -118,6 +121,7 @@ class BoxSpace(FlatSpace):
         self._set_axes(low, high, (False,) * len(low), weights)
 
 
+@explains_calls
 @dataclass(frozen=True)
 class Circle(FlatSpace):
     """The directions of the plane, SO(2), as (n, 1) angles in radians; the metric is the angle between two.
@@ -129,7 +133,8 @@ class Circle(FlatSpace):
         self._set_axes((-math.pi,), (math.pi,), (True,), (1.0,))
 
 
-@dataclass(frozen=True)
+@explains_calls
+@dataclass(frozen=True, repr=False)
 class JointSpace(FlatSpace):
     """Bounded and wrapping joints in one vector, with the weighted Euclidean metric.
 
@@ -150,6 +155,9 @@ class JointSpace(FlatSpace):
         weights = as_weights(self.weights, len(low))
         set_fields(self, low=low, high=high, wrapping=wrapping, weights=weights)
         self._set_axes(low, high, wrapping, weights)
+
+    def __repr__(self) -> str:
+        return f"JointSpace({counted(self.dim, 'joint')}, {int(self.flat.wrapping.sum())} wrapping)"
 
     def contains(self, q: Floats) -> Bools:
         """Return for each row of `q`, (n, dim), whether bounded joints are within their bounds, up to 1e-5: (n,)."""

@@ -10,8 +10,9 @@ from typing import Literal
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import require_known
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, shown
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions, as_weights
 from evenroad.space.flat import FlatMetric
 from evenroad.space.joints import BoxSpace, Circle
@@ -19,6 +20,7 @@ from evenroad.space.protocol import Space, all_distances
 from evenroad.space.so3 import SO3
 
 
+@explains_calls
 @dataclass(frozen=True)
 class Product(Space):
     """The space of tuples of one configuration from each part, their coordinates one after the other.
@@ -42,9 +44,9 @@ class Product(Space):
     _flat: FlatMetric | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        parts = tuple(self.parts)
-        if not parts:
-            raise InvalidValue("parts must be one space or more, got none")
+        parts = tuple(self.parts) if isinstance(self.parts, Iterable) else ()
+        if not parts or not all(hasattr(part, "from_cube") for part in parts):
+            raise InvalidValue(f"parts must be a list of one space or more, got {shown(self.parts)}")
         require_known("combination", self.combine, ("sum", "l2"))
         weights = as_weights(self.weights, len(parts))
         metric = _flat_product(parts, weights, self.combine)
@@ -123,6 +125,7 @@ def _flat_product(parts: Sequence[Space], weights: Sequence[float], combine: str
     )
 
 
+@explains_calls
 def SE2(
     low: Sequence[float],
     high: Sequence[float],
@@ -138,6 +141,7 @@ def SE2(
     return Product((_position(low, high, 2), Circle()), weights, combine)
 
 
+@explains_calls
 def SE3(
     low: Sequence[float],
     high: Sequence[float],

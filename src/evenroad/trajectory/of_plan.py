@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+from inspect import signature
 from typing import Any
 
 from evenroad._arrays import Floats
-from evenroad._checks import require_positive
+from evenroad._checks import require_known, require_positive
 from evenroad.errors import InvalidValue, shown
 from evenroad.robot import ArmWorld
 from evenroad.trajectory.arm import arm_trajectory
@@ -24,6 +25,9 @@ def trajectory_of(
     **options: Any,
 ) -> Trajectory:
     """Return what :meth:`PlanResult.trajectory` does."""
+    known = {*signature(arm_trajectory).parameters} - {"world", "path"}
+    for key in options:
+        require_known("keyword of trajectory:", key, known)
     if isinstance(world, ArmWorld):
         if isinstance(limits, str | os.PathLike):
             limits = limits_of(world.robot, limits)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
 from evenroad._arrays import Bools, Floats
-from evenroad._checks import as_batch, require_known, require_positive
+from evenroad._checks import as_batch, counted, require_known, require_positive
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.limits import Limits
@@ -38,7 +38,7 @@ _HALVINGS = 6
 """Number of times that a blend in collision is halved; then the robot stops at the corner."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Trajectory:
     """States of a robot at equal steps of time, from rest to rest.
 
@@ -108,6 +108,9 @@ class Trajectory:
             constant = {name: np.full(len(rows), held.get(name, 0.0)) for name in self.held}
             tables.append(np.column_stack([(constant | own)[name] for name in order]))
         return order, (tables[0], tables[1], tables[2])
+
+    def __repr__(self) -> str:
+        return f"Trajectory({self.duration:.4g} s, {counted(len(self.names), 'joint')}, {len(self.times)} states)"
 
     @property
     def duration(self) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from evenroad._checks import as_file
 from evenroad._files import atomic_write
 from evenroad.errors import NotAvailable
 from evenroad.roadmap import PlanResult
@@ -57,6 +58,6 @@ def plot_map(gridmap: GridMap, path: str | os.PathLike[str] | None = None) -> Im
 def _kept(picture: Image.Image, path: str | os.PathLike[str] | None) -> Image.Image:
     """Return a picture, saved where a file is named."""
     if path is not None:
-        with atomic_write(path) as out:
+        with atomic_write(as_file("what a picture is saved to", path)) as out:
             picture.save(out, format="png", compress_level=1)
     return picture

@@ -9,6 +9,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import as_row, counted, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable, shown
@@ -28,6 +29,7 @@ FINER = 20
 """Factor by which `FunctionWorld.recheck` checks states more densely."""
 
 
+@explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
 class FunctionWorld(OneOrMany):
     """The configurations that a function calls free, and motions that are free at states close together.
@@ -131,7 +133,7 @@ class FunctionWorld(OneOrMany):
 
     def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free."""
-        if not self.space.contains(np.asarray(q, dtype=np.float64)[np.newaxis])[0]:
+        if not self.space.contains(self._row(q)[np.newaxis])[0]:
             return OUTSIDE
         slow = "" if self.vectorised is not False else f" ({ONE_BY_ONE})"
         return f"{self._name} does not call it free{slow}"

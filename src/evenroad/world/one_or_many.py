@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._call import explains_calls
 from evenroad.errors import InvalidValue, shown
 from evenroad.space import Space
 
@@ -38,6 +39,7 @@ class OneOrMany:
 
 def one_or_many(check: Check) -> Check:
     """Return a check that answers one bool or number for one configuration, (dim,), or one motion between two."""
+    check = explains_calls(check)
 
     @wraps(check)
     def checked(self: OneOrMany, *q: Any, **named: Any) -> Any:

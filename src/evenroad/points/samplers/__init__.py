@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from inspect import signature
 from typing import Any, Protocol
 
+from evenroad._call import explains_calls
+from evenroad._checks import require_known
 from evenroad._rng import RngLike
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import UnknownName
 from evenroad.points.bank import TRAINED_FAMILIES, Trained
 from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import Symmetry
@@ -65,18 +68,18 @@ ALIASES = {"random": "uniform"}
 def make_sampler(name: str, **options: Any) -> KnownSampler:
     """Return the sampler of this name, one of :data:`SAMPLERS`, with its own parameters as options.
 
-    Raises UnknownName, which lists the samplers, if there is none of this name; InvalidValue if it does not take an
-    option.
+    Raises UnknownName, which lists what there is, if there is no sampler of this name, or it does not take an option.
     """
     known = ALIASES.get(name, name) if isinstance(name, str) else None
     if known not in SAMPLERS:
         raise UnknownName.among("sampler", name, SAMPLERS)
-    try:
-        return SAMPLERS[known](**options)
-    except TypeError as error:
-        raise InvalidValue(f"sampler {name!r} does not take these options: {error}") from None
+    taken = {*signature(SAMPLERS[known]).parameters, "rng"}
+    for option in options:
+        require_known(f"option of sampler {name!r}:", option, taken)
+    return SAMPLERS[known](**options)
 
 
+@explains_calls
 def draw(name: str, n: int, d: int, *, rng: RngLike = 0, **options: Any) -> PointSet:
     """Draw n points in d dimensions from the sampler of this name: ``make_sampler(...).draw(...)``.
 

@@ -13,8 +13,9 @@ import numpy as np
 
 from evenroad._above import above
 from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import require_positive
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, shown
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.clearance import least_distance
@@ -39,6 +40,7 @@ _SMALLEST_RADIUS = 1e-150
 """Smallest radius, whose square is above 0: a disk of any size touches what its centre lies on [pixels]."""
 
 
+@explains_calls
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class GridMap:
     """Which cells of a map are occupied, and where the map lies; InvalidValue if the arrays are not of one size.
@@ -76,11 +78,11 @@ class GridMap:
             raise InvalidValue("a map must have one of frame and resolution, got both")
         if frame is None and resolution is not None:
             frame = MapFrame(rows=rows, cols=cols, resolution=resolution, y_up=True)
-        frame = frame or MapFrame(rows=rows, cols=cols)
-        if (frame.rows, frame.cols) != (rows, cols):
+        frame = MapFrame(rows=rows, cols=cols) if frame is None else frame
+        if not isinstance(frame, MapFrame) or (frame.rows, frame.cols) != (rows, cols):
             raise InvalidValue(
-                f"the frame is for {frame.rows} rows and {frame.cols} columns,"
-                f" but occupied has {rows} and {cols}"
+                f"frame must be a MapFrame of {rows} rows and {cols} columns, as occupied has, got {shown(frame)}; the"
+                " side of a cell is resolution=0.05"
             )
         set_fields(self, occupied=occupied, unknown=unknown, frame=frame)
 
@@ -153,11 +155,12 @@ def _as_cells(name: str, value: Bools) -> Bools:
     if cells.ndim != 2 or cells.size == 0 or cells.dtype != np.bool_:
         raise InvalidValue(
             f"{name} must be a boolean array of shape (rows, cols) with at least one cell,"
-            f" got {cells.dtype} of shape {cells.shape}"
+            f" got {cells.dtype} of shape {cells.shape}; a file is read by load_map, numbers are compared, as cells > 0"
         )
     return cells
 
 
+@explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
 class DiskWorld(OneOrMany):
     """A disk of one radius on one map: what `GridMap.world` returns.
@@ -320,7 +323,7 @@ class DiskWorld(OneOrMany):
 
     def explain(self, q: Floats) -> str:
         """Return in words how near an obstacle is to a disk at the map point `q`, (2,)."""
-        centre = np.asarray(q, dtype=np.float64)[np.newaxis]
+        centre = self._row(q)[np.newaxis]
         distance = float(self._from_centre(centre)[0])
         reason = "its centre lies in an obstacle or outside the map"
         if distance > 0.0:

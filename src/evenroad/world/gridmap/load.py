@@ -16,7 +16,8 @@ import numpy.typing as npt
 from PIL import Image
 
 from evenroad._arrays import Bools
-from evenroad._checks import require_known, require_positive
+from evenroad._call import explains_calls
+from evenroad._checks import as_file, require_known, require_positive
 from evenroad._files import looks_like, not_a
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
@@ -47,6 +48,7 @@ class RosMapMeta(NamedTuple):
     """Keys that nothing is known of."""
 
 
+@explains_calls
 def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> GridMap:
     """Read a map: a bare image (.png, .pgm) or a ROS map_server file (.yaml, .yml).
 
@@ -78,6 +80,9 @@ def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> 
     GridMap(160 x 240 cells of 0.05, 26% occupied)
     """
     file = find_map(path)
+    near = get_close_matches(str(path), [Path(name).stem for name in SHIPPED], 1)
+    if near and not file.exists():
+        raise BrokenFile(f"there is no map {path}; did you mean the shipped {near[0]!r}?")
     suffix = file.suffix.lower()
     if suffix in _IMAGES:
         return load_image(file)
@@ -88,7 +93,7 @@ def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> 
 
 def find_map(source: str | os.PathLike[str]) -> Path:
     """Return the file of a map: `source` itself or, where there is no such file, the shipped one of that name."""
-    path = Path(source)
+    path = as_file("a map", source, "a map of an array is GridMap(cells, resolution=...)")
     if not path.is_file() and path.parent == Path():
         for name in SHIPPED:
             if str(path) in (name, Path(name).stem):
