@@ -220,7 +220,7 @@ NOT_YET: dict[str, str] = {
     "map plan by RRTConnect": "module 'evenroad' has no attribute 'RRTConnect'",
     "map plan by PRM": "module 'evenroad' has no attribute 'PRM'",
     "map plan straight": "plan() got an unexpected keyword argument 'radius'",
-    "map other robots": "unknown keyword of world: footprint; a map has disks alone, give the radius of the one around it",
+    "map other robots": "a map has disks alone: give the radius of the one around it",
     "arm plan": "plan() missing 1 required positional argument: 'points'",
     "arm plan to a pose": "plan() missing 1 required positional argument: 'points'",
 }

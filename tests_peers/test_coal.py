@@ -8,7 +8,7 @@ import pytest
 
 from evenroad.geometry import TriangleMesh, load_mesh
 from evenroad.geometry.mesh import merged
-from evenroad.geometry.pose import rotation_from_quaternion, rotations_from_quaternions
+from evenroad.geometry.rotation import rotation_from_quaternion, rotations_from_quaternions
 from evenroad.space import SE3, BoxSpace
 from evenroad.testing import WorldContract
 from evenroad_studies.problems import source_named

@@ -7,7 +7,7 @@ import pytest
 from tests.robot.kernel_arms import random_tree, ur5
 from tests.robot.urdf_texts import write
 
-from evenroad.geometry.pose import rotation_from_rpy
+from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.urdf import read_urdf
 from tests_peers.engines.urdf_text import as_urdf

@@ -25,7 +25,24 @@ from evenroad.roadmap import PlanResult, Status
 def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
     """Return a plan as plain JSON values, in the units of its space.
 
-    `query` is what was asked (map, radius, seed, ...), stored under ``query`` together with start and goals.
+    Parameters
+    ----------
+    result : PlanResult
+    query : dict
+        What was asked (map, radius, seed, ...), stored under ``query`` together with start and goals.
+
+    Returns
+    -------
+    dict
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+    >>> result = er.find_path(world, (3, 3), (27, 17))
+    >>> er.io.plan_record(result, {"radius": 2.0})["status"]
+    'solved'
     """
     places = {name: getattr(result, name).tolist() for name in ("start", "goal", "goals")}
     paths = {name: getattr(result, name) for name in ("path", "milestone_path")}
@@ -57,7 +74,31 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
 
 
 def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
-    """Do what :meth:`PlanResult.save` does."""
+    """Do what :meth:`PlanResult.save` does.
+
+    Parameters
+    ----------
+    result : PlanResult
+    path : str or path-like
+        A ``.json``, ``.csv`` or ``.png``.
+
+    Raises
+    ------
+    UnknownName
+        For another suffix.
+    InvalidValue
+        If waypoints are asked for where there is no path.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+    >>> result = er.find_path(world, (3, 3), (27, 17))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     er.io.save_result(result, f"{folder}/plan.csv")
+    """
     suffix = as_file("what a plan is saved to", path).suffix.lower()
     require_known(f"kind of file for a plan, {os.fspath(path)!r}: suffix", suffix, (".json", ".csv", ".png"))
     if suffix == ".png":
@@ -74,9 +115,33 @@ def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
 
 
 def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]:
-    """Return a plan from the JSON that ``evenroad plan`` wrote, without its phases and origin, and what was asked.
+    """Return a plan from its file, without its origin and the graph that was searched, and what was asked.
 
-    Raises BrokenFile if the file is missing, or is no such record.
+    Parameters
+    ----------
+    path : str or path-like
+        A ``.json`` of :meth:`PlanResult.save` or ``evenroad plan``.
+
+    Returns
+    -------
+    tuple of PlanResult and dict
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, or is no such record.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+    >>> result = er.find_path(world, (3, 3), (27, 17))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     result.save(f"{folder}/plan.json")
+    ...     er.io.load_plan(f"{folder}/plan.json")[0].solved
+    True
     """
     record = read_json_file(as_file("a plan", path), "plan")
     if not isinstance(record, dict) or not {"status", "query", "path"} <= set(record):
@@ -121,14 +186,52 @@ def versions() -> dict[str, str]:
 
 
 def save_json(path: str | os.PathLike[str], record: dict[str, Any]) -> None:
-    """Write a record as indented UTF-8 JSON, atomically; NaN and infinity are refused, they are not JSON."""
+    """Write a record as indented UTF-8 JSON, atomically; NaN and infinity are refused, they are not JSON.
+
+    Parameters
+    ----------
+    path : str or path-like
+    record : dict
+        Of plain JSON values.
+
+    Raises
+    ------
+    BrokenFile
+        If the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import evenroad as er
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     er.io.save_json(f"{folder}/versions.json", er.io.versions())
+    """
     text = json.dumps(record, indent=2, allow_nan=False) + "\n"
     with atomic_write(path) as file:
         file.write(text.encode())
 
 
 def save_path_csv(path: str | os.PathLike[str], waypoints: npt.ArrayLike, names: Sequence[str]) -> None:
-    """Write waypoints, shape (p, dim), under a header of column names, atomically; floats round-trip."""
+    """Write waypoints under a header of column names, atomically; floats round-trip.
+
+    Parameters
+    ----------
+    path : str or path-like
+    waypoints : array_like, shape (p, dim)
+    names : sequence of dim str
+
+    Raises
+    ------
+    BrokenFile
+        If the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import evenroad as er
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     er.io.save_path_csv(f"{folder}/path.csv", [(0, 0), (1, 2)], ("x", "y"))
+    """
     rows = [names, *(map(repr, row) for row in np.asarray(waypoints, dtype=float).tolist())]
     with atomic_write(path) as file:
         file.write("".join(",".join(row) + "\n" for row in rows).encode())

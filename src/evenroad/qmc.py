@@ -55,7 +55,30 @@ class _SharedEngine(QMCEngine):
         return f"{type(self).__name__}(d={self.d}, num_generated={self.num_generated})"
 
     def random(self, n: Any = 1, *, workers: Any = 1) -> Floats:
-        """Return the next n points, (n, d)."""
+        """Return the next points.
+
+        Parameters
+        ----------
+        n : int
+            How many, >= 0.
+        workers : int
+            SciPy's; nothing is drawn in parallel.
+
+        Returns
+        -------
+        ndarray, shape (n, d)
+
+        Raises
+        ------
+        Exhausted
+            If fewer are left.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.qmc.Even(d=2, n=16, rng=0).random(4).shape
+        (4, 2)
+        """
         with self._lock:
             return np.asarray(super().random(n, workers=workers))
 
@@ -65,7 +88,29 @@ class _SharedEngine(QMCEngine):
             return super().reset()
 
     def fast_forward(self, n: object) -> Any:
-        """Skip the next n points; raises as :meth:`random` does."""
+        """Skip points.
+
+        Parameters
+        ----------
+        n : int
+            How many, >= 0.
+
+        Returns
+        -------
+        QMCEngine
+            The engine itself.
+
+        Raises
+        ------
+        Exhausted
+            If fewer are left.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.qmc.Growing(d=2, rng=0).fast_forward(4)
+        Growing(d=2, num_generated=4)
+        """
         with self._lock:
             self.num_generated += self._count(n)
             return self
@@ -77,11 +122,32 @@ class _SharedEngine(QMCEngine):
 
 @explains_calls
 class SequenceEngine(_SharedEngine):
-    """An engine over a sequence; a subclass names the ``family``, a name of ``SAMPLERS`` that takes ``start``.
+    """An engine over a sequence; a subclass names the ``family``, a sampler that takes ``start``.
 
-    ``random(n)`` hands out the next n points: those of ``draw(family, n, d, rng=rng, start=num_generated)``, so two
-    calls give what one of as many points gives.  It goes on to the end of the family, 2**30 points, and raises
-    Exhausted there.  `d` >= 1 is the dimension; the other parameters are those of :class:`FamilyEngine`.
+    Points are those of ``draw(family, n, d, rng=rng, start=num_generated)``, so two calls give what one of as many
+    points gives.  A sequence ends after 2**30 points.
+
+    Parameters
+    ----------
+    d : int
+        Dimension, >= 1.
+    optimization : {"random-cd", "lloyd"}, optional
+        SciPy's, of what ``random`` returns.
+    rng : int, SeedSequence or Generator, optional
+        None takes fresh entropy, as everywhere in SciPy; a Generator is spawned.
+    seed
+        SciPy's old name of `rng`.
+
+    Raises
+    ------
+    InvalidValue
+        If `d` or `rng` is none.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.qmc.Growing(d=3, rng=1).random(10).shape
+    (10, 3)
     """
 
     family: ClassVar[str]
@@ -122,17 +188,32 @@ class SequenceEngine(_SharedEngine):
 
 @explains_calls
 class FamilyEngine(_SharedEngine):
-    """An engine over one set of a family; a subclass names the ``family``, any name of ``SAMPLERS``.
+    """An engine over one set of points; a subclass names the ``family``, any sampler.
 
-    The set, ``points``, is drawn from the family and then randomised by every move that keeps its quality
-    (:func:`evenroad.points.randomise.randomise`).  ``random`` hands its points out in their order and raises
-    Exhausted when fewer are left than asked for.  A set is even as a whole, but its first points alone are
-    not, those of a lattice least of all: choose as n what you will use, or a :class:`Growing` sequence.
+    The set, ``points``, is drawn and then randomised by every move that keeps its quality.  It is even as a whole, but
+    its first points alone are not: choose as `n` what you will use, or a :class:`Growing` sequence.
 
-    `d` and `n`, >= 1, are dimension and size of the set; NotAvailable is raised if the family has none.  SciPy's
-    `optimization` of what ``random`` returns does not keep what the set was made for.  An `rng` of None takes fresh
-    entropy, as everywhere in SciPy; a Generator is spawned, and `seed` is SciPy's old name.  Other options are the
-    sampler's own, e.g. ``train=True`` of a trained family.
+    Parameters
+    ----------
+    d, n : int
+        Dimension and size of the set, >= 1.
+    optimization, rng, seed
+        As of :class:`SequenceEngine`; `optimization` does not keep what the set was made for.
+    **options
+        The sampler's own, e.g. ``train=True`` of a trained family.
+
+    Raises
+    ------
+    NotAvailable
+        If the family has no such set.
+    InvalidValue, UnknownName
+        If a value or an option is none.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.qmc.Even(d=2, n=64, rng=0).random(64).shape
+    (64, 2)
     """
 
     family: ClassVar[str]

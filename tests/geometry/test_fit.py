@@ -12,7 +12,8 @@ from evenroad.errors import BrokenFile, NotAvailable
 from evenroad.geometry.fit import MOST_CAPSULES, capsules_around_mesh, fit_capsules, smallest_around_prism
 from evenroad.geometry.fit_points import capsule_around, union_volume, volume
 from evenroad.geometry.mesh import load_mesh
-from evenroad.geometry.pose import Pose, rotation_from_rpy
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Sphere
 
 XYZ = (0.3, -0.2, 0.5)

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from evenroad.errors import InvalidValue
 from evenroad.geometry import Pose, rotation_from_quaternion, rotation_from_rpy
-from evenroad.geometry.pose import rotation_from_z, rotations_from_quaternions
+from evenroad.geometry.rotation import rotation_from_z, rotations_from_quaternions
 
 RNG = np.random.default_rng(1)
 RPY = RNG.uniform(-1.5, 1.5, (5, 3))

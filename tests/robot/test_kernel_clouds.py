@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evenroad.geometry.pose import Pose, rotation_from_rpy
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.geometry.shapes import PointCloud, Sphere
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld

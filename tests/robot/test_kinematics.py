@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
-from evenroad.geometry.pose import rotation_from_rpy
+from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.robot import (
     Joint,
     Robot,

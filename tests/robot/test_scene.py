@@ -6,7 +6,8 @@ import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.geometry.mesh import TriangleMesh
-from evenroad.geometry.pose import Pose, rotation_from_rpy
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, PointCloud, Sphere
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, load_scene
 from evenroad.robot.scene_file import SCENES, is_scene

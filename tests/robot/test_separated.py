@@ -5,7 +5,7 @@ import pytest
 
 import evenroad as er
 from evenroad.geometry import Pose
-from evenroad.geometry.pose import rotation_from_z
+from evenroad.geometry.rotation import rotation_from_z
 from evenroad.robot import ArmWorld, HeldObject, Obstacle, PoseGoal, Scene, Straight, load_robot
 from evenroad.robot.chain import chain_of, default_tip
 from evenroad.robot.inverse_kinematics import task_of

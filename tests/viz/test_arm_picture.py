@@ -6,7 +6,7 @@ from matplotlib.path import Path as Outline
 from PIL import Image, ImageColor
 
 from evenroad.errors import BrokenFile
-from evenroad.geometry.pose import rotation_from_rpy
+from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.points import draw
 from evenroad.roadmap import plan
 from evenroad.robot import (

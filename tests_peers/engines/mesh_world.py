@@ -10,7 +10,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh, merged
-from evenroad.geometry.pose import rotations_from_quaternions
+from evenroad.geometry.rotation import rotations_from_quaternions
 from evenroad.robot.reference.coal_world import require_coal, tree_of
 from evenroad.space.batch import as_batch
 from evenroad.world.function import OUTSIDE, FunctionWorld, TestedAtStates

@@ -8,7 +8,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from evenroad.geometry.pose import rotation_from_rpy
+from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.robot.robot import Robot
 
 

@@ -9,9 +9,9 @@ from evenroad.geometry.mesh import height_map as height_map
 from evenroad.geometry.mesh import load_mesh as load_mesh
 from evenroad.geometry.pose import IDENTITY as IDENTITY
 from evenroad.geometry.pose import Pose as Pose
-from evenroad.geometry.pose import rotation_from_heading as rotation_from_heading
-from evenroad.geometry.pose import rotation_from_quaternion as rotation_from_quaternion
-from evenroad.geometry.pose import rotation_from_rpy as rotation_from_rpy
+from evenroad.geometry.rotation import rotation_from_heading as rotation_from_heading
+from evenroad.geometry.rotation import rotation_from_quaternion as rotation_from_quaternion
+from evenroad.geometry.rotation import rotation_from_rpy as rotation_from_rpy
 from evenroad.geometry.shapes import Box as Box
 from evenroad.geometry.shapes import Capsule as Capsule
 from evenroad.geometry.shapes import Cylinder as Cylinder

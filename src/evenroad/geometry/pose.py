@@ -1,4 +1,4 @@
-"""Rotations and poses: one convention for the whole package.
+"""Poses: one convention for the whole package.
 
 A rotation is the nine numbers of its matrix, row by row (four in the plane).  Quaternions are (x, y, z, w), as
 SciPy and ROS have them, angles radians, lengths metres.  A pose takes points of its own frame to the frame that it is
@@ -10,8 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import mul
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,101 +18,15 @@ from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import FARTHEST, as_row
 from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.rotation import (
+    BY_KEYWORD,
+    NO_ROTATION,
+    as_rotation,
+    rotation_from_quaternion,
+    rotation_from_rpy,
+)
 
 Vector = tuple[float, float, float]
-NO_ROTATION = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-_ORTHONORMAL = 1e-6
-"""Largest error of the products of a rotation's rows: a margin for matrices read from text."""
-_BY_KEYWORD = "a quaternion must be given as xyzw=(x, y, z, w), by its keyword: others have w first"
-
-
-def rotation_from_rpy(roll: float, pitch: float, yaw: float) -> tuple[float, ...]:
-    """Return ``Rz(yaw) Ry(pitch) Rx(roll)``, the convention of URDF, for angles in radians."""
-    (sr, cr), (sp, cp), (sy, cy) = ((math.sin(angle), math.cos(angle)) for angle in (roll, pitch, yaw))
-    return (
-        *(cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
-        *(sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
-        *(-sp, cp * sr, cp * cr),
-    )
-
-
-def rotation_from_heading(heading: float) -> tuple[float, ...]:
-    """Return the rotation of the plane by `heading` radians, counter-clockwise, as (4,) rows.
-
-    Raises InvalidValue if `heading` is not a finite number.
-    """
-    (angle,) = as_row("heading", [heading])
-    return (math.cos(angle), -math.sin(angle), math.sin(angle), math.cos(angle))
-
-
-def rotation_from_quaternion(*guessed: object, xyzw: Sequence[float] = ()) -> tuple[float, ...]:
-    """Return the rotation of a quaternion `xyzw`, which need not be of norm 1, as (9,) rows.
-
-    It goes by its keyword, since others have w first.  Raises InvalidValue if it does not, is not four finite numbers
-    x, y, z, w, or its norm is 0.
-    """
-    if guessed:
-        raise InvalidValue(_BY_KEYWORD)
-    x, y, z, w = as_row("quaternion xyzw", xyzw, 4)
-    norm = math.hypot(w, x, y, z)
-    if norm == 0.0:
-        raise InvalidValue("quaternion must have a norm > 0, got zeros")
-    return _of_unit_quaternion(w / norm, x / norm, y / norm, z / norm)
-
-
-def rotations_from_quaternions(quaternions: Floats) -> Floats:
-    """Return the matrices, (n, 3, 3), of rows of SO3, (n, 4): quaternions with w first, here of any norm > 0."""
-    w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
-    return np.stack(_of_unit_quaternion(w, x, y, z), axis=1).reshape(-1, 3, 3)
-
-
-def _of_unit_quaternion(w: Any, x: Any, y: Any, z: Any) -> tuple[Any, ...]:
-    """Return the nine numbers of the rotation, row by row; of numbers or of arrays."""
-    return (
-        1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),
-        2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
-        2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y),
-    )  # fmt: skip
-
-
-def rotation_from_z(axis: Sequence[float]) -> Floats:
-    """Return a rotation (3, 3) that takes the z axis to `axis`; InvalidValue if that has no direction."""
-    z = np.array(axis, dtype=np.float64)
-    length = float(np.linalg.norm(z))
-    if not (math.isfinite(length) and length > 0.0):
-        raise InvalidValue(f"an axis must be a direction, got {axis!r}")
-    z /= length
-    if z[0] == 0.0 and z[1] == 0.0 and z[2] > 0.0:
-        return np.eye(3)
-    # The coordinate axis farthest from z: never near parallel to it.
-    x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(z, x), z])
-
-
-def as_rotation(rotation: Sequence[float] | None, dim: int = 3) -> tuple[float, ...]:
-    """Return `rotation` as the (dim * dim,) rows of a rotation matrix, up to 1e-6; None is the identity.
-
-    Raises InvalidValue if it is no rotation, or a reflection.
-    """
-    if rotation is None:
-        return tuple(1.0 if i == j else 0.0 for i in range(dim) for j in range(dim))
-    numbers = as_row("rotation", rotation, dim * dim)
-    rows = [numbers[i * dim : (i + 1) * dim] for i in range(dim)]
-    for i, row in enumerate(rows):
-        for j in range(i, dim):
-            if abs(sum(map(mul, row, rows[j])) - (i == j)) > _ORTHONORMAL:
-                raise InvalidValue(f"rotation must have perpendicular rows of length 1, got {rotation!r}")
-    if _determinant(rows) < 0.0:
-        raise InvalidValue(f"rotation must not be a reflection, got {rotation!r}")
-    return numbers
-
-
-def _determinant(rows: list[tuple[float, ...]]) -> float:
-    if len(rows) == 2:
-        return rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
-    (a, b, c), (d, e, f), (g, h, i) = rows
-    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 
 
 def _three(xyz: Sequence[float]) -> Vector:
@@ -178,7 +90,7 @@ class Pose:
                 "xyz must be 3 finite numbers; a 4x4 matrix is taken by Pose.from_matrix(matrix)"
             )
         if rotation is not NO_ROTATION and np.size(rotation) == 4:
-            raise InvalidValue(_BY_KEYWORD)
+            raise InvalidValue(BY_KEYWORD)
         if rpy is not None:
             rotation = rotation_from_rpy(*as_row("rpy", rpy, 3))
         elif xyzw is not None:
@@ -196,15 +108,45 @@ class Pose:
 
     @classmethod
     def from_rpy(cls, xyz: Sequence[float], rpy: Sequence[float]) -> Pose:
-        """Return the pose of an origin [m], and roll, pitch and yaw [rad] as URDF has them."""
+        """Return the pose of an origin, and roll, pitch and yaw.
+
+        Parameters
+        ----------
+        xyz, rpy : sequences of 3 floats
+            The origin [m], and the angles as URDF has them [rad].
+
+        Returns
+        -------
+        Pose
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.Pose.from_rpy((0, 0, 1), (0, 0, 1.5))
+        Pose((0, 0, 1), rpy=(0, 0, 1.5))
+        """
         roll, pitch, yaw = as_row("rpy", rpy, 3)
         return cls._made(xyz, rotation_from_rpy(roll, pitch, yaw))
 
     @classmethod
     def from_quaternion(cls, xyz: Sequence[float], *guessed: object, xyzw: Sequence[float] = ()) -> Pose:
-        """Return the pose of an origin [m] and a quaternion `xyzw`, by its keyword, of any norm > 0.
+        """Return the pose of an origin and a quaternion, which goes by its keyword.
 
-        The order is that of SciPy and ROS.  Raises as :func:`rotation_from_quaternion`.
+        Parameters
+        ----------
+        xyz : sequence of 3 floats
+            The origin [m].
+        xyzw : sequence of 4 floats
+            A quaternion of any norm > 0, in the order of SciPy and ROS.
+
+        Returns
+        -------
+        Pose
+
+        Raises
+        ------
+        InvalidValue
+            If the quaternion is given without its keyword, or the numbers are none.
 
         Examples
         --------
@@ -216,7 +158,29 @@ class Pose:
 
     @classmethod
     def from_matrix(cls, matrix: npt.ArrayLike) -> Pose:
-        """Return the pose of a 4x4 matrix, whose last row must be 0, 0, 0, 1."""
+        """Return the pose of a homogeneous matrix.
+
+        Parameters
+        ----------
+        matrix : array_like, shape (4, 4)
+            A rotation and an origin [m]; the last row is 0, 0, 0, 1.
+
+        Returns
+        -------
+        Pose
+
+        Raises
+        ------
+        InvalidValue
+            If it is no such matrix.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> er.Pose.from_matrix(np.eye(4))
+        Pose((0, 0, 0))
+        """
         try:
             array = np.asarray(matrix, dtype=np.float64)
         except (TypeError, ValueError):
@@ -271,12 +235,44 @@ class Pose:
         return matrix
 
     def apply(self, points: npt.ArrayLike) -> Floats:
-        """Return points of the own frame, (3,) or (n, 3), in the frame that the pose is given in."""
+        """Return points of the own frame in the frame that the pose is given in.
+
+        Parameters
+        ----------
+        points : array_like, shape (3,) or (n, 3)
+            In metres.
+
+        Returns
+        -------
+        ndarray, shape (3,) or (n, 3)
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.Pose((0, 0, 1)).apply((1, 0, 0)).tolist()
+        [1.0, 0.0, 1.0]
+        """
         p = _rows_of_three(points)
         return (self.rotation_matrix @ p if p.ndim == 1 else p @ self.rotation_matrix.T) + np.array(self.xyz)
 
     def local(self, points: npt.ArrayLike) -> Floats:
-        """Return points, (3,) or (n, 3), in the pose's own frame: what undoes :meth:`apply`."""
+        """Return points in the pose's own frame: what undoes :meth:`apply`.
+
+        Parameters
+        ----------
+        points : array_like, shape (3,) or (n, 3)
+            In metres.
+
+        Returns
+        -------
+        ndarray, shape (3,) or (n, 3)
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.Pose((0, 0, 1)).local((1, 0, 1)).tolist()
+        [1.0, 0.0, 0.0]
+        """
         p = _rows_of_three(points) - np.array(self.xyz)
         return self.rotation_matrix.T @ p if p.ndim == 1 else p @ self.rotation_matrix
 

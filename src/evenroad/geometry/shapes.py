@@ -7,35 +7,45 @@ world).  A new one is a class here, with its distance (``distance.py``) and its 
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from hashlib import sha256
-from pathlib import Path
 from typing import Any, ClassVar, Unpack, overload
 
 import numpy as np
 
-from evenroad._arrays import Floats, set_fields
+from evenroad._arrays import set_fields
 from evenroad._call import explains_calls
-from evenroad._checks import FARTHEST, as_batch, as_row, require_known, require_positive
+from evenroad._checks import FARTHEST, as_row, require_known, require_positive
 from evenroad.errors import InvalidValue, shown
-from evenroad.geometry.cloud_file import load_cloud
-from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
-from evenroad.geometry.pose import IDENTITY, Pose, Vector, rotation_from_z
+from evenroad.geometry.mesh_shape import CLOUD_RADIUS as CLOUD_RADIUS
+from evenroad.geometry.mesh_shape import Mesh as Mesh
+from evenroad.geometry.mesh_shape import PointCloud as PointCloud
+from evenroad.geometry.pose import IDENTITY, Pose, Vector
+from evenroad.geometry.rotation import rotation_from_z
 from evenroad.geometry.shape import WORLD as WORLD
 from evenroad.geometry.shape import Placed as Placed
 from evenroad.geometry.shape import Shape as Shape
-
-CLOUD_RADIUS = 0.01
-"""Default radius of the balls of a point cloud [m]."""
 
 
 @explains_calls
 @dataclass(frozen=True, init=False, repr=False)
 class Box(Shape):
-    """A box around the origin of its frame: `size` are its full extents (x, y, z), > 0 [m].
+    """A box around the origin of its frame.
+
+    Parameters
+    ----------
+    size : sequence of 3 floats
+        Full extents along x, y and z, > 0 [m].
+    **placed
+        ``xyz``, ``rpy`` or ``xyzw``, or ``pose``: where it is [m, rad]; ``name``: what a scene calls it; ``link``: what
+        it is fixed to, by default the world.
+
+    Raises
+    ------
+    InvalidValue
+        If a length is not a finite number > 0.
+    UnknownName
+        If there is no such keyword.
 
     Examples
     --------
@@ -67,7 +77,29 @@ class Box(Shape):
 @explains_calls
 @dataclass(frozen=True, init=False, repr=False)
 class Sphere(Shape):
-    """All points within `radius`, > 0 [m], of the origin of its frame."""
+    """A ball around the origin of its frame.
+
+    Parameters
+    ----------
+    radius : float
+        > 0 [m].
+    **placed
+        ``xyz``, ``rpy`` or ``xyzw``, or ``pose``: where it is [m, rad]; ``name``: what a scene calls it; ``link``: what
+        it is fixed to, by default the world.
+
+    Raises
+    ------
+    InvalidValue
+        If a length is not a finite number > 0.
+    UnknownName
+        If there is no such keyword.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.Sphere(0.1, xyz=(0.5, 0, 0.4))
+    Sphere(radius=0.1, pose=Pose((0.5, 0, 0.4)))
+    """
 
     kind: ClassVar[str] = "sphere"
     dimensions: ClassVar[tuple[tuple[str, int], ...]] = (("radius", 1),)
@@ -87,7 +119,29 @@ class Sphere(Shape):
 @explains_calls
 @dataclass(frozen=True, init=False, repr=False)
 class Cylinder(Shape):
-    """A cylinder along the z axis of its frame, its middle in the origin: `radius` and `length`, > 0 [m]."""
+    """A cylinder along the z axis of its frame, its middle in the origin.
+
+    Parameters
+    ----------
+    radius, length : float
+        > 0 [m].
+    **placed
+        ``xyz``, ``rpy`` or ``xyzw``, or ``pose``: where it is [m, rad]; ``name``: what a scene calls it; ``link``: what
+        it is fixed to, by default the world.
+
+    Raises
+    ------
+    InvalidValue
+        If a length is not a finite number > 0.
+    UnknownName
+        If there is no such keyword.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.Cylinder(0.05, 1.0, xyz=(0, 0.6, 0.5), name="post")
+    Cylinder(radius=0.05, length=1.0, pose=Pose((0, 0.6, 0.5)), name='post')
+    """
 
     kind: ClassVar[str] = "cylinder"
     dimensions: ClassVar[tuple[tuple[str, int], ...]] = (("radius", 1), ("length", 1))
@@ -107,11 +161,33 @@ class Cylinder(Shape):
 
 @dataclass(frozen=True, init=False, repr=False)
 class Capsule(Shape):
-    """All points within `radius`, > 0 [m], of a segment: a cylinder with half balls on its ends.
+    """All points within a radius of a segment: a cylinder with half balls on its ends.
 
-    ``Capsule(radius, length)`` lies along the z axis of its frame, its middle in the origin; `length`, > 0 [m], is
-    without the half balls.  ``Capsule(a, b, radius)`` has its segment from `a` to `b`, and is a ball where the two are
-    one point.  A robot's bodies are capsules with `a` and `b` in their link's frame, in no pose of their own.
+    ``Capsule(radius, length)`` lies along the z axis of its frame, its middle in the origin.  ``Capsule(a, b, radius)``
+    has its segment from `a` to `b`, and is a ball where the two are one point.
+
+    Parameters
+    ----------
+    radius, length : float
+        > 0 [m]; the length is without the half balls.
+    a, b : sequence of 3 floats
+        Endpoints of the segment, in place of `length` [m].
+    **placed
+        ``xyz``, ``rpy`` or ``xyzw``, or ``pose``: where it is [m, rad]; ``name``: what a scene calls it; ``link``: what
+        it is fixed to, by default the world.
+
+    Raises
+    ------
+    InvalidValue
+        If a length is not a finite number > 0, or there is one too many.
+    UnknownName
+        If there is no such keyword.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.Capsule(0.1, 0.4) == er.Capsule((0, 0, -0.2), (0, 0, 0.2), 0.1)
+    True
     """
 
     kind: ClassVar[str] = "capsule"
@@ -151,7 +227,25 @@ class Capsule(Shape):
 
     @classmethod
     def along_z(cls, radius: float, length: float, pose: Pose = IDENTITY, link: str = WORLD) -> Capsule:
-        """Return the capsule along the z axis of its frame: a cylinder of `length` [m] and half balls on its ends."""
+        """Return the capsule along the z axis of its frame.
+
+        Parameters
+        ----------
+        radius, length : float
+            > 0 [m]; the length is without the half balls.
+        pose, link : Pose, str
+            As for every shape.
+
+        Returns
+        -------
+        Capsule
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.Capsule.along_z(0.1, 0.4).length
+        0.4
+        """
         return cls(radius, length, pose=pose, link=link)
 
     @property
@@ -166,128 +260,6 @@ class Capsule(Shape):
 
     def _written(self) -> str:
         return f"{self.a!r}, {self.b!r}, {self.radius!r}"
-
-
-@explains_calls
-@dataclass(frozen=True, init=False, repr=False)
-class Mesh(Shape):
-    """A surface of triangles.
-
-    Parameters
-    ----------
-    source : str, path-like, TriangleMesh, or a pair of arrays
-        A file, which is opened when it is needed; or the triangles themselves: vertices, (v, 3) [m], and rows of these,
-        (t, 3).  What has `vertices` and `faces`, as a mesh of trimesh, will do.
-    scale : float or sequence of 3 floats
-        The factors that its coordinates are multiplied with, none of them 0.
-    """
-
-    kind: ClassVar[str] = "mesh"
-
-    source: Path | TriangleMesh
-    scale: Vector
-
-    def __init__(
-        self, source: Any, scale: float | Sequence[float] = (1.0, 1.0, 1.0), **placed: Unpack[Placed]
-    ) -> None:
-        row = as_row("the scale of a mesh", [scale] * 3 if np.ndim(scale) == 0 else scale, 3)  # type: ignore
-        source = _surface(source)
-        if 0.0 in row:
-            raise InvalidValue(f"the scale of mesh {source.name} must not be 0, got {row}: it would be flat")
-        set_fields(self, scale=row, source=source)
-        self._place(placed)
-
-    @property
-    def triangles(self) -> TriangleMesh:
-        """Its triangles with their scale, in the shape's frame; errors as :func:`evenroad.geometry.load_mesh`."""
-        mesh = self.source if isinstance(self.source, TriangleMesh) else load_mesh(self.source)
-        return scaled(mesh, self.scale)
-
-    @property
-    def volume(self) -> float:
-        """Volume [m^3]; of a mesh that is not closed, that of its convex hull."""
-        return volume_of(self.triangles)
-
-    def __str__(self) -> str:
-        return f"mesh {self.source.name}"
-
-    def _written(self) -> str:
-        if isinstance(self.source, TriangleMesh):
-            return f"{len(self.source.triangles)} triangles"
-        return repr(str(self.source))
-
-
-def _surface(source: Any) -> Path | TriangleMesh:
-    """Return the file or the triangles that the source of a mesh stands for."""
-    if isinstance(source, TriangleMesh):
-        return source
-    if isinstance(source, str | os.PathLike):
-        return Path(source)
-    if hasattr(source, "vertices") and hasattr(source, "faces"):
-        source = source.vertices, source.faces
-    if isinstance(source, tuple | list) and len(source) == 2:
-        return TriangleMesh(*source)
-    raise InvalidValue(
-        f"a mesh must be a file, or its vertices (v, 3) and triangles (t, 3) as a pair, got {shown(source)}"
-    )
-
-
-@explains_calls
-@dataclass(frozen=True, eq=False, init=False, repr=False)
-class PointCloud(Shape):
-    """Balls of one radius around points, (n, 3) [m], as a depth camera sees them.
-
-    `points` may be a file, too, see :func:`evenroad.geometry.load_cloud`.  The default radius, 0.01 m, suits a camera
-    whose points lie at most 0.02 m apart: a robot may pass between points that lie further apart.  Equal
-    by value.
-
-    Examples
-    --------
-    >>> import evenroad as er
-    >>> er.PointCloud([(0.5, 0, 0.1), (0.5, 0.01, 0.1)])
-    PointCloud(2 points, radius=0.01)
-    """
-
-    kind: ClassVar[str] = "cloud"
-
-    points: Floats
-    radius: float
-
-    def __init__(self, points: Any, radius: float = CLOUD_RADIUS, **placed: Unpack[Placed]) -> None:
-        points = load_cloud(points) if isinstance(points, str | os.PathLike) else points
-        points = np.array(as_batch("points of a cloud", points, 3))
-        if len(points) == 0:
-            raise InvalidValue("a cloud must have one point or more: one without would never collide")
-        if np.abs(points).max() > FARTHEST:
-            raise InvalidValue(
-                f"points of a cloud must lie within {FARTHEST:g} m, got {np.abs(points).max():g}"
-            )
-        radius = require_positive("the radius of a cloud", radius, at_most=FARTHEST)
-        set_fields(self, points=points, radius=radius)
-        self._place(placed)
-
-    @property
-    def volume(self) -> float:
-        """Volume of a ball around every point, however they overlap [m^3]."""
-        return len(self.points) * _ball(self.radius)
-
-    @cached_property
-    def _values(self) -> tuple[object, ...]:
-        return self.radius, self.pose, self.link, sha256(self.points.tobytes()).digest()
-
-    def __hash__(self) -> int:
-        return hash(self._values)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, PointCloud):
-            return NotImplemented
-        return self is other or self._values == other._values
-
-    def __str__(self) -> str:
-        return f"cloud of {len(self.points)} points"
-
-    def _written(self) -> str:
-        return f"{len(self.points)} points, radius={self.radius!r}"
 
 
 PRIMITIVES: dict[str, type[Shape]] = {shape.kind: shape for shape in (Box, Sphere, Cylinder, Capsule)}

@@ -63,10 +63,32 @@ def read_points(path: Path) -> PointSet:
 
 @explains_calls
 def load_points(path: str | os.PathLike[str]) -> PointSet:
-    """Read a point set: an ``.npz`` with its origin, whose names, types, shape, range and hash are checked.
+    """Read points from a file.
 
-    A plain ``.npy`` array or ``.csv``, which have no origin, are read, too.  Raises BrokenFile if the file is missing,
-    is no such file, or any of the checks fails, the text says which; InvalidValue if a plain array is no point set.
+    Parameters
+    ----------
+    path : str or path-like
+        ``.npz``, with an origin, whose names, types, shape, range and hash are checked; or ``.npy`` or ``.csv``.
+
+    Returns
+    -------
+    PointSet
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, is no such file, or a check fails; the text says which.
+    InvalidValue
+        If a plain array is no point set.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import evenroad as er
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     er.draw("sobol", 64, 2).save(f"{folder}/set.csv")
+    ...     er.load_points(f"{folder}/set.csv").shape
+    (64, 2)
     """
     suffix = as_file("what points are read from", path, "points of an array are PointSet(array)").suffix
     if suffix == ".csv":

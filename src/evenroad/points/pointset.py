@@ -56,9 +56,26 @@ class Origin:
 @explains_calls
 @dataclass(frozen=True, eq=False)
 class PointSet:
-    """`n` points of the unit cube [0, 1)^d, frozen, with their origin.
+    """Points of the unit cube, frozen, with their origin.
 
-    `points`, (n, d), d >= 1, are real numbers in [0, 1), else InvalidValue; copied to a read-only float64 array.
+    Parameters
+    ----------
+    points : array_like, shape (n, d)
+        Real numbers in [0, 1), d >= 1; copied to a read-only float64 array.
+    origin : Origin
+        Where they came from; default: they were given.
+
+    Raises
+    ------
+    InvalidValue
+        If a coordinate is not in [0, 1), or the array has another shape.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> er.PointSet(np.random.default_rng(0).random((32, 3))).shape
+    (32, 3)
     """
 
     points: Floats
@@ -88,9 +105,19 @@ class PointSet:
         return self.n, self.d
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the points to a file, atomically: ``.npz``, with their origin; ``.npy`` or ``.csv``, the bare array.
+        """Write the points to a file, atomically.
 
-        Raises UnknownName for another suffix; BrokenFile if the file cannot be written.
+        Parameters
+        ----------
+        path : str or path-like
+            ``.npz``, with their origin; ``.npy`` or ``.csv``, the bare array.
+
+        Raises
+        ------
+        UnknownName
+            For another suffix.
+        BrokenFile
+            If the file cannot be written.
 
         Examples
         --------
@@ -138,7 +165,23 @@ class PointSet:
         return digest.hexdigest()
 
     def with_origin(self, **changes: Any) -> PointSet:
-        """Return the same points with some fields of the origin replaced."""
+        """Return the same points with some fields of the origin replaced.
+
+        Parameters
+        ----------
+        **changes
+            Fields of :class:`evenroad.points.Origin`.
+
+        Returns
+        -------
+        PointSet
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.draw("uniform", 8, 2).with_origin(family="mine").origin.family
+        'mine'
+        """
         return PointSet(self.points, replace(self.origin, **changes))
 
     def __len__(self) -> int:

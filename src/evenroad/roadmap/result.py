@@ -121,6 +121,14 @@ class PlanResult(ResultMethods):
         What was searched; None when start or goal is invalid, and where a reused roadmap was asked.
     world : World or None
         Where it was planned; None in a plan that was read from a file.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+    >>> round(er.find_path(world, (3, 3), (27, 17)).cost, 3)
+    27.785
     """
 
     status: Status

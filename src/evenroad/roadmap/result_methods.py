@@ -40,9 +40,22 @@ class ResultMethods:
         return path_length(self.path, self.world.space)
 
     def resample(self, step: float) -> Floats:
-        """Return states along the path, (s, dim), at most `step` apart in the metric of the space; waypoints stay.
+        """Return states along the path.
 
-        Raises InvalidValue if `step` is not a finite number > 0, or there is no path.
+        Parameters
+        ----------
+        step : float
+            Largest distance between neighbours, > 0, in the metric of the space.
+
+        Returns
+        -------
+        ndarray, shape (s, dim)
+            Waypoints are among them.
+
+        Raises
+        ------
+        InvalidValue
+            If `step` is not a finite number > 0, or there is no path.
 
         Examples
         --------
@@ -56,10 +69,32 @@ class ResultMethods:
         return resample(path, world.space, step)[0]
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the plan to a file, atomically: ``.json``, all of it; ``.csv``, the waypoints; ``.png``, a picture.
+        """Write the plan to a file, atomically.
 
-        Raises UnknownName for another suffix; InvalidValue if waypoints are asked for where there is no path;
-        BrokenFile if the file cannot be written.
+        Parameters
+        ----------
+        path : str or path-like
+            ``.json``, all of it; ``.csv``, the waypoints; ``.png``, a picture.
+
+        Raises
+        ------
+        UnknownName
+            For another suffix.
+        InvalidValue
+            If waypoints are asked for where there is no path.
+        BrokenFile
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     er.find_path(world, (3, 3), (27, 17)).save(f"{folder}/plan.json")
+        ...     er.io.load_plan(f"{folder}/plan.json")[0].status
+        <Status.SOLVED: 'solved'>
         """
         above("PlanResult.save")(self, path)
 
@@ -83,11 +118,19 @@ class ResultMethods:
             If it is another world, or none is known.
         BrokenFile
             If the file cannot be written.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> er.find_path(world, (3, 3), (27, 17)).plot().format
+        'PNG'
         """
         return above("PlanResult.plot")(self, path, world)
 
     def trajectory(self, limits: Any = None, *, speed: float = 1.0, **options: Any) -> Any:
-        """Return the path with times: a :class:`evenroad.trajectory.Trajectory`, checked as it is driven.
+        """Return the path with times, checked as it is driven.
 
         Parameters
         ----------
@@ -99,10 +142,22 @@ class ResultMethods:
         **options
             As :func:`evenroad.trajectory.arm_trajectory` takes them.
 
+        Returns
+        -------
+        Trajectory
+
         Raises
         ------
         InvalidValue
             If there is no path, or there are no limits; else as :func:`evenroad.trajectory.make_trajectory`.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> er.find_path(world, (3, 3), (27, 17)).trajectory(speed=5.0)
+        Trajectory(5.992 s, 2 joints, 750 states)
         """
         path, world = self._required("driven")
         return above("PlanResult.trajectory")(world, path, limits, speed=speed, **options)

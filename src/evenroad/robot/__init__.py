@@ -14,12 +14,12 @@ from evenroad.robot.load import find_robot as find_robot
 from evenroad.robot.load import load_model as load_model
 from evenroad.robot.load import load_robot as load_robot
 from evenroad.robot.pose_goal import PoseGoal as PoseGoal
-from evenroad.robot.robot import LinkBody as LinkBody
 from evenroad.robot.robot import Robot as Robot
-from evenroad.robot.robot import RobotModel as RobotModel
 from evenroad.robot.robot import in_scene as in_scene
 from evenroad.robot.robot import with_group as with_group
 from evenroad.robot.robot import with_limits as with_limits
+from evenroad.robot.robot_model import LinkBody as LinkBody
+from evenroad.robot.robot_model import RobotModel as RobotModel
 from evenroad.robot.scan import allowed_near_ends as allowed_near_ends
 from evenroad.robot.scan import allowed_within as allowed_within
 from evenroad.robot.scan import scene_seen_by as scene_seen_by

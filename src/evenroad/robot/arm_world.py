@@ -95,6 +95,12 @@ class ArmWorld(OneOrMany):
         If the robot or the scene names something that is not there, or there is no such backend.
     NotAvailable
         If the lanes are asked for where they do not work.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.ArmWorld("ur5", "box-reach", clearance=0.005).valid("home")
+    True
     """
 
     robot: Robot

@@ -9,7 +9,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -22,10 +22,11 @@ from evenroad._seal import read_sealed, sealed
 from evenroad.errors import BrokenFile
 from evenroad.geometry.hulls import Hull
 from evenroad.geometry.mesh import TriangleMesh
-from evenroad.geometry.shapes import Capsule, Mesh
+from evenroad.geometry.shapes import Capsule, Mesh, Shape
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.planes import Plane
-from evenroad.robot.robot import LinkBody, Robot, RobotModel
+from evenroad.robot.robot import Robot
+from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.urdf import Urdf
 
 _FORMAT = 17
@@ -38,10 +39,9 @@ def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | S
     The others have a name for errors: BrokenFile if one is missing, as a cached robot is never returned for files that
     are gone.
     """
-    digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{urdf!r}|{group!r}".encode())
+    said = fingerprint_of(replace(urdf, shapes=()), [_said(shape) for shape in urdf.shapes], group)
+    digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{said}".encode())
     sources = [shape.source for shape in urdf.shapes if isinstance(shape, Mesh)]
-    # What a long array says of itself leaves numbers out.
-    digest.update(fingerprint_of([each for each in sources if isinstance(each, TriangleMesh)]).encode())
     meshes = [("mesh", source) for source in sources if isinstance(source, Path)]
     for what, path in (*meshes, *others):
         try:
@@ -51,6 +51,13 @@ def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | S
             raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
         digest.update(hashlib.sha256(content).digest())
     return digest.hexdigest()
+
+
+def _said(shape: Shape) -> object:
+    """Return what decides a shape, in full: what it shows of itself is rounded."""
+    if not isinstance(shape, Mesh) or isinstance(shape.source, TriangleMesh):
+        return shape
+    return shape.kind, str(shape.source), shape.scale, shape.pose, shape.link
 
 
 def cached(key: str) -> RobotModel | None:

@@ -23,7 +23,8 @@ from evenroad.robot.cache import cached, keep, key_of
 from evenroad.robot.groups import choose_group, chosen_states, group_notes
 from evenroad.robot.mjcf import read_mjcf
 from evenroad.robot.pairs import pairs_of, self_pairs
-from evenroad.robot.robot import LinkBody, Robot, RobotModel
+from evenroad.robot.robot import Robot
+from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.srdf import read_srdf
 from evenroad.robot.urdf import Urdf, read_urdf
 from evenroad.robot.urdf_xml import RobotFile
@@ -48,10 +49,39 @@ class RobotOptions(TypedDict, total=False):
 
 @explains_calls
 def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
-    """Return a robot; see :func:`load_model`, which also tells how it was made.
+    """Return a robot from its file, or a shipped one by its name.
 
     Warns of pairs of links that touch in every sampled configuration though they are tested, and of robots that are in
     self-collision in all of them.
+
+    Parameters
+    ----------
+    source : str or path-like
+        A URDF, xacro or MJCF; or, where there is no such file, ``ur5`` or ``arm7``.
+    **options
+        ``srdf``, ``group``, ``bodies``, ``use_visuals``, ``packages``, ``arguments``, ``progress``: as
+        :func:`evenroad.robot.load_model` takes them, which also tells how the robot was made.
+
+    Returns
+    -------
+    Robot
+
+    Raises
+    ------
+    UnknownName
+        If there is neither such a file nor such a robot, or a group, joint, link or keyword is not known.
+    BrokenFile
+        If a file is missing, broken or lacks a piece.
+    InvalidValue
+        If a number is none, or out of its range.
+    NotAvailable
+        If an extra is needed that is not installed.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.load_robot("ur5").joint_names[:2]
+    ('shoulder_pan_joint', 'shoulder_lift_joint')
     """
     model = load_model(source, **options)
     if model.always_touching:

@@ -44,6 +44,12 @@ class PoseGoal:
     ------
     InvalidValue
         If a number is none, or an axis has no direction.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> print(er.PoseGoal(er.Pose((0.4, 0.2, 0.3)), "tool0", free_axis="z"))
+    tool0 at (0.4, 0.2, 0.3)
     """
 
     pose: Pose

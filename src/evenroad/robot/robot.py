@@ -24,29 +24,51 @@ from evenroad.robot.pairs import self_pairs
 from evenroad.robot.planes import Plane
 from evenroad.robot.robot_methods import RobotMethods
 from evenroad.robot.scene import Scene
-from evenroad.robot.urdf_xml import RobotFile
 
 
 @explains_calls
 @dataclass(frozen=True, repr=False)
 class Robot(RobotMethods):
-    """A kinematic tree with bodies.
+    """A kinematic tree with bodies; :func:`evenroad.load_robot` makes one of its file.
 
-    Of the `links` the root comes first, every parent before its children; ``joints[i]`` is the joint whose child is
-    ``links[i + 1]``, and `capsules` are the bodies.  `group` are the joints that are planned for, in the order of the
-    configuration, none of them fixed or a mimic; `held` has values of other movable joints, joint -> value [rad or m],
-    where not given 0, or the nearest to it within limits.  `states` are named configurations: joint -> value, of joints
-    outside of the group, too, where they are known.
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    links : tuple of str
+        The root first, every parent before its children.
+    joints : tuple of Joint
+        ``joints[i]`` is the joint whose child is ``links[i + 1]``.
+    capsules : tuple of Capsule
+        The bodies.
+    pairs : tuple of (str, str)
+        Links that are tested against each other.
+    group : tuple of str
+        Joints that are planned for, in the order of a configuration, none of them fixed or a mimic.
+    held : mapping of str to float
+        Values of other movable joints [rad or m]; of joints not given 0, or the nearest to it within limits.
+    states : mapping of str to mapping
+        Named configurations: joint -> value, also of joints outside of the group.
+    hulls : tuple of Hull
+        Convex pieces that contain the links' shapes more tightly than capsules: where capsules of a pair touch, these
+        decide; links without any are their capsules.
+    pairs_given : bool
+        Whether somebody gave the pairs, as an SRDF does.
+    resting : tuple of (str, str)
+        Where nobody did: pairs left out, as they touch whatever the group does while the others are held.
+    holds : tuple of str
+        Links that are bodies which the robot carries for a while, see :meth:`holding`.
+    planes : tuple of Plane
+        Half spaces that its file has around it, obstacles of every scene.
+    inner : tuple of Capsule or None
+        Capsules within the links' true shapes: proofs that there is no path are about them.  None: `capsules` are
+        the true shapes.
 
-    Links in `pairs` are tested against each other.  `hulls` are convex pieces that contain the links' shapes more
-    tightly than capsules: where capsules of a pair touch, these decide; links without any are their capsules.
-    `pairs_given` says whether the pairs were given by somebody, as by an SRDF; else those in `resting` are left out,
-    which touch whatever the group does as long as the others are held where they are.  `holds` are links that are
-    bodies which the robot carries for a while, see :meth:`holding`.  `planes` are half spaces that its file has around
-    it, obstacles of every scene.
-
-    `inner` are capsules that lie within the links' true shapes: proofs that there is no path are about them.  None says
-    that `capsules` are the true shapes.
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.load_robot("ur5")
+    Robot('ur5', 6 joints, 8 links)
     """
 
     name: str
@@ -81,13 +103,37 @@ class Robot(RobotMethods):
     ) -> Robot:
         """Return the robot with a tool fixed to one of its links.
 
-        The tool is a robot of its own, or shapes in the frame of a new link ``tool``, to which capsules are fitted; the
-        link `at` carries it, with `pose` that of its root link in that link's frame.  `prefix` is put before the names
-        of all of its links and joints.  The group stays the robot's; the tool's joints are held.  Pairs within the
-        robot and within the tool stay; those between the two are computed as for a robot without an SRDF.
+        The group stays the robot's; the tool's joints are held.  Pairs within the robot and within the tool stay; those
+        between the two are computed as for a robot without an SRDF.
 
-        Raises UnknownName if the robot has no such link; InvalidValue if the tool has no body, or a name in common with
-        the robot.
+        Parameters
+        ----------
+        tool : Robot, Shape or sequence of Shape
+            A robot of its own, or shapes in the frame of a new link ``tool``, to which capsules are fitted.
+        at : str
+            The link that carries it.
+        pose : Pose
+            Of the tool's root link in the frame of that link.
+        prefix : str
+            Is put before the names of all of the tool's links and joints.
+
+        Returns
+        -------
+        Robot
+
+        Raises
+        ------
+        UnknownName
+            If the robot has no such link.
+        InvalidValue
+            If the tool has no body, or a name in common with the robot.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> robot = er.load_robot("ur5")
+        >>> robot.with_tool(er.Cylinder(0.03, 0.1, xyz=(0, 0, 0.05)), "tool0").links[-1]
+        'tool'
         """
         require_known(f"link of {self.name!r}:", at, self.links)
         tool = (tool,) if isinstance(tool, Shape) else tool
@@ -157,6 +203,17 @@ class Robot(RobotMethods):
             If a link is not there.
         InvalidValue
             If it is no shape that has capsules, or the name is that of a link: attached twice.
+
+        Returns
+        -------
+        Robot
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> robot = er.load_robot("ur5")
+        >>> robot.holding(er.Box((0.1, 0.1, 0.1), xyz=(0, 0, 0.1)), "tool0", name="can").holds
+        ('can',)
         """
         held = shape if isinstance(shape, HeldObject) else HeldObject(name, shape, link, tuple(touches))
         parts = held_parts(self, held, neighbours=not self.pairs_given)
@@ -233,56 +290,6 @@ def _both(
     if ours is None and theirs is None:
         return None
     return (*(capsules if ours is None else ours), *(their_capsules if theirs is None else theirs))
-
-
-@dataclass(frozen=True)
-class LinkBody:
-    """What became of the collision geometry of a link.
-
-    `shapes` are the file's, e.g. ``box`` or ``mesh forearm.stl``, with the sum of their volumes [m^3]; so many
-    `capsules` stand for them, with the volume of their union [m^3]; `given` by the user or not.
-    """
-
-    link: str
-    shapes: tuple[str, ...]
-    shape_volume: float
-    capsules: int
-    capsule_volume: float
-    given: bool = False
-
-    @property
-    def added(self) -> float:
-        """Volume that the capsules add, as a share of the shapes'; 0 where there is nothing to compare with."""
-        return max(self.capsule_volume / self.shape_volume - 1.0, 0.0) if self.shape_volume > 0.0 else 0.0
-
-
-@dataclass(frozen=True)
-class RobotModel:
-    """A robot and how it was made."""
-
-    robot: Robot
-    bodies: tuple[LinkBody, ...]
-    """One for each link that has a body."""
-    pairs_from: str
-    """``SRDF`` or ``computed``."""
-    dropped: tuple[tuple[str, str, str], ...]
-    """Pairs of links with bodies that are not tested, each with the reason."""
-    drawn_only: tuple[str, ...] = ()
-    """Links that are drawn and have no body: nothing is ever found to touch them."""
-    always_touching: tuple[tuple[str, str], ...] = ()
-    """Pairs that the SRDF does not disable and that touch in every sampled configuration: none is free."""
-    never_free: str = ""
-    """Where no sampled configuration is free of self-collision: that, the pair that blocks most, and what to do."""
-    notes: tuple[str, ...] = ()
-    """What was read otherwise than it stands in the file."""
-    file: RobotFile | None = field(default=None, compare=False)
-    """Where the robot was read, and how."""
-
-    @property
-    def bodiless(self) -> tuple[str, ...]:
-        """Links without a body, those that are drawn among them."""
-        bodied = {body.link for body in self.bodies}
-        return tuple(link for link in self.robot.links if link not in bodied)
 
 
 def require_robot(robot: object) -> None:

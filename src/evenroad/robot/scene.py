@@ -15,7 +15,8 @@ from evenroad._call import explains_calls
 from evenroad._checks import counted, require_known, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, shown
-from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
+from evenroad.geometry.pose import Pose, Vector
+from evenroad.geometry.rotation import NO_ROTATION
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Shape, along_z, shape_of
 from evenroad.robot.held import HeldObject
 
@@ -256,9 +257,23 @@ class Scene:
         return fingerprint_of(rows, self.allowed, *sorted(self.near_ends))
 
     def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
-        """Return the scene with more obstacles, of new names, and more (link, obstacle) contacts left untested.
+        """Return the scene with more obstacles, and more contacts left untested.
 
-        Obstacles are shapes, too, and sequences of them.  Raises as :class:`Scene`.
+        Parameters
+        ----------
+        *obstacles : Shape, Obstacle, or sequence of such
+            Of new names.
+        allowed : sequence of (str, str)
+            Contacts that are not tested, (link, obstacle).
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        InvalidValue
+            As :class:`Scene`.
 
         Examples
         --------
@@ -273,9 +288,27 @@ class Scene:
         return replace(self, obstacles=(*self.obstacles, *added), allowed=self.allowed.union(allowed))
 
     def without(self, *names: str) -> Scene:
-        """Return the scene without the obstacles of these names, and without what was allowed to touch them.
+        """Return the scene without some obstacles, and without what was allowed to touch them.
 
-        Raises UnknownName if there is no such obstacle.
+        Parameters
+        ----------
+        *names : str
+            Of the obstacles.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        UnknownName
+            If there is no such obstacle.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.Scene([er.Sphere(0.1, name="ball"), er.Sphere(0.2, name="moon")]).without("moon")
+        Scene('scene', 1 obstacle: ball)
         """
         known = [obstacle.name for obstacle in self.obstacles]
         for name in names:

@@ -48,7 +48,7 @@ def find_scene(source: str | os.PathLike[str]) -> Path:
 
 @explains_calls
 def load_scene(source: str | os.PathLike[str]) -> Scene:
-    """Return a scene from its file, or a shipped one by name: ``box-reach.yaml``, ``box-reach-narrow.yaml``.
+    """Return a scene from its file, or a shipped one by its name.
 
     ::
 
@@ -79,8 +79,29 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     0.1], grow: 0.01}``, and of what is attached where the robot stands, ``{attached: crate, at: grasp, grow: 0.01}``.
     MoveIt's scenes are read, too (:mod:`evenroad.robot.moveit_scene`).
 
-    Raises BrokenFile if the file is missing, not YAML, lacks something, or has a key twice; UnknownName for a key, a
-    shape or an obstacle that there is not; InvalidValue for a value of the wrong type or range.
+    Parameters
+    ----------
+    source : str or path-like
+        A ``.yaml`` as above, a scene of MoveIt, or ``box-reach`` or ``box-reach-narrow``.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, not YAML, lacks something, or has a key twice.
+    UnknownName
+        For a key, a shape or an obstacle that there is not.
+    InvalidValue
+        For a value of the wrong type or range.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> len(er.load_scene("box-reach").obstacles)
+    6
     """
     path = find_scene(source)
     if not path.is_file():

@@ -16,7 +16,8 @@ from evenroad.robot.apart import held_apart
 from evenroad.robot.groups import chains, few_of
 from evenroad.robot.joint import Joint
 from evenroad.robot.pairs import TOUCHING
-from evenroad.robot.robot import RobotModel, pieces_of
+from evenroad.robot.robot import pieces_of
+from evenroad.robot.robot_model import RobotModel
 from evenroad.robot.urdf import Urdf
 from evenroad.robot.urdf_xml import read_xml
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from evenroad.errors import InvalidValue
-from evenroad.geometry.pose import NO_ROTATION
+from evenroad.geometry.rotation import NO_ROTATION
 from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.robot import Obstacle, Robot, Scene, held_values, in_scene
 

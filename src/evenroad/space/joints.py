@@ -86,7 +86,22 @@ class FlatSpace(Space):
         return np.where(fraction == 1.0, second, self._canonical(between))
 
     def wrapped(self, q: Floats) -> Floats:
-        """Return `q`, (n, dim), with wrapping axes brought into their ranges."""
+        """Return configurations with wrapping axes brought into their ranges.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, dim)
+
+        Returns
+        -------
+        ndarray, shape (n, dim)
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.spaces.Circle().wrapped([(4.0,)]).round(3).tolist()
+        [[-2.283]]
+        """
         return self._canonical(as_batch("q", q, self.dim))
 
     def _canonical(self, q: Floats) -> Floats:
@@ -106,8 +121,23 @@ class FlatSpace(Space):
 class BoxSpace(FlatSpace):
     """The box ``[low_1, high_1] x ... x [low_dim, high_dim]``; straight lines are its shortest paths.
 
-    `low` and `high`, ``low < high`` on every axis, are stored as tuples; `weights`, > 0, are what a unit of each axis
-    counts in the metric, 1 by default.  InvalidValue if they are not such numbers.
+    Parameters
+    ----------
+    low, high : sequences of dim floats
+        ``low < high`` on every axis; stored as tuples.
+    weights : sequence of dim floats, optional
+        What a unit of each axis counts in the metric, > 0; 1 by default.
+
+    Raises
+    ------
+    InvalidValue
+        If they are not such numbers.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.spaces.BoxSpace((-1, -1), (1, 1)).dim
+    2
     """
 
     low: Sequence[float]
@@ -127,6 +157,12 @@ class Circle(FlatSpace):
     """The directions of the plane, SO(2), as (n, 1) angles in radians; the metric is the angle between two.
 
     Any angle is taken; given back are angles in [-pi, pi).
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.spaces.Circle().distance([(3.0,)], [(-3.0,)]).round(3).tolist()
+    [0.283]
     """
 
     def __post_init__(self) -> None:
@@ -139,9 +175,26 @@ class JointSpace(FlatSpace):
     """Bounded and wrapping joints in one vector, with the weighted Euclidean metric.
 
     A revolute joint that can turn on and on wraps; one with stops does not, even where its range exceeds a full turn:
-    the two ends of such a range are far apart. A wrapping joint repeats after ``high - low``, so in radians these are
-    2 pi apart; `wrapping` says which joints wrap, one bool stands for all. A value may exceed a bound by 1e-5. `low`,
-    `high` and `weights` are as for :class:`BoxSpace`; InvalidValue for any other value.
+    the two ends of such a range are far apart.  A wrapping joint repeats after ``high - low``, so in radians these are
+    2 pi apart.  A value may exceed a bound by 1e-5.
+
+    Parameters
+    ----------
+    low, high, weights
+        As for :class:`BoxSpace`.
+    wrapping : bool or sequence of dim bools
+        Which joints wrap.
+
+    Raises
+    ------
+    InvalidValue
+        If they are not such values.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.spaces.JointSpace((-3, -3.14), (3, 3.14), wrapping=(False, True))
+    JointSpace(2 joints, 1 wrapping)
     """
 
     low: Sequence[float]

@@ -34,8 +34,20 @@ class Product(Space):
     weights : sequence of floats, one a part, optional
         What a unit of each part's distance counts, > 0; 1 by default.
     combine : {"sum", "l2"}
-        The distance: ``sum_i w_i d_i``, or ``sqrt(sum_i (w_i d_i)^2)``; another is an UnknownName, all else that is
-        not such an InvalidValue.
+        The distance: ``sum_i w_i d_i``, or ``sqrt(sum_i (w_i d_i)^2)``.
+
+    Raises
+    ------
+    UnknownName
+        For another way to combine.
+    InvalidValue
+        If parts or weights are none.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.spaces.Product([er.spaces.BoxSpace((0,), (1,)), er.spaces.Circle()]).dim
+    2
     """
 
     parts: Sequence[Space]
@@ -87,7 +99,23 @@ class Product(Space):
         return self._combined(all_distances(*own) for own in self._part_by_part(first, second))
 
     def part_distances(self, a: Floats, b: Floats) -> list[Floats]:
-        """Return for every part the distances in its own metric, without weights, each (n,)."""
+        """Return for every part the distances in its own metric, without weights.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (n, dim)
+
+        Returns
+        -------
+        list of ndarrays, shape (n,)
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> space = er.spaces.SE2((-5, -5), (5, 5))
+        >>> [float(row[0]) for row in space.part_distances([(0, 0, 0)], [(3, 4, 1)])]
+        [5.0, 1.0]
+        """
         pairs = self._part_by_part(*as_batch_pair(a, b, self.dim))
         return [part.distance(first, second) for part, first, second in pairs]
 
@@ -99,7 +127,24 @@ class Product(Space):
         return np.hstack([part.interpolate(start, end, fraction) for part, start, end in pairs])
 
     def split(self, q: Floats) -> list[Floats]:
-        """Return the columns of `q`, (n, dim), that belong to each part."""
+        """Return the columns of `q` that belong to each part.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, dim)
+
+        Returns
+        -------
+        list of ndarrays, shape (n, dim of the part)
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> space = er.spaces.SE2((-5, -5), (5, 5))
+        >>> [each.shape for each in space.split(np.zeros((7, 3)))]
+        [(7, 2), (7, 1)]
+        """
         return _split(q, [part.dim for part in self.parts])
 
     def _part_by_part(self, a: Floats, b: Floats) -> Iterator[tuple[Space, Floats, Floats]]:
@@ -133,10 +178,32 @@ def SE2(
     weights: Sequence[float] = (1.0, 1.0),
     combine: Literal["sum", "l2"] = "l2",
 ) -> Product:
-    """Return the poses (x, y, heading) of a body in the plane, its position bounded by `low` and `high`.
+    """Return the poses (x, y, heading) of a body in the plane.
 
-    `weights`, > 0, are what a unit of length and a radian count, `combine` how the two distances make one; with "l2"
-    the metric is flat, so that neighbours are found in a tree.  Errors are those of `BoxSpace` and `Product`.
+    Parameters
+    ----------
+    low, high : pairs of floats
+        Bounds of the position.
+    weights : pair of floats
+        What a unit of length and a radian count, > 0.
+    combine : {"l2", "sum"}
+        How the two distances make one; with "l2" the metric is flat, so that neighbours are found in a tree.
+
+    Returns
+    -------
+    Product
+
+    Raises
+    ------
+    InvalidValue, UnknownName
+        As :class:`BoxSpace` and :class:`Product`.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> space = er.spaces.SE2((-5, -5), (5, 5))
+    >>> space.dim
+    3
     """
     return Product((_position(low, high, 2), Circle()), weights, combine)
 
@@ -151,7 +218,29 @@ def SE3(
 ) -> Product:
     """Return the poses (x, y, z, qw, qx, qy, qz) of a body in space; points of the cube have 6 coordinates.
 
-    Parameters and errors as :func:`SE2`, with three bounds.  A radian is one of ``arccos |q . q'|``; "sum" is OMPL's.
+    Parameters
+    ----------
+    low, high : sequences of 3 floats
+        Bounds of the position.
+    weights : pair of floats
+        What a unit of length and a radian, which is one of ``arccos |q . q'|``, count, > 0.
+    combine : {"sum", "l2"}
+        As of :func:`SE2`; "sum" is OMPL's.
+
+    Returns
+    -------
+    Product
+
+    Raises
+    ------
+    InvalidValue, UnknownName
+        As :class:`BoxSpace` and :class:`Product`.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.spaces.SE3((0, 0, 0), (1, 1, 1)).dim
+    7
     """
     return Product((_position(low, high, 3), SO3()), weights, combine)
 

@@ -34,26 +34,114 @@ class Space(Protocol):
         return None
 
     def from_cube(self, u: Floats) -> Floats:
-        """Map points of the unit cube, (n, cube_dim), to configurations, (n, dim), preserving measure."""
+        """Map points of the unit cube to configurations, preserving measure.
+
+        Parameters
+        ----------
+        u : array_like, shape (n, cube_dim)
+            In [0, 1].
+
+        Returns
+        -------
+        ndarray, shape (n, dim)
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> space = er.spaces.SE2((-5, -5), (5, 5))
+        >>> space.from_cube([(0.5, 0.5, 0.5)]).tolist()
+        [[0.0, 0.0, 0.0]]
+        """
 
     def contains(self, q: Floats) -> Bools:
-        """Return for each row of `q`, (n, dim), whether it lies in the space, bounds included: (n,)."""
+        """Return which configurations lie in the space, bounds included.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, dim)
+
+        Returns
+        -------
+        bool ndarray, shape (n,)
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> space = er.spaces.SE2((-5, -5), (5, 5))
+        >>> space.contains([(0, 0, 0), (6, 0, 0)]).tolist()
+        [True, False]
+        """
         return np.ones(len(as_batch("q", q, self.dim)), dtype=np.bool_)
 
     def distance(self, a: Floats, b: Floats) -> Floats:
-        """Return the distance of each row of `a` from the same row of `b`: two (n, dim) arrays -> (n,)."""
+        """Return the distance of each row of `a` from the same row of `b`.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (n, dim)
+
+        Returns
+        -------
+        ndarray, shape (n,)
+
+        Raises
+        ------
+        InvalidValue
+            If a batch has another shape, or what is no configuration in it.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> space = er.spaces.SE2((-5, -5), (5, 5))
+        >>> space.distance([(0, 0, 0)], [(3, 4, 0)]).tolist()
+        [5.0]
+        """
 
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
-        """Return the points a fraction `t` (scalar or (n,), in [0, 1]) from `a` to `b`, (n, dim)."""
+        """Return configurations on the shortest motions from `a` to `b`; exact at both ends.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (n, dim)
+        t : float or array_like, shape (n,)
+            Which fraction of the way, in [0, 1].
+
+        Returns
+        -------
+        ndarray, shape (n, dim)
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> space = er.spaces.SE2((-5, -5), (5, 5))
+        >>> space.interpolate([(0, 0, 0)], [(3, 4, 0)], 0.5).tolist()
+        [[1.5, 2.0, 0.0]]
+        """
+
+    def all_distances(self, a: Floats, b: Floats) -> Floats:
+        """Return the distance of every row of `a` from every row of `b`; some spaces do it faster than one by one.
+
+        Parameters
+        ----------
+        a, b : ndarrays, shapes (n, dim) and (m, dim)
+
+        Returns
+        -------
+        ndarray, shape (n, m)
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> space = er.spaces.SE2((-5, -5), (5, 5))
+        >>> space.all_distances(np.zeros((2, 3)), np.ones((4, 3))).shape
+        (2, 4)
+        """
+        pairs = np.repeat(a, len(b), axis=0), np.tile(b, (len(a), 1))
+        return self.distance(*pairs).reshape(len(a), len(b))
 
 
 def all_distances(space: Space, a: Floats, b: Floats) -> Floats:
-    """Return the distance of every row of `a`, (n, dim), from every row of `b`, (m, dim), as (n, m).
-
-    Faster where the space has an ``all_distances(a, b)`` of its own; the same up to rounding.
-    """
+    """Return the distances of all pairs of rows, also of a space that does not inherit from Space."""
     own = getattr(space, "all_distances", None)
-    if own is not None:
-        return own(a, b)
-    pairs = np.repeat(a, len(b), axis=0), np.tile(b, (len(a), 1))
-    return space.distance(*pairs).reshape(len(a), len(b))
+    return Space.all_distances(space, a, b) if own is None else own(a, b)

@@ -24,7 +24,21 @@ _ROUNDING = 1e-9
 class Rectangle(Space):
     """The rectangle ``corner + s * edge_u + t * edge_v`` for s, t in [0, 1]; the cube's origin goes to `corner`.
 
-    InvalidValue if an entry is not a finite number, an edge has length zero, or the edges are not perpendicular.
+    Parameters
+    ----------
+    corner, edge_u, edge_v : pairs of floats
+        The edges are perpendicular.
+
+    Raises
+    ------
+    InvalidValue
+        If an entry is not a finite number, an edge has length zero, or the edges are not perpendicular.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.spaces.Rectangle((0, 0), (3, 0), (0, 2)).area
+    6.0
     """
 
     corner: tuple[float, float]

@@ -25,6 +25,12 @@ class SO3(Space):
 
     The metric is ``arccos |q . q'|``, in radians: half the angle of the rotation from one to the other, at
     most pi / 2.  Points of the cube have 3 coordinates, configurations 4.  Norms may differ from 1 by 1e-6.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.spaces.SO3().distance([(1, 0, 0, 0)], [(0, 1, 0, 0)]).round(3).tolist()
+    [1.571]
     """
 
     @property
@@ -54,10 +60,7 @@ class SO3(Space):
         return np.abs(_norm(as_batch("q", q, 4)) - 1.0) <= _UNIT_TOLERANCE
 
     def distance(self, a: Floats, b: Floats) -> Floats:
-        """Return ``arccos |a . b|`` of the rows of two (n, 4) arrays, (n,), in [0, pi / 2].
-
-        Raises InvalidValue if a row is not a unit quaternion.
-        """
+        """Return ``arccos |a . b|`` of the rows of two (n, 4) arrays, (n,), in [0, pi / 2]."""
         return _angle(*_on_one_side(a, b))
 
     def all_distances(self, a: Floats, b: Floats) -> Floats:

@@ -21,7 +21,15 @@ _VOLUME_TOLERANCE = 0.06
 
 
 class SpaceContract:
-    """Tests of a space: its cube, its metric and its interpolation, batch = loop, and errors for bad input."""
+    """Tests of a space: its cube, its metric and its interpolation, batch = loop, and errors for bad input.
+
+    Examples
+    --------
+    >>> from evenroad.spaces import BoxSpace
+    >>> from evenroad.testing import SpaceContract
+    >>> class TestMySpace(SpaceContract):
+    ...     space = BoxSpace((0, 0), (1, 2))
+    """
 
     space: Space
     """Set it in the subclass."""
@@ -30,7 +38,26 @@ class SpaceContract:
     Where it is False, what `from_cube` does to volumes is not tested."""
 
     def configurations(self, n: int, seed: int = 7) -> Floats:
-        """Return `n` random configurations of the space, (n, dim)."""
+        """Return random configurations of the space.
+
+        Parameters
+        ----------
+        n, seed : int
+            How many, and which ones.
+
+        Returns
+        -------
+        ndarray, shape (n, dim)
+
+        Examples
+        --------
+        >>> from evenroad.spaces import Circle
+        >>> from evenroad.testing import SpaceContract
+        >>> class TestMySpace(SpaceContract):
+        ...     space = Circle()
+        >>> TestMySpace().configurations(5).shape
+        (5, 1)
+        """
         return self.space.from_cube(np.random.default_rng(seed).random((n, self.space.cube_dim)))
 
     def pairs(self) -> tuple[Floats, Floats, float]:

@@ -13,7 +13,17 @@ from evenroad.world import World
 
 
 class WorldContract:
-    """Tests of a world: batch = loop, symmetry, free motions have free ends, and errors for bad batches."""
+    """Tests of a world: batch = loop, symmetry, free motions have free ends, and errors for bad batches.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> from evenroad.testing import WorldContract
+    >>> cells = np.zeros((20, 30), dtype=bool)
+    >>> class TestMyWorld(WorldContract):
+    ...     world = er.GridMap(cells).world(radius=2)
+    """
 
     world: World
     """Set it in the subclass.  Of 400 random places and motions some must be free and some blocked."""

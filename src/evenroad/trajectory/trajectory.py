@@ -70,6 +70,15 @@ class Trajectory:
     radii : tuple of float
         For each waypoint within the path, how far from it the tip may begin to round it off [m], see
         :func:`evenroad.trajectory.urscript.with_radii`; empty where nobody asked.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+    >>> trajectory = er.find_path(world, (3, 3), (27, 17)).trajectory(speed=5.0)
+    >>> trajectory
+    Trajectory(5.992 s, 2 joints, 750 states)
     """
 
     names: tuple[str, ...]
@@ -90,10 +99,32 @@ class Trajectory:
     def columns(
         self, order: Sequence[str] | None = None
     ) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
-        """Return names, and positions, velocities and accelerations, of held joints, too, in this order.
+        """Return names, and positions, velocities and accelerations, of held joints, too.
 
-        Default: that of the controller, else the moving ones first.  Raises UnknownName for a joint that is neither,
-        InvalidValue if one that moves is left out.
+        Parameters
+        ----------
+        order : sequence of str, optional
+            Of the joints.  Default: that of the controller, else the moving ones first.
+
+        Returns
+        -------
+        tuple of str, and tuple of three ndarrays, shape (n, joints)
+
+        Raises
+        ------
+        UnknownName
+            For a joint that neither moves nor is held.
+        InvalidValue
+            If one that moves is left out.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> trajectory = er.find_path(world, (3, 3), (27, 17)).trajectory(speed=5.0)
+        >>> trajectory.columns()[0]
+        ('joint_1', 'joint_2')
         """
         order = tuple(order or self.controller or (*self.names, *self.held))
         for name in order:

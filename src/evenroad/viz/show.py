@@ -46,7 +46,7 @@ def show(what: PlanResult | GridMap, *, port: int = 0) -> Any:
     Examples
     --------
     >>> import evenroad as er
-    >>> result = er.find_path(er.ArmWorld("ur5"), "home", (1, -1.5, 0.5, -1.5, 0, 0))
+    >>> result = er.find_path(er.ArmWorld("ur5"), (0, -1.5, 0, -1.5, 0, 0), (1, -1.5, 0.5, -1.5, 0, 0))
     >>> er.show(result)  # doctest: +SKIP
     """
     if not isinstance(what, PlanResult | GridMap):

@@ -60,7 +60,19 @@ class FunctionWorld(OneOrMany):
         What the function tests, with all that its answers depend on, for example ``"cell 7, tool v2"``.  Only with a
         name can a roadmap of this world be saved with what is known: a function cannot be compared.
 
-    InvalidValue if `is_valid` cannot be called, or `resolution` is not of that kind.
+    Raises
+    ------
+    InvalidValue
+        If `is_valid` cannot be called, or `resolution` is not of that kind.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> def free(q):
+    ...     return np.hypot(q[..., 0], q[..., 1]) > 0.5
+    >>> er.FunctionWorld([(-2, 2), (-2, 2)], free, resolution=0.02).valid((1, 1))
+    True
     """
 
     proof: ClassVar[str] = "resolution"
@@ -125,7 +137,10 @@ class FunctionWorld(OneOrMany):
     def fingerprint(self) -> str:
         """Return a text that two worlds of the same space, resolution and name share.
 
-        Raises NotAvailable if the world has no name, or its space cannot be told from others.
+        Raises
+        ------
+        NotAvailable
+            If the world has no name, or its space cannot be told from others.
         """
         if self.name is None:
             raise NotAvailable("a FunctionWorld has a fingerprint only with a name, such as name='cell 7'")

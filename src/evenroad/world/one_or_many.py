@@ -29,6 +29,82 @@ class OneOrMany:
         """How many numbers a configuration has."""
         return self.space.dim
 
+    def valid(self, q: Any) -> Any:
+        """Return which configurations are free.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, dim) or (dim,)
+            Configurations in the units of the space; of an arm one may also be a mapping or the name of a state.
+
+        Returns
+        -------
+        bool ndarray, shape (n,), or bool
+
+        Raises
+        ------
+        InvalidValue
+            If `q` is not of that kind, or not finite.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(radius=2)
+        >>> world.valid([(1, 1), (5, 5)]).tolist()
+        [False, True]
+        """
+        raise NotImplementedError
+
+    def motion_valid(self, a: Any, b: Any) -> Any:
+        """Return which motions are free: the shortest of the space, from each row of `a` to that of `b`.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (m, dim) or (dim,)
+            As `q` of :meth:`valid`.
+
+        Returns
+        -------
+        bool ndarray, shape (m,), or bool
+
+        Raises
+        ------
+        InvalidValue
+            If `a` or `b` is not of that kind, or they differ in length.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(radius=2)
+        >>> world.motion_valid((5, 5), (25, 15))
+        True
+        """
+        raise NotImplementedError
+
+    def explain(self, q: Any) -> str:
+        """Return in words why a configuration is not free.
+
+        Parameters
+        ----------
+        q : array_like, shape (dim,)
+            As for :meth:`valid`.
+
+        Returns
+        -------
+        str
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(radius=2)
+        >>> world.explain((1, 5))
+        'the obstacle at (0, 5) is 1 away, the disk needs 2; the nearest free place is (2, 5)'
+        """
+        raise NotImplementedError
+
     def _row(self, q: Any) -> Floats:
         """Return one configuration as numbers, (dim,)."""
         try:

@@ -81,12 +81,36 @@ def make_sampler(name: str, **options: Any) -> KnownSampler:
 
 @explains_calls
 def draw(name: str, n: int, d: int, *, rng: RngLike = 0, **options: Any) -> PointSet:
-    """Draw n points in d dimensions from the sampler of this name: ``make_sampler(...).draw(...)``.
+    """Draw a set of points in the unit cube.
+
+    Parameters
+    ----------
+    name : str
+        A sampler: ``even``, ``sobol``, ``halton``, ``uniform`` (also ``random``), ...; `evenroad points` lists them.
+    n, d : int
+        Number of points and dimension, >= 1.
+    rng : int, SeedSequence or Generator
+        Equal numbers give equal points; a Generator is spawned.
+    **options
+        The sampler's own, as ``scramble=False`` of ``sobol``.
+
+    Returns
+    -------
+    PointSet
+
+    Raises
+    ------
+    UnknownName
+        If there is no such sampler, or it does not take an option.
+    InvalidValue
+        If `n`, `d` or `rng` is none.
+    NotAvailable
+        If the sampler has no set of this size.
 
     Examples
     --------
-    >>> from evenroad.points import draw
-    >>> draw("uniform", 3, 2, rng=1).points.shape
-    (3, 2)
+    >>> import evenroad as er
+    >>> er.draw("even", 512, 6, rng=0).points.shape
+    (512, 6)
     """
     return make_sampler(name, **options).draw(n, d, rng=rng)

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.geometry.pose import rotation_from_z
+from evenroad.geometry.rotation import rotation_from_z
 from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.robot import Robot

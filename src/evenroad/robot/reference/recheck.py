@@ -15,7 +15,8 @@ from evenroad.errors import NotAvailable
 from evenroad.geometry.shapes import PointCloud
 from evenroad.robot.pairs import HELD_TOUCHING, TOUCHING
 from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
-from evenroad.robot.robot import Robot, RobotModel
+from evenroad.robot.robot import Robot
+from evenroad.robot.robot_model import RobotModel
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import resample

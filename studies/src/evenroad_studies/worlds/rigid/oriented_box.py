@@ -12,7 +12,7 @@ from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
-from evenroad.geometry.pose import as_rotation
+from evenroad.geometry.rotation import as_rotation
 from evenroad.geometry.shapes import Box
 
 _FACES_OF_A_BOX = np.array(

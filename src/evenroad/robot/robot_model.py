@@ -1,0 +1,58 @@
+"""RobotModel: a robot, and how it was made of its files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from evenroad.robot.robot import Robot
+from evenroad.robot.urdf_xml import RobotFile
+
+
+@dataclass(frozen=True)
+class LinkBody:
+    """What became of the collision geometry of a link.
+
+    `shapes` are the file's, e.g. ``box`` or ``mesh forearm.stl``, with the sum of their volumes [m^3]; so many
+    `capsules` stand for them, with the volume of their union [m^3]; `given` by the user or not.
+    """
+
+    link: str
+    shapes: tuple[str, ...]
+    shape_volume: float
+    capsules: int
+    capsule_volume: float
+    given: bool = False
+
+    @property
+    def added(self) -> float:
+        """Volume that the capsules add, as a share of the shapes'; 0 where there is nothing to compare with."""
+        return max(self.capsule_volume / self.shape_volume - 1.0, 0.0) if self.shape_volume > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class RobotModel:
+    """A robot and how it was made."""
+
+    robot: Robot
+    bodies: tuple[LinkBody, ...]
+    """One for each link that has a body."""
+    pairs_from: str
+    """``SRDF`` or ``computed``."""
+    dropped: tuple[tuple[str, str, str], ...]
+    """Pairs of links with bodies that are not tested, each with the reason."""
+    drawn_only: tuple[str, ...] = ()
+    """Links that are drawn and have no body: nothing is ever found to touch them."""
+    always_touching: tuple[tuple[str, str], ...] = ()
+    """Pairs that the SRDF does not disable and that touch in every sampled configuration: none is free."""
+    never_free: str = ""
+    """Where no sampled configuration is free of self-collision: that, the pair that blocks most, and what to do."""
+    notes: tuple[str, ...] = ()
+    """What was read otherwise than it stands in the file."""
+    file: RobotFile | None = field(default=None, compare=False)
+    """Where the robot was read, and how."""
+
+    @property
+    def bodiless(self) -> tuple[str, ...]:
+        """Links without a body, those that are drawn among them."""
+        bodied = {body.link for body in self.bodies}
+        return tuple(link for link in self.robot.links if link not in bodied)

@@ -1,0 +1,221 @@
+"""GridMap: a grid of free and occupied cells in the plane."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from evenroad._above import above
+from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._call import explains_calls
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue, shown
+from evenroad.space import Rectangle
+from evenroad.space.batch import as_batch
+from evenroad.world.gridmap.frame import MapFrame
+
+if TYPE_CHECKING:
+    from evenroad.world.gridmap.gridmap import DiskWorld
+
+
+@explains_calls
+@dataclass(frozen=True, eq=False, init=False, repr=False)
+class GridMap:
+    """Which cells of a map are occupied, and where the map lies.
+
+    Parameters
+    ----------
+    occupied : array_like of bool, shape (rows, cols), at least one cell
+        True where a cell is an obstacle; row 0 is the top of the image.  Copied to a read-only array.
+    frame : MapFrame, optional
+        Where the cells lie; by default that of a bare image of this size: x right, y down, unit = pixel.
+    unknown : array_like of bool, shape (rows, cols), optional
+        Cells of which a map says nothing; whether they are obstacles, `occupied` says.  Default: none.
+    resolution : float, optional
+        In place of `frame`: side of a cell, > 0 [m], of a map as ROS has them, y up, the origin in the lower left.
+
+    Raises
+    ------
+    InvalidValue
+        If the arrays are not of one size and of bools, or frame and resolution are both given.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
+    GridMap(20 x 30 cells of 0.1, 0% occupied)
+    """
+
+    occupied: Bools
+    frame: MapFrame
+    unknown: Bools
+
+    def __init__(
+        self,
+        occupied: Bools,
+        frame: MapFrame | None = None,
+        unknown: Bools | None = None,
+        *,
+        resolution: float | None = None,
+    ) -> None:
+        occupied = _as_cells("occupied", occupied)
+        rows, cols = occupied.shape
+        unknown = np.zeros_like(occupied) if unknown is None else _as_cells("unknown", unknown)
+        if unknown.shape != (rows, cols):
+            raise InvalidValue(f"unknown has shape {unknown.shape}, but occupied {(rows, cols)}")
+        if frame is not None and resolution is not None:
+            raise InvalidValue("a map must have one of frame and resolution, got both")
+        if frame is None and resolution is not None:
+            frame = MapFrame(rows=rows, cols=cols, resolution=resolution, y_up=True)
+        frame = MapFrame(rows=rows, cols=cols) if frame is None else frame
+        if not isinstance(frame, MapFrame) or (frame.rows, frame.cols) != (rows, cols):
+            raise InvalidValue(
+                f"frame must be a MapFrame of {rows} rows and {cols} columns, as occupied has, got {shown(frame)}; the"
+                " side of a cell is resolution=0.05"
+            )
+        set_fields(self, occupied=occupied, unknown=unknown, frame=frame)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.frame.rows, self.frame.cols
+
+    @property
+    def resolution(self) -> float:
+        """Side of a cell, in map units."""
+        return self.frame.resolution
+
+    @property
+    def origin(self) -> tuple[float, float]:
+        """Where the map begins, in map units: see :class:`MapFrame`."""
+        return self.frame.origin
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Least and largest x and y of the map, (2,) each, in map units."""
+        corners = self.space.from_cube(np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]))
+        return corners.min(axis=0), corners.max(axis=0)
+
+    def plot(self, path: str | os.PathLike[str] | None = None) -> Any:
+        """Return a picture of the map, of a pixel a cell or more.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            A ``.png`` that it is saved to.
+
+        Returns
+        -------
+        PIL.Image.Image
+
+        Raises
+        ------
+        BrokenFile
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> grid = er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
+        >>> grid.plot().size
+        (600, 400)
+        """
+        return above("GridMap.plot")(self, path)
+
+    def __repr__(self) -> str:
+        rows, cols = self.shape
+        return f"GridMap({rows} x {cols} cells of {self.resolution:g}, {self.occupied.mean():.0%} occupied)"
+
+    @property
+    def space(self) -> Rectangle:
+        """The image's rectangle in map units, rotated as the map is."""
+        return self.frame.rectangle
+
+    def contains(self, q: Floats) -> Bools:
+        """Return which points lie in the map's closed rectangle.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, 2)
+            In map units.
+
+        Returns
+        -------
+        bool ndarray, shape (n,)
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> grid = er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
+        >>> grid.contains([(1, 1), (4, 1)]).tolist()
+        [True, False]
+        """
+        column, row = self.frame.to_pixels(as_batch("q", q, 2)).T
+        return (column >= 0.0) & (column <= self.frame.cols) & (row >= 0.0) & (row <= self.frame.rows)
+
+    def cropped(self) -> GridMap:
+        """Return the map without what lies beyond its outermost free cells, in the same place.
+
+        Nothing changes for a disk: what is left out is obstacle, and so is the outside of a map.  Points of its
+        rectangle are then drawn where the map is free, which matters where most of it is unknown.
+        """
+        rows, cols = (np.flatnonzero((~self.occupied).any(axis=axis)) for axis in (1, 0))
+        if not rows.size:
+            return self
+        top, bottom, left, right = int(rows[0]), int(rows[-1]) + 1, int(cols[0]), int(cols[-1]) + 1
+        x, y = self.frame.to_map(np.array([[left, bottom if self.frame.y_up else top]], dtype=float))[0]
+        frame = replace(self.frame, rows=bottom - top, cols=right - left, origin=(float(x), float(y)))
+        inside = slice(top, bottom), slice(left, right)
+        return GridMap(self.occupied[inside], frame, self.unknown[inside])
+
+    def world(self, radius: float, clearance: float = 0.0) -> DiskWorld:
+        """Return the world of a disk robot on the map.
+
+        A robot of another footprint has none yet: take the radius of the disk around it.
+
+        Parameters
+        ----------
+        radius : float
+            Of the disk, > 0, in map units: metres of a ROS map, pixels of a bare image.
+        clearance : float
+            What it keeps from every obstacle, >= 0, in map units.
+
+        Returns
+        -------
+        DiskWorld
+
+        Raises
+        ------
+        InvalidValue
+            If one of the two is no such number.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> grid = er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
+        >>> grid.world(radius=0.25)
+        DiskWorld(radius 0.25, 20 x 30 cells)
+        """
+        own = require_positive("radius", radius)
+        room = require_positive("clearance", clearance, or_zero=True)
+        world: DiskWorld = above("GridMap.world")(
+            self, require_positive("radius + clearance", own + room), room
+        )
+        return world
+
+
+def _as_cells(name: str, value: Bools) -> Bools:
+    cells = np.array(value, order="C")
+    if cells.ndim != 2 or cells.size == 0 or cells.dtype != np.bool_:
+        raise InvalidValue(
+            f"{name} must be a boolean array of shape (rows, cols) with at least one cell,"
+            f" got {cells.dtype} of shape {cells.shape}; a file is read by load_map, numbers are compared, as cells > 0"
+        )
+    return cells
