@@ -6,7 +6,7 @@ from scipy.integrate import qmc_quad
 from scipy.stats import qmc as scipy_qmc
 
 from evenroad import qmc
-from evenroad.errors import Exhausted, InvalidValue, NotAvailable
+from evenroad.errors import Exhausted, InvalidValue, NotAvailable, UnknownName
 from evenroad.points import draw
 from evenroad.points.measures import MEASURES, riesz_rooted, separation
 
@@ -148,7 +148,7 @@ class EngineContract(Refusals):
             self.engine(n=bad)
 
     def test_an_option_that_the_family_does_not_have_is_refused(self):
-        with pytest.raises(InvalidValue, match="scramble"):
+        with pytest.raises(UnknownName, match="scramble"):
             self.engine(scramble=True)
 
     def test_an_unknown_optimization_is_refused(self):

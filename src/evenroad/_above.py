@@ -13,7 +13,6 @@ FUNCTIONS = {
     "Scene": "evenroad.robot.scene_file:scene_of",
     "ArmWorld.robot": "evenroad.robot.load:load_robot",
     "ArmWorld.scene": "evenroad.robot.scene_file:load_scene",
-    "GridMap.world": "evenroad.world.gridmap.gridmap:DiskWorld",
     "GridMap.plot": "evenroad.viz.result:plot_map",
     "PlanResult.plot": "evenroad.viz.result:plot_result",
     "PlanResult.save": "evenroad.io:save_result",

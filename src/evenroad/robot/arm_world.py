@@ -81,16 +81,13 @@ class ArmWorld(OneOrMany):
     ----------
     bounds : float64 ndarray, shape (3, dim)
         Low, high and period of each joint; a period of inf where it does not wrap.
-    robot_tables, tables : RobotTables, ArmTables
-        What compiled code knows of the robot alone, made once a robot, and of the robot in this scene.
-    lanes : LaneWorld
-        The same for programs that check sixteen configurations at once.
+    robot_tables, tables, lanes : RobotTables, ArmTables, LaneWorld
+        What compiled code knows of the robot alone, and of the robot in this scene.
 
     Raises
     ------
     InvalidValue
-        If `resolution` or `clearance` is no such number, a joint of the group has no finite range, or robot or scene is
-        not sound.
+        If a number is none, a joint of the group has no finite range, or robot or scene is not sound.
     UnknownName
         If the robot or the scene names something that is not there, or there is no such backend.
     NotAvailable

@@ -136,7 +136,7 @@ def test_an_unknown_sampler_is_refused_with_the_list():
 
 
 def test_an_option_that_a_sampler_does_not_have_is_refused():
-    with pytest.raises(InvalidValue, match="uniform"):
+    with pytest.raises(UnknownName, match="option of sampler 'uniform'"):
         make_sampler("uniform", scramble=True)
 
 

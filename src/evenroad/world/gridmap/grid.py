@@ -1,54 +1,26 @@
-"""GridMap: a grid of free and occupied cells in the plane."""
+"""CellGrid: a grid of free and occupied cells in the plane."""
 
 from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 
 import numpy as np
 
 from evenroad._above import above
 from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
-from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, shown
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch
 from evenroad.world.gridmap.frame import MapFrame
 
-if TYPE_CHECKING:
-    from evenroad.world.gridmap.gridmap import DiskWorld
-
 
 @explains_calls
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class GridMap:
-    """Which cells of a map are occupied, and where the map lies.
-
-    Parameters
-    ----------
-    occupied : array_like of bool, shape (rows, cols), at least one cell
-        True where a cell is an obstacle; row 0 is the top of the image.  Copied to a read-only array.
-    frame : MapFrame, optional
-        Where the cells lie; by default that of a bare image of this size: x right, y down, unit = pixel.
-    unknown : array_like of bool, shape (rows, cols), optional
-        Cells of which a map says nothing; whether they are obstacles, `occupied` says.  Default: none.
-    resolution : float, optional
-        In place of `frame`: side of a cell, > 0 [m], of a map as ROS has them, y up, the origin in the lower left.
-
-    Raises
-    ------
-    InvalidValue
-        If the arrays are not of one size and of bools, or frame and resolution are both given.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import evenroad as er
-    >>> er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
-    GridMap(20 x 30 cells of 0.1, 0% occupied)
-    """
+class CellGrid:
+    """The cells of a map, and where it lies: what a :class:`GridMap` is made of."""
 
     occupied: Bools
     frame: MapFrame
@@ -129,7 +101,8 @@ class GridMap:
 
     def __repr__(self) -> str:
         rows, cols = self.shape
-        return f"GridMap({rows} x {cols} cells of {self.resolution:g}, {self.occupied.mean():.0%} occupied)"
+        size = f"{rows} x {cols} cells of {self.resolution:g}"
+        return f"{type(self).__name__}({size}, {self.occupied.mean():.0%} occupied)"
 
     @property
     def space(self) -> Rectangle:
@@ -159,7 +132,7 @@ class GridMap:
         column, row = self.frame.to_pixels(as_batch("q", q, 2)).T
         return (column >= 0.0) & (column <= self.frame.cols) & (row >= 0.0) & (row <= self.frame.rows)
 
-    def cropped(self) -> GridMap:
+    def cropped(self) -> Self:
         """Return the map without what lies beyond its outermost free cells, in the same place.
 
         Nothing changes for a disk: what is left out is obstacle, and so is the outside of a map.  Points of its
@@ -172,43 +145,7 @@ class GridMap:
         x, y = self.frame.to_map(np.array([[left, bottom if self.frame.y_up else top]], dtype=float))[0]
         frame = replace(self.frame, rows=bottom - top, cols=right - left, origin=(float(x), float(y)))
         inside = slice(top, bottom), slice(left, right)
-        return GridMap(self.occupied[inside], frame, self.unknown[inside])
-
-    def world(self, radius: float, clearance: float = 0.0) -> DiskWorld:
-        """Return the world of a disk robot on the map.
-
-        A robot of another footprint has none yet: take the radius of the disk around it.
-
-        Parameters
-        ----------
-        radius : float
-            Of the disk, > 0, in map units: metres of a ROS map, pixels of a bare image.
-        clearance : float
-            What it keeps from every obstacle, >= 0, in map units.
-
-        Returns
-        -------
-        DiskWorld
-
-        Raises
-        ------
-        InvalidValue
-            If one of the two is no such number.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import evenroad as er
-        >>> grid = er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
-        >>> grid.world(radius=0.25)
-        DiskWorld(radius 0.25, 20 x 30 cells)
-        """
-        own = require_positive("radius", radius)
-        room = require_positive("clearance", clearance, or_zero=True)
-        world: DiskWorld = above("GridMap.world")(
-            self, require_positive("radius + clearance", own + room), room
-        )
-        return world
+        return type(self)(self.occupied[inside], frame, self.unknown[inside])
 
 
 def _as_cells(name: str, value: Bools) -> Bools:

@@ -1,4 +1,4 @@
-"""DiskWorld: a disk robot on a grid map, with exact answers."""
+"""GridMap, a map that robots drive on; and DiskWorld, a disk robot on one, with exact answers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.clearance import least_distance
 from evenroad.world.gridmap.cells import DiskTables, classify, vertical_runs
 from evenroad.world.gridmap.components import PARTS, Components, find_gates, label_components, pieces_of
-from evenroad.world.gridmap.grid import GridMap as GridMap
+from evenroad.world.gridmap.grid import CellGrid
 from evenroad.world.gridmap.kernel import (
     motions_are_free,
     nearest_free_point,
@@ -35,6 +35,68 @@ _CLOSE = 1e-3
 """Largest error of a reported clearance, which is too small by it [pixels]."""
 _SMALLEST_RADIUS = 1e-150
 """Smallest radius, whose square is above 0: a disk of any size touches what its centre lies on [pixels]."""
+
+
+@explains_calls
+class GridMap(CellGrid):
+    """Which cells of a map are occupied, and where the map lies.
+
+    Parameters
+    ----------
+    occupied : array_like of bool, shape (rows, cols), at least one cell
+        True where a cell is an obstacle; row 0 is the top of the image.  Copied to a read-only array.
+    frame : MapFrame, optional
+        Where the cells lie; by default that of a bare image of this size: x right, y down, unit = pixel.
+    unknown : array_like of bool, shape (rows, cols), optional
+        Cells of which a map says nothing; whether they are obstacles, `occupied` says.  Default: none.
+    resolution : float, optional
+        In place of `frame`: side of a cell, > 0 [m], of a map as ROS has them, y up, the origin in the lower left.
+
+    Raises
+    ------
+    InvalidValue
+        If the arrays are not of one size and of bools, or frame and resolution are both given.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
+    GridMap(20 x 30 cells of 0.1, 0% occupied)
+    """
+
+    def world(self, radius: float, clearance: float = 0.0) -> DiskWorld:
+        """Return the world of a disk robot on the map.
+
+        A robot of another footprint has none yet: take the radius of the disk around it.
+
+        Parameters
+        ----------
+        radius : float
+            Of the disk, > 0, in map units: metres of a ROS map, pixels of a bare image.
+        clearance : float
+            What it keeps from every obstacle, >= 0, in map units.
+
+        Returns
+        -------
+        DiskWorld
+
+        Raises
+        ------
+        InvalidValue
+            If one of the two is no such number.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> grid = er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
+        >>> grid.world(radius=0.25)
+        DiskWorld(radius 0.25, 20 x 30 cells)
+        """
+        own = require_positive("radius", radius)
+        room = require_positive("clearance", clearance, or_zero=True)
+        return DiskWorld(self, require_positive("radius + clearance", own + room), room)
 
 
 @explains_calls
