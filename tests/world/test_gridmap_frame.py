@@ -151,5 +151,5 @@ def test_cells_that_are_no_boolean_image_are_refused(occupied):
 
 
 def test_a_frame_of_another_size_is_refused():
-    with pytest.raises(InvalidValue, match="4 rows and 6 columns"):
+    with pytest.raises(InvalidValue, match="6 rows and 4 columns"):
         GridMap(np.zeros((6, 4), dtype=np.bool_), MapFrame(rows=4, cols=6))

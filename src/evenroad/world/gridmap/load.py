@@ -82,7 +82,8 @@ def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> 
     file = find_map(path)
     near = get_close_matches(str(path), [Path(name).stem for name in SHIPPED], 1)
     if near and not file.exists():
-        raise BrokenFile(f"there is no map {path}; did you mean the shipped {near[0]!r}?")
+        kind = BrokenFile if file.suffix else UnknownName
+        raise kind(f"there is no map {path}; did you mean the shipped {near[0]!r}?")
     suffix = file.suffix.lower()
     if suffix in _IMAGES:
         return load_image(file)
