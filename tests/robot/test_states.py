@@ -76,7 +76,7 @@ def test_a_joint_that_is_not_named_stays_within_its_limits(tmp_path):
         (
             "hom",
             UnknownName,
-            "unknown state 'hom'; known: home, zero; did you mean 'home'?; or give 6 numbers: shoulder_pan_joint,",
+            "unknown state 'hom'; known: home, zero; did you mean 'home'.; or give 6 numbers: shoulder_pan_joint,",
         ),
         ("", InvalidValue, "must not be empty"),
     ],
