@@ -144,5 +144,5 @@ def _texts(by: dict[str, Line]) -> tuple[str, ...]:
     return (
         *shares,
         f"{100 * whole.gain:+.1f} ± {100 * whole.error:.1f}",
-        f"{p:.3f}" if p >= 0.001 else "<.001",
+        f"{p:.3f}" if p >= 0.001 else "<0.001",
     )
