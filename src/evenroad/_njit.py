@@ -190,7 +190,14 @@ def is_missing(name: str) -> bool:
     return any(not (each.signatures or each._cache.holds_any()) for each in own if each.__module__ == name)
 
 
-_NUMBERS = {"int": numba.int64, "float": numba.float64}
+_NUMBERS = {
+    "int": numba.int64,
+    "float": numba.float64,
+    "Pair": numba.types.UniTuple(numba.int64, 2),
+    "Triple": numba.types.UniTuple(numba.int64, 3),
+    "Given": numba.types.Tuple([numba.int64, numba.float64, *[numba.int64] * 4]),
+}
+"""What parameters of programs may be, see ``robot.kernel.layout``."""
 
 
 class _Progress(event.Listener):

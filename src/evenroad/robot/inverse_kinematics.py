@@ -188,7 +188,8 @@ def solved_from(
     none = np.full(q.shape[1], np.inf)
     low, high = (chain.low, chain.high) if limits else (-none, none)
     missing = np.full(len(q), np.inf)
-    kernel.solve(q, chain.ints, chain.rows, low, high, task[np.newaxis], steps, enough, 0.0, missing)
+    tables, bounds = (chain.ints, chain.rows), (low, high)
+    kernel.solve(q, tables, bounds, task[np.newaxis], steps, enough, 0.0, missing)
     return missing
 
 
@@ -202,9 +203,8 @@ def followed_from(chain: Chain, tasks: Floats, q: Floats, longest: float, wraps:
 
     low, high = np.where(wraps, [[-np.inf], [np.inf]], chain.bounds)
     way, missing = np.repeat(q[np.newaxis], len(tasks), axis=0), np.empty(len(tasks))
-    return way, kernel.solve(
-        way, chain.ints, chain.rows, low, high, tasks, _STEPS, len(tasks) + 1, longest, missing
-    )
+    tables, bounds = (chain.ints, chain.rows), (low, high)
+    return way, kernel.solve(way, tables, bounds, tasks, _STEPS, len(tasks) + 1, longest, missing)
 
 
 def _numbers(task: Floats) -> int:

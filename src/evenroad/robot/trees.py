@@ -170,7 +170,7 @@ def shorten(
     if world.backend == "scalar":
         return _shortened(world, as_batch("path", path, dim))
     places, count = _place(share_pairs)
-    short, motions = _shorten_path()(world.lanes, path, places, min(pairs, count), cuts)
+    short, motions = _shorten_path()(world.lanes, path, (places, min(pairs, count)), cuts)
     if not len(short):
         as_batch("path", path, dim)
     return short, motions
@@ -206,8 +206,8 @@ def tighten(
     path = _as_path(world, path)
     if world.backend == "scalar":
         return shorten(world, path)
-    work = *_place(share_pairs), *_place(sphere_points, world.space.dim), batches, proved
-    tight, motions = _tighten_path()(world.lanes, path, *work)
+    driven_by = _place(share_pairs), _place(sphere_points, world.space.dim)
+    tight, motions = _tighten_path()(world.lanes, path, *driven_by, batches, proved)
     if not len(tight):
         as_batch("path", path, world.space.dim)
     return tight, motions
@@ -274,19 +274,19 @@ def _grown(
         goals = goals[order]
     count, dim = len(goals) + 1, len(first)
     capacity, steps, doubles = _sizes(count, dim, _CAPACITY)
-    memory, arguments = world.lanes.arguments(doubles)
-    block, place = memory[steps:], arguments[-1] + 8 * steps
+    memory, given = world.lanes.arguments(doubles)
+    block, place = memory[steps:], given[-1] + 8 * steps
     begin, middle = kernel.STATE + 2, kernel.STATE + 2 + dim
     block[:begin], block[begin:middle] = 0.0, first
     block[middle : middle + goals.size] = goals.ravel()
     sequence = _place(cube_points, dim) if samples is None else (address(samples), len(samples))
-    driven_by = *sequence, *_place(ball_points, dim)
+    driven_by = sequence, _place(ball_points, dim)
     if not grow.overloads:
         # Compiled, or loaded, before the clock runs; no motion is looked at.
-        grow(place, count, capacity, *driven_by, 0, _SLICE, *arguments)
+        grow(place, count, capacity, *driven_by, (0, _SLICE), given)
     deadline = now() + seconds
     while True:
-        ended = grow(place, count, capacity, *driven_by, most, _SLICE, *arguments)
+        ended = grow(place, count, capacity, *driven_by, (most, _SLICE), given)
         if ended == kernel.FULL:
             block = _with_more_room(block, begin + count * dim, capacity, dim)
             place, capacity = address(block), 2 * capacity

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import address, bytes_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.layout import LANES, program
+from evenroad.robot.kernel.layout import LANES, ROOM, Given, Pair, program
 from evenroad.robot.kernel.motion import enter, wrapped
 from evenroad.robot.kernel.motion_checks import (
     NO_END,
@@ -30,8 +30,7 @@ def configurations_free(world: LaneWorld, q: Floats) -> Flags:
     """Return which rows of `q`, (n, dim), are within bounds and free: (n,)."""
     n, dim = q.shape
     free = np.empty(n, dtype=np.bool_)
-    _, arguments = world.arguments(COUNTS)
-    check_configurations(address(q), n, dim, address(free), *arguments)
+    check_configurations(address(q), n, dim, address(free), world.arguments(COUNTS)[1])
     return free
 
 
@@ -43,26 +42,15 @@ def motions_free(world: LaneWorld, a: Floats, b: Floats, tolerance: float) -> Fl
     """
     m, dim = a.shape
     free = np.empty(m, dtype=np.bool_)
-    _, arguments = world.arguments(COUNTS + 2 * dim)
-    check_motions(address(a), address(b), m, dim, tolerance, address(free), *arguments)
+    _, given = world.arguments(COUNTS + 2 * dim)
+    check_motions((address(a), address(b)), m, dim, tolerance, address(free), given)
     return free
 
 
 @program
-def check_configurations(
-    q: int,
-    n: int,
-    dim: int,
-    free: int,
-    check: int,
-    resolution: float,
-    tables: int,
-    by_joint: int,
-    memory: int,
-    room: int,
-) -> None:
+def check_configurations(q: int, n: int, dim: int, free: int, given: Given) -> None:
     """Do the work of `configurations_free`, arrays by their addresses."""
-    checks = checks_of(check, resolution, tables, by_joint, memory, room)
+    checks = checks_of(*given)
     rows, verdicts = matrix_at(q, (n, dim)), bytes_at(free, (n,))
     for first in range(0, n, LANES):
         count = min(LANES, n - first)
@@ -85,24 +73,11 @@ def check_configurations(
 
 
 @program
-def check_motions(
-    a: int,
-    b: int,
-    m: int,
-    dim: int,
-    tolerance: float,
-    free: int,
-    check: int,
-    resolution: float,
-    tables: int,
-    by_joint: int,
-    memory: int,
-    room: int,
-) -> None:
-    """Do the work of `motions_free`, arrays by their addresses."""
-    checks = checks_of(check, resolution, tables, by_joint, memory, room)
-    starts, ends, verdicts = matrix_at(a, (m, dim)), matrix_at(b, (m, dim)), bytes_at(free, (m,))
-    inner_ends = matrix_at(room + 8 * COUNTS, (2, dim))
+def check_motions(motions: Pair, m: int, dim: int, tolerance: float, free: int, given: Given) -> None:
+    """Do the work of `motions_free`, arrays by their addresses: where motions begin, and where they end."""
+    checks = checks_of(*given)
+    starts, ends = matrix_at(motions[0], (m, dim)), matrix_at(motions[1], (m, dim))
+    inner_ends, verdicts = matrix_at(given[ROOM] + 8 * COUNTS, (2, dim)), bytes_at(free, (m,))
     start, end = inner_ends[0], inner_ends[1]
     for row in range(m):
         verdicts[row] = (

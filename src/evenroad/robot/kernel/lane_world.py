@@ -13,7 +13,7 @@ import numpy.typing as npt
 from evenroad._shared import once, once_property
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import address
-from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING
+from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING, Given
 from evenroad.robot.kernel.scene_surfaces import SceneSurfaces
 
 Floats = npt.NDArray[np.float64]
@@ -49,7 +49,7 @@ class LaneWorld:
         """Return how a copy is made, here or in another process: it finds out for itself where its arrays are."""
         return LaneWorld, (self.tables, self.by_joint, self.resolution, None, self.surfaces)
 
-    def arguments(self, more: int) -> tuple[Floats, tuple[int, float, int, int, int, int]]:
+    def arguments(self, more: int) -> tuple[Floats, Given]:
         """Return `more` doubles of memory, and what a program ends with: what ``checks_of`` takes, and their address.
 
         The memory is this thread's, for the next call of a program only.

@@ -9,6 +9,8 @@ Header of the integers: how many of each thing, and where its rows begin in eith
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 from evenroad._njit import njit
 
 LANES = 16
@@ -116,6 +118,15 @@ A cylinder has its radius in the first two half extents."""
 
 BLOCK_FLOAT_ROW = 6 * LANES
 """Bounding boxes of 16 obstacles: centres x, y, z, half extents x, y, z, 16 numbers each."""
+
+Pair: TypeAlias = tuple[int, int]
+Triple: TypeAlias = tuple[int, int, int]
+Given: TypeAlias = tuple[int, float, int, int, int, int]
+"""What a program takes beside numbers: an array by its address and length; a shape; and ``LaneWorld.arguments``.
+``_njit`` knows them by these names."""
+
+ROOM = 5
+"""Where in ``LaneWorld.arguments`` the address of the memory stands that was asked for."""
 
 inner = njit(nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 """Decorator of a function that only compiled code calls: kept with its callers, and without what Python would call."""

@@ -38,18 +38,12 @@ _UNSURE = np.float32(2e-6)
 
 
 @inner
-def near_nodes(
-    header: Ints,
-    cloud: Singles,
-    level: int,
-    node: int,
-    centre: Any,
-    along: Any,
-    extents: Any,
-    one_by_squared: Any,
-    reach: Any,
-) -> int:
-    """Return which of a node's sixteen boxes meet that around a capsule, and with their balls the capsule itself."""
+def near_nodes(header: Ints, cloud: Singles, level: int, node: int, capsule: Any, reach: Any) -> int:
+    """Return which of a node's sixteen boxes meet that around a capsule, and with their balls the capsule itself.
+
+    Of the capsule: its middle, half of its segment, half extents of its box, one over the squared half length.
+    """
+    centre, along, extents, one_by_squared = capsule
     first = header[tree.FIRST_NODES + level] + tree.NODE_ROW * node
     apart = minus(load_vector(cloud, first), centre)
     x, y, z = minus(minus(absolute(apart), load_vector(cloud, first + HALF)), extents)
@@ -154,7 +148,7 @@ def is_inside(scratch: Singles, here: int, place: int, table: Singles) -> bool:
     waiting = integers_at(room_for(32), (32,))
     top = header[tree.LEVELS] - 1
     level, node = top, 0
-    near = near_nodes(header, table, level, node, centre, along, extents, one_by_squared, _UNSURE)
+    near = near_nodes(header, table, level, node, (centre, along, extents, one_by_squared), _UNSURE)
     while True:
         if near == 0:
             if level == top:
@@ -173,7 +167,7 @@ def is_inside(scratch: Singles, here: int, place: int, table: Singles) -> bool:
         waiting[2 * level], waiting[2 * level + 1] = near, node
         level -= 1
         node = child
-        near = near_nodes(header, table, level, node, centre, along, extents, one_by_squared, _UNSURE)
+        near = near_nodes(header, table, level, node, (centre, along, extents, one_by_squared), _UNSURE)
     return winding != 0 if header[tree.TURNED] != 0 else winding & 1 != 0
 
 

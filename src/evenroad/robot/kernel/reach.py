@@ -224,10 +224,8 @@ def _solve(
 @njit(cache=True, nogil=True, error_model="numpy")
 def solve(
     q: Floats,
-    ints: Ints,
-    rows: Floats,
-    low: Floats,
-    high: Floats,
+    chain: tuple[Ints, Floats],
+    bounds: tuple[Floats, Floats],
     goals: Floats,
     most: int,
     enough: int,
@@ -241,6 +239,8 @@ def solve(
     what each lacks, squared; returns how many were moved, or follow one another.
     """
     dim = q.shape[1]
+    ints, rows = chain
+    low, high = bounds
     room = np.empty(60 + 8 * dim + 6 * len(ints))
     found = 0
     for i in range(len(q)):

@@ -87,21 +87,7 @@ def _pack(
     # Rows of all obstacles, of which those that the robot can reach are kept.
     kept, forms = np.empty((2, len(obstacles)), dtype=np.int64)
     rows = np.empty((len(obstacles), at.OBSTACLE_FLOAT_ROW))
-    # Not a plain 0: numba compiles a function once more for a literal.
-    count, first = 0, np.int64(0)
-    too_far = -1
-    for k in range(len(obstacles)):
-        largest = 0.0
-        for entry in range(1, obstacles.shape[1]):
-            largest = max(largest, abs(obstacles[k, entry]))
-        turned = obstacles[k, 0] != BOX or not _is_straight(obstacles[k, ROTATION:TRANSLATION])
-        if largest > FARTHEST and turned and too_far < 0:
-            too_far = k
-        form = _write_obstacle(rows[count], obstacles[k], reach)
-        far = reach + rows[count, 15]
-        if squared_distance_to_obstacle(0.0, 0.0, 0.0, form, rows[count], first) <= far * far:
-            kept[count], forms[count] = k, form
-            count += 1
+    count, too_far = _write_reached(obstacles, reach, kept, forms, rows)
     blocks = (count + at.LANES - 1) // at.LANES
     capsules = robot_ints[at.CAPSULES]
     first_int, first_float = len(robot_ints), len(robot_floats)
@@ -143,6 +129,27 @@ def _pack(
                 ints[first_int + count + i * blocks + row // at.LANES] |= 1 << (row % at.LANES)
     capsule, obstacle = _fixed_contact(ints, floats, kept, tested)
     return ints, floats, lanes, added, kept[:count], capsule, obstacle, lanes.ctypes.data, too_far
+
+
+@quick
+def _write_reached(obstacles: Floats, reach: float, kept: Ints, forms: Ints, rows: Floats) -> tuple[int, int]:
+    """Write the obstacles in reach; return how many there are, and the first too far for single precision, or -1."""
+    # Not a plain 0: numba compiles a function once more for a literal.
+    count, first = 0, np.int64(0)
+    too_far = -1
+    for k in range(len(obstacles)):
+        largest = 0.0
+        for entry in range(1, obstacles.shape[1]):
+            largest = max(largest, abs(obstacles[k, entry]))
+        turned = obstacles[k, 0] != BOX or not _is_straight(obstacles[k, ROTATION:TRANSLATION])
+        if largest > FARTHEST and turned and too_far < 0:
+            too_far = k
+        form = _write_obstacle(rows[count], obstacles[k], reach)
+        far = reach + rows[count, 15]
+        if squared_distance_to_obstacle(0.0, 0.0, 0.0, form, rows[count], first) <= far * far:
+            kept[count], forms[count] = k, form
+            count += 1
+    return count, too_far
 
 
 @quick

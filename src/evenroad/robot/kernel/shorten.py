@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import doubles_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.layout import program, quick, quick_inlined
+from evenroad.robot.kernel.layout import ROOM, Given, Pair, Triple, program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import BOTH_ENDS, SHORTCUT, Checks, checks_of, motion_is
 from evenroad.robot.kernel.motion_states import BATCHES as BATCHES_DONE
@@ -30,115 +32,87 @@ MOST_CUTS, NO_LIMIT = 64, 1 << 60
 """So many cuts of corners are tried at most where nothing else is said; so many batches where there is no limit."""
 
 
+class Buffer(NamedTuple):
+    """A path as it changes: rows of waypoints, some to spare, and how far along it each is; room for a motion."""
+
+    points: Floats
+    places: Floats
+    ends: Floats
+    way: Floats
+
+
 def shorten_path(
-    world: LaneWorld,
-    path: Floats,
-    pairs: int,
-    count: int,
-    most_cuts: int = MOST_CUTS,
+    world: LaneWorld, path: Floats, pairs: tuple[int, int], most_cuts: int = MOST_CUTS
 ) -> tuple[Floats, int]:
     """Return a path that is no longer, without waypoints where it is not finite, and how many motions were looked at.
 
-    Parameters
-    ----------
-    world : LaneWorld
-        The robot in its scene.
-    path : float64 array, shape (p, dim), p >= 2
-        Waypoints, every motion free.
-    pairs, count
-        Address of a float64 array, (count, 2): shares of the path's length, from 0 to 1, between which places a
-        straight motion is tried.
-    most_cuts : int
-        So many cuts of corners are tried at most.
+    `pairs` is the address and length of what `share_pairs` returns: between these places, shares of the path's length,
+    a straight motion is tried.
     """
     size, dim = path.shape
-    rows = size + count + most_cuts + 4
-    room, arguments = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim)
+    rows = size + pairs[1] + most_cuts + 4
+    room, given = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
-    motions, left = divmod(shorten_points(rows, size, dim, pairs, count, most_cuts, *arguments), _BESIDE)
+    motions, left = divmod(shorten_points((rows, size, dim), pairs, most_cuts, given), _BESIDE)
     return points[:left].copy(), motions
 
 
 @program
-def shorten_points(
-    rows: int,
-    size: int,
-    dim: int,
-    shares: int,
-    count: int,
-    most_cuts: int,
-    check: int,
-    resolution: float,
-    tables: int,
-    by_joint: int,
-    memory: int,
-    room: int,
-) -> int:
-    """Do the work of `shorten_path` on the last `rows` of the memory; return how many are left, and 2^32 a motion.
+def shorten_points(shape: Triple, shares: Pair, most_cuts: int, given: Given) -> int:
+    """Do the work of `shorten_path` on the last rows of the memory; return how many are left, and 2^32 a motion.
 
-    0 where the path is not finite.
+    0 where the path is not finite.  The shape is that of all rows: how many, how many are the path's, and the length of
+    one.
     """
-    checks = checks_of(check, resolution, tables, by_joint, memory, room)
-    pairs, own = matrix_at(shares, (count, 2)), room + 8 * COUNTS
-    ends, way = matrix_at(own, (2, dim)), doubles_at(own + 8 * 2 * dim, (dim,))
-    places = doubles_at(own + 8 * 3 * dim, (rows,))
-    points = matrix_at(own + 8 * (3 * dim + rows), (rows, dim))
+    checks = checks_of(*given)
+    rows, size, dim = shape
+    pairs, own = matrix_at(shares[0], (shares[1], 2)), given[ROOM] + 8 * COUNTS
+    buffer = Buffer(
+        matrix_at(own + 8 * (3 * dim + rows), (rows, dim)),
+        doubles_at(own + 8 * 3 * dim, (rows,)),
+        matrix_at(own, (2, dim)),
+        doubles_at(own + 8 * 2 * dim, (dim,)),
+    )
+    points = buffer.points
     for i in range(size):
         for k in range(dim):
             if not np.isfinite(points[i, k]):
                 return 0
         enter(points[i], checks.bounds, points[i])
     size = pass_by(points, size, True, checks)
-    measure(points, places, size, way, checks)
-    for row in range(count):
-        size = pair_joined(points, places, size, pairs[row], True, ends, way, checks)
-    size = cut_corners(points, places, size, most_cuts, NO_LIMIT, True, ends, way, checks)
+    measure(buffer, size, checks)
+    for row in range(shares[1]):
+        size = pair_joined(buffer, size, pairs[row], True, checks)
+    size = cut_corners(buffer, size, most_cuts, NO_LIMIT, True, checks)
     size = pass_by(points, size, True, checks)
     return size + _BESIDE * checks.counts[MOTIONS]
 
 
 @quick
-def pair_joined(
-    points: Floats,
-    places: Floats,
-    size: int,
-    pair: Floats,
-    proved: bool,
-    ends: Floats,
-    way: Floats,
-    checks: Checks,
-) -> int:
+def pair_joined(buffer: Buffer, size: int, pair: Floats, proved: bool, checks: Checks) -> int:
     """Join two places, shares of the path's length, as `joined` does."""
-    length = places[size - 1]
+    length = buffer.places[size - 1]
     low, high = min(pair[0], pair[1]) * length, max(pair[0], pair[1]) * length
-    return joined(points, places, size, low, high, WORTH_WHILE, proved, ends, way, checks)
+    return joined(buffer, size, low, high, WORTH_WHILE, proved, checks)
 
 
 @quick
 def cut_corners(
-    points: Floats,
-    places: Floats,
-    size: int,
-    most_cuts: int,
-    most_batches: int,
-    proved: bool,
-    ends: Floats,
-    way: Floats,
-    checks: Checks,
+    buffer: Buffer, size: int, most_cuts: int, most_batches: int, proved: bool, checks: Checks
 ) -> int:
     """Cut corners, one after the other and again while that gains anything; return the path's new size.
 
     Of each the shorter side is cut off, or half of it, or a quarter.
     """
+    places = buffer.places
     cuts, i, gained = 0, 1, places[size - 1]
     while cuts < most_cuts and i < size - 1 and checks.counts[BATCHES_DONE] < most_batches:
         reach = min(places[i] - places[i - 1], places[i + 1] - places[i])
         length = places[size - 1]
         for _ in range(3):
             cuts += 1
-            low, high = places[i] - reach, places[i] + reach
-            size = joined(points, places, size, low, high, CUT_WORTH_WHILE, proved, ends, way, checks)
+            size = joined(buffer, size, places[i] - reach, places[i] + reach, CUT_WORTH_WHILE, proved, checks)
             if places[size - 1] < length:
                 break
             reach *= 0.5
@@ -150,21 +124,13 @@ def cut_corners(
 
 @quick
 def joined(
-    points: Floats,
-    places: Floats,
-    size: int,
-    low: float,
-    high: float,
-    worth_while: float,
-    proved: bool,
-    ends: Floats,
-    way: Floats,
-    checks: Checks,
+    buffer: Buffer, size: int, low: float, high: float, worth_while: float, proved: bool, checks: Checks
 ) -> int:
     """Join two places of a path by a straight motion where that is worth while and free; return its new size.
 
     With `proved` the motion has to be proved as well, else it is free at its states.
     """
+    places, ends = buffer.places, buffer.ends
     length = places[size - 1]
     # Places as near as this to a waypoint are taken for it.
     near = 1e-9 * length
@@ -180,15 +146,15 @@ def joined(
         low, begin = places[first], first
     if high >= places[last + 1] - near:
         high, end = places[last + 1], last + 2
-    _place_at(points, places, first, low, ends[0], way, checks)
-    _place_at(points, places, last, high, ends[1], way, checks)
-    gain = high - low - distance_and_way(ends[0], ends[1], checks.bounds, way)
+    _place_at(buffer, first, low, ends[0], checks)
+    _place_at(buffer, last, high, ends[1], checks)
+    gain = high - low - distance_and_way(ends[0], ends[1], checks.bounds, buffer.way)
     if gain < worth_while * length or not _is_shortcut(ends[0], ends[1], proved, checks):
         return size
     # What lies between goes, the two ends come in.
-    splice(points, size, begin, end, ends)
+    splice(buffer.points, size, begin, end, ends)
     size += 2 - (end - begin)
-    measure(points, places, size, way, checks)
+    measure(buffer, size, checks)
     return size
 
 
@@ -217,18 +183,18 @@ def pass_by(points: Floats, size: int, proved: bool, checks: Checks) -> int:
 
 
 @quick_inlined
-def measure(points: Floats, places: Floats, size: int, way: Floats, checks: Checks) -> None:
+def measure(buffer: Buffer, size: int, checks: Checks) -> None:
     """Write how far along the path each waypoint is."""
+    points, places, way = buffer.points, buffer.places, buffer.way
     places[0] = 0.0
     for i in range(1, size):
         places[i] = places[i - 1] + distance_and_way(points[i - 1], points[i], checks.bounds, way)
 
 
 @quick_inlined
-def _place_at(
-    points: Floats, places: Floats, i: int, along: float, into: Floats, way: Floats, checks: Checks
-) -> None:
+def _place_at(buffer: Buffer, i: int, along: float, into: Floats, checks: Checks) -> None:
     """Write the configuration `along` the path, on the motion that begins at waypoint i."""
+    points, places, way = buffer.points, buffer.places, buffer.way
     if along >= places[i + 1]:
         for k in range(len(into)):
             into[k] = points[i + 1, k]

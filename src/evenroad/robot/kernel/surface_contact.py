@@ -98,9 +98,10 @@ def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int,
             reach = covering - slack + cloud[tree.RADIUS]
             if surfaces > 1 and number >= 0 and _beside(scratch, here, half + reach, cloud) & open_to == 0:
                 continue
-            near, sure = _near_and_touching(
-                scratch, here, i, half, covering, slack, place, cloud, ints, table
-            )
+            samples = row(ints, ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * i, 3)[1:]
+            wide = covering + cloud[tree.RADIUS]
+            lengths = half, wide, wide - slack
+            near, sure = _near_and_touching(scratch, here, samples, lengths, place, cloud, ints, table)
             if number < 0:
                 open_to = near & ~(blocked | meeting)
                 if open_to == 0:
@@ -132,10 +133,8 @@ def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int,
 def _near_and_touching(
     scratch: Singles,
     here: int,
-    capsule: int,
-    half: Any,
-    covering: Any,
-    slack: Any,
+    samples: tuple[int, int],
+    lengths: tuple[Any, Any, Any],
     place: int,
     cloud: Singles,
     ints: Ints,
@@ -143,12 +142,12 @@ def _near_and_touching(
 ) -> tuple[int, int]:
     """Return the masks of lanes in which the grid leaves open whether a capsule touches, and in which it does for sure.
 
-    It is asked about a long capsule as a whole first, then about the spheres that cover it.
+    It is asked about a long capsule as a whole first, then about the spheres that cover it, from a first sample to an
+    end.  Lengths are the capsule's half, the radius of a sphere about which it is asked, and what is out of reach.
     """
-    _, first, end = row(ints, ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * capsule, 3)
+    first, end = samples
+    half, covering, reach = lengths
     centre, along = load_vector(scratch, here), load_vector(scratch, here + HALF)
-    covering += cloud[tree.RADIUS]
-    reach = covering - slack
     if end - first > FEW:
         near, _ = _asked(centre, half + reach, reach, place, cloud)
         if near == 0:
@@ -246,7 +245,7 @@ def _touches(
     waiting = integers_at(room_for(32), (32,))
     top = header[tree.LEVELS] - 1
     level, node = top, 0
-    inside = near_nodes(header, cloud, level, node, centre, along, extents, one_by_squared, reach)
+    inside = near_nodes(header, cloud, level, node, (centre, along, extents, one_by_squared), reach)
     while True:
         if inside == 0:
             if level == top:
@@ -269,7 +268,7 @@ def _touches(
         waiting[2 * level], waiting[2 * level + 1] = inside, node
         level -= 1
         node = child
-        inside = near_nodes(header, cloud, level, node, centre, along, extents, one_by_squared, reach)
+        inside = near_nodes(header, cloud, level, node, (centre, along, extents, one_by_squared), reach)
 
 
 @intrinsic

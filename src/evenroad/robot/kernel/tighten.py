@@ -6,12 +6,14 @@ every motion is judged at its states alone, with bodies a little larger: only th
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import doubles_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.layout import LANES, program, quick, quick_inlined
+from evenroad.robot.kernel.layout import LANES, ROOM, Given, Pair, Triple, program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
     BOTH_ENDS,
@@ -26,6 +28,7 @@ from evenroad.robot.kernel.path_proof import MOST_BENT, is_proved, proved_or_ben
 from evenroad.robot.kernel.shorten import (
     MOST_CUTS,
     NO_LIMIT,
+    Buffer,
     cut_corners,
     measure,
     move,
@@ -79,145 +82,148 @@ _BESIDE = 1 << 32
 """Two counts in one number: less to read after a call."""
 
 
+class Slides(NamedTuple):
+    """What waypoints slide by: directions, used in turn; places tried for one, and how long the way by each is.
+
+    Behind the places there is room for the direction in which the path gets shorter soonest.
+    """
+
+    directions: Floats
+    tried: Floats
+    lengths: Floats
+
+
 def tighten_path(
     world: LaneWorld,
     path: Floats,
-    pairs: int,
-    pair_count: int,
-    sphere: int,
-    sphere_count: int,
+    pairs: tuple[int, int],
+    sphere: tuple[int, int],
     most_batches: int,
     proved: bool,
 ) -> tuple[Floats, int]:
     """Return a path drawn tight, without waypoints where it is not finite, and how many motions were looked at.
 
-    Parameters
-    ----------
-    world : LaneWorld
-        The robot in its scene.
-    path : float64 array, shape (p, dim), p >= 2
-        Waypoints, every motion free.
-    pairs, pair_count
-        Address of a float64 array, (pair_count, 2): shares of the path's length, from 0 to 1, between which places a
-        straight motion is tried.
-    sphere, sphere_count
-        Address of a float64 array, (sphere_count, dim): directions, of length 1, to be used in turn.
-    most_batches : int
-        After so many batches of sixteen checks, `OF_PROOF` a motion less, no waypoint slides any more; cuts and proofs
-        follow.
-    proved : bool
-        Whether the path is, as it was given; a single motion has to be.  Where it is not, there are no waypoints if
-        nothing shorter is proved either.
+    `pairs` and `sphere` are addresses and lengths of what `share_pairs` and `sphere_points` return.  After so many
+    batches of sixteen checks, `OF_PROOF` a motion less, no waypoint slides any more; cuts and proofs follow.  Where the
+    path is not `proved` as it was given, there are no waypoints if nothing shorter is proved either.
     """
     size, dim = path.shape
     # A slide adds no waypoint; a shortcut, a cut or a bend one, the ends two.
     rows = size + MOST_ROUNDS * PAIRS + MOST_CUTS + MOST_BENT + 8
-    room, arguments = world.arguments(COUNTS + rows * (dim + 1) + (PLACES + 5 + size) * dim + PLACES)
+    room, given = world.arguments(COUNTS + rows * (dim + 1) + (PLACES + 5 + size) * dim + PLACES)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
-    margins = world.wider(CLEARANCE), world.wider(LITTLE)
-    driven_by = pairs, pair_count, sphere, sphere_count, most_batches, int(proved), *margins
-    motions, left = divmod(tighten_points(rows, size, dim, *driven_by, *arguments), _BESIDE)
+    wider = world.wider(CLEARANCE), world.wider(LITTLE)
+    found = tighten_points((rows, size, dim), pairs, sphere, most_batches, int(proved), wider, given)
+    motions, left = divmod(found, _BESIDE)
     return points[:left].copy(), motions
 
 
 @program
 def tighten_points(
-    rows: int,
-    size: int,
-    dim: int,
-    shares: int,
-    share_count: int,
-    sphere: int,
-    sphere_count: int,
-    most_batches: int,
-    proved: int,
-    wider: int,
-    little_wider: int,
-    check: int,
-    resolution: float,
-    tables: int,
-    by_joint: int,
-    memory: int,
-    room: int,
+    shape: Triple, shares: Pair, sphere: Pair, most_batches: int, proved: int, wider: Pair, given: Given
 ) -> int:
-    """Do the work of `tighten_path` on the last `rows` of the memory; return how many are left, and 2^32 a motion.
+    """Do the work of `tighten_path` on the last rows of the memory; return how many are left, and 2^32 a motion.
 
     0 are left where the path is not finite.  Where what was drawn tight is not proved, the path is shortened as it was
     given, each motion proved before it is put in; 0 are left where `proved` is 0 and that is not proved either.
     """
-    checks = checks_of(check, resolution, tables, by_joint, memory, room)
-    own = room + 8 * COUNTS
-    ends, way, last = matrix_at(own, (2, dim)), doubles_at(own + 16 * dim, (dim,)), own + 24 * dim
-    tried, goal = matrix_at(last, (PLACES + 1, dim)), doubles_at(last + 8 * (PLACES + 1) * dim, (dim,))
+    checks = checks_of(*given)
+    rows, size, dim = shape
+    own = given[ROOM] + 8 * COUNTS
+    last = own + 24 * dim
     lengths = last + 8 * (PLACES + 2) * dim
-    places = doubles_at(lengths + 8 * PLACES, (rows,))
-    given = lengths + 8 * (PLACES + rows)
-    kept, begin = matrix_at(given, (size, dim)), given + 8 * size * dim
-    whole, pairs = matrix_at(begin, (rows, dim)), matrix_at(shares, (share_count, 2))
-    directions, slides = matrix_at(sphere, (sphere_count, dim)), doubles_at(lengths, (PLACES,))
+    kept_at = lengths + 8 * (PLACES + rows)
+    begin = kept_at + 8 * size * dim
+    goal, kept = doubles_at(last + 8 * (PLACES + 1) * dim, (dim,)), matrix_at(kept_at, (size, dim))
+    pairs, slides = (
+        matrix_at(shares[0], (shares[1], 2)),
+        Slides(
+            matrix_at(sphere[0], (sphere[1], dim)),
+            matrix_at(last, (PLACES + 1, dim)),
+            doubles_at(lengths, (PLACES,)),
+        ),
+    )
+    places, ends, way = (
+        doubles_at(lengths + 8 * PLACES, (rows,)),
+        matrix_at(own, (2, dim)),
+        doubles_at(own + 16 * dim, (dim,)),
+    )
+    whole = Buffer(matrix_at(begin, (rows, dim)), places, ends, way)
+    points = whole.points
     for i in range(size):
         for k in range(dim):
-            if not np.isfinite(whole[i, k]):
+            if not np.isfinite(points[i, k]):
                 return 0
-        enter(whole[i], checks.bounds, whole[i])
-        move_to(whole[i], kept[i])
+        enter(points[i], checks.bounds, points[i])
+        move_to(points[i], kept[i])
     if size < 3:
         return size
-    before, plain = size, look_at(wider, checks)
-    size, first, after = _left_behind(whole, size, goal, way, checks)
+    margin, plain = wider[0], look_at(wider[0], checks)
+    size, first, after = _left_behind(points, size, goal, way, checks)
     if size == 0:
-        wider, size = little_wider, before
+        margin, size = wider[1], shape[1]
         for i in range(size):
-            move_to(kept[i], whole[i])
-        look_at(wider, checks)
-        size, first, after = _left_behind(whole, size, goal, way, checks)
+            move_to(kept[i], points[i])
+        look_at(margin, checks)
+        size, first, after = _left_behind(points, size, goal, way, checks)
     if size > 0:
-        points = matrix_at(begin + 8 * dim * first, (rows - first, dim))
-        size = pass_by(points, size - first, False, checks)
-        measure(points, places, size, way, checks)
-        little = pair = turn = 0
-        while (
-            turn < MOST_ROUNDS
-            and size > 2
-            and little < IN_A_ROW
-            and _is_work_left(size, most_batches, checks)
-        ):
-            length = places[size - 1]
-            for number in range(SLIDES * turn, SLIDES * (turn + 1)):
-                if _is_work_left(size, most_batches, checks):
-                    _slide(points, 1 + number % (size - 2), directions, number, tried, slides, way, checks)
-            measure(points, places, size, way, checks)
-            for _ in range(PAIRS):
-                size = pair_joined(points, places, size, pairs[pair], False, ends, way, checks)
-                pair = (pair + 1) % share_count
-            if turn % PASSED_BY == PASSED_BY - 1:
-                size = pass_by(points, size, False, checks)
-                measure(points, places, size, way, checks)
-            little = little + 1 if places[size - 1] > length * (1.0 - LEAST_GAIN) else 0
-            turn += 1
-        size = cut_corners(points, places, size, MOST_CUTS, NO_LIMIT, False, ends, way, checks)
-        size += first
+        buffer = Buffer(matrix_at(begin + 8 * dim * first, (rows - first, dim)), places, ends, way)
+        size = first + _drawn_tight(buffer, size - first, pairs, slides, most_batches, checks)
         if after:
-            move_to(goal, whole[size])
+            move_to(goal, points[size])
             size += 1
     look_at(plain, checks)
     if size > 0:
-        size = proved_or_bent(whole, size, wider, directions, tried[0], way, checks)
+        size = proved_or_bent(points, size, margin, slides.directions, slides.tried[0], way, checks)
     if size == 0:
-        if proved == 0 and not (is_proved(kept[:2], 2, checks) and is_proved(kept[before - 2 :], 2, checks)):
-            return _BESIDE * checks.counts[MOTIONS]
-        size, most = before, checks.counts[BATCHES] + most_batches
-        for i in range(size):
-            move_to(kept[i], whole[i])
-        size = pass_by(whole, size, True, checks)
-        measure(whole, places, size, way, checks)
-        for row in range(SPARE_PAIRS):
-            size = pair_joined(whole, places, size, pairs[row], True, ends, way, checks)
-        size = cut_corners(whole, places, size, MOST_CUTS, most, True, ends, way, checks)
-        if proved == 0 and not is_proved(whole, size, checks):
-            return _BESIDE * checks.counts[MOTIONS]
+        size = _shortened(whole, kept, pairs, most_batches, proved != 0, checks)
     return size + _BESIDE * checks.counts[MOTIONS]
+
+
+@quick
+def _drawn_tight(
+    buffer: Buffer, size: int, pairs: Floats, slides: Slides, most_batches: int, checks: Checks
+) -> int:
+    """Let waypoints slide, and join places of the path, while that gains anything; return its new size."""
+    points, places = buffer.points, buffer.places
+    size = pass_by(points, size, False, checks)
+    measure(buffer, size, checks)
+    little = pair = turn = 0
+    while turn < MOST_ROUNDS and size > 2 and little < IN_A_ROW and _is_work_left(size, most_batches, checks):
+        length = places[size - 1]
+        for number in range(SLIDES * turn, SLIDES * (turn + 1)):
+            if _is_work_left(size, most_batches, checks):
+                _slide(points, 1 + number % (size - 2), number, slides, buffer.way, checks)
+        measure(buffer, size, checks)
+        for _ in range(PAIRS):
+            size = pair_joined(buffer, size, pairs[pair], False, checks)
+            pair = (pair + 1) % len(pairs)
+        if turn % PASSED_BY == PASSED_BY - 1:
+            size = pass_by(points, size, False, checks)
+            measure(buffer, size, checks)
+        little = little + 1 if places[size - 1] > length * (1.0 - LEAST_GAIN) else 0
+        turn += 1
+    return cut_corners(buffer, size, MOST_CUTS, NO_LIMIT, False, checks)
+
+
+@quick
+def _shortened(
+    buffer: Buffer, kept: Floats, pairs: Floats, most_batches: int, proved: bool, checks: Checks
+) -> int:
+    """Write the path as it was given, shortened by straight motions alone; 0 where it is not proved in the end."""
+    size = len(kept)
+    if not (proved or (is_proved(kept[:2], 2, checks) and is_proved(kept[size - 2 :], 2, checks))):
+        return 0
+    most = checks.counts[BATCHES] + most_batches
+    for i in range(size):
+        move_to(kept[i], buffer.points[i])
+    size = pass_by(buffer.points, size, True, checks)
+    measure(buffer, size, checks)
+    for row in range(SPARE_PAIRS):
+        size = pair_joined(buffer, size, pairs[row], True, checks)
+    size = cut_corners(buffer, size, MOST_CUTS, most, True, checks)
+    return size if proved or is_proved(buffer.points, size, checks) else 0
 
 
 @quick_inlined
@@ -267,18 +273,10 @@ def _left_behind(
 
 
 @quick
-def _slide(
-    points: Floats,
-    i: int,
-    directions: Floats,
-    number: int,
-    tried: Floats,
-    lengths: Floats,
-    way: Floats,
-    checks: Checks,
-) -> None:
+def _slide(points: Floats, i: int, number: int, slides: Slides, way: Floats, checks: Checks) -> None:
     """Move a waypoint to the best of some places around it by which the way is shorter, and free at its states."""
     dim = points.shape[1]
+    directions, tried, lengths = slides.directions, slides.tried, slides.lengths
     a, here, b, ahead = points[i - 1], points[i], points[i + 1], tried[PLACES]
     before, after = _write_ahead(a, here, b, ahead, way, checks)
     if distance_and_way(a, b, checks.bounds, way) > (before + after) * (1.0 - BEND):

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import integers_at, matrix_at
-from evenroad.robot.kernel.layout import LANES, program, quick, quick_inlined
+from evenroad.robot.kernel.layout import LANES, Given, Pair, program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
     BOTH_ENDS,
@@ -76,60 +76,39 @@ def room_for(count: int, capacity: int, dim: int) -> int:
 
 
 @program
-def grow(
-    kept: int,
-    count: int,
-    capacity: int,
-    samples: int,
-    samples_count: int,
-    steps: int,
-    steps_count: int,
-    most_motions: int,
-    slice_batches: int,
-    check: int,
-    resolution: float,
-    tables: int,
-    by_joint: int,
-    memory: int,
-    room: int,
-) -> int:
+def grow(kept: int, count: int, capacity: int, samples: Pair, steps: Pair, limits: Pair, given: Given) -> int:
     """Grow two trees until they meet and return how the call ended; called again with the same, it goes on.
-
-    Arrays are given by their addresses.
 
     Parameters
     ----------
     kept, count, capacity
-        `room_for` doubles, one after the other: counts and what else is kept from call to call, sizes of the trees,
-        integers that are zeros at first; start and goals, (count, dim), of which the goals become the roots of the
-        second tree, and the first are tried straight on; nodes, links and columns of ``Trees``, with room for
+        Address of `room_for` doubles, one after the other: counts and what else is kept from call to call, sizes of the
+        trees, integers that are zeros at first; start and goals, (count, dim), of which the goals become the roots of
+        the second tree, and the first are tried straight on; nodes, links and columns of ``Trees``, with room for
         2 count + ROOM nodes at least, and as much as the columns again.  A path that was found is written over the
         columns; how many waypoints it has, and which of the ends it leads to, stand among the counts.
-    samples, samples_count
-        Float64 array, (n, dim): points of the unit cube.  After the last one it goes on from the first, each time
-        shifted a little further.
-    steps, steps_count
-        Float64 array, (m, dim): points of the unit ball, used in turn.
-    most_motions
-        After so many motions, proofs among them, the budget is spent.
-    slice_batches
-        After about so many batches of sixteen checks the call returns, for the caller to look at the clock.
-    check, resolution, tables, by_joint, memory, room
-        As ``LaneWorld.arguments`` gives them, with room for ``memory_of``.
+    samples, steps
+        Addresses and lengths of points of the unit cube, after the last of which it goes on from the first, each time
+        shifted a little further; and of points of the unit ball, used in turn.
+    limits
+        Motions, proofs among them, after which the budget is spent; batches of sixteen checks, about, after which the
+        call returns, for the caller to look at the clock.
+    given
+        With room for ``memory_of``.
     """
+    check, resolution, tables, by_joint, memory, room = given
     checks = checks_of(check, resolution, tables, by_joint, memory, kept)
+    most_motions, slice_batches = limits
     bounds = checks.bounds
     dim = bounds.shape[1]
     state, ends = integers_at(kept, (STATE,)), matrix_at(kept + 8 * (STATE + 2), (count, dim))
-    sequence, ball = matrix_at(samples, (samples_count, dim)), matrix_at(steps, (steps_count, dim))
+    sequence, ball = matrix_at(samples[0], (samples[1], dim)), matrix_at(steps[0], (steps[1], dim))
     trees = trees_at(kept + 8 * (STATE + 2 + count * dim), capacity, kept + 8 * STATE, room, bounds)
     sizes = trees.sizes
     own = memory_of(room + 8 * dim, bounds)
     if state[BEGUN] == 0:
-        for end in range(count):
-            for k in range(dim):
-                if not np.isfinite(ends[end, k]):
-                    return NO_NUMBERS
+        if not _are_finite(ends):
+            return NO_NUMBERS
         _begin(ends, trees, own, checks)
         state[BEGUN] = 1
     if sizes[0] == 0 or sizes[1] == 0:
@@ -175,6 +154,15 @@ def grow(
                     return SOLVED
                 # Nodes may have been removed: the other candidates know old numbers.
                 break
+
+
+@quick
+def _are_finite(ends: Floats) -> bool:
+    for end in range(len(ends)):
+        for k in range(ends.shape[1]):
+            if not np.isfinite(ends[end, k]):
+                return False
+    return True
 
 
 @quick
