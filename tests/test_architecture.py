@@ -15,7 +15,17 @@ ROOT = Path(evenroad.__file__).parent
 
 BASE = {
     *("errors", "_checks", "_rng", "_files", "_seal", "_npz", "_yaml"),
-    *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint", "_njit", "_shared", "_threads"),
+    *(
+        "_arrays",
+        "_clock",
+        "_terminal",
+        "_compiled",
+        "_fingerprint",
+        "_njit",
+        "_sources",
+        "_shared",
+        "_threads",
+    ),
     *("_above", "_call"),
 }
 MAY_IMPORT = {

@@ -9,7 +9,7 @@ import textwrap
 
 import pytest
 
-from evenroad import _compiled, _njit
+from evenroad import _compiled, _njit, _sources
 
 PROGRAM = """from __future__ import annotations
 
@@ -34,20 +34,20 @@ def package(tmp_path, monkeypatch):
     for name, text in files.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
-    monkeypatch.setattr(_njit, "_ROOT", str(tmp_path))
+    monkeypatch.setattr(_sources, "ROOT", str(tmp_path))
     forget()
     yield tmp_path
     forget()
 
 
 def forget():
-    for function in (_njit._digest, _njit._read, _njit._files_of):
+    for function in (_sources.digest_of, _sources._read, _sources._files_of):
         function.cache_clear()
 
 
 def digest(package):
     forget()
-    return _njit._digest(str(package / "caller.py"))
+    return _sources.digest_of(str(package / "caller.py"))
 
 
 @pytest.mark.parametrize(
@@ -68,9 +68,11 @@ def test_an_edit_elsewhere_does_not(package):
 def test_kernels_depend_on_the_layout_of_their_tables():
     from evenroad.robot.kernel import layout, trees
 
-    _njit._digest(trees.__file__)
+    _sources.digest_of(trees.__file__)
     assert layout.__file__ in {
-        file for path in [trees.__file__, *_njit._read(trees.__file__)[1]] for file in _njit._read(path)[1]
+        file
+        for path in [trees.__file__, *_sources._read(trees.__file__)[1]]
+        for file in _sources._read(path)[1]
     }
 
 
@@ -121,7 +123,7 @@ def test_what_was_made_of_earlier_sources_is_removed(program, monkeypatch):
     folder, _, load = program
     load().twice(21)
     before = kept(folder)
-    monkeypatch.setattr(_njit, "_digest", lambda source: "edited")
+    monkeypatch.setattr(_njit, "digest_of", lambda source: "edited")
     assert load().twice(21) == 42
     assert len(kept(folder)) == 2
     assert not set(before) & set(kept(folder))

@@ -13,11 +13,9 @@ import inspect
 import os
 import pickle
 import platform
-import re
 import sys
 import time
 from collections.abc import Callable
-from functools import cache
 from glob import escape, glob
 from importlib import import_module
 from subprocess import Popen
@@ -33,11 +31,8 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 
 from evenroad._seal import read_sealed, sealed
+from evenroad._sources import ROOT, digest_of, machine
 
-_ROOT = os.path.dirname(os.path.abspath(__file__))
-_IMPORT = re.compile(
-    rb"^(?:from (evenroad[\w.]*) import (\([^)]*\)|[^\n]*)|import (evenroad[\w.]*))", re.MULTILINE
-)
 _LOOK = 0.02
 """Seconds between two looks for what another process compiles."""
 _BETWEEN_LINES = 0.2
@@ -285,7 +280,7 @@ class _Named(CompileResultCacheImpl):
         self.any_source = (
             f"{escape(name)}-*{escape(base.removeprefix(f'{name}-{line}'))}.{machine()}-*.nb[ci]"
         )
-        return f"{base}.{machine()}-{_digest(self._source)}"
+        return f"{base}.{machine()}-{digest_of(self._source)}"
 
 
 class KernelCache(FunctionCache):
@@ -335,16 +330,6 @@ class KernelCache(FunctionCache):
                     continue
 
 
-@cache
-def machine() -> str:
-    """Return a short text for all that code is compiled for and by: processor, system, numba and its compiler."""
-    features = binding.get_host_cpu_features().flatten()
-    names = (binding.get_host_cpu_name(), features, platform.system(), platform.machine())
-    settings = (numba.config.CPU_NAME, numba.config.CPU_FEATURES, numba.config.OPT)
-    text = repr((names, settings, numba.__version__, binding.llvm_version_info))
-    return hashlib.sha256(text.encode()).hexdigest()[:8]
-
-
 def surroundings() -> dict[str, str]:
     """Return what code is compiled by and for, and in which folder it is kept."""
     versions = (
@@ -352,52 +337,10 @@ def surroundings() -> dict[str, str]:
         ("numpy", numpy.__version__),
         ("numba", numba.__version__),
     )
-    folder = KernelCache(_files_of.__wrapped__).cache_path
+    folder = KernelCache(_claim).cache_path
     beside = os.path.basename(folder) == "__pycache__"
     return {
         "runs on": ", ".join(" ".join(each) for each in versions),
         "processor": f"{binding.get_host_cpu_name()} ({machine()})",
-        "compiled code": f"{_ROOT}/**/__pycache__" if beside else os.path.dirname(folder),
+        "compiled code": f"{ROOT}/**/__pycache__" if beside else os.path.dirname(folder),
     }
-
-
-@cache
-def _digest(source: str) -> str:
-    """Return a short text for a file and all that it imports of evenroad, directly or by way of others."""
-    found, waiting = {os.path.abspath(source)}, [os.path.abspath(source)]
-    while waiting:
-        new = _read(waiting.pop())[1] - found
-        found |= new
-        waiting += new
-    text = "".join(sorted(_read(path)[0] for path in found))
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
-
-
-@cache
-def _read(path: str) -> tuple[str, frozenset[str]]:
-    """Return the digest of a file and the files of evenroad that it imports at its top level."""
-    try:
-        with open(path, "rb") as file:
-            text = file.read()
-    except OSError:
-        return "", frozenset()
-    names = set()
-    for package, several, module in _IMPORT.findall(text):
-        names.add(package or module)
-        names |= {package + b"." + word for word in re.findall(rb"\w+", several)}
-    files = {file for name in names for file in _files_of(name.decode())}
-    return hashlib.sha256(text).hexdigest(), frozenset(files)
-
-
-@cache
-def _files_of(name: str) -> tuple[str, ...]:
-    """Return the file of a module, or of a package that hands on names; nothing for what is no module."""
-    top, *inside = name.split(".")
-    # Of another package that compiles with this one, as the studies do, the folder that it was loaded from.
-    root = (
-        _ROOT
-        if top == "evenroad"
-        else os.path.dirname(getattr(sys.modules.get(top), "__file__", None) or _ROOT)
-    )
-    place = os.path.join(root, *inside)
-    return tuple(file for file in (f"{place}.py", os.path.join(place, "__init__.py")) if os.path.isfile(file))

@@ -128,7 +128,7 @@ def test_a_name_that_an_option_once_had_is_taken_where_the_verb_has_todays():
 def test_what_completes_words_knows_every_verb(run):
     code, out, _ = run("--tyro-print-completion", "bash")
     assert code == 0
-    for part in ("plan", "measure", "--robot-radius", "--no-train"):
+    for part in ("plan", "measure", "--robot-radius", "--no-picture"):
         assert part in out
     assert run("--tyro-print-completion")[2] == "evenroad: error: unknown shell ''; known: bash, fish, zsh\n"
 

@@ -12,7 +12,7 @@ from evenroad.points import SAMPLERS, PointSet, draw, load_points, save_points
 def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):
     code, out, err = run("points", "-n", 64, "-d", 2, "--sampler", "hickernell", "-o", "set.npy")
     assert (code, err) == (0, "")
-    assert "(exact)" in out
+    assert "set.npy: 64 points in d=2, hickernell annealed set" in out
     array = np.load(tmp_path / "set.npy")
     np.testing.assert_array_equal(array, draw("hickernell", 64, 2).points)
 
@@ -22,17 +22,11 @@ def test_npz_keeps_the_origin(run, tmp_path):
     assert load_points(tmp_path / "set.npz") == draw("hickernell", 64, 2, rng=3)
 
 
-def test_any_other_n_is_fresh_once_and_then_cached(run, tmp_path):
-    arguments = ("points", "-n", 11, "-d", 2, "--sampler", "hickernell")
-    assert "(fresh)" in run(*arguments, "-o", "a.npy")[1]
-    assert "(cached)" in run(*arguments, "-o", "b.npy")[1]
-    np.testing.assert_array_equal(np.load(tmp_path / "a.npy"), np.load(tmp_path / "b.npy"))
-
-
-def test_no_train_refuses_and_names_what_there_is(run, tmp_path):
-    code, _, err = run("points", "-n", 11, "-d", 2, "--sampler", "hickernell", "--no-train", "-o", "a.npy")
+def test_any_other_n_is_refused_with_what_there_is_and_what_makes_it(run, tmp_path):
+    code, _, err = run("points", "-n", 11, "-d", 2, "--sampler", "hickernell", "-o", "a.npy")
     assert code == 2
     assert "it has n = 16, 32" in err
+    assert "evenroad train -n 11 -d 2 --objective hickernell" in err
     assert list(tmp_path.iterdir()) == []
 
 
@@ -82,8 +76,7 @@ def test_the_name_that_the_sampler_once_had_is_still_taken(run, tmp_path):
         (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.npy, \.npz"),
         (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
         (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
-        (("-n", 8, "-d", 2, "--sampler", "evn", "--no-train", "-o", "a.npy"), "unknown sampler 'evn'"),
-        (("-n", 8, "-d", 2, "--no-train", "-o", "a.npy"), "--no-train does not go with 'even'"),
+        (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'"),
         (
             ("-n", 8, "-d", 2, "--plain", "-o", "a.npy"),
             "--plain does not go .* 'even', only with halton and sobol",

@@ -4,25 +4,19 @@ import numpy as np
 from numba import njit
 
 from evenroad.robot.kernel.forward_kinematics import sine_and_cosine
+from evenroad.robot.kernel.lane_memory import column, load, load_angles, load_vector, row, store, store_vector
 from evenroad.robot.kernel.lanes import (
     absolute,
     below_zero,
     box_of_lanes,
-    column,
     dot,
     larger,
-    load,
-    load_angles,
-    load_vector,
     lowest_bit,
     minus,
     plus,
-    row,
     smaller,
     smallest_lane,
     square_root,
-    store,
-    store_vector,
     times,
     with_sign_of,
 )

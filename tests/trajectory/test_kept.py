@@ -34,10 +34,10 @@ def test_what_is_driven_keeps_upright_as_the_path_was_asked_to(tilt, kept):
     world, goal = free_world(), DOWN + np.array([0.5, 0.0, 0.0, tilt, 0.0, 0.0])
     assert arm_trajectory(world, [DOWN, goal]).duration > 0.0
     if kept:
-        assert arm_trajectory(world, [DOWN, goal], upright=Upright(0.05)).proof == "certified"
+        assert arm_trajectory(world, [DOWN, goal], ways=(None, Upright(0.05))).proof == "certified"
         return
     with pytest.raises(NotAvailable, match="not proved"):
-        arm_trajectory(world, [DOWN, goal], upright=Upright(0.05))
+        arm_trajectory(world, [DOWN, goal], ways=(None, Upright(0.05)))
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def straight_path():
 
 def test_what_is_driven_comes_straight(straight_path):
     world, path = straight_path
-    assert arm_trajectory(world, path, straight=STRAIGHT, rounded_by_controller=True).stops == 0
+    assert arm_trajectory(world, path, ways=(STRAIGHT, None), rounded_by_controller=True).stops == 0
 
 
 def test_a_way_that_is_not_straight_is_told(straight_path):
@@ -66,7 +66,7 @@ def test_a_way_that_is_not_straight_is_told(straight_path):
 
 def test_a_path_without_places_is_named():
     with pytest.raises(InvalidValue, match="two different waypoints"):
-        arm_trajectory(free_world(), np.zeros((0, 6)), upright=Upright(0.1))
+        arm_trajectory(free_world(), np.zeros((0, 6)), ways=(None, Upright(0.1)))
 
 
 @pytest.mark.parametrize("blocked", [False, True])

@@ -63,7 +63,7 @@ def chosen_budget(plan: PlanOptions) -> Budget:
 
 def planned_points(plan: PlanOptions, d: int) -> PointSet:
     """Draw the set of points in d dimensions that was asked for."""
-    return draw_points(plan, _n(plan), d)[0]
+    return draw_points(plan, _n(plan), d)
 
 
 def _n(plan: PlanOptions) -> int:

@@ -10,15 +10,14 @@ import tyro
 
 from evenroad._checks import require_known
 from evenroad._files import require_writable_folder
-from evenroad.cli.sampler import SamplerOptions, chosen_sampler, draw_points
-from evenroad.errors import InvalidValue, shown
-from evenroad.points.bank import TRAINED_FAMILIES
+from evenroad.cli.sampler import SamplerOptions, draw_points
+from evenroad.errors import shown
 from evenroad.points.npz import save_array, save_points
 
 
 @dataclass(frozen=True, kw_only=True)
 class Points(SamplerOptions):
-    """Write a point set: shipped, constructed, from the cache, or annealed on demand."""
+    """Write a point set: shipped or constructed."""
 
     n: Annotated[int, tyro.conf.arg(aliases=["-n"])]
     """Number of points."""
@@ -26,19 +25,13 @@ class Points(SamplerOptions):
     """Number of dimensions."""
     out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
     """The file: .npy for the plain array, .npz to keep the origin."""
-    no_train: bool = False
-    """hickernell: refuse a set that is neither shipped nor cached, instead of annealing it now."""
 
     def run(self) -> int:
         """Find or make the set, and write it."""
         kind = f"kind of file {shown(str(self.out))}: suffix"
         require_known(kind, self.out.suffix, (".npy", ".npz"))
         require_writable_folder(self.out)
-        name = chosen_sampler(self, self.n)
-        if self.no_train and name not in TRAINED_FAMILIES:
-            raise InvalidValue(f"--no-train does not go with {name!r}, whose sets are constructed")
-        points, source = draw_points(self, self.n, self.d, train=not self.no_train)
+        points = draw_points(self, self.n, self.d)
         (save_points if self.out.suffix == ".npz" else save_array)(self.out, points)
-        about = f"{points.n} points in d={points.d}, {points.origin} ({source})"
-        print(f"{self.out}: {about}, hash {points.hash[:12]}")
+        print(f"{self.out}: {points.n} points in d={points.d}, {points.origin}, hash {points.hash[:12]}")
         return 0

@@ -57,25 +57,17 @@ def chosen_sampler(options: SamplerOptions, n: int) -> str:
     return name
 
 
-def draw_points(options: SamplerOptions, n: int, d: int, *, train: bool = False) -> tuple[PointSet, str]:
-    """Draw the set of n points in d dimensions that was asked for; return it, and where it comes from.
-
-    A set that is annealed, and neither ships nor is in the cache, is made where it may be trained, else refused.
-    """
-    from evenroad._terminal import progress_shown
+def draw_points(options: SamplerOptions, n: int, d: int) -> PointSet:
+    """Draw the set of n points in d dimensions that was asked for."""
     from evenroad.points import make_sampler
-    from evenroad.points.bank import TRAINED_FAMILIES, Trained
 
     name = chosen_sampler(options, n)
-    if name in TRAINED_FAMILIES:
-        with progress_shown(f"annealing {name} n={n} d={d}") as callback:
-            return Trained(name, train=train, callback=callback).find(n, d, rng=options.seed)
     how: dict[str, Any] = {}
     if name in TAKES["plain"]:
         how = {"scramble": not options.plain, "start": options.skip}
     elif name in TAKES["allow_fewer"]:
         how = {"allow_fewer": options.allow_fewer}
-    return make_sampler(name, **how).draw(n, d, rng=options.seed), "exact"
+    return make_sampler(name, **how).draw(n, d, rng=options.seed)
 
 
 def require_seed(seed: int) -> None:

@@ -81,8 +81,7 @@ def trajectory_rows(
             deviation=plan.deviation,
             step=plan.step,
             rounded_by_controller=any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory),
-            straight=straight,  # type: ignore[arg-type]
-            upright=upright,  # type: ignore[arg-type]
+            ways=(straight, upright),  # type: ignore[arg-type]
         )
         meshes = mesh_check(query, trajectory.positions)
         if meshes is not None and meshes.verdict == "in collision":

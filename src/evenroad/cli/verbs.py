@@ -25,7 +25,7 @@ VERBS = {
     "send": ("evenroad.cli.send:Send", "a trajectory to a UR arm; a dry run unless told otherwise"),
     "points": (
         "evenroad.cli.points:Points",
-        "write a point set: shipped, constructed, or annealed on demand",
+        "write a point set: shipped or constructed",
     ),
     "measure": ("evenroad.cli.measure:Measure", "print every measure of a point set"),
     "certify": (

@@ -19,6 +19,7 @@ from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
+from evenroad.space.path import motion_lengths, place_at
 from evenroad.world.protocol import Connection
 
 MOST_MOTIONS = 1_000_000
@@ -73,37 +74,15 @@ def connect(
     seconds: float = SECONDS,
     sequence: npt.ArrayLike | None = None,
 ) -> Connection:
-    """Join a start to one of several goals, by two trees that grow until they meet.
+    """Join a start, (dim,), to one of several goals, (g, dim), by two trees that grow until they meet.
 
     Every motion of the path is proved free throughout, as by ``CertifiedWorld``.  The same arguments give the same
-    path; the time only decides whether there is one.
+    path; the time [s] only decides whether there is one.  Goals that are not free are left out.  The trees grow towards
+    a `sequence` of points of the unit cube, (n, dim), the more evenly spread the better, by default 2048 of Halton's;
+    after the last one they come again, shifted.
 
-    Parameters
-    ----------
-    world : PlansWithTrees
-        The robot in its scene.
-    start : array_like, shape (dim,)
-        Where to begin.
-    goals : array_like, shape (g, dim)
-        Configurations of which one is to be reached; those that are not free are left out.
-    most_motions : int
-        Give up after so many motions were looked at, >= 1.
-    seconds : float
-        Give up after so long, > 0 [s].
-    sequence : array_like, shape (n, dim), optional
-        Points of the unit cube that the trees grow towards, the more evenly spread the better; after the last one they
-        come again, shifted.  Default: 2048 of Halton's.
-
-    Returns
-    -------
-    Connection
-        With an empty path where there is none within the budget, start or goals are not free, or the world's backend
-        is not the lanes, in which trees grow.
-
-    Raises
-    ------
-    InvalidValue
-        If an argument is no such array or number.
+    The path is empty where there is none within the budget, start or goals are not free, or the world's backend is not
+    the lanes, in which trees grow.  InvalidValue if an argument is no such array or number.
     """
     dim = world.space.dim
     limit = require_positive("seconds", seconds)
@@ -147,24 +126,12 @@ def shorten(
     pairs: int = 1 << 30,
     cuts: int = 64,
 ) -> tuple[Floats, int]:
-    """Return a path that is not longer, and how many motions were looked at.
+    """Return a path, (p, dim), that is not longer, and how many motions were looked at.
 
-    A motion is put in only where it is proved free throughout.  Motions of the path as it was given stay where
-    nothing shorter was found, proved or not: :meth:`CertifiedWorld.motion_valid` tells.
-
-    Parameters
-    ----------
-    world : PlansWithTrees
-        The robot in its scene.
-    path : array_like, shape (p, dim), p >= 2
-        Waypoints; every motion is free in the world.
-    pairs, cuts : int
-        So many motions between places along the path are tried at most, by the lanes so many cuts of corners, too.
-
-    Raises
-    ------
-    InvalidValue
-        If `path` is no such array.
+    A motion is put in only where it is proved free throughout.  Motions of the path as it was given, which are free in
+    the world, stay where nothing shorter was found, proved or not: :meth:`CertifiedWorld.motion_valid` tells.  So many
+    motions between `pairs` of places along the path are tried at most, and by the lanes so many `cuts` of corners.
+    InvalidValue if `path` is no such array.
     """
     path, dim = _as_path(world, path), world.space.dim
     if world.backend == "scalar":
@@ -183,25 +150,12 @@ def tighten(
 
     Its waypoints have slid along what they touch, and every motion is proved free, one or two after they were bent a
     little.  Where that fails, too, the path is shortened as it was given, by straight motions alone, as `shorten` does.
-    Without lanes it is what that returns.
+    Without lanes it is what that returns.  After so many `batches` of sixteen checks, of which some are left for the
+    proof, no waypoint slides any more; cuts of corners and the proof follow.
 
-    Parameters
-    ----------
-    world : PlansWithTrees
-        The robot in its scene.
-    path : array_like, shape (p, dim), p >= 2
-        Waypoints; every motion is free in the world.
-    batches : int
-        After so many batches of sixteen checks, of which some are left for the proof, no waypoint slides any more; cuts
-        of corners and the proof follow.
-    proved : bool
-        Whether the path is, as it was given; a single motion has to be, and all of them without lanes.  Where it is
-        not, and neither what was drawn tight nor what was shortened is, there are no waypoints: (0, dim).
-
-    Raises
-    ------
-    InvalidValue
-        If `path` is no such array.
+    `proved` says whether the path is, as it was given; a single motion has to be, and all of them without lanes.  Where
+    it is not, and neither what was drawn tight nor what was shortened is, there are no waypoints: (0, dim).
+    InvalidValue if `path` is no such array.
     """
     path = _as_path(world, path)
     if world.backend == "scalar":
@@ -244,19 +198,12 @@ def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
                 break
         i += 1
     for low, high in np.sort(share_pairs(), axis=1):
-        places = np.concatenate([[0.0], np.cumsum(space.distance(path[:-1], path[1:]))])
-        shares = np.array([low, high]) * places[-1]
-        first, last = np.clip(np.searchsorted(places, shares, side="right") - 1, 0, len(path) - 2)
-        if first >= last:
-            continue
-        lengths = np.maximum(np.diff(places)[[first, last]], 1e-300)
-        ends = space.interpolate(
-            path[[first, last]],
-            path[[first + 1, last + 1]],
-            np.minimum((shares - places[[first, last]]) / lengths, 1),
-        )
+        along = np.concatenate([[0.0], np.cumsum(motion_lengths(path, space))])
+        shares = np.array([low, high]) * along[-1]
+        first, last = np.clip(np.searchsorted(along, shares, side="right") - 1, 0, len(path) - 2)
+        ends = place_at(path, space, [low, high])
         gain = shares[1] - shares[0] - space.distance(ends[:1], ends[1:])[0]
-        if gain >= _WORTH_WHILE * places[-1] and is_shortcut(*ends):
+        if first < last and gain >= _WORTH_WHILE * along[-1] and is_shortcut(*ends):
             path = np.concatenate([path[: first + 1], ends, path[last + 1 :]])
     return path, motions
 

@@ -27,8 +27,7 @@ def arm_trajectory(
     deviation: float = DEVIATION,
     step: float = STEP,
     rounded_by_controller: bool = False,
-    straight: Straight | None = None,
-    upright: Upright | None = None,
+    ways: tuple[Straight | None, Upright | None] = (None, None),
 ) -> Trajectory:
     """Return the trajectory of an arm along a path, checked in its world as it is driven.
 
@@ -47,7 +46,7 @@ def arm_trajectory(
         As :func:`make_trajectory`.
     rounded_by_controller : bool
         Find out, too, how far the controller may round off the corners, for ``.movej.script``.
-    straight, upright : optional
+    ways : a Straight and an Upright, or None
         As the path was planned with: what is driven keeps them, too, within the same tolerances.
 
     Raises
@@ -62,7 +61,7 @@ def arm_trajectory(
     if len(places) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
     places = _turned_on(world, places)
-    asked = kept_ways(world, places, straight, upright)
+    asked = kept_ways(world, places, *ways)
     trajectory = make_trajectory(
         places,
         within,

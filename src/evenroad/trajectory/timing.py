@@ -80,7 +80,8 @@ def fastest(path: RoundedPath, limits: Limits) -> TimeLaw:
     if limits.along_path is not None:
         ceiling = np.minimum(ceiling, limits.along_path**2)
     ceiling[np.isin(grid, path.stops)] = 0.0
-    squares = _squared_speeds(ahead, ahead_bend, behind, behind_bend, np.diff(grid), ceiling, acceleration)
+    curve = ahead, ahead_bend, behind, behind_bend, np.diff(grid)
+    squares = _squared_speeds(curve, ceiling, acceleration)
     speeds, steps = np.sqrt(squares), np.diff(grid)
     took = 2.0 * steps / (speeds[:-1] + speeds[1:])
     times = np.concatenate([[0.0], np.cumsum(took)])
@@ -116,25 +117,21 @@ def _spans(starts: Floats, counts: Ints) -> list[tuple[float, float, int]]:
 
 
 @njit(cache=True)
-def _squared_speeds(ahead, ahead_bend, behind, behind_bend, steps, ceiling, acceleration):  # type: ignore[no-untyped-def]
+def _squared_speeds(curve, ceiling, acceleration):  # type: ignore[no-untyped-def]
     """Return the squares of the speeds along a path at its grid, (m,): back for what can be stopped, then on."""
-    m = len(ceiling)
+    m, steps = len(ceiling), curve[4]
     highest = np.empty(m)
     highest[m - 1] = 0.0
     for i in range(m - 2, -1, -1):
         low, high = 0.0, ceiling[i]
-        least, most = _push(
-            i, high, highest[i + 1], ahead, ahead_bend, behind, behind_bend, steps, acceleration
-        )
+        least, most = _push(i, high, highest[i + 1], curve, acceleration)
         if least <= most:
             low = high
         for _ in range(_HALVINGS):
             if low == high:
                 break
             middle = 0.5 * (low + high)
-            least, most = _push(
-                i, middle, highest[i + 1], ahead, ahead_bend, behind, behind_bend, steps, acceleration
-            )
+            least, most = _push(i, middle, highest[i + 1], curve, acceleration)
             if least <= most:
                 low = middle
             else:
@@ -142,20 +139,19 @@ def _squared_speeds(ahead, ahead_bend, behind, behind_bend, steps, ceiling, acce
         highest[i] = low
     squares = np.zeros(m)
     for i in range(m - 1):
-        _, most = _push(
-            i, squares[i], highest[i + 1], ahead, ahead_bend, behind, behind_bend, steps, acceleration
-        )
+        _, most = _push(i, squares[i], highest[i + 1], curve, acceleration)
         squares[i + 1] = min(max(squares[i] + 2.0 * steps[i] * most, 0.0), highest[i + 1])
     return squares
 
 
 @njit(cache=True)
-def _push(i, square, next_square, ahead, ahead_bend, behind, behind_bend, steps, acceleration):  # type: ignore[no-untyped-def]
+def _push(i, square, next_square, curve, acceleration):  # type: ignore[no-untyped-def]
     """Return the least and the most acceleration along interval i from this squared speed that keep all limits.
 
     Joint j accelerates by ``direction * push + bend * square`` at either end; at the far one the square is larger by
     ``2 step push``, and is from 0 to `next_square`.
     """
+    ahead, ahead_bend, behind, behind_bend, steps = curve
     twice = 2.0 * steps[i]
     least, most = -square / twice, (next_square - square) / twice
     for j in range(len(acceleration)):

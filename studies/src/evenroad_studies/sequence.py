@@ -10,11 +10,11 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
-from evenroad.points.bank.anneal import anneal
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.plain import Sobol
 from evenroad_studies.prefixes import SHORTEST, rooted_prefixes, worst_prefix
+from evenroad_studies.training.anneal import anneal
 
 MEASURE = "hickernell"
 TOGETHER = 512
@@ -112,8 +112,7 @@ def _moved(key: int, d: int, length: int) -> Floats:
         steps=BLOCKS.get(length, STEPS),
         rng=np.random.default_rng([key, length]),
         start=start,
-        rate=RATE * spacing,
-        noise=NOISE,
+        rates=(RATE * spacing, NOISE),
     )
     points = np.concatenate([held, made.points])
     points.setflags(write=False)

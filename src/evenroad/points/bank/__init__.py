@@ -1,4 +1,4 @@
-"""Trained point sets: those that ship, with an index of their hashes and measures, and others made on demand."""
+"""Trained point sets: those that ship, with an index of their hashes and measures."""
 
 from evenroad.points.bank.bank import Bank as Bank
 from evenroad.points.bank.bank import Cell as Cell

@@ -15,23 +15,20 @@ import numpy.typing as npt
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.forward_kinematics import scratch_places
+from evenroad.robot.kernel.lane_memory import column, load_vector, row, store_vector
 from evenroad.robot.kernel.lanes import (
     ONE,
     ZERO,
     absolute,
     below_zero,
     box_of_lanes,
-    column,
     dot,
     larger,
-    load_vector,
     lowest_bit,
     minus,
     plus,
-    row,
     smaller,
     square_root,
-    store_vector,
     times,
 )
 from evenroad.robot.kernel.layout import BOX, HALF, LANES, PLACED, inlined, inner

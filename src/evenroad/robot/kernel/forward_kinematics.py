@@ -8,22 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.lanes import (
-    ONE,
-    ZERO,
-    absolute,
-    dot,
-    load,
-    load_angles,
-    load_vector,
-    plus,
-    row,
-    smaller,
-    spread,
-    store,
-    store_vector,
-    with_sign_of,
-)
+from evenroad.robot.kernel.lane_memory import load, load_angles, load_vector, row, store, store_vector
+from evenroad.robot.kernel.lanes import ONE, ZERO, absolute, dot, plus, smaller, spread, with_sign_of
 from evenroad.robot.kernel.layout import FRAME, HALF, LANES, PLACED, inlined, inner
 
 Floats = npt.NDArray[np.float64]

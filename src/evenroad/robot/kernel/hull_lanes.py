@@ -20,6 +20,7 @@ from evenroad._shared import once
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, room_for, singles_at
 from evenroad.robot.kernel.hull_contact import DEEPEST, leaves_near, write_relative
+from evenroad.robot.kernel.lane_memory import load_vector, row, store_vector
 from evenroad.robot.kernel.lanes import (
     ONE,
     VECTOR_TYPE,
@@ -28,15 +29,12 @@ from evenroad.robot.kernel.lanes import (
     below_zero,
     dot,
     larger,
-    load_vector,
     lowest_bit,
     minus,
     plus,
-    row,
     smaller,
     spread,
     square_root,
-    store_vector,
     times,
 )
 from evenroad.robot.kernel.layout import LANES, inlined, inner

@@ -22,8 +22,7 @@ from numba.extending import intrinsic, lower_builtin, models, register_model
 from evenroad.robot.kernel.layout import LANES
 
 _FLOAT = ir.FloatType()
-_VECTOR = ir.VectorType(_FLOAT, LANES)
-_WIDE = ir.VectorType(ir.DoubleType(), LANES)
+VECTOR = ir.VectorType(_FLOAT, LANES)
 _BITS = ir.VectorType(ir.IntType(32), LANES)
 _FLAGS = ("nnan", "ninf", "nsz", "contract")
 
@@ -42,10 +41,10 @@ VECTOR_TYPE = types.UniTuple(LANES_TYPE, 3)
 @register_model(LanesType)
 class _LanesModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: LanesType) -> None:
-        super().__init__(manager, kind, _VECTOR)
+        super().__init__(manager, kind, VECTOR)
 
 
-def _spread(builder: ir.IRBuilder, number: ir.Value, kind: ir.Type = _VECTOR) -> ir.Value:
+def spread_over(builder: ir.IRBuilder, number: ir.Value, kind: ir.Type = VECTOR) -> ir.Value:
     """Return `number` in all lanes."""
     undefined = ir.Constant(kind, ir.Undefined)
     one = builder.insert_element(undefined, number, ir.Constant(ir.IntType(32), 0))
@@ -54,7 +53,8 @@ def _spread(builder: ir.IRBuilder, number: ir.Value, kind: ir.Type = _VECTOR) ->
 
 def _as_vectors(builder: ir.IRBuilder, sig: Any, args: Any) -> list[ir.Value]:
     return [
-        arg if kind == LANES_TYPE else _spread(builder, arg) for kind, arg in zip(sig.args, args, strict=True)
+        arg if kind == LANES_TYPE else spread_over(builder, arg)
+        for kind, arg in zip(sig.args, args, strict=True)
     ]
 
 
@@ -112,7 +112,7 @@ def _elementwise(name: str) -> Callable[..., Any]:
     def apply(typing_context: Any, a: Any) -> Any:
         def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
             values = [args[0]] if _is_lanes(a) else cgutils.unpack_tuple(builder, args[0])
-            results = [_call(builder, f"llvm.{name}.v{LANES}f32", _VECTOR, value) for value in values]
+            results = [_call(builder, f"llvm.{name}.v{LANES}f32", VECTOR, value) for value in values]
             return results[0] if _is_lanes(a) else context.make_tuple(builder, a, results)
 
         return a(a), lower
@@ -155,7 +155,7 @@ def _by_axis(instruction: str) -> Callable[..., Any]:
 def _axes(builder: ir.IRBuilder, value: ir.Value, kind: Any) -> list[ir.Value]:
     """Return the three lanes values of a vector, of three numbers, or three times one of either."""
     values = cgutils.unpack_tuple(builder, value) if isinstance(kind, types.UniTuple) else [value] * 3
-    return [each if each.type == _VECTOR else _spread(builder, each) for each in values]
+    return [each if each.type == VECTOR else spread_over(builder, each) for each in values]
 
 
 absolute = _elementwise("fabs")
@@ -192,7 +192,7 @@ def box_of_lanes(typing_context: Any, centre: Any, extents: Any) -> Any:
     """Return centre and half extents, each number in all lanes, of the box around sixteen boxes."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        half = _spread(builder, ir.Constant(_FLOAT, 0.5))
+        half = spread_over(builder, ir.Constant(_FLOAT, 0.5))
         lows, highs = [], []
         for c, u in zip(*(cgutils.unpack_tuple(builder, arg) for arg in args), strict=True):
             lows.append(builder.fsub(c, u, flags=_FLAGS))
@@ -228,7 +228,7 @@ def spread(typing_context: Any, number: Any) -> Any:
     """Return a float32 number in all lanes."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        return _spread(builder, args[0])
+        return spread_over(builder, args[0])
 
     return LANES_TYPE(types.float32), lower
 
@@ -238,7 +238,7 @@ def with_sign_of(typing_context: Any, size: Any, sign: Any) -> Any:
     """Return the numbers `size` >= 0 with the signs of `sign`."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        return _call(builder, f"llvm.copysign.v{LANES}f32", _VECTOR, *args)
+        return _call(builder, f"llvm.copysign.v{LANES}f32", VECTOR, *args)
 
     return LANES_TYPE(size, sign), lower
 
@@ -248,7 +248,7 @@ def below_zero(typing_context: Any, a: Any) -> Any:
     """Return an int64 whose bit w is set where lane w is below zero."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        below = builder.fcmp_ordered("<", args[0], ir.Constant(_VECTOR, [0.0] * LANES), flags=_FLAGS)
+        below = builder.fcmp_ordered("<", args[0], ir.Constant(VECTOR, [0.0] * LANES), flags=_FLAGS)
         return builder.zext(builder.bitcast(below, ir.IntType(LANES)), ir.IntType(64))
 
     return types.int64(a), lower
@@ -262,132 +262,6 @@ def lowest_bit(typing_context: Any, bits: Any) -> Any:
         return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))
 
     return types.int64(types.int64), lower
-
-
-def _pointer(context: Any, builder: Any, kind: Any, array: Any, place: Any, *, number: ir.Type) -> ir.Value:
-    data = context.make_array(kind)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [place], inbounds=True), number.as_pointer())
-
-
-def _loaded(builder: ir.IRBuilder, pointer: ir.Value, axis: int = 0) -> ir.Value:
-    value = builder.load(builder.gep(pointer, [ir.Constant(ir.IntType(64), axis)]) if axis else pointer)
-    # Any place will do: where it is a multiple of 64 bytes, as in scratch memory, that costs nothing.
-    value.align = 4
-    return value
-
-
-def _stored(builder: ir.IRBuilder, pointer: ir.Value, value: ir.Value, axis: int = 0) -> None:
-    place = builder.gep(pointer, [ir.Constant(ir.IntType(64), axis)]) if axis else pointer
-    builder.store(value, place).align = 4
-
-
-@intrinsic
-def load(typing_context: Any, array: Any, place: Any) -> Any:
-    """Return the sixteen numbers of a float32 array from `place` on."""
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        return _loaded(builder, _pointer(context, builder, array, *args, number=_VECTOR))
-
-    return LANES_TYPE(array, types.intp), lower
-
-
-@intrinsic
-def store(typing_context: Any, array: Any, place: Any, lanes: Any) -> Any:
-    """Write sixteen numbers to a float32 array from `place` on."""
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        _stored(builder, _pointer(context, builder, array, *args[:2], number=_VECTOR), args[2])
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, lanes), lower
-
-
-@intrinsic
-def load_vector(typing_context: Any, array: Any, place: Any) -> Any:
-    """Return three times sixteen numbers of a float32 array from `place` on: x, y, z."""
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        pointer = _pointer(context, builder, array, *args, number=_VECTOR)
-        return context.make_tuple(
-            builder, VECTOR_TYPE, [_loaded(builder, pointer, axis) for axis in range(3)]
-        )
-
-    return VECTOR_TYPE(array, types.intp), lower
-
-
-@intrinsic
-def store_vector(typing_context: Any, array: Any, place: Any, vector: Any) -> Any:
-    """Write a vector to a float32 array from `place` on, as `load_vector` reads it."""
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        pointer = _pointer(context, builder, array, *args[:2], number=_VECTOR)
-        for axis, value in enumerate(cgutils.unpack_tuple(builder, args[2])):
-            _stored(builder, pointer, value, axis)
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, vector), lower
-
-
-def _numbers(stride: int) -> Callable[..., Any]:
-    """Return an intrinsic that gives so many numbers of an array, a literal, from a place on, `stride` apart.
-
-    Indexing would first look whether the place is below 0, and would be compiled by numba number by number.
-    """
-
-    @intrinsic(prefer_literal=True)
-    def numbers(typing_context: Any, array: Any, place: Any, count: Any) -> Any:
-        kind = types.UniTuple(array.dtype, count.literal_value)
-
-        def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-            pointer = _pointer(context, builder, array, *args[:2], number=context.get_data_type(array.dtype))
-            places = (
-                builder.gep(pointer, [ir.Constant(ir.IntType(64), i * stride)]) for i in range(kind.count)
-            )
-            return context.make_tuple(builder, kind, [builder.load(each) for each in places])
-
-        return kind(array, types.intp, count), lower
-
-    return numbers
-
-
-row, column = _numbers(1), _numbers(LANES)
-
-
-@intrinsic
-def store_along(typing_context: Any, array: Any, place: Any, begin: Any, shares: Any, way: Any) -> Any:
-    """Write ``begin + share * way`` to a float64 array from `place` on, for the sixteen shares of another."""
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        first = ir.Constant(ir.IntType(64), 0)
-        share = _loaded(builder, _pointer(context, builder, shares, args[3], first, number=_WIDE))
-        done = builder.fmul(share, _spread(builder, args[4], _WIDE))
-        value = builder.fadd(_spread(builder, args[2], _WIDE), done)
-        _stored(builder, _pointer(context, builder, array, *args[:2], number=_WIDE), value)
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, types.float64, shares, types.float64), lower
-
-
-@intrinsic
-def load_angles(typing_context: Any, array: Any, place: Any, multiplier: Any, offset: Any, turn: Any) -> Any:
-    """Return multiples and more of sixteen numbers of a float64 array, less whole turns, unless a turn is 0.
-
-    Computed in double precision: single precision has no digits for a large angle.
-    """
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        values = _loaded(builder, _pointer(context, builder, array, *args[:2], number=_WIDE))
-        factor, summand, period = (_spread(builder, arg, _WIDE) for arg in args[2:])
-        values = builder.fadd(builder.fmul(values, factor), summand)
-        turns = builder.fmul(values, ir.Constant(_WIDE, [0.5 / np.pi] * LANES))
-        rint = cgutils.get_or_insert_function(
-            builder.module, ir.FunctionType(_WIDE, [_WIDE]), f"llvm.rint.v{LANES}f64"
-        )
-        return builder.fptrunc(
-            builder.fsub(values, builder.fmul(period, builder.call(rint, [turns]))), _VECTOR
-        )
-
-    return LANES_TYPE(array, types.intp, types.float64, types.float64, types.float64), lower
 
 
 ZERO = np.float32(0.0)

@@ -10,19 +10,17 @@ import numpy.typing as npt
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
 from evenroad.robot.kernel.addresses import ANY_LENGTH, bytes_at, integers_at, room_for
+from evenroad.robot.kernel.lane_memory import column, load_vector, row
 from evenroad.robot.kernel.lanes import (
     ONE,
     ZERO,
     absolute,
     below_zero,
-    column,
     dot,
     larger,
-    load_vector,
     lowest_bit,
     minus,
     plus,
-    row,
     smaller,
     times,
 )

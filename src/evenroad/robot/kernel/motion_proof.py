@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.lanes import row
+from evenroad.robot.kernel.lane_memory import row
 from evenroad.robot.kernel.layout import LANES, MOST_WAITING, quick, quick_inlined
 from evenroad.robot.kernel.motion_states import CONFIGURATIONS, Motion, World, blocked_states, write_states
 

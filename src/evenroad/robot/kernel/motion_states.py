@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import call_at
-from evenroad.robot.kernel.lanes import store_along
+from evenroad.robot.kernel.lane_memory import store_along
 from evenroad.robot.kernel.layout import LANES, quick_inlined
 
 Floats = npt.NDArray[np.float64]

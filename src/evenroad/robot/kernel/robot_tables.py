@@ -44,18 +44,12 @@ class RobotTables:
 
     Attributes
     ----------
-    tree : MovingTree
-        The frames.
     capsules : tuple of PlacedCapsule
         Those that do not move come first.
     reach : float
         No point of the robot is ever farther than this from the root's origin [m].
-    ints : int64 ndarray
-        Header, without what it says of obstacles, and integers.
-    floats : float64 ndarray
-        The robot as it is.
-    singles : float32 ndarray
-        The robot with larger radii, so that rounding never makes a verdict optimistic.
+    floats, singles : float64 and float32 ndarrays
+        The robot as it is, and with larger radii, so that rounding never makes a verdict optimistic.
     capsule_pairs : tuple of pairs of int
         Capsules that are tested against each other.
     pair_margins : float64 ndarray, shape (capsule pairs + pairs of bodies of which hulls decide,)

@@ -21,20 +21,18 @@ from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
 from evenroad.robot.kernel.addresses import ANY_LENGTH, integers_at, room_for, singles_at
 from evenroad.robot.kernel.forward_kinematics import scratch_places
+from evenroad.robot.kernel.lane_memory import column, load_vector, row
 from evenroad.robot.kernel.lanes import (
     LANES_TYPE,
     ZERO,
     absolute,
     below_zero,
     box_of_lanes,
-    column,
     dot,
     larger,
-    load_vector,
     lowest_bit,
     minus,
     plus,
-    row,
     smaller,
     times,
 )

@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import integers_at, matrices_at, number_tables_at, singles_at
-from evenroad.robot.kernel.lanes import ZERO, absolute, load, smaller, smallest_lane, spread, store
+from evenroad.robot.kernel.lane_memory import load, store
+from evenroad.robot.kernel.lanes import ZERO, absolute, smaller, smallest_lane, spread
 from evenroad.robot.kernel.layout import LANES, quick
 
 Floats = npt.NDArray[np.float64]

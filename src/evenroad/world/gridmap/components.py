@@ -40,8 +40,8 @@ def find_gates(cells: npt.NDArray[np.uint8]) -> Bools:
         if flat[cell] >= FREE and owner[cell] == 0:
             components += 1
             owner[cell], queue[count] = components, cell
-            count = _flood(flat, FREE, 0, around, owner, depth, queue, count, count + 1)
-    _flood(flat, UNDECIDED, 1, around, owner, depth, queue, 0, count)
+            count = _flood(flat, FREE, 0, around, (owner, depth, queue), count, count + 1)
+    _flood(flat, UNDECIDED, 1, around, (owner, depth, queue), 0, count)
     gates = np.zeros((rows, cols), np.bool_)
     for row in range(1, rows - 1):
         for col in range(1, cols - 1):
@@ -60,10 +60,9 @@ def find_gates(cells: npt.NDArray[np.uint8]) -> Bools:
 
 
 @njit(cache=True, nogil=True)
-def _flood(
-    flat: Any, least: int, deeper: int, around: Any, owner: Any, depth: Any, queue: Any, begin: int, end: int
-) -> int:
+def _flood(flat: Any, least: int, deeper: int, around: Any, reached: Any, begin: int, end: int) -> int:
     """Give the neighbours of queued cells, of state `least` or more, to the same owner, and so on; return the end."""
+    owner, depth, queue = reached
     while begin < end:
         here = queue[begin]
         begin += 1

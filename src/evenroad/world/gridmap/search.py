@@ -9,7 +9,7 @@ place of a gate is the middle between two corners or sides of squares, which is 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -36,6 +36,17 @@ _LINKS = 24
 """Number of lattice points that a start or goal is linked to."""
 
 
+class _Search(NamedTuple):
+    """A* over whole-number costs: of each lattice point its cost, -1 before it is reached, the step it came by, whether
+    it is done with; first entries of the buckets of the queue.
+    """
+
+    reached: Any
+    came: Any
+    closed: Any
+    heads: Any
+
+
 @njit(cache=True, nogil=True)
 def find_path(
     start: Any, goals: Any, disk: DiskTables, gates: Bools, most: int
@@ -48,11 +59,67 @@ def find_path(
     motions tested: the search ends when `most` are.
     """
     rows, cols = disk.cells.shape
-    high, wide = 2 * rows + 1, 2 * cols + 1
-    reached = np.full(high * wide, -1, np.int32)
-    came = np.zeros(high * wide, np.int8)
-    closed = np.zeros(high * wide, np.bool_)
-    ends = np.full(high * wide, -1, np.int32)
+    wide = 2 * cols + 1
+    nodes = (2 * rows + 1) * wide
+    search = _Search(
+        np.full(nodes, -1, np.int32),
+        np.zeros(nodes, np.int8),
+        np.zeros(nodes, np.bool_),
+        np.full(_BUCKETS, -1, np.int64),
+    )
+    ends, targets, motions = _goal_nodes(goals, nodes, disk, gates)
+    entries, links, waiting, key, tried = _seeded(start, targets, search, disk, gates)
+    size, motions, expanded = waiting, motions + tried, 0
+    while waiting > 0 and motions < most:
+        bucket = key % _BUCKETS
+        if search.heads[bucket] < 0:
+            key += 1
+            continue
+        entry = search.heads[bucket]
+        search.heads[bucket] = links[entry]
+        waiting -= 1
+        node = entries[entry]
+        if search.closed[node]:
+            continue
+        search.closed[node] = True
+        expanded += 1
+        if ends[node] >= 0:
+            path = _trace(node, search.came, wide, start, goals[ends[node]], disk)
+            return path, ends[node], expanded, motions
+        r, c = divmod(node, wide)
+        at_gate = _is_at_gate(r, c, gates)
+        for s in range(0 if _is_centre(r, c, disk) else 8, len(STEPS) if at_gate else 8):
+            to_c, to_r = c + STEPS[s, 0], r + STEPS[s, 1]
+            # Never out of the array: nothing is free on its ring.
+            to = to_r * wide + to_c
+            cost = search.reached[node] + COSTS[s]
+            if search.closed[to] or (0 <= search.reached[to] <= cost):
+                continue
+            if s < 8:
+                if not _is_centre(to_r, to_c, disk):
+                    continue
+            else:
+                if not _is_at_gate(to_r, to_c, gates) or disk.cells[to_r // 2, to_c // 2] == BLOCKED:
+                    continue
+                motions += 1
+                if not _is_step_free(c, r, to_c, to_r, disk):
+                    continue
+            search.reached[to] = cost
+            search.came[to] = s
+            bucket = max(cost + _left(to_c, to_r, targets), key) % _BUCKETS
+            if size == len(entries):
+                entries, links = np.append(entries, entries), np.append(links, links)  # twice the room
+            entries[size], links[size] = to, search.heads[bucket]
+            search.heads[bucket] = size
+            size += 1
+            waiting += 1
+    return np.empty((0, 2)), -1, expanded, motions
+
+
+@njit(cache=True, nogil=True)
+def _goal_nodes(goals: Any, nodes: int, disk: DiskTables, gates: Bools) -> tuple[Any, Any, int]:
+    """Return to which goal each lattice point leads, -1 to none, the goals on the lattice, and the motions tested."""
+    ends = np.full(nodes, -1, np.int32)
     targets = np.empty((len(goals), 2))
     motions = 0
     for g in range(len(goals)):
@@ -63,76 +130,41 @@ def find_path(
         for node in linked:
             if ends[node] < 0:
                 ends[node] = g
-    heads = np.full(_BUCKETS, -1, np.int64)
+    return ends, targets, motions
+
+
+@njit(cache=True, nogil=True)
+def _seeded(
+    start: Any, targets: Any, search: _Search, disk: DiskTables, gates: Bools
+) -> tuple[Any, Any, int, int, int]:
+    """Put the lattice points near the start into the queue: its entries and their links, how many, the least key."""
+    wide = 2 * disk.cells.shape[1] + 1
     entries = np.empty(4096, np.int64)
     links = np.empty(4096, np.int64)
-    size, waiting, key = 0, 0, 2**60
     linked, tried = _links(start[0], start[1], disk, gates)
-    motions += tried
-    seeds = np.empty(len(linked), np.int64)
+    seeds, key = np.empty(len(linked), np.int64), 2**60
     x, y = to_padded(start[0], start[1], disk.frame)
     for i in range(len(linked)):
         node = linked[i]
         r, c = divmod(node, wide)
-        away = math.hypot(0.5 * c - x, 0.5 * r - y)
-        reached[node] = int(10.0 * away)
-        came[node] = -1
-        seeds[i] = reached[node] + _left(c, r, targets)
+        search.reached[node] = int(10.0 * math.hypot(0.5 * c - x, 0.5 * r - y))
+        search.came[node] = -1
+        seeds[i] = search.reached[node] + _left(c, r, targets)
         key = min(key, seeds[i])
     # The keys of the seeds may lie far apart, as no two steps of the search do: late ones count as less near.
     for i in range(len(linked)):
         bucket = min(seeds[i], key + _BUCKETS // 2 - 1) % _BUCKETS
-        entries[size], links[size] = linked[i], heads[bucket]
-        heads[bucket] = size
-        size += 1
-        waiting += 1
-    expanded = 0
-    while waiting > 0 and motions < most:
-        bucket = key % _BUCKETS
-        if heads[bucket] < 0:
-            key += 1
-            continue
-        entry = heads[bucket]
-        heads[bucket] = links[entry]
-        waiting -= 1
-        node = entries[entry]
-        if closed[node]:
-            continue
-        closed[node] = True
-        expanded += 1
-        if ends[node] >= 0:
-            path = _trace(node, came, wide, start, goals[ends[node]], disk)
-            return path, ends[node], expanded, motions
-        r, c = divmod(node, wide)
-        from_x, from_y = _to_map(0.5 * c, 0.5 * r, disk.frame)
-        at_gate = _is_at_gate(r, c, gates)
-        for s in range(0 if _is_centre(r, c, disk) else 8, len(STEPS) if at_gate else 8):
-            to_c, to_r = c + STEPS[s, 0], r + STEPS[s, 1]
-            # Never out of the array: nothing is free on its ring.
-            to = to_r * wide + to_c
-            cost = reached[node] + COSTS[s]
-            if closed[to] or (0 <= reached[to] <= cost):
-                continue
-            if s < 8:
-                if not _is_centre(to_r, to_c, disk):
-                    continue
-            else:
-                if not _is_at_gate(to_r, to_c, gates) or disk.cells[to_r // 2, to_c // 2] == BLOCKED:
-                    continue
-                motions += 1
-                to_x, to_y = _to_map(0.5 * to_c, 0.5 * to_r, disk.frame)
-                if not free_between(from_x, from_y, to_x, to_y, disk):
-                    continue
-            reached[to] = cost
-            came[to] = s
-            bucket = max(cost + _left(to_c, to_r, targets), key) % _BUCKETS
-            if size == len(entries):
-                entries, links = np.append(entries, entries), np.append(links, links)  # twice the room
-            entries[size], links[size] = to, heads[bucket]
-            heads[bucket] = size
-            size += 1
-            waiting += 1
-    return np.empty((0, 2)), -1, expanded, motions
+        entries[i], links[i] = linked[i], search.heads[bucket]
+        search.heads[bucket] = i
+    return entries, links, len(linked), key, tried
+
+
+@njit(cache=True, nogil=True)
+def _is_step_free(c: int, r: int, to_c: int, to_r: int, disk: DiskTables) -> bool:
+    """Say whether the motion between two lattice points is free."""
+    x, y = _to_map(0.5 * c, 0.5 * r, disk.frame)
+    to_x, to_y = _to_map(0.5 * to_c, 0.5 * to_r, disk.frame)
+    return free_between(x, y, to_x, to_y, disk)
 
 
 @njit(cache=True, nogil=True)

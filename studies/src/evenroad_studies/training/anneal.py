@@ -64,8 +64,7 @@ def anneal(
     steps: int = 5000,
     rng: RngLike = 0,
     start: npt.ArrayLike | None = None,
-    rate: float | None = None,
-    noise: float | None = None,
+    rates: tuple[float, float] | None = None,
     callback: Callback | None = None,
 ) -> Annealed:
     """Make the objective of n points in [0, 1)^d small, on one thread; the same seed gives the same bits.
@@ -87,7 +86,7 @@ def anneal(
         Draws the start and the noise.
     start : array_like, shape (n, d), optional
         Instead of random points; coordinates at a face of the cube are moved off it by 6e-8.
-    rate, noise : float, optional
+    rates : two floats, optional
         First learning rate, and the noise's standard deviation over the rate, where they are not the usual ones.
     callback : callable, optional
         Called as ``callback(step, steps, best)`` after every step; what it raises stops the annealing.
@@ -97,9 +96,8 @@ def anneal(
     draws = generator(rng)
     columns = _first_columns(n, d, start, draws)
     best_value, best_columns = math.inf, columns.copy()
-    first, second, normal = np.zeros((d, n)), np.zeros((d, n)), np.empty((d, n))
-    highest_rate = first_rate(n, d) if rate is None else rate
-    spread = noise_over_rate(objective, n, d) if noise is None else noise
+    moments, normal = (np.zeros((d, n)), np.zeros((d, n))), np.empty((d, n))
+    highest_rate, spread = (first_rate(n, d), noise_over_rate(objective, n, d)) if rates is None else rates
     for step in range(1, steps + 1):
         value, gradient = objective.of_columns(columns)
         if value < best_value:
@@ -107,7 +105,7 @@ def anneal(
             best_columns[:] = columns
         now = learning_rate(step, steps, highest_rate)
         draws.standard_normal(out=normal)
-        _adam_step(columns, first, second, gradient, normal, step, now, spread * now, objective.periodic)
+        _adam_step(columns, moments, gradient, normal, step, now, spread * now, objective.periodic)
         if callback is not None:
             callback(step, steps, best_value)
     last_value, _ = objective.of_columns(columns)
@@ -166,11 +164,12 @@ def _first_columns(n: int, d: int, start: npt.ArrayLike | None, draws: np.random
 
 
 @njit(cache=True)
-def _adam_step(columns, first, second, gradient, noise, step, rate, spread, wrap):  # type: ignore[no-untyped-def]
+def _adam_step(columns, moments, gradient, noise, step, rate, spread, wrap):  # type: ignore[no-untyped-def]
     """Move `columns` (d, n) against `gradient` by Adam (Kingma and Ba 2015) and along `noise`; update both moments.
 
     `step` counts from 1.  Coordinates stay in [LOWEST, BELOW_ONE]: wrapped modulo 1 first if `wrap`, then clipped.
     """
+    first, second = moments
     first_scale = 1.0 / (1.0 - FIRST_DECAY**step)
     second_scale = 1.0 / (1.0 - SECOND_DECAY**step)
     d, n = columns.shape
