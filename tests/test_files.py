@@ -14,7 +14,7 @@ from PIL import Image
 from evenroad._files import atomic_write, looks_like, not_a, read_json_file
 from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile
-from evenroad.points.npz import read_points
+from evenroad.points.npz import load_points
 
 
 def _saved(save, path, *arrays):
@@ -65,7 +65,7 @@ FOREIGN = ("codec", "unicode string", "pickle", "Expecting value: line", "EOFErr
 READERS = {
     "YAML": lambda path: read_mapping(path, "scene"),
     "JSON": lambda path: read_json_file(path, "plan"),
-    "points": read_points,
+    "points": load_points,
 }
 
 
@@ -121,7 +121,7 @@ def test_a_missing_file_is_said_to_be_missing(tmp_path):
 def test_an_array_of_python_objects_is_never_unpacked(tmp_path):
     np.save(tmp_path / "a.npy", np.array([{}, 1], dtype=object), allow_pickle=True)
     with pytest.raises(BrokenFile, match=r"a\.npy is not a readable \.npy array .*: .* holds Python objects"):
-        read_points(tmp_path / "a.npy")
+        load_points(tmp_path / "a.npy")
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names are of POSIX")

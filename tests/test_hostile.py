@@ -16,7 +16,7 @@ from evenroad._files import read_json_file
 from evenroad._yaml import read_mapping
 from evenroad.errors import LONGEST, BrokenFile, EvenroadError, InvalidValue, shown
 from evenroad.geometry import load_cloud, load_mesh
-from evenroad.points.npz import read_points
+from evenroad.points.npz import load_points
 from evenroad.roadmap.npz import load_roadmap
 from evenroad.robot import load_robot, load_scene
 from evenroad.robot_roadmap.file import load_robot_roadmap
@@ -112,13 +112,13 @@ HOSTILE = {
     "digits.yaml": (load_scene, b"name: x\nobstacles: 0x" + b"F" * 5000),
     "deep.json": (lambda path: read_json_file(path, "plan"), b"[" * 100_000),
     "long_name.yaml": (load_scene, b"n" * 900_000 + b": 1\n"),
-    "bomb.npz": (read_points, npz(points=BOMB, origin=TEXT, hash=TEXT)),
-    "vast.npz": (read_points, npz(points=VAST, origin=TEXT, hash=TEXT)),
+    "bomb.npz": (load_points, npz(points=BOMB, origin=TEXT, hash=TEXT)),
+    "vast.npz": (load_points, npz(points=VAST, origin=TEXT, hash=TEXT)),
     "word.npz": (
-        read_points,
+        load_points,
         npz(points=TEXT, origin=npy(header((), f"<U{10**9}"), b"x"), hash=TEXT),
     ),
-    "vast.npy": (read_points, VAST),
+    "vast.npy": (load_points, VAST),
     "roadmap.npz": (
         lambda path: load_roadmap(path, BoxSpace([0, 0], [1, 1])),
         npz(points=BOMB, **dict.fromkeys(ROADMAP, TEXT)),

@@ -167,7 +167,7 @@ def measure(problem: Problem) -> dict[str, float] | None:
     _, query = best_time(lambda: answer(ArmWorld(problem.robot, problem.scene), problem))
     log = Log(world)
     log.filled_by(partial(answer, world, problem))
-    theirs, _ = shortcut(connection.path, world)
+    theirs, _ = shortcut(world, connection.path)
     return {
         "scene": scene_time,
         "path": path_time,

@@ -73,7 +73,7 @@ def test_the_name_that_the_sampler_once_had_is_still_taken(run, tmp_path):
     [
         (("-n", 0, "-d", 2, "-o", "a.npy"), "n must be an integer >= 1, got 0"),
         (("-n", 8, "-d", 0, "-o", "a.npy"), "d must be an integer >= 1, got 0"),
-        (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.npy, \.npz"),
+        (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.npz, \.npy, \.csv"),
         (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
         (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
         (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'"),
@@ -182,10 +182,10 @@ def test_a_missing_set_is_refused_by_name(run, name):
 
 
 def test_given_points_are_the_family_of_plain_arrays():
-    from evenroad.points.npz import read_points
+    from evenroad.points.npz import load_points
 
     np.save("set.npy", [[0.5, 0.25]])
-    assert read_points("set.npy") == PointSet([[0.5, 0.25]])
+    assert load_points("set.npy") == PointSet([[0.5, 0.25]])
 
 
 def test_an_empty_set_has_nothing_to_measure(run):

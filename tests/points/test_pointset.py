@@ -12,7 +12,6 @@ from hypothesis.extra import numpy as hnp
 
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.points import Origin, PointSet, draw, load_points, save_points
-from evenroad.points.npz import read_points
 
 unit = st.floats(0, 1, exclude_max=True, allow_subnormal=True)
 arrays = hnp.arrays(np.float64, st.tuples(st.integers(0, 20), st.integers(1, 6)), elements=unit)
@@ -203,7 +202,7 @@ def test_a_header_that_lies_or_does_not_parse_is_a_broken_file(tmp_path, shape):
             archive.writestr(f"{name}.npy", text.getvalue())
     for name in ("bad.npy", "bad.npz"):
         with pytest.raises(BrokenFile, match=rf"{name} is not a readable") as caught:
-            read_points(tmp_path / name)
+            load_points(tmp_path / name)
         assert "\n" not in str(caught.value)
 
 

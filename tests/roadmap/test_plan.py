@@ -205,7 +205,7 @@ def test_shortcutting_never_lengthens_and_only_uses_free_motions(seed):
     result = plan(world, (0.5, 0.5), (19.5, 19.5), draw("uniform", 150, 2, rng=seed), shorten=False)
     if not result.solved:
         return
-    path, motions = shortcut(result.path, world)
+    path, motions = shortcut(world, result.path)
     assert motions > 0
     assert path_length(path, world.space) <= result.cost * (1 + 1e-12)
     assert world.motion_valid(path[:-1], path[1:]).all()

@@ -67,7 +67,7 @@ def test_a_shortcut_still_shortens_and_never_takes_what_fails():
     # Round the tip of one thin wall, by a wide detour whose motions are all free.
     world = GappyWorld([(0, 0.5, 0.0, 0.7)])
     path = np.array([[0.1, 0.1], [0.1, 0.9], [0.5, 0.95], [0.9, 0.9], [0.9, 0.1]])
-    shorter, _ = shortcut(path, world)
+    shorter, _ = shortcut(world, path)
     assert world.truly_free(shorter[:-1], shorter[1:]).all()
     shortest = 2.0 * np.hypot(0.4, 0.6)
     assert shortest <= path_length(shorter, world.space) <= 1.1 * shortest

@@ -71,7 +71,7 @@ def test_paths_keep_their_ends_and_become_shorter(paths):
 def test_paths_are_about_as_short_as_those_of_all_pairs(paths):
     world, found = paths
     ours = sum(length(world, shorten(world, path)[0]) for path in found)
-    theirs = sum(length(world, shortcut(path, world)[0]) for path in found)
+    theirs = sum(length(world, shortcut(world, path)[0]) for path in found)
     assert ours <= 1.03 * theirs
 
 

@@ -13,7 +13,7 @@ import tyro
 from evenroad._checks import as_row, counted, require_count, require_positive
 from evenroad._terminal import print_table
 from evenroad.errors import InvalidValue, shown
-from evenroad.points.npz import read_points
+from evenroad.points.npz import load_points
 from evenroad.roadmap import Certificate, KNearest, Radius, Rule, certify, default_rule
 from evenroad.space import BoxSpace
 
@@ -61,7 +61,7 @@ class Certify:
         return self._of_points(self.set[0]) if self.roadmap is None else self._of_arm(self.roadmap)
 
     def _of_points(self, file: Path) -> int:
-        points = read_points(file)
+        points = load_points(file)
         sides = (1.0,) * points.d if self.sides is None else _sides(self.sides, points.d)
         rule = self._rule(points.d)
         certificate = certify(points, rule, BoxSpace([0.0] * points.d, sides), goals=self.goals)

@@ -24,7 +24,7 @@ from evenroad.points.measures import (
     star_discrepancy,
 )
 from evenroad.points.measures.short_vectors import MOST_AXES
-from evenroad.points.npz import read_points
+from evenroad.points.npz import load_points
 
 WORK = 3e8
 """Limit on the coordinates examined to bound the dispersion: about a second."""
@@ -41,7 +41,7 @@ class Measure:
 
     def run(self) -> int:
         """Measure and print."""
-        points = read_points(self.set)
+        points = load_points(self.set)
         if points.n == 0:
             raise InvalidValue(f"{self.set} holds no points, there is nothing to measure")
         rows = measure_all(points)

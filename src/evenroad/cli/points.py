@@ -12,7 +12,7 @@ from evenroad._checks import require_known
 from evenroad._files import require_writable_folder
 from evenroad.cli.sampler import SamplerOptions, draw_points
 from evenroad.errors import shown
-from evenroad.points.npz import save_array, save_points
+from evenroad.points.npz import write_points
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,14 +24,14 @@ class Points(SamplerOptions):
     d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
     """Number of dimensions."""
     out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
-    """The file: .npy for the plain array, .npz to keep the origin."""
+    """The file: .npz keeps the origin, .npy and .csv have the plain array."""
 
     def run(self) -> int:
         """Find or make the set, and write it."""
         kind = f"kind of file {shown(str(self.out))}: suffix"
-        require_known(kind, self.out.suffix, (".npy", ".npz"))
+        require_known(kind, self.out.suffix, (".npz", ".npy", ".csv"))
         require_writable_folder(self.out)
         points = draw_points(self, self.n, self.d)
-        (save_points if self.out.suffix == ".npz" else save_array)(self.out, points)
+        write_points(points, self.out)
         print(f"{self.out}: {points.n} points in d={points.d}, {points.origin}, hash {points.hash[:12]}")
         return 0

@@ -28,12 +28,6 @@ def save_points(path: Path, points: PointSet) -> None:
     write_npz(path, dict(points=points.points, origin=json.dumps(asdict(points.origin)), hash=points.hash))
 
 
-def save_array(path: Path, points: PointSet) -> None:
-    """Write the bare coordinates as ``.npy`` (float64, shape (n, d)), atomically; the origin is not kept."""
-    with atomic_write(path) as file:
-        np.save(file, points.points)
-
-
 def write_points(points: PointSet, path: str | os.PathLike[str]) -> None:
     """Do what :meth:`PointSet.save` does."""
     file = as_file("what points are saved to", path)
@@ -42,23 +36,12 @@ def write_points(points: PointSet, path: str | os.PathLike[str]) -> None:
     if suffix == ".npz":
         save_points(file, points)
     elif suffix == ".npy":
-        save_array(file, points)
+        with atomic_write(file) as out:
+            np.save(out, points.points)
     else:
         text = "".join(",".join(map(repr, row)) + "\n" for row in points.points.tolist())
         with atomic_write(file) as out:
             out.write(text.encode())
-
-
-def read_points(path: Path) -> PointSet:
-    """Read a point set from ``.npz`` (see :func:`load_points`) or a plain ``.npy`` array, which has no origin.
-
-    Raises BrokenFile if the file is missing or is neither, InvalidValue if a plain array is no point set.
-    """
-    if str(path).endswith(".npz"):
-        return load_points(path)
-    with reading(path, ".npy array of shape (n, d)", b"\x93NUMPY"), open(path, "rb") as file:
-        array = read_array(file, os.path.getsize(path))
-    return PointSet(array)
 
 
 @explains_calls
@@ -96,8 +79,9 @@ def load_points(path: str | os.PathLike[str]) -> PointSet:
             return PointSet(np.loadtxt(path, delimiter=",", ndmin=2))
         except (OSError, UnicodeDecodeError) as error:
             raise BrokenFile(f"cannot read the points {path}: {error}") from error
-    if suffix == ".npy":
-        return read_points(path)
+    if suffix != ".npz":
+        with reading(path, ".npy array of shape (n, d)", b"\x93NUMPY"), open(path, "rb") as file:
+            return PointSet(read_array(file, os.path.getsize(path)))
     arrays = read_npz(path, "point set", ("points", "origin", "hash"))
     if arrays["points"].dtype != np.float64:
         raise BrokenFile(f"{path}: points have dtype {arrays['points'].dtype}, expected float64")

@@ -16,7 +16,7 @@ from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.neighbours import flat_metric
 from evenroad.roadmap.result import PlanResult, SearchedGraph, Status, require_ends
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
-from evenroad.roadmap.shortcut import shortcut
+from evenroad.roadmap.shortcut import shortcut, shorten
 from evenroad.space import Space
 from evenroad.space.path import path_length
 from evenroad.world import (
@@ -26,7 +26,6 @@ from evenroad.world import (
     ExplainsStarts,
     Rechecks,
     Separates,
-    Shortens,
     ShowsApart,
     World,
 )
@@ -156,10 +155,8 @@ def _with_path(
     path, length, cost = raw, raw_cost, query.edge_cost
     if query.shorten:
         with attempt.watch("shortcut"):
-            if by_world and isinstance(world, Shortens):
-                path, counts["shortcut_motions"] = world.shorten(raw)
-            else:
-                path, counts["shortcut_motions"] = shortcut(raw, world, cost, attempt.deadline)
+            way = shorten if by_world else shortcut
+            path, counts["shortcut_motions"] = way(world, raw, cost, attempt.deadline)
             measure = world.space.distance if cost is None else cost
             length = float(np.sum(measure(path[:-1], path[1:])))
     named = "length" if cost is None else "cost"
