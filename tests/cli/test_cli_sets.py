@@ -73,7 +73,7 @@ def test_the_name_that_the_sampler_once_had_is_still_taken(run, tmp_path):
     [
         (("-n", 0, "-d", 2, "-o", "a.npy"), "n must be an integer >= 1, got 0"),
         (("-n", 8, "-d", 0, "-o", "a.npy"), "d must be an integer >= 1, got 0"),
-        (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.npz, \.npy, \.csv"),
+        (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.csv, \.npy, \.npz"),
         (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
         (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
         (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'"),

@@ -81,7 +81,8 @@ def load_points(path: str | os.PathLike[str]) -> PointSet:
             raise BrokenFile(f"cannot read the points {path}: {error}") from error
     if suffix != ".npz":
         with reading(path, ".npy array of shape (n, d)", b"\x93NUMPY"), open(path, "rb") as file:
-            return PointSet(read_array(file, os.path.getsize(path)))
+            array = read_array(file, os.path.getsize(path))
+        return PointSet(array)
     arrays = read_npz(path, "point set", ("points", "origin", "hash"))
     if arrays["points"].dtype != np.float64:
         raise BrokenFile(f"{path}: points have dtype {arrays['points'].dtype}, expected float64")
