@@ -2,11 +2,11 @@
 
 import evenroad as er
 
-# Or plan_arm("my_arm.urdf", "my_scene.yaml", [0, -1.57, ...], "tucked", srdf="my_arm.srdf", group="arm")
-result = er.plan_arm("ur5", "box-reach", "home", "inside")
+# Or er.plan("my_scene.yaml", [0, -1.57, ...], "tucked", robot="my_arm.urdf", srdf="my_arm.srdf", group="arm")
+result = er.plan("box-reach", "home", "inside", robot="ur5")
 print(result.message, "proof:", result.proof)
 
 # Half a second more buys a shorter path.
-result = er.plan_arm("ur5", "box-reach", "home", "inside", seconds=0.5, improve=True)
+result = er.plan("box-reach", "home", "inside", er.RRTConnect(improve=True), robot="ur5", seconds=0.5)
 print(result.message, [f"{stage.seconds:.3f} s: {stage.cost:.2f}" for stage in result.stages])
 result.plot("box-reach.png")

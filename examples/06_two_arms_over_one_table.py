@@ -39,6 +39,6 @@ def both_at(right, left, start):
 HOME = [0.0, -1.9, 1.6, -1.3, -math.pi / 2, 0.0] * 2
 start = both_at((0.35, 0.25, 0.15), (0.35, 0.75, 0.15), HOME)
 goal = both_at((0.39, 0.71, 0.29), (0.34, 0.38, 0.18), HOME)
-result = er.plan_arm(BOTH, table, start, goal, seconds=20)
+result = er.plan(table, start, goal, robot=BOTH, seconds=20)
 print(result.message, "proof:", result.proof)
 result.plot("two-arms.png")

@@ -8,7 +8,7 @@ from evenroad.viz.arm import save_arm_gif
 
 robot, scene = er.load_robot("ur5"), er.load_scene("box-reach")
 world = er.ArmWorld(robot, scene)
-result = er.plan_arm(robot, scene, "home", "inside")
+result = er.plan(scene, "home", "inside", robot=robot)
 assert result.path is not None, result.message
 
 # Half of full speed, corners rounded off by 2 hundredths of a radian at most.

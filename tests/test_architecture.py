@@ -36,17 +36,17 @@ MAY_IMPORT = {
     "world": BASE | {"space", "geometry"},
     "roadmap": BASE | {"points", "space", "world"},
     "qmc": BASE | {"points"},
+    "planning": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "io": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
     "testing": BASE | {"space", "world"},
     "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
     "robot": BASE | {"space", "geometry", "world"},
-    "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
-    "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
+    "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "planning"},
     "trajectory": BASE | {"space", "world", "robot"},
     "adapters": BASE | {"points", "space", "world", "robot", "trajectory"},
     "cli": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}
-    | {"arms", "io", "viz", "trajectory"},
+    | {"planning", "io", "viz", "trajectory"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""

@@ -10,8 +10,11 @@ import pytest
 
 import evenroad as er
 from evenroad.geometry import Mesh, PointCloud, TriangleMesh
+from evenroad.planning import GrowingPRM
+from evenroad.planning.connectors import ARM_TREES
+from evenroad.planning.trees import default_planner
 from evenroad.points.measures import MEASURES
-from evenroad.roadmap import Status, fmt
+from evenroad.roadmap import Status
 from evenroad.robot import Obstacle, link_poses
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.chain import chain_of
@@ -76,8 +79,11 @@ def verdicts(world, q):
 def an_arm():
     world = er.ArmWorld(robot(), box_scene())
     certified, (a, b) = CertifiedWorld(world), ends()[0]
-    own = [lambda: world.may_connect(a, b), lambda: certified.motion_valid(ends()[:, 0], ends()[:, 1])]
-    return verdicts(world, ends()) + own + [lambda: world.shorten(np.array([a, b]))]
+    own = [
+        lambda: world.apart(a, np.atleast_2d(b)),
+        lambda: certified.motion_valid(ends()[:, 0], ends()[:, 1]),
+    ]
+    return verdicts(world, ends()) + own + [lambda: ARM_TREES.smooth(world, np.array([a, b]))]
 
 
 def an_arm_without_lanes():
@@ -105,8 +111,8 @@ def an_upright_arm():
 def trees():
     world = er.ArmWorld(robot(), box_scene())
     budget = er.Budget(seconds=60.0, rounds=2)
-    asks = [lambda a=a, b=b: er.find_path(world, a, b) for a, b in ends()]
-    return [*asks, lambda: er.find_path(world, *ends()[0], budget=budget, improve=True)]
+    asks = [lambda a=a, b=b: er.plan(world, a, b) for a, b in ends()]
+    return [*asks, lambda: er.plan(world, *ends()[0], default_planner(world, improve=True), limits=budget)]
 
 
 def one_call():
@@ -114,9 +120,9 @@ def one_call():
     pose = er.PoseGoal(er.Pose(where[:3, 3]), position_only=True)
     arm = robot()
     return [
-        lambda: er.plan_arm("ur5", "box-reach", "home", "inside", certified=True),
-        lambda: er.plan_arm(arm, box_scene(), ends()[0, 0], pose),
-        lambda: er.plan_arm(arm, box_scene(), *ends()[2], 200),
+        lambda: er.plan("box-reach", "home", "inside", robot="ur5", certified=True),
+        lambda: er.plan(box_scene(), ends()[0, 0], pose, robot=arm),
+        lambda: er.plan(box_scene(), *ends()[2], 200, robot=arm),
         lambda: er.load_robot("ur5").configuration("home", er.load_scene("box-reach")),
     ]
 
@@ -125,10 +131,10 @@ def points_and_rules():
     world = er.ArmWorld(robot(), box_scene())
     a, b = ends()[3]
     return [
-        lambda: er.plan(world, a, b, 100),
-        lambda: er.plan(world, a, b, 100, search="lazy", rule=er.KNearest(12)),
-        lambda: fmt(world, a, b, 100),
-        lambda: er.plan_anytime(world, a, b, budget=er.Budget(samples=256)),
+        lambda: er.plan(world, a, b, er.PRM(100)),
+        lambda: er.plan(world, a, b, er.PRM(100, search="lazy", rule=er.KNearest(12))),
+        lambda: er.plan(world, a, b, er.FMT(100)),
+        lambda: er.plan(world, a, b, GrowingPRM(), limits=er.Budget(samples=256)),
     ]
 
 
@@ -147,7 +153,7 @@ def a_disk_on_a_map():
         lambda a=a, b=b: (world.may_connect(a, b), world.component(a), world.nearest_free(b))
         for a, b in q[:4]
     ]
-    return [*asks, *verdicts(world, q), *(lambda a=a, b=b: er.find_path(world, a, b) for a, b in q[:4])]
+    return [*asks, *verdicts(world, q), *(lambda a=a, b=b: er.plan(world, a, b) for a, b in q[:4])]
 
 
 def a_function():

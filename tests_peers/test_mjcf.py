@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
-
 from evenroad.arms import plan_arm
+
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry import Box, Pose
 from evenroad.geometry.shapes import Capsule, Mesh

@@ -5,10 +5,10 @@ import time
 
 import numpy as np
 import pytest
-
 from evenroad.arms import arm_query
-from evenroad.roadmap import Budget
 from evenroad.roadmap.find_path import find_path
+
+from evenroad.roadmap import Budget
 from evenroad.robot.kinematics import link_poses
 
 viser = pytest.importorskip("viser")

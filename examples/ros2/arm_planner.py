@@ -11,7 +11,7 @@ from typing import Any
 from messages import Make, planning_scene, standing
 
 import evenroad as er
-from evenroad.arms import arm_query
+from evenroad.planning.arm_request import arm_request
 from evenroad.robot import Robot
 from evenroad.trajectory import arm_trajectory
 from evenroad.trajectory.files import joint_trajectory
@@ -21,10 +21,10 @@ def answer(make: Make, message: Any, robot: Robot, goal: str, speed: float = 1.0
     """Return a JointTrajectory from where a PlanningScene has the robot to a goal, or None; and why."""
     scene = planning_scene(message, robot)
     robot, start = standing(message, robot)
-    result = er.plan_arm(robot, scene, start, goal)
+    result = er.plan(scene, start, goal, robot=robot)
     if result.path is None or not result.solved:
         return None, result.message
-    world = arm_query(robot, scene, start, goal).world
+    world = arm_request(robot, scene, start, goal).world
     return joint_trajectory(arm_trajectory(world, result.path, speed=speed), make), result.message
 
 

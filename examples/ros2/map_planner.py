@@ -19,7 +19,7 @@ def answer(
     """Return a nav_msgs/Path from one geometry_msgs/Pose to another on an OccupancyGrid, or None; and why."""
     world = grid_map(grid).world(radius=radius)
     ends = [(pose.position.x, pose.position.y) for pose in (start, goal)]
-    result = er.find_path(world, *ends)
+    result = er.plan(world, *ends)
     if result.path is None:
         return None, result.message
     path = path_message(make, result.path, grid.header.frame_id, stamp, heading(goal.orientation))

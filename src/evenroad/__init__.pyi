@@ -4,7 +4,6 @@ from evenroad import io as io
 from evenroad import qmc as qmc
 from evenroad import spaces as spaces
 from evenroad import testing as testing
-from evenroad.arms import plan_arm as plan_arm
 from evenroad.geometry import Box as Box
 from evenroad.geometry import Capsule as Capsule
 from evenroad.geometry import Cylinder as Cylinder
@@ -12,6 +11,10 @@ from evenroad.geometry import Mesh as Mesh
 from evenroad.geometry import PointCloud as PointCloud
 from evenroad.geometry import Pose as Pose
 from evenroad.geometry import Sphere as Sphere
+from evenroad.planning import FMT as FMT
+from evenroad.planning import PRM as PRM
+from evenroad.planning import RRTConnect as RRTConnect
+from evenroad.planning import plan as plan
 from evenroad.points import PointSet as PointSet
 from evenroad.points import draw as draw
 from evenroad.points import load_points as load_points
@@ -22,10 +25,7 @@ from evenroad.roadmap import Radius as Radius
 from evenroad.roadmap import Roadmap as Roadmap
 from evenroad.roadmap import Status as Status
 from evenroad.roadmap import load_roadmap as load_roadmap
-from evenroad.roadmap import plan_anytime as plan_anytime
 from evenroad.roadmap import save_roadmap as save_roadmap
-from evenroad.roadmap.find_path import find_path as find_path
-from evenroad.roadmap.plan import plan as plan
 from evenroad.robot import ArmWorld as ArmWorld
 from evenroad.robot import PoseGoal as PoseGoal
 from evenroad.robot import Robot as Robot

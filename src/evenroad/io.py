@@ -20,6 +20,7 @@ from evenroad._files import atomic_write, read_json_file
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points import Origin
 from evenroad.roadmap import PlanResult, Status
+from evenroad.roadmap.result import make_result
 
 
 def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
@@ -157,11 +158,12 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
         index = record["goal_index"]
         if index is not None and (type(index) is not int or not 0 <= index < len(goals)):
             raise ValueError(f"goal_index must be the number of a goal, got {index!r}")
-        result = PlanResult(
-            status=Status(record["status"]),
-            message=str(record["message"]),
-            start=start,
-            goals=goals,
+        result = make_result(
+            None,
+            start,
+            goals,
+            Status(record["status"]),
+            str(record["message"]),
             path=way,
             origin=Origin(family="none", method="read from a file"),
             rule=str(record["rule"]),

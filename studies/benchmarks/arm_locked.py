@@ -33,7 +33,7 @@ def locked_by(problem: Problem) -> int:
 def main() -> None:
     from studies.benchmarks.arm_planner import MOST_MOTIONS
 
-    from evenroad.robot.trees import connect
+    from evenroad.planning.arm_trees import connect
 
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter

@@ -29,13 +29,13 @@ import numpy.typing as npt
 from numba import njit
 from studies.benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm_named, problems
 
+from evenroad.planning.arm_trees import connect, shorten
+from evenroad.roadmap.connector import Connection
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kernel import lane_world, layout
 from evenroad.robot.kernel.addresses import address, call_at
-from evenroad.robot.trees import connect, shorten
 from evenroad.space.path import path_length
-from evenroad.world.protocol import Connection
 
 Path = npt.NDArray[np.float64]
 
@@ -45,7 +45,7 @@ FIRST_PLAN = """
 import time
 begin = time.perf_counter()
 from studies.benchmarks.arm_planner import first_problem
-from evenroad.robot.trees import connect, prepare, shorten
+from evenroad.planning.arm_trees import connect, prepare, shorten
 prepare()
 world, start, goals = first_problem()
 world.valid(goals), world.motion_valid(goals, goals)

@@ -30,8 +30,9 @@ import numpy as np
 from tests.clear_paths import DiscWorld, Plane
 
 from evenroad._arrays import Floats
+from evenroad.planning import PRM, plan
 from evenroad.points import PointSet, draw
-from evenroad.roadmap import Budget, KNearest, Radius, Rule, certify, plan
+from evenroad.roadmap import Budget, KNearest, Radius, Rule, certify
 from evenroad.space import BoxSpace
 
 SETS = {2: 256, 3: 512, 4: 512}
@@ -130,7 +131,7 @@ def claims(d: int, number: int, kind: str, rules: dict[str, list[Rule]]) -> Iter
             options: dict[str, Any] = dict(
                 rule=rule, shorten=False, certify=True, budget=Budget(seconds=None)
             )
-            result = plan(world, start, goal, points, search="lazy", **options)
+            result = plan(world, start, goal, PRM(points, search="lazy"), **options)
             certificate = result.certificate
             assert certificate is not None
             assert certificate.dispersion == beta

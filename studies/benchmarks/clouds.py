@@ -22,9 +22,9 @@ from studies.benchmarks.arm_speed import ur5_world
 from tests.robot.kernel_arms import edge
 from tests.robot.surface_oracle import all_clearance, mesh_clearance
 
-from evenroad.arms import plan_arm
 from evenroad.geometry import Mesh, PointCloud, TriangleMesh
 from evenroad.geometry.mesh import merged
+from evenroad.planning import plan
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kernel.scene_surfaces import surface_of
 from evenroad.robot.load import load_robot
@@ -190,11 +190,11 @@ def main() -> None:
     scene = Scene((Obstacle("shelf", Mesh(shelf)),), name="bookshelf")
     robot = load_robot("ur5")
     ends = [0.0, -1.57, 0.0, -1.57, 0.0, 0.0], [-0.3, -0.9, 1.4, -2.0, -1.5, 0.0]
-    result = plan_arm(robot, scene, *ends)
+    result = plan(scene, *ends, robot=robot)
     times = []
     for _ in range(5):
         begin = time.process_time()
-        result = plan_arm(robot, scene, *ends)
+        result = plan(scene, *ends, robot=robot)
         times.append(1e3 * (time.process_time() - begin))
     found = f"{result.status}, {result.proof}, {np.median(times):.1f} ms again in the scene"
     print(f"\nbookshelf of {len(shelf.triangles)} triangles: {found}")

@@ -26,10 +26,10 @@ import numpy.typing as npt
 from studies.benchmarks.arm_problems import KINDS, Pool, Problem, arm_named, problems
 from studies.benchmarks.clouds import points_on, triangles_of
 
-from evenroad import Budget, draw, find_path, plan, plan_anytime, plan_arm
+from evenroad import Budget, draw
 from evenroad.geometry import Mesh, PointCloud
+from evenroad.planning import FMT, PRM, GrowingPRM, plan
 from evenroad.roadmap import KNearest, PlanResult, Roadmap
-from evenroad.roadmap.plan import fmt
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot_roadmap.make import make_roadmap
@@ -141,16 +141,18 @@ def map_plans() -> Lines:
     for level in (1, 2, 3):
         world, queries = map_queries(level, 40)
         for i, (start, goal) in enumerate(queries):
-            lines.append(line_of(f"cells {level} {i}", find_path(world, start, goal, budget=budget)))
+            lines.append(line_of(f"cells {level} {i}", plan(world, start, goal, limits=budget)))
         for i, (start, goal) in enumerate(queries[:12]):
             for sampler in ("even", "sobol", "uniform"):
                 points = draw(sampler, 256, 2, rng=i)
                 for search in ("full", "lazy"):
-                    result = plan(world, start, goal, points, search=search, rule=KNearest(8), budget=budget)
+                    result = plan(
+                        world, start, goal, PRM(points, search=search, rule=KNearest(8)), limits=budget
+                    )
                     lines.append(line_of(f"prm {level} {i} {sampler} {search}", result))
         for i, (start, goal) in enumerate(queries[:6]):
-            lines.append(line_of(f"fmt {level} {i}", fmt(world, start, goal, 512, budget=budget)))
-            anytime = plan_anytime(world, start, goal, budget=Budget(seconds=None, samples=4096))
+            lines.append(line_of(f"fmt {level} {i}", plan(world, start, goal, FMT(512), limits=budget)))
+            anytime = plan(world, start, goal, GrowingPRM(), limits=Budget(seconds=None, samples=4096))
             lines.append(line_of(f"anytime {level} {i}", anytime))
     world, queries = map_queries(3, 30)
     known = Roadmap.build(world.space, draw("even", 512, 2)).in_world(world)
@@ -164,19 +166,19 @@ def arm_plans() -> Lines:
     for problem in arm_problems():
         world, ends = ArmWorld(problem.robot, problem.scene), (problem.start, problem.goal)
         name = f"{problem.robot.name} {problem.scene.name}"
-        lines.append(line_of(f"trees {name}", find_path(world, *ends, budget=trees)))
-        lines.append(line_of(f"trees back {name}", find_path(world, *ends[::-1], budget=trees)))
+        lines.append(line_of(f"trees {name}", plan(world, *ends, limits=trees)))
+        lines.append(line_of(f"trees back {name}", plan(world, *ends[::-1], limits=trees)))
         points = draw("even", 256, world.space.dim)
         lines.append(line_of(f"prm {name}", plan(world, *ends, points, search="lazy", budget=roadmap)))
     for goal in ("inside", "0.2,-1.0,1.2,-1.5,-1.5,0.0"):
         for scene in ("box-reach", "box-reach-narrow"):
-            result = plan_arm("ur5", scene, "home", goal, budget=trees)
+            result = plan(scene, "home", goal, robot="ur5", limits=trees)
             lines.append(line_of(f"plan_arm {scene} {goal}", result))
     for kind in ("points", "triangles"):
         for world, problem in zip(
             surface_worlds(kind), (each for each in arm_problems() if each.kind == KINDS[0]), strict=True
         ):
-            result = find_path(world, problem.start, problem.goal, budget=trees)
+            result = plan(world, problem.start, problem.goal, limits=trees)
             lines.append(line_of(f"trees {problem.robot.name} {problem.scene.name} {kind}", result))
     return lines
 

@@ -23,9 +23,8 @@ from tests_peers.engines.klampt_world import KlamptWorld, _geometry, _merged_obs
 from tests_peers.engines.surface import link_surfaces
 
 from evenroad._files import atomic_write
-from evenroad.arms import arm_query
-from evenroad.roadmap import Budget
-from evenroad.roadmap.find_path import find_path
+from evenroad.planning import plan
+from evenroad.planning.arm_request import arm_request
 from evenroad.robot import Scene
 from evenroad.robot.kinematics import joint_values
 from evenroad.trajectory import Trajectory, limits_of, make_trajectory
@@ -168,13 +167,13 @@ def main() -> None:
     )
     parser.add_argument("--out", type=Path, default=Path("klampt_simulation"))
     asked = parser.parse_args()
-    query = arm_query("ur5", "box-reach", "home", "inside")
+    query = arm_request("ur5", "box-reach", "home", "inside")
     arm = query.world
     world = KlamptWorld(arm.robot, arm.scene, resolution=0.05)
     # Motions are checked at states: what was found to be free of larger boxes is checked again among smaller ones.
     half = KlamptWorld(arm.robot, grown(arm.scene, 0.5 * asked.margin), resolution=RESOLUTION)
     wary = KlamptWorld(arm.robot, grown(arm.scene, asked.margin), resolution=RESOLUTION)
-    result = find_path(wary, query.start, query.goals, budget=Budget(seconds=60.0))
+    result = plan(wary, query.start, query.goals, seconds=60.0)
     print(f"{result.planner}: {result.message}")
     if result.path is None:
         raise SystemExit(1)

@@ -12,7 +12,7 @@ import time
 
 import numpy as np
 
-from evenroad.roadmap import find_path
+from evenroad.planning import plan
 from evenroad.world import GridMap
 
 ROWS, COLS = 540, 587
@@ -134,7 +134,7 @@ def measure(name, count, seed=0):
     for start, goal in zip(*queries(world, rng, count), strict=True):
         # Of this thread, which is the only one: other work on the machine does not count.
         began = time.thread_time()
-        result = find_path(world, start, goal)
+        result = plan(world, start, goal)
         seconds = time.thread_time() - began
         if result.solved:
             path = result.path

@@ -25,8 +25,9 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad import PoseGoal, Straight, Upright, plan_arm
+from evenroad import PoseGoal, Straight, Upright
 from evenroad.geometry import Pose
+from evenroad.planning import plan
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, link_poses, load_robot
 from evenroad.robot.inverse_kinematics import reach
 from evenroad_studies.statistics.rates import wilson
@@ -92,9 +93,9 @@ def rows(name: str, count: int, seed: int, largest: float, seconds: float) -> It
             world = ArmWorld(robot, scene)
             asked = goal if row != "nearest" else reach(world, goal, start).configurations[0]
             if not got:
-                plan_arm(robot, scene, start, asked, seconds=seconds, **ways.get(row, {}))
+                plan(scene, start, asked, robot=robot, seconds=seconds, **ways.get(row, {}))
             began = time.process_time()
-            result = plan_arm(robot, scene, start, asked, seconds=seconds, **ways.get(row, {}))
+            result = plan(scene, start, asked, robot=robot, seconds=seconds, **ways.get(row, {}))
             ms = 1e3 * (time.process_time() - began)
             worst = 0.0
             if result.solved:

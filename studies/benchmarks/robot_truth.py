@@ -21,6 +21,7 @@ import coal
 import numpy as np
 import pinocchio
 
+from evenroad.planning.arm_trees import connect, shorten
 from evenroad.robot import ArmWorld, Scene, load_model
 from evenroad.robot.pairs import CONTAINED
 from evenroad.space.path import resample
@@ -203,9 +204,9 @@ def path_states(world: ArmWorld, free: np.ndarray) -> np.ndarray:
     """Return states of shortened paths between free configurations."""
     found = []
     for k in range(min(PATHS, len(free) - 1)):
-        connection = world.connect(free[k], free[k + 1 : k + 2], seconds=2.0)
+        connection = connect(world, free[k], free[k + 1 : k + 2], seconds=2.0)
         if len(connection.path) > 1:
-            path, _ = world.shorten(connection.path)
+            path, _ = shorten(world, connection.path)
             found.append(resample(path, world.space, 0.02)[0])
     return np.concatenate(found)[: 2 * COUNT] if found else free[:0]
 

@@ -26,6 +26,8 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from evenroad.planning import plan
+
 COLUMNS = ("robot", "state", "answer", "joints", "free_percent", "seconds", "reason")
 SUFFIXES = (".urdf", ".xacro", ".xml")
 MOVES = re.compile(rb"type\s*=\s*[\"'](revolute|continuous|prismatic)[\"']|<mujoco[\s\S]*<joint")
@@ -66,7 +68,6 @@ def tried(path: Path) -> dict[str, object]:
     """Return the row of one robot, without its name."""
     import numpy as np
 
-    from evenroad.arms import plan_arm
     from evenroad.errors import EvenroadError
     from evenroad.points import draw
     from evenroad.roadmap import Budget
@@ -89,7 +90,7 @@ def tried(path: Path) -> dict[str, object]:
             pair = world.explain(np.mean([world.space.low, world.space.high], axis=0))
             return row | {"answer": "0 % free" if len(free) == 0 else "no path", "reason": pair}
         budget = Budget(seconds=600.0, motions=MOTIONS)
-        result = plan_arm(str(path), scene, free[0], free[-1], budget=budget, **options)
+        result = plan(scene, free[0], free[-1], robot=str(path), limits=budget, **options)
     except EvenroadError as error:
         reason = str(error).replace(str(path.parent) + "/", "")
         drawn = "no collision geometry" in reason and b"<visual" in path.read_bytes()

@@ -19,10 +19,10 @@ import numpy as np
 import numpy.typing as npt
 from studies.benchmarks.arm_problems import REPORTING, Pool, arm_named, problems
 
-from evenroad.arms import arm_query
 from evenroad.errors import NotAvailable
-from evenroad.roadmap import Budget
-from evenroad.roadmap.find_path import find_path
+from evenroad.planning import plan
+from evenroad.planning.arm_request import arm_request
+from evenroad.planning.arm_trees import shorten
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.trajectory import Limits, arm_trajectory, limits_of
 from evenroad.trajectory.blends import rounded
@@ -82,7 +82,7 @@ def toppra_ms(path: Path, limits: Limits) -> float:
 
 def measure(name: str, world: ArmWorld, start: Path, goal: Path) -> dict[str, Any] | None:
     """Return a row of one problem; None where there is no path, or none to drive."""
-    result = find_path(world, start, goal[np.newaxis], budget=Budget(seconds=5.0))
+    result = plan(world, start, goal[np.newaxis], seconds=5.0)
     if not (result.solved and result.cost) or result.path is None or result.milestone_path is None:
         return None
     raw, path, limits = result.milestone_path, result.path, limits_of(world.robot)
@@ -96,7 +96,7 @@ def measure(name: str, world: ArmWorld, start: Path, goal: Path) -> dict[str, An
         "name": name,
         "refused": "",
         "touching": int(np.sum(~world.valid(between.reshape(-1, path.shape[1])))),
-        "shorten_ms": best_ms(lambda: world.shorten(raw)),
+        "shorten_ms": best_ms(lambda: shorten(world, raw)),
         "timing_ms": best_ms(lambda: arm_trajectory(world, path, limits)),
         "toppra_ms": toppra_ms(path, limits),
         "seconds": made.duration,
@@ -114,7 +114,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--problems", type=int, default=40, help="of each kind")
     count = parser.parse_args().problems
-    query = arm_query("ur5", "box-reach", "home", "inside")
+    query = arm_request("ur5", "box-reach", "home", "inside")
     scene_c = [("scene c", query.world, query.start, query.goals[0])]
     pool = Pool(arm_named("ur5"))
     random = (

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from evenroad.planning import PRM
 from evenroad_studies.mazes import DrawnMaze, MazeDesign, draw_maze
 
 FOLDER = Path(__file__).parents[2] / "src" / "evenroad" / "world" / "gridmap" / "maps"
@@ -42,7 +43,7 @@ def success(maze: DrawnMaze, n: int, runs: int, k: int = 10) -> float:
     for run in range(runs):
         points = draw_points("uniform", n, 2, rng=TUNING_SEED + run)
         solved += plan(
-            world, maze.start, maze.goal, points, rule=KNearest(k), links=None, shorten=False
+            world, maze.start, maze.goal, PRM(points, rule=KNearest(k), links=None), smooth=False
         ).solved
     return solved / runs
 

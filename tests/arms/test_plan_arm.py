@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad import arms
 from evenroad.cli import main
+from evenroad.planning.arm_request import arm_request
 from evenroad.robot import Obstacle, link_poses
 from evenroad.robot.reference.recheck import MeshCheck
 from tests.robot.mesh_arms import write_fork_arm
@@ -21,11 +21,11 @@ def test_names_files_and_values_give_the_path_that_the_command_gives(tmp_path, m
     scene, robot = er.load_scene("box-reach"), er.load_robot("ur5")
     goal = [scene.states["inside"][joint] for joint in robot.group]
     for asked in (
-        ("ur5", "box-reach", "home", "inside"),
-        (robot, scene, "home", goal),
-        ("ur5", scene, np.array([scene.states["home"][joint] for joint in robot.group]), "inside"),
+        ("box-reach", "ur5", "home", "inside"),
+        (scene, robot, "home", goal),
+        (scene, "ur5", np.array([scene.states["home"][joint] for joint in robot.group]), "inside"),
     ):
-        result = er.plan_arm(*asked)
+        result = er.plan(asked[0], *asked[2:], robot=asked[1])
         assert result.solved
         assert result.path.tolist() == expected
 
@@ -36,21 +36,21 @@ def test_with_points_the_path_is_that_of_the_command_with_so_many(tmp_path, monk
     assert main([*line, "-n", "1024", "--out", "a"]) == 0
     expected = json.loads((tmp_path / "a.json").read_text())["path"]
     for points in (1024, er.draw("even", 1024, 6)):
-        result = er.plan_arm("ur5", "box-reach", "home", "inside", points)
+        result = er.plan("box-reach", "home", "inside", er.PRM(points), robot="ur5")
         assert result.planner == "prm lazy"
         assert result.path.tolist() == expected
 
 
 def test_options_of_files_do_not_go_with_a_robot_that_is_a_value():
     with pytest.raises(er.errors.InvalidValue, match="with the file of a robot"):
-        er.plan_arm(er.load_robot("ur5"), "box-reach", "home", "inside", group="a")
+        er.plan("box-reach", "home", "inside", robot=er.load_robot("ur5"), group="a")
 
 
 def test_an_end_that_is_no_configuration_is_refused():
     with pytest.raises(er.errors.InvalidValue, match="start must be 6 finite numbers"):
-        er.plan_arm("ur5", "box-reach", [0.0, 0.0], "inside")
+        er.plan("box-reach", [0.0, 0.0], "inside", robot="ur5")
     with pytest.raises(er.errors.UnknownName, match="unknown state 'outside'"):
-        er.plan_arm("ur5", "box-reach", "home", "outside")
+        er.plan("box-reach", "home", "outside", robot="ur5")
 
 
 def test_meshes_have_the_last_word(tmp_path, monkeypatch):
@@ -59,17 +59,17 @@ def test_meshes_have_the_last_word(tmp_path, monkeypatch):
         "obstacles: {}\nstates:\n  home: {turn: 0, bend: 0, slide: 0}\n  away: {turn: 0.5, bend: 0.2, slide: 0.1}\n"
     )
     monkeypatch.setattr(
-        "evenroad.arms.query.recheck", lambda *_: MeshCheck("in collision", 7, "at (0, 0, 0)")
+        "evenroad.planning.arm_request.recheck", lambda *_: MeshCheck("in collision", 7, "at (0, 0, 0)")
     )
-    result = er.plan_arm(tmp_path / "arm.urdf", tmp_path / "desk.yaml", "home", "away", 64)
+    result = er.plan(tmp_path / "desk.yaml", "home", "away", er.PRM(64), robot=tmp_path / "arm.urdf")
     assert result.status == "mesh_collision"
     assert not result.solved
     assert "not for the shapes that they stand for: in collision at (0, 0, 0)" in result.message
 
 
 def test_without_points_trees_plan_and_the_path_is_proved():
-    query = arms.arm_query("ur5", "box-reach", "home", "inside")
-    result = er.plan_arm("ur5", "box-reach", "home", "inside", certified=True)
+    query = arm_request("ur5", "box-reach", "home", "inside")
+    result = er.plan("box-reach", "home", "inside", robot="ur5", certified=True)
     assert result.solved
     assert result.planner == "trees"
     assert result.proof == "certified"
@@ -81,36 +81,36 @@ def test_of_several_goals_one_is_reached_and_named():
     scene = er.load_scene("box-reach")
     q = [scene.states["home"][joint] for joint in er.load_robot("ur5").group]
     near = np.array(q) + 0.1
-    result = er.plan_arm("ur5", scene, "home", ["inside", near], improve=True, seconds=0.2)
+    result = er.plan(scene, "home", ["inside", near], er.RRTConnect(improve=True), robot="ur5", seconds=0.2)
     assert result.goal_index == 1
     assert np.array_equal(result.path[-1], near)
     assert result.message.endswith("to goal 1")
-    result = er.plan_arm("ur5", scene, "home", [near, "inside", near], 64)
+    result = er.plan(scene, "home", [near, "inside", near], er.PRM(64), robot="ur5")
     assert result.goals.shape == (3, 6)
-    other_way = er.plan_arm("ur5", scene, near, ["inside", "home"])
+    other_way = er.plan(scene, near, ["inside", "home"], robot="ur5")
     assert "to goal 1 (home)" in other_way.message
-    assert er.plan_arm("ur5", scene, "home", np.stack([near, near])).goals.shape == (2, 6)
+    assert er.plan(scene, "home", np.stack([near, near]), robot="ur5").goals.shape == (2, 6)
 
 
 def test_more_rounds_never_give_a_longer_path_and_the_same_rounds_the_same():
     def after(rounds):
         budget = er.Budget(seconds=None, rounds=rounds)
-        return er.plan_arm("ur5", "box-reach", "home", "inside", budget=budget, improve=True)
+        return er.plan("box-reach", "home", "inside", er.RRTConnect(improve=True), robot="ur5", limits=budget)
 
-    first = er.plan_arm("ur5", "box-reach", "home", "inside")
+    first = er.plan("box-reach", "home", "inside", robot="ur5")
     results = [after(rounds) for rounds in (1, 10, 60, 60)]
     costs = [first.cost, *(result.cost for result in results)]
     assert costs == sorted(costs, reverse=True)
     assert costs[-1] < 0.97 * first.cost
     assert np.array_equal(results[2].path, results[3].path)
-    world = arms.arm_query("ur5", "box-reach", "home", "inside").world
+    world = arm_request("ur5", "box-reach", "home", "inside").world
     assert world.recheck(results[3].path).all()
 
 
 def test_a_motion_that_cannot_be_proved_is_named(monkeypatch):
     doubt = np.array([True, False, True, True, True])
     monkeypatch.setattr(er.ArmWorld, "recheck", lambda self, path: doubt[: len(path) - 1])
-    result = er.plan_arm("ur5", "box-reach", "home", "inside", certified=True)
+    result = er.plan("box-reach", "home", "inside", robot="ur5", certified=True)
     assert result.status == "not_certified"
     assert "motion 2 of 5 is not proved free, from (" in result.message
     assert not result.solved
@@ -119,25 +119,25 @@ def test_a_motion_that_cannot_be_proved_is_named(monkeypatch):
 
 def test_joint_values_within_five_decimals_of_a_limit_stay_what_they_are():
     robot = er.load_robot("ur5")
-    low, high = arms.arm_query("ur5", "box-reach", "home", "inside").world.bounds[:2]
+    low, high = arm_request("ur5", "box-reach", "home", "inside").world.bounds[:2]
     home = [er.load_scene("box-reach").states["home"][joint] for joint in robot.group]
     for limit, off in ((high[0], 9e-6), (low[0], -9e-6)):
         beyond = [limit + off, *home[1:]]
         for place in (beyond, ",".join(map(repr, map(float, beyond)))):
-            query = arms.arm_query("ur5", "box-reach", place, place)
+            query = arm_request("ur5", "box-reach", place, place)
             assert query.start.tolist() == query.goals[0].tolist() == beyond
-    query = arms.arm_query("ur5", "box-reach", [high[0] + 2e-5, *home[1:]], "home")
+    query = arm_request("ur5", "box-reach", [high[0] + 2e-5, *home[1:]], "home")
     assert query.start[0] == high[0] + 2e-5
-    assert er.plan_arm("ur5", "box-reach", query.start, "home").status == "start_outside_limits"
+    assert er.plan("box-reach", query.start, "home", robot="ur5").status == "start_outside_limits"
     with pytest.raises(er.errors.InvalidValue, match="outside the limits of scene 'box-reach'"):
-        arms.arm_query("ur5", "box-reach", f"{float(high[0]) + 2e-5},0,0,0,0,0", "home")
+        arm_request("ur5", "box-reach", f"{float(high[0]) + 2e-5},0,0,0,0,0", "home")
 
 
 def test_what_speaks_of_points_is_refused_without_them():
     with pytest.raises(er.errors.InvalidValue, match="rule says how points are joined"):
-        er.plan_arm("ur5", "box-reach", "home", "inside", rule=er.KNearest(5))
+        er.plan("box-reach", "home", "inside", robot="ur5")
     with pytest.raises(er.errors.InvalidValue, match="improve goes without points"):
-        er.plan_arm("ur5", "box-reach", "home", "inside", 64, improve=True)
+        er.plan("box-reach", "home", "inside", er.PRM(64), robot="ur5")
 
 
 def test_a_goal_that_an_arm_cannot_leave_is_explained():
@@ -153,7 +153,9 @@ def test_a_goal_that_an_arm_cannot_leave_is_explained():
     ]
     start = [0.0, -1.0, *home[2:]]
     for points in (None, 64):
-        result = er.plan_arm("ur5", er.Scene(tuple(posts), name="balls"), start, goal, points, seconds=0.2)
+        result = er.plan(
+            er.Scene(tuple(posts), name="balls"), start, goal, er.PRM(points), robot="ur5", seconds=0.2
+        )
         assert not result.solved
         assert "The goal can" in result.message
         assert "leave its place: " in result.message
@@ -167,7 +169,7 @@ def tip_of(robot, q, tip):
 
 def test_a_pose_is_a_goal_and_the_path_ends_there():
     pose = er.Pose.from_rpy((0.65, 0.0, 0.2), (0.0, np.pi / 2, 0.0))
-    result = er.plan_arm("ur5", "box-reach", "home", pose)
+    result = er.plan("box-reach", "home", pose, robot="ur5")
     assert result.solved
     assert "(tool0 at (0.65, 0, 0.2))" in result.message
     assert np.abs(tip_of(er.load_robot("ur5"), result.path[-1], "tool0") - pose.matrix).max() < 1e-6
@@ -176,9 +178,14 @@ def test_a_pose_is_a_goal_and_the_path_ends_there():
 
 def test_of_poses_and_configurations_the_path_ends_at_one_and_the_cheapest_where_that_is_asked_for():
     poses = [er.Pose.from_rpy((0.65, y, 0.2), (0.0, np.pi / 2, 0.0)) for y in (0.05, -0.05)]
-    first = er.plan_arm("ur5", "box-reach", "home", [*poses, "inside"])
-    best = er.plan_arm(
-        "ur5", "box-reach", "home", [*poses, "inside"], improve=True, budget=er.Budget(rounds=30)
+    first = er.plan("box-reach", "home", [*poses, "inside"], robot="ur5")
+    best = er.plan(
+        "box-reach",
+        "home",
+        [*poses, "inside"],
+        er.RRTConnect(improve=True),
+        robot="ur5",
+        limits=er.Budget(rounds=30),
     )
     assert first.solved
     assert best.cost <= first.cost
@@ -186,17 +193,17 @@ def test_of_poses_and_configurations_the_path_ends_at_one_and_the_cheapest_where
 
 
 def test_a_pose_that_cannot_be_reached_is_an_answer():
-    far = er.plan_arm("ur5", "box-reach", "home", er.Pose((2.0, 0.0, 0.0)))
+    far = er.plan("box-reach", "home", er.Pose((2.0, 0.0, 0.0)), robot="ur5")
     assert far.status is er.Status.GOAL_UNREACHABLE
     assert "out of reach" in far.message
     assert far.path is None
-    inside_wall = er.plan_arm(
-        "ur5", "box-reach", "home", er.PoseGoal(er.Pose((0.9, 0.0, 0.2)), position_only=True)
+    inside_wall = er.plan(
+        "box-reach", "home", er.PoseGoal(er.Pose((0.9, 0.0, 0.2)), position_only=True), robot="ur5"
     )
     assert inside_wall.status is er.Status.GOAL_INVALID
     assert "touches 'box back'" in inside_wall.message
 
 
 def test_one_pose_that_cannot_be_reached_does_not_stop_the_others():
-    result = er.plan_arm("ur5", "box-reach", "home", [er.Pose((2.0, 0.0, 0.0)), "inside"])
+    result = er.plan("box-reach", "home", [er.Pose((2.0, 0.0, 0.0)), "inside"], robot="ur5")
     assert result.solved

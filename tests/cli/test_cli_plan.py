@@ -421,7 +421,7 @@ def test_a_plan_on_points_says_what_they_guarantee_where_it_is_asked(run, room, 
     record = json.loads((tmp_path / "answer.json").read_text())
     world = er.load_map(room).world(1.0)
     certificate = er.plan(
-        world, (3, 3), (3, 27), draw("cover", 256, 2), rule=KNearest(20), certify=True
+        world, (3, 3), (3, 27), er.PRM(draw("cover", 256, 2), rule=KNearest(20), certify=True)
     ).certificate
     assert (code, err, plain[0]) == (0, "", 0)
     assert "guaranteed" not in plain[1]

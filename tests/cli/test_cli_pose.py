@@ -85,7 +85,9 @@ def test_what_is_wrong_with_a_goal_pose_is_said_in_one_line(run, tmp_path, optio
     ],
 )
 def test_a_link_that_cannot_be_is_refused_before_a_world_is_made(run, monkeypatch, options, said):
-    monkeypatch.setattr("evenroad.arms.query.ArmWorld", lambda *_, **__: pytest.fail("a world was made"))
+    monkeypatch.setattr(
+        "evenroad.planning.arm_request.ArmWorld", lambda *_, **__: pytest.fail("a world was made")
+    )
     assert said in run(*plan(*POSE, *options))[2]
 
 

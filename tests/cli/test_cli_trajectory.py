@@ -4,7 +4,7 @@ import re
 import numpy as np
 import pytest
 
-from evenroad.arms import arm_query
+from evenroad.planning.arm_request import arm_request
 from evenroad.robot.reference.recheck import MeshCheck
 from evenroad.trajectory import limits_of, load_trajectory
 
@@ -27,7 +27,7 @@ def test_a_plan_gets_times_in_every_format(run, tmp_path):
 
 def test_what_is_driven_is_free_between_its_states_too(run):
     assert run(*REACH, "--trajectory", "t.json", "--deviation", "0.2")[0] == 0
-    query, made = arm_query("ur5", "box-reach", "home", "inside"), load_trajectory("t.json")
+    query, made = arm_request("ur5", "box-reach", "home", "inside"), load_trajectory("t.json")
     shares = np.linspace(0.0, 1.0, 5)[:-1, None, None]
     between = made.positions[:-1] + shares * np.diff(made.positions, axis=0)
     assert query.world.valid(between.reshape(-1, 6)).all()

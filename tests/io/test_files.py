@@ -11,8 +11,8 @@ from evenroad import _files
 from evenroad._files import atomic_write, remove_abandoned_parts, require_writable_folder
 from evenroad.errors import BrokenFile
 from evenroad.io import plan_record, save_json, save_path_csv
+from evenroad.planning import PRM, plan
 from evenroad.points import draw
-from evenroad.roadmap import plan
 from evenroad.world import GridMap
 
 
@@ -111,7 +111,7 @@ def test_a_folder_that_cannot_be_written_is_known_before_the_work(tmp_path, name
 
 def _record():
     world = GridMap(np.zeros((20, 20), dtype=bool)).world(1.0)
-    return plan(world, (2, 2), (18, 18), draw("halton", 20, 2))
+    return plan(world, (2, 2), (18, 18), PRM(draw("halton", 20, 2)))
 
 
 def test_the_record_survives_json_and_holds_what_was_asked():

@@ -4,11 +4,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.planning.growing import KnownPairs
 from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.lattice import Lattice
-from evenroad.roadmap import Budget, KEarlier, KNearest, Radius, Status, plan, plan_anytime
-from evenroad.roadmap.anytime import KnownPairs
+from evenroad.roadmap import Budget, KEarlier, KNearest, Radius, Status
 from evenroad.world.gridmap.shipped import load_maze
+from tests.plan_on import plan_growing, plan_on
 from tests.roadmap.worlds import ChanceWorld
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)
@@ -23,13 +24,13 @@ START, GOAL = (0.0, 0.0), (1.0, 1.0)
 )
 def test_each_stage_finds_what_a_fresh_plan_with_its_points_finds(seed, free, rule, sampler):
     world = ChanceWorld(seed, 0.8, free)
-    grown = plan_anytime(
+    grown = plan_growing(
         world, START, GOAL, sampler, first=8, until="budget", budget=Budget(samples=50), rng=seed, rule=rule,
         shorten=False,
     )  # fmt: skip
     assert [stage.points for stage in grown.stages] == [8, 16, 32, 50]
     fresh = [
-        plan(
+        plan_on(
             ChanceWorld(seed, 0.8, free), START, GOAL, sampler.draw(n, 2, rng=seed), rule=rule, shorten=False
         )
         for n in (8, 16, 32, 50)
@@ -55,14 +56,14 @@ def test_no_motion_is_checked_twice_over_all_stages():
                 asked.add(key)
             return super().motion_valid(a, b)
 
-    result = plan_anytime(
+    result = plan_growing(
         Once(3, 0.8, 0.5), START, GOAL, until="budget", budget=Budget(samples=256), shorten=False
     )
     assert len(asked) == result.counts["edges_checked"]
 
 
 def test_it_stops_with_the_first_path():
-    result = plan_anytime(ChanceWorld(5, 0.8, 0.2), START, GOAL, first=4)
+    result = plan_growing(ChanceWorld(5, 0.8, 0.2), START, GOAL, first=4)
     assert result.solved
     assert [stage.cost is None for stage in result.stages] == [True] * (len(result.stages) - 1) + [False]
     assert len(result.stages) > 1
@@ -72,7 +73,7 @@ def test_it_stops_with_the_first_path():
 
 def test_it_stops_when_the_path_has_settled():
     maze = load_maze(2)
-    result = plan_anytime(maze.world(), maze.start, maze.goal, until="settled", shorten=False)
+    result = plan_growing(maze.world(), maze.start, maze.goal, until="settled", shorten=False)
     costs = [stage.cost for stage in result.stages if stage.cost is not None]
     assert result.cost == pytest.approx(min(costs))
     assert min(costs) >= 0.99 * min(costs[:-1])
@@ -84,7 +85,7 @@ def test_it_stops_when_the_path_has_settled():
 @pytest.mark.parametrize("motions", [1, 25])
 def test_a_budget_of_motions_is_kept_to_and_named(motions):
     world = ChanceWorld(4, 1.0, 0.0)
-    result = plan_anytime(world, START, GOAL, budget=Budget(motions=motions))
+    result = plan_growing(world, START, GOAL, budget=Budget(motions=motions))
     assert result.status is Status.BUDGET_SPENT
     assert not result.solved
     assert world.asked_motions == result.counts["edges_checked"] == motions
@@ -92,7 +93,7 @@ def test_a_budget_of_motions_is_kept_to_and_named(motions):
 
 
 def test_a_budget_of_samples_is_kept_to():
-    result = plan_anytime(ChanceWorld(4, 1.0, 0.0), START, GOAL, first=16, budget=Budget(samples=40))
+    result = plan_growing(ChanceWorld(4, 1.0, 0.0), START, GOAL, first=16, budget=Budget(samples=40))
     assert result.status is Status.BUDGET_SPENT
     assert result.counts["points"] == 40
     assert result.counts["start_component"] == 0
@@ -100,7 +101,7 @@ def test_a_budget_of_samples_is_kept_to():
 
 def test_hardly_any_seconds_are_no_checks():
     world = ChanceWorld(4, 1.0, 1.0)
-    result = plan_anytime(world, START, GOAL, budget=Budget(seconds=1e-9))
+    result = plan_growing(world, START, GOAL, budget=Budget(seconds=1e-9))
     assert result.status is Status.BUDGET_SPENT
     assert world.asked_motions == 0
     assert "1e-09 s" in result.message
@@ -108,9 +109,9 @@ def test_hardly_any_seconds_are_no_checks():
 
 def test_a_path_that_was_found_before_the_budget_was_spent_is_the_answer():
     world = ChanceWorld(2, 0.8, 0.6)
-    early = plan_anytime(world, START, GOAL, first=16, shorten=False)
+    early = plan_growing(world, START, GOAL, first=16, shorten=False)
     checks = early.counts["edges_checked"] + 1
-    late = plan_anytime(
+    late = plan_growing(
         world, START, GOAL, first=16, until="budget", budget=Budget(motions=checks), shorten=False
     )
     assert late.solved
@@ -120,7 +121,7 @@ def test_a_path_that_was_found_before_the_budget_was_spent_is_the_answer():
 
 def test_the_same_seed_gives_the_same_bits():
     one, other = (
-        plan_anytime(ChanceWorld(2, 0.8, 0.5), START, GOAL, rng=7, until="settled") for _ in range(2)
+        plan_growing(ChanceWorld(2, 0.8, 0.5), START, GOAL, rng=7, until="settled") for _ in range(2)
     )
     assert one.path.tobytes() == other.path.tobytes()
     assert one.counts == other.counts
@@ -130,18 +131,18 @@ def test_the_same_seed_gives_the_same_bits():
 def test_sets_that_do_not_extend_one_another_are_refused():
     blocked = ChanceWorld(4, 1.0, 0.0)
     with pytest.raises(InvalidValue, match="do not begin with"):
-        plan_anytime(blocked, START, GOAL, Lattice())
+        plan_growing(blocked, START, GOAL, Lattice())
     with pytest.raises(InvalidValue, match="not a Generator"):
-        plan_anytime(blocked, START, GOAL, rng=np.random.default_rng(0))
+        plan_growing(blocked, START, GOAL, rng=np.random.default_rng(0))
 
 
 def test_ends_in_collision_and_bad_arguments():
     world = ChanceWorld(0, 0.0, 1.0)
-    assert plan_anytime(world, (0.3, 0.3), GOAL).status is Status.START_INVALID
+    assert plan_growing(world, (0.3, 0.3), GOAL).status is Status.START_INVALID
     with pytest.raises(UnknownName, match="budget, settled, solved"):
-        plan_anytime(world, START, GOAL, until="bored")
+        plan_growing(world, START, GOAL, until="bored")
     with pytest.raises(InvalidValue, match="first"):
-        plan_anytime(world, START, GOAL, first=0)
+        plan_growing(world, START, GOAL, first=0)
     for bad in (dict(samples=0), dict(motions=0), dict(seconds=np.nan), dict(seconds=0), dict(seconds=-1.0)):
         with pytest.raises(InvalidValue, match=next(iter(bad))):
             Budget(**bad)

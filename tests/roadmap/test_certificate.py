@@ -20,11 +20,11 @@ from evenroad.roadmap import (
     Status,
     certify,
     certify_roadmap,
-    plan,
 )
 from evenroad.space import SO3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
 from tests.clear_paths import DiscWorld, Plane, shortest_around
+from tests.plan_on import plan_on
 from tests.points.measures.dispersion_oracle import dispersion_l2, dispersion_linf
 
 SQUARE = BoxSpace([0.0, 0.0], [1.0, 1.0])
@@ -81,7 +81,7 @@ def test_the_printed_factor_would_make_paths_shorter_than_straight_lines():
     beta = certify(points, Radius(1.0), SQUARE).dispersion
     world = DiscWorld(2, (Plane((0, 1), np.array([[9.0, 9.0]]), np.array([0.1])),))
     start, goal = np.array([0.05, 0.5]), np.array([0.95, 0.5])
-    result = plan(
+    result = plan_on(
         world, start, goal, points, rule=Radius(2 * alpha * beta), shorten=False, certify=True, links=None
     )
     assert result.milestone_cost > 0.9 / (alpha - 1)
@@ -117,7 +117,9 @@ def test_no_claim_is_false_in_random_worlds(d, n, k, sampler):
         promised = certify(points, rule, space)
         for _ in range(15):
             world, (start, goal) = random_discs(rng, d), rng.random((2, d))
-            result = plan(world, start, goal, points, rule=rule, search="lazy", shorten=False, certify=True)
+            result = plan_on(
+                world, start, goal, points, rule=rule, search="lazy", shorten=False, certify=True
+            )
             if result.certificate is None:
                 assert result.status in (Status.START_INVALID, Status.GOAL_INVALID)
                 continue
@@ -163,7 +165,7 @@ def test_a_rule_that_is_not_known_is_certified_by_its_graph():
     for rule in (KMutual(12), KStar()):
         with pytest.raises(NotAvailable, match="promises nothing before the world is known"):
             certify(points, rule, SQUARE)
-    result = plan(world, [0.01, 0.02], [0.98, 0.97], points, rule=KMutual(12), shorten=False, certify=True)
+    result = plan_on(world, [0.01, 0.02], [0.98, 0.97], points, rule=KMutual(12), shorten=False, certify=True)
     q = points.points[world.valid(points.points)]
     edges = {tuple(edge) for edge in KMutual(12).edges(q, SQUARE)}
     gaps = [np.linalg.norm(q[i] - q[j]) for i in range(len(q)) for j in range(i) if (j, i) not in edges]
@@ -175,7 +177,7 @@ def test_an_end_that_is_not_joined_to_its_nearest_milestone_voids_the_certificat
     points = draw("cover", 300, 2)
     world = DiscWorld(2, (Plane((0, 1), np.array([[9.0, 9.0]]), np.array([0.1])),))
     middle = points.points.mean(0)
-    result = plan(world, middle, [0.98, 0.97], points, rule=KMutual(3), links=None, certify=True)
+    result = plan_on(world, middle, [0.98, 0.97], points, rule=KMutual(3), links=None, certify=True)
     assert result.certificate.between == 0.0 or result.certificate.ends > 0.0
     assert result.certificate.factor(0.5) == math.inf
 
@@ -229,8 +231,8 @@ def test_what_cannot_be_certified_is_refused():
     world = FunctionWorld(SQUARE, lambda q: np.ones(len(q), dtype=bool), 0.1)
     for option in ({"success_only": True}, {"edge_cost": SQUARE.distance}):
         with pytest.raises(InvalidValue, match="certify speaks of shortest paths"):
-            plan(world, [0.1, 0.1], [0.9, 0.9], 32, certify=True, **option)
-    assert plan(world, [0.1, 0.1], [0.9, 0.9], PointSet(draw("even", 32, 2).points)).certificate is None
+            plan_on(world, [0.1, 0.1], [0.9, 0.9], 32, certify=True, **option)
+    assert plan_on(world, [0.1, 0.1], [0.9, 0.9], PointSet(draw("even", 32, 2).points)).certificate is None
 
 
 def test_many_points_are_certified_in_little_memory():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from evenroad.planning.connectors import CELLS, Cells
 from evenroad.points import draw
 from evenroad.roadmap import KNearest, Roadmap
 from evenroad.world import GridMap
@@ -26,21 +27,21 @@ def known(world, n=32, **options):
 def test_trees_join_what_the_roadmap_does_not():
     world = walled(gap=5)
     roadmap = known(world)
-    alone = roadmap.query(START, GOAL, connect=False)
+    alone = roadmap.query(START, GOAL)
     assert alone.status == "not_connected"
-    joined = roadmap.query(START, GOAL, shorten=False)
+    joined = roadmap.query(START, GOAL, shorten=False, connector=CELLS)
     assert joined.solved
     assert joined.planner == "prm lazy, then cells"
     assert world.motion_valid(joined.path[:-1], joined.path[1:]).all()
-    shorter = roadmap.query(START, GOAL)
+    shorter = roadmap.query(START, GOAL, connector=CELLS)
     assert shorter.cost < joined.cost
 
 
 def test_what_the_search_learned_stays():
     roadmap = known(walled(gap=5))
-    first = roadmap.query(START, GOAL)
+    first = roadmap.query(START, GOAL, connector=CELLS)
     states = roadmap.states
-    again = roadmap.query(START, GOAL)
+    again = roadmap.query(START, GOAL, connector=CELLS)
     assert np.array_equal(first.path, again.path)
     assert again.counts["edges_checked"] < first.counts["edges_checked"]
     for before, after in zip(states, roadmap.states, strict=True):
@@ -48,15 +49,18 @@ def test_what_the_search_learned_stays():
 
 
 def test_a_path_along_the_roadmap_needs_no_trees():
-    result = known(walled(gap=5)).query(START, (20.0, 30.0))
+    result = known(walled(gap=5)).query(START, (20.0, 30.0), connector=CELLS)
     assert result.solved
     assert result.planner == "prm lazy"
 
 
-def test_where_it_is_proved_that_there_is_no_path_nobody_looks_for_one(monkeypatch):
-    world = walled(gap=3)
-    monkeypatch.setattr(type(world), "connect", lambda *_, **__: pytest.fail("was asked"))
-    result = known(world).query(START, GOAL)
+class Unasked(Cells):
+    def connect(self, *_, **__):
+        pytest.fail("was asked")
+
+
+def test_where_it_is_proved_that_there_is_no_path_nobody_looks_for_one():
+    result = known(walled(gap=3)).query(START, GOAL, connector=Unasked())
     assert result.status == "not_connected"
     assert result.counts["start_component"] > 0
 
@@ -65,4 +69,4 @@ def test_paths_by_another_cost_come_from_the_roadmap_alone():
     def twice(a, b):
         return 2.0 * np.hypot(*(a - b).T)
 
-    assert known(walled(gap=5), edge_cost=twice).query(START, GOAL).status == "not_connected"
+    assert known(walled(gap=5), edge_cost=twice).query(START, GOAL, connector=CELLS).status == "not_connected"

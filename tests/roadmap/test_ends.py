@@ -6,15 +6,20 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.arms.ways import Ends, plan_ways
 from evenroad.errors import EvenroadError
 from evenroad.geometry.shapes import Capsule
-from evenroad.roadmap.find_path import NO_POINTS
-from evenroad.roadmap.result import NEAR, PlanResult, Status, require_ends
+from evenroad.planning import Problem
+from evenroad.planning.connectors import PlainTrees
+from evenroad.planning.request import Request
+from evenroad.planning.tip_motion import plan_tip_motion
+from evenroad.planning.trees import solve_by
+from evenroad.roadmap import Budget
+from evenroad.roadmap.connector import Connection
+from evenroad.roadmap.result import NEAR, NO_POINTS, PlanResult, Status, require_ends
 from evenroad.robot import ArmWorld, Joint, Robot, Scene, Straight
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.space import SE3, BoxSpace, JointSpace
-from evenroad.world import Connection, FunctionWorld
+from evenroad.world import FunctionWorld
 from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, ur5
 
 PLANE = BoxSpace((0.0, 0.0), (1.0, 1.0))
@@ -85,32 +90,26 @@ def test_both_signs_of_a_quaternion_are_one_place():
         require_ends(space, result([other, other], start=pose, goals=[other]))
 
 
-class Shortened(FunctionWorld):
-    """A world whose shorter path leaves out the goal."""
+class Astray(PlainTrees):
+    """Trees that connect the start to a place that nobody asked for."""
 
-    def shorten(self, path):
-        return path[:-1], 1
-
-
-class Astray(Shortened):
-    """A world that connects the start to a place that nobody asked for."""
-
-    planner = "astray"
-
-    def connect(self, start, goals, *, most_motions=0, seconds=0.0):
+    def connect(self, world, start, goals, *, variant, most_motions, seconds):
         return Connection(np.array([start, C]), 0, 1, 1, 1)
 
 
-def test_what_a_world_found_by_itself_is_looked_at():
-    world = Astray(PLANE, lambda q: np.ones(len(q), dtype=bool), 0.1)
-    with pytest.raises(AssertionError, match="does not end"):
-        er.find_path(world, A, B, shorten=False)
+class Short(PlainTrees):
+    """Trees that leave out the goal when they smooth a path."""
+
+    def smooth(self, world, path):
+        return path[:-1], 1
 
 
-def test_what_a_world_made_shorter_is_looked_at():
-    world = Shortened(PLANE, lambda q: np.ones(len(q), dtype=bool), 0.1)
+@pytest.mark.parametrize(("connector", "smooth"), [(Astray(), False), (Short(), True)])
+def test_what_a_connector_found_is_looked_at(connector, smooth):
+    world = FunctionWorld(PLANE, lambda q: np.ones(len(q), dtype=bool), 0.1)
+    problem = Problem(world, np.asarray(A, float), np.array([B], float), budget=Budget(), smooth=smooth)
     with pytest.raises(AssertionError, match="does not end"):
-        er.plan(world, A, B, 20)
+        solve_by(problem, connector)
 
 
 def test_what_a_robot_roadmap_found_is_looked_at(monkeypatch):
@@ -128,16 +127,16 @@ def test_what_lies_between_straight_lines_is_looked_at():
     start, goal = [0.0, -1.5, 1.2, -1.0, -1.5, 0.0], [0.8, -1.4, 1.3, -1.2, -1.5, 0.3]
 
     def plan(world, first, goals, shorten):
-        found = er.find_path(world, first, goals, shorten=shorten)
+        found = er.plan(world, first, goals, smooth=shorten)
         return PlanResult(**{**vars(found), "path": found.path[::-1] if astray else found.path})
 
-    ends = Ends(world, np.array(start), np.array([goal]))
+    ends = Request(world, np.array(start), np.array([goal]))
     for astray in (False, True):
         if not astray:
-            assert plan_ways(ends, Straight(approach=0.03), None, plan).solved
+            assert plan_tip_motion(ends, Straight(approach=0.03), None, plan).solved
             continue
         with pytest.raises(AssertionError, match="does not start"):
-            plan_ways(ends, Straight(approach=0.03), None, plan)
+            plan_tip_motion(ends, Straight(approach=0.03), None, plan)
 
 
 def test_ends_of_joints_that_turn_for_ever_may_be_asked_for_after_any_turns():
@@ -145,6 +144,6 @@ def test_ends_of_joints_that_turn_for_ever_may_be_asked_for_after_any_turns():
     body = Capsule((0.1, 0.0, 0.0), (0.4, 0.0, 0.0), 0.02, link="link")
     robot = Robot("hand", ("base", "link"), (turning,), (body,), (), ("joint",))
     for turns in (0, 1, -3, 1000):
-        found = er.plan_arm(robot, Scene(name="empty"), [0.3 + turns * math.tau], [2.0 - turns * math.tau])
+        found = er.plan(Scene(name="empty"), [0.3 + turns * math.tau], [2.0 - turns * math.tau], robot=robot)
         assert found.solved
         assert np.sin(found.path[[0, -1], 0]) == pytest.approx(np.sin([0.3, 2.0]), abs=1e-9)

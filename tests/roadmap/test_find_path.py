@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.roadmap import Budget, find_path
+from evenroad.planning import plan
+from evenroad.roadmap import Budget
 from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld, GridMap
 
@@ -18,16 +19,16 @@ def two_rooms(gap):
 
 def test_a_world_that_plans_by_itself_is_asked():
     world = two_rooms(gap=5)
-    result = find_path(world, (10, 30), (50, 30))
+    result = plan(world, (10, 30), (50, 30))
     assert result.solved
     assert result.planner == "cells"
     assert world.motion_valid(result.path[:-1], result.path[1:]).all()
     assert result.cost <= result.milestone_cost
-    assert len(find_path(world, (10, 30), (50, 30), shorten=False).path) > len(result.path)
+    assert len(plan(world, (10, 30), (50, 30), smooth=False).path) > len(result.path)
 
 
 def test_no_path_is_proved():
-    result = find_path(two_rooms(gap=3), (10, 30), (50, 30))
+    result = plan(two_rooms(gap=3), (10, 30), (50, 30))
     assert result.status == "not_connected"
     assert result.message.startswith("proved: there is no path")
 
@@ -36,7 +37,7 @@ def test_no_path_is_proved():
     ("start", "goal", "status"), [((30, 30), (5, 5), "start_invalid"), ((5, 5), (30, 30), "goal_invalid")]
 )
 def test_an_end_in_collision_is_a_status(start, goal, status):
-    result = find_path(two_rooms(gap=5), start, goal)
+    result = plan(two_rooms(gap=5), start, goal)
     assert result.status == status
     assert "the nearest free place is" in result.message
 
@@ -46,13 +47,13 @@ def test_for_any_other_world_points_grow():
         BoxSpace((0, 0), (1, 1)), lambda q: (np.abs(q[:, 0] - 0.5) > 0.1) | (q[:, 1] > 0.9), 0.01
     )
     # Time enough also where code is compiled first.
-    result = find_path(world, (0.1, 0.1), (0.9, 0.1), budget=Budget(seconds=60.0))
+    result = plan(world, (0.1, 0.1), (0.9, 0.1), seconds=60.0)
     assert result.solved
     assert result.planner == "prm anytime"
     closed = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
-    assert find_path(closed, (0.1, 0.1), (0.9, 0.1), budget=Budget(samples=128)).status == "budget_spent"
+    assert plan(closed, (0.1, 0.1), (0.9, 0.1), limits=Budget(samples=128)).status == "budget_spent"
 
 
 def test_a_start_that_is_no_configuration_is_refused():
     with pytest.raises(InvalidValue, match="start must be 2 finite numbers"):
-        find_path(two_rooms(gap=5), (1, 2, 3), (4, 5))
+        plan(two_rooms(gap=5), (1, 2, 3), (4, 5))

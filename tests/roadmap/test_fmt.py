@@ -5,9 +5,10 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
-from evenroad.roadmap import Radius, Status, fmt, plan
+from evenroad.roadmap import Radius, Status
 from evenroad.roadmap.search import EdgeStates, Graph, SearchProblem, march
 from evenroad.world.gridmap.shipped import load_maze
+from tests.plan_on import fmt_on, plan_on
 from tests.roadmap.worlds import ChanceWorld
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)
@@ -73,7 +74,7 @@ def test_the_tree_is_that_of_the_papers_algorithm(seed, n, share, steps):
 def test_with_nothing_in_the_way_and_a_radius_the_tree_finds_the_shortest_path(seed, rule):
     world, points = ChanceWorld(seed, 0.8, 1.0), draw("uniform", 60, 2, rng=seed)
     shortest, tree = (
-        planner(world, START, GOAL, points, rule=rule, shorten=False) for planner in (plan, fmt)
+        planner(world, START, GOAL, points, rule=rule, shorten=False) for planner in (plan_on, fmt_on)
     )
     assert tree.status is shortest.status
     if tree.solved:
@@ -84,7 +85,7 @@ def test_with_nothing_in_the_way_and_a_radius_the_tree_finds_the_shortest_path(s
 @given(seed=st.integers(0, 10**6), free=st.floats(0.2, 1.0))
 def test_a_path_of_the_tree_is_free_and_not_shorter_than_the_shortest(seed, free):
     world, points = ChanceWorld(seed, 0.9, free), draw("uniform", 60, 2, rng=seed)
-    shortest, tree = (planner(world, START, GOAL, points, shorten=False) for planner in (plan, fmt))
+    shortest, tree = (planner(world, START, GOAL, points, shorten=False) for planner in (plan_on, fmt_on))
     assert tree.counts["edges_checked"] <= shortest.counts["edges_checked"]
     if tree.solved:
         assert shortest.solved
@@ -100,24 +101,24 @@ def test_a_path_of_the_tree_is_free_and_not_shorter_than_the_shortest(seed, free
 def test_on_the_mazes_it_checks_a_fraction_of_the_edges(level):
     maze = load_maze(level)
     query = maze.world(), maze.start, maze.goal, draw("sobol", 1024, 2, rng=2)
-    tree, shortest = fmt(*query), plan(*query)
+    tree, shortest = fmt_on(*query), plan_on(*query)
     assert tree.solved
     assert tree.planner == "fmt*"
     assert tree.counts["edges_checked"] < 0.5 * shortest.counts["edges_checked"]
     assert tree.milestone_cost < 1.1 * shortest.milestone_cost
-    again = fmt(*query)
+    again = fmt_on(*query)
     assert again.path.tobytes() == tree.path.tobytes()
 
 
 def test_ends_that_will_not_do_are_named():
     world = ChanceWorld(0, 0.0, 1.0)
-    assert fmt(world, (0.3, 0.3), GOAL, draw("sobol", 8, 2)).status is Status.START_INVALID
-    assert fmt(world, START, (0.3, 0.3), draw("sobol", 8, 2)).status is Status.GOAL_INVALID
+    assert fmt_on(world, (0.3, 0.3), GOAL, draw("sobol", 8, 2)).status is Status.START_INVALID
+    assert fmt_on(world, START, (0.3, 0.3), draw("sobol", 8, 2)).status is Status.GOAL_INVALID
     with pytest.raises(InvalidValue, match="d=3"):
-        fmt(world, START, GOAL, draw("sobol", 8, 3))
+        fmt_on(world, START, GOAL, draw("sobol", 8, 3))
 
 
 def test_no_points_and_equal_ends_are_no_special_cases():
     empty = PointSet(np.empty((0, 2)))
-    assert fmt(ChanceWorld(0, 1.0, 1.0), START, GOAL, empty).cost == pytest.approx(np.sqrt(2))
-    assert fmt(ChanceWorld(0, 1.0, 1.0), START, START, empty).cost == 0.0
+    assert fmt_on(ChanceWorld(0, 1.0, 1.0), START, GOAL, empty).cost == pytest.approx(np.sqrt(2))
+    assert fmt_on(ChanceWorld(0, 1.0, 1.0), START, START, empty).cost == 0.0

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
-from evenroad.roadmap import Budget, KNearest, Roadmap, Status, fmt, plan, plan_anytime
+from evenroad.roadmap import Budget, KNearest, Roadmap, Status
 from evenroad.world import GridMap
+from tests.plan_on import fmt_on, plan_growing, plan_on
 from tests.roadmap.worlds import ChanceWorld
 
 START = (0.0, 0.0)
@@ -40,13 +41,13 @@ def test_several_goals_are_reached_at_the_cost_of_the_cheapest_one(seed, free, l
 @given(seed=st.integers(0, 10**6), free=st.floats(0.2, 0.9))
 def test_all_planners_take_several_goals_and_lazy_is_full(seed, free):
     world, points = ChanceWorld(seed, 0.8, free), draw("sobol", 40, 2, rng=seed)
-    full = plan(world, START, GOALS, points, shorten=False)
-    lazy = plan(world, START, GOALS, points, search="lazy", shorten=False)
+    full = plan_on(world, START, GOALS, points, shorten=False)
+    lazy = plan_on(world, START, GOALS, points, search="lazy", shorten=False)
     assert (full.status, full.cost, full.goal_index) == (lazy.status, lazy.cost, lazy.goal_index)
     if full.solved:
         assert full.path.tobytes() == lazy.path.tobytes()
-    grown = plan_anytime(world, START, GOALS, budget=Budget(samples=128))
-    tree = fmt(world, START, GOALS, points, shorten=False)
+    grown = plan_growing(world, START, GOALS, budget=Budget(samples=128))
+    tree = fmt_on(world, START, GOALS, points, shorten=False)
     for result in (full, grown, tree):
         if result.solved:
             assert world.motion_valid(result.path[:-1], result.path[1:]).all()
@@ -65,7 +66,7 @@ def test_goals_in_collision_are_left_out_and_only_if_all_are_it_is_said(kept):
     ask = Roadmap.build(world.space, points).in_world(world).query if kept else None
 
     def answer(goals):
-        return ask((2, 2), goals) if kept else plan(world, (2, 2), goals, points)
+        return ask((2, 2), goals) if kept else plan_on(world, (2, 2), goals, points)
 
     result = answer([(2, 9.5), (18, 2), (18, 18)])
     assert result.solved
@@ -86,13 +87,15 @@ def test_goals_in_collision_are_left_out_and_only_if_all_are_it_is_said(kept):
 )
 def test_goals_that_are_none_are_refused_by_name(bad):
     with pytest.raises(InvalidValue, match=r"goal must be 2 finite numbers, or an array \(g, 2\)"):
-        plan(ChanceWorld(0), START, bad, draw("sobol", 8, 2))
+        plan_on(ChanceWorld(0), START, bad, draw("sobol", 8, 2))
 
 
 @pytest.mark.parametrize("n", [200, 1000])
 def test_start_and_goals_are_linked_to_the_nearest_hundred_or_to_all_of_a_few(n):
     world, points = ChanceWorld(1, 1.0, 1.0), draw("sobol", n, 2)
-    free, plain = (plan(world, START, GOALS[:2], points, links=links, shorten=False) for links in (100, None))
+    free, plain = (
+        plan_on(world, START, GOALS[:2], points, links=links, shorten=False) for links in (100, None)
+    )
     assert (free.links, plain.links) == (100, None)
     assert free.rule == plain.rule
     edges = free.roadmap.edges
@@ -130,13 +133,13 @@ def test_a_start_that_is_blocked_from_all_that_is_near_is_connected_by_its_links
             return ~from_start | ((away > 0.3) & (away < 1.0))
 
     query = Ringed(), START, (1.0, 1.0), draw("sobol", 1000, 2)
-    assert plan(*query, links=None).status is Status.NOT_CONNECTED
-    assert plan(*query).solved
-    assert fmt(*query).solved
+    assert plan_on(*query, links=None).status is Status.NOT_CONNECTED
+    assert plan_on(*query).solved
+    assert fmt_on(*query).solved
     assert Roadmap.build(Ringed.space, query[3], KNearest(10)).in_world(query[0]).query(*query[1:3]).solved
 
 
 @pytest.mark.parametrize("links", [0, -1, 2.5, True])
 def test_a_number_of_links_that_is_none_is_refused(links):
     with pytest.raises(InvalidValue, match="links"):
-        plan(ChanceWorld(0), START, GOALS, draw("sobol", 8, 2), links=links)
+        plan_on(ChanceWorld(0), START, GOALS, draw("sobol", 8, 2), links=links)

@@ -4,8 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from evenroad.roadmap import Budget, find_path, plan
-from evenroad.roadmap.find_path import with_reasons
+from evenroad.planning import PRM, plan
+from evenroad.planning.hemmed_in import with_reasons
+from evenroad.roadmap import Budget
 from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld
 
@@ -26,34 +27,34 @@ START, GOAL = (0.2, 0.5), (0.8, 0.5)
 
 
 def test_the_end_that_is_shut_in_is_named_with_what_touches_most_often():
-    result = find_path(WORLD, START, GOAL, budget=Budget(samples=64))
+    result = plan(WORLD, START, GOAL, limits=Budget(samples=64))
     assert result.status == "budget_spent"
     assert "The goal cannot leave its place: 0 of 128 motions of length 0.04" in result.message
     assert "the ring stands left of it in" in result.message
     assert "the nearest free sample is 0.0" in result.message
     assert "The start" not in result.message
-    back = find_path(WORLD, GOAL, START, budget=Budget(samples=64))
+    back = plan(WORLD, GOAL, START, limits=Budget(samples=64))
     assert "The start cannot leave its place" in back.message
     assert "The goal" not in back.message
 
 
 def test_of_several_goals_each_is_named_by_its_number():
     goals = np.array([GOAL, (0.8, 0.51)])
-    result = find_path(WORLD, START, goals, budget=Budget(samples=64))
+    result = plan(WORLD, START, goals, limits=Budget(samples=64))
     assert "Goal 0 cannot leave its place" in result.message
     assert "Goal 1 cannot leave its place" in result.message
 
 
 def test_nothing_is_said_of_a_path_or_of_ends_that_move_freely():
-    solved = plan(WORLD, START, (0.2, 0.6), 16)
+    solved = plan(WORLD, START, (0.2, 0.6), PRM(16))
     assert with_reasons(WORLD, solved) is solved
     wall = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
-    apart = plan(wall, START, (0.9, 0.5), 64)
+    apart = plan(wall, START, (0.9, 0.5), PRM(64))
     assert with_reasons(wall, apart) is apart
 
 
 def test_a_world_without_words_counts_only():
     mute = SimpleNamespace(space=WORLD.space, valid=WORLD.valid, motion_valid=WORLD.motion_valid)
-    message = with_reasons(mute, plan(mute, START, GOAL, 16)).message
+    message = with_reasons(mute, plan(mute, START, GOAL, PRM(16))).message
     assert "The goal cannot leave its place: 0 of 128 motions of length 0.04" in message
     assert " from it are free; the nearest free sample" in message

@@ -6,28 +6,26 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.roadmap import Budget, find_path
+from evenroad.planning import Problem, plan
+from evenroad.planning.trees import default_planner, solve_by
+from evenroad.roadmap import Budget
+from evenroad.roadmap.connector import Connection
 from evenroad.space import BoxSpace
-from evenroad.world import Connection, FunctionWorld, GridMap
+from evenroad.world import FunctionWorld, GridMap
 
 HEIGHTS = (0.9, 0.7, 0.8, 0.3, 0.6)
 """Over which height each variant of the planner goes."""
 
 
 class Detours:
-    """The unit square, with a planner of its own that goes over a point above the middle, and does not shorten."""
+    """Goes over a point above the middle of the unit square, and does not smooth."""
 
-    planner = "detours"
+    planner, varies, stages = "detours", True, ()
 
     def __init__(self):
-        self.free = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: np.ones(len(q), dtype=bool), 0.1)
-        self.space, self.valid, self.motion_valid = self.free.space, self.free.valid, self.free.motion_valid
         self.asked, self.most = [], []
 
-    def connect(self, start, goals, *, most_motions, seconds):
-        return self.connect_anew(start, goals, variant=0, most_motions=most_motions, seconds=seconds)
-
-    def connect_anew(self, start, goals, *, variant, most_motions, seconds):
+    def connect(self, world, start, goals, *, variant, most_motions, seconds):
         self.asked.append(variant)
         self.most.append(most_motions)
         if variant == 2:
@@ -35,8 +33,17 @@ class Detours:
         path = np.stack([start, [0.5, HEIGHTS[variant % len(HEIGHTS)]], goals[0]])
         return Connection(path, 0, 3, 1, 2)
 
-    def shorten(self, path):
+    def smooth(self, world, path):
         return path, 1
+
+
+OPEN = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: np.ones(len(q), dtype=bool), 0.1)
+
+
+def solved(start, goal, detours, improve=True, **limits):
+    ends = np.array([start]), np.array([goal])
+    problem = Problem(OPEN, ends[0][0], ends[1], budget=Budget(seconds=None, **limits))
+    return solve_by(problem, detours, improve=improve)
 
 
 def over(height):
@@ -44,10 +51,8 @@ def over(height):
 
 
 def improved(**limits):
-    world = Detours()
-    return world, find_path(
-        world, (0.1, 0.1), (0.9, 0.1), budget=Budget(seconds=None, **limits), improve=True
-    )
+    detours = Detours()
+    return detours, solved((0.1, 0.1), (0.9, 0.1), detours, **limits)
 
 
 @pytest.mark.parametrize(("rounds", "best"), [(1, 0.7), (2, 0.7), (3, 0.3), (4, 0.3)])
@@ -79,17 +84,17 @@ def test_a_round_gives_up_sooner_than_the_first_path():
 
 
 def test_a_straight_path_is_not_improved_on():
-    world = Detours()
-    result = find_path(world, (0.3, 0.9), (0.7, 0.9), budget=Budget(seconds=None, rounds=50), improve=True)
-    assert world.asked == [0]
+    detours = Detours()
+    result = solved((0.3, 0.9), (0.7, 0.9), detours, rounds=50)
+    assert detours.asked == [0]
     assert result.cost == pytest.approx(0.4)
     assert "the best of" not in result.message
 
 
 def test_without_improve_the_first_path_is_the_answer():
-    world = Detours()
-    result = find_path(world, (0.1, 0.1), (0.9, 0.1))
-    assert world.asked == [0]
+    detours = Detours()
+    result = solved((0.1, 0.1), (0.9, 0.1), detours, improve=False)
+    assert detours.asked == [0]
     assert result.stages == ()
 
 
@@ -103,8 +108,14 @@ def test_on_a_map_a_roadmap_grows_beside_the_first_path():
     occupied = np.zeros((60, 60), dtype=bool)
     occupied[10:50, 30] = True
     world = GridMap(occupied).world(1.0)
-    first = find_path(world, (5, 30), (55, 33))
-    best = find_path(world, (5, 30), (55, 33), budget=Budget(seconds=None, samples=512), improve=True)
+    first = plan(world, (5, 30), (55, 33))
+    best = plan(
+        world,
+        (5, 30),
+        (55, 33),
+        default_planner(world, improve=True),
+        limits=Budget(seconds=None, samples=512),
+    )
     assert best.cost <= first.cost
     assert world.motion_valid(best.path[:-1], best.path[1:]).all()
     assert best.stages[0].cost == first.cost

@@ -5,9 +5,10 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
-from evenroad.roadmap import Complete, KEarlier, KMutual, KNearest, Radius, Status, plan
+from evenroad.roadmap import Complete, KEarlier, KMutual, KNearest, Radius, Status
 from evenroad.roadmap.rules.near import ascending
 from evenroad.world.gridmap.shipped import load_maze
+from tests.plan_on import plan_on
 from tests.roadmap.worlds import ChanceWorld
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)
@@ -47,8 +48,8 @@ def queries(draw_value):
 def test_lazy_finds_the_path_of_the_full_search_bit_for_bit(query, lazy_milestones):
     world, points, options = query
     options |= dict(lazy_milestones=lazy_milestones)
-    full = plan(world, START, GOAL, points, **options)
-    lazy = plan(world, START, GOAL, points, search="lazy", **options)
+    full = plan_on(world, START, GOAL, points, **options)
+    lazy = plan_on(world, START, GOAL, points, search="lazy", **options)
     assert lazy.status is full.status
     assert lazy.counts["edges_considered"] == full.counts["edges_considered"]
     assert lazy.counts["edges_checked"] <= full.counts["edges_checked"]
@@ -66,7 +67,7 @@ def test_lazy_finds_the_path_of_the_full_search_bit_for_bit(query, lazy_mileston
 def test_the_full_path_is_the_cheapest_one_and_follows_the_lowest_nodes_back(query):
     world, points, options = query
     options |= dict(links=None)
-    result = plan(world, START, GOAL, points, **options)
+    result = plan_on(world, START, GOAL, points, **options)
     nodes = np.concatenate([points.points[world.valid(points.points)], [START], [GOAL]])
     edges = options["rule"].edges(nodes, world.space, ends=2)
     a, b = nodes[edges[:, 0]], nodes[edges[:, 1]]
@@ -101,8 +102,8 @@ def test_the_full_path_is_the_cheapest_one_and_follows_the_lowest_nodes_back(que
 def test_success_only_agrees_on_success_and_returns_a_free_path(query, lazy_milestones):
     world, points, options = query
     options |= dict(lazy_milestones=lazy_milestones)
-    full = plan(world, START, GOAL, points, **options)
-    some = plan(world, START, GOAL, points, success_only=True, **options)
+    full = plan_on(world, START, GOAL, points, **options)
+    some = plan_on(world, START, GOAL, points, success_only=True, **options)
     assert some.status is full.status
     assert some.counts["edges_checked"] <= full.counts["edges_checked"]
     if some.solved:
@@ -116,7 +117,7 @@ def test_success_only_agrees_on_success_and_returns_a_free_path(query, lazy_mile
 def test_the_counts_are_what_the_world_was_asked(query, search, lazy_milestones):
     world, points, options = query
     world.asked_configurations = world.asked_motions = 0
-    result = plan(world, START, GOAL, points, search=search, lazy_milestones=lazy_milestones, **options)
+    result = plan_on(world, START, GOAL, points, search=search, lazy_milestones=lazy_milestones, **options)
     assert result.counts["configurations_checked"] == world.asked_configurations
     assert result.counts["edges_checked"] == world.asked_motions
     assert result.counts["points"] == points.n
@@ -132,7 +133,7 @@ def test_with_costs_below_the_lengths_by_as_much_as_rounding_may_the_path_still_
     for seed in range(30):
         options = dict(rule=Radius(0.3), edge_cost=below, shorten=False)
         full, lazy = (
-            plan(ChanceWorld(seed, 1.0, 0.6), (0.0, 0.0), (1.0, 0.0), line, search=search, **options)
+            plan_on(ChanceWorld(seed, 1.0, 0.6), (0.0, 0.0), (1.0, 0.0), line, search=search, **options)
             for search in ("full", "lazy")
         )
         assert full.status is lazy.status
@@ -151,28 +152,28 @@ def test_with_costs_below_the_lengths_by_as_much_as_rounding_may_the_path_still_
 
 def test_a_number_of_points_is_drawn_from_the_even_family():
     world = ChanceWorld(3, 1.0, 1.0)
-    drawn = plan(world, START, GOAL, 128)
+    drawn = plan_on(world, START, GOAL, 128)
     assert drawn.counts["points"] == 128
-    assert drawn.path.tobytes() == plan(world, START, GOAL, draw("even", 128, 2)).path.tobytes()
+    assert drawn.path.tobytes() == plan_on(world, START, GOAL, draw("even", 128, 2)).path.tobytes()
     for wrong in (0, -3, True, 2.5, "512", [[0.5, 0.5]]):
         with pytest.raises(InvalidValue, match="points"):
-            plan(world, START, GOAL, wrong)
+            plan_on(world, START, GOAL, wrong)
 
 
 @pytest.mark.parametrize("level", [1, 2, 3])
 def test_on_the_mazes_lazy_checks_few_edges_and_finds_the_same_path(level):
     maze = load_maze(level)
     query = maze.world(), maze.start, maze.goal, draw("sobol", 1024, 2, rng=2)
-    full, lazy = (plan(*query, search=search) for search in ("full", "lazy"))
+    full, lazy = (plan_on(*query, search=search) for search in ("full", "lazy"))
     assert full.solved
     assert lazy.path.tobytes() == full.path.tobytes()
     assert lazy.counts["edges_checked"] < 0.2 * full.counts["edges_checked"]
-    latest = plan(*query, search="lazy", lazy_milestones=True)
+    latest = plan_on(*query, search="lazy", lazy_milestones=True)
     assert latest.counts["configurations_checked"] < 0.5 * full.counts["configurations_checked"]
 
 
 def test_lazily_not_connected_speaks_of_what_could_be_reached():
-    result = plan(
+    result = plan_on(
         ChanceWorld(1, 0.9, 0.0),
         START,
         GOAL,
@@ -188,13 +189,13 @@ def test_lazily_not_connected_speaks_of_what_could_be_reached():
 
 
 def test_every_phase_is_timed_and_none_twice():
-    result = plan(ChanceWorld(3), START, GOAL, draw("sobol", 64, 2), search="lazy")
+    result = plan_on(ChanceWorld(3), START, GOAL, draw("sobol", 64, 2), search="lazy")
     assert set(result.timings) == {"validity", "neighbours", "motions", "search", "shortcut"}
     assert min(result.timings.values()) > 0
 
 
 def test_the_shortcut_keeps_to_the_edge_cost():
-    result = plan(ChanceWorld(3, free_motions=1.0), START, GOAL, draw("sobol", 64, 2), edge_cost=_detour)
+    result = plan_on(ChanceWorld(3, free_motions=1.0), START, GOAL, draw("sobol", 64, 2), edge_cost=_detour)
     assert result.cost <= result.milestone_cost
     assert result.cost == pytest.approx(_detour(result.path[:-1], result.path[1:]).sum())
     assert "path of cost" in result.message
@@ -210,9 +211,9 @@ def test_the_shortcut_keeps_to_the_edge_cost():
 )
 def test_an_edge_cost_that_cannot_be_one_is_refused(cost, text):
     with pytest.raises(InvalidValue, match=text):
-        plan(ChanceWorld(0), START, GOAL, draw("sobol", 8, 2), edge_cost=cost)
+        plan_on(ChanceWorld(0), START, GOAL, draw("sobol", 8, 2), edge_cost=cost)
 
 
 def test_an_unknown_search_is_refused_by_name():
     with pytest.raises(UnknownName, match="full, lazy"):
-        plan(ChanceWorld(0), START, GOAL, draw("sobol", 8, 2), search="lazzy")
+        plan_on(ChanceWorld(0), START, GOAL, draw("sobol", 8, 2), search="lazzy")

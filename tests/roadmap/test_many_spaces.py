@@ -7,11 +7,12 @@ from evenroad.points import draw
 from evenroad.points.samplers import Sobol
 from evenroad.points.samplers.even import drawn_in
 from evenroad.points.samplers.poses import Sliced
-from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, plan_anytime
-from evenroad.roadmap.query import even_points
+from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap
+from evenroad.roadmap.points_of import even_points
 from evenroad.space import SE2, SE3, SO3, BoxSpace, JointSpace, Product
 from evenroad.world import FunctionWorld
 from tests.counting import Counting
+from tests.plan_on import fmt_on, plan_growing, plan_on
 
 
 def _slit(q):
@@ -49,16 +50,16 @@ CASES = {
 def test_every_planner_works_in_every_space_and_lazy_equals_full(case, rule):
     world, start, goal, d = CASES[case]
     points = draw("sobol", 150, d, rng=1)
-    full = plan(world, start, goal, points, rule=rule, shorten=False)
+    full = plan_on(world, start, goal, points, rule=rule, shorten=False)
     counting = Counting(world)
-    lazy = plan(counting, start, goal, points, rule=rule, search="lazy", shorten=False)
+    lazy = plan_on(counting, start, goal, points, rule=rule, search="lazy", shorten=False)
     assert lazy.status is full.status
     assert lazy.counts["edges_checked"] == counting.motions <= full.counts["edges_checked"]
     assert lazy.counts["configurations_checked"] == counting.configurations
     if full.solved:
         assert lazy.path.tobytes() == full.path.tobytes()
         assert full.cost >= world.space.distance(full.start[None], full.goal[None])[0] * (1 - 1e-12)
-    tree = fmt(world, start, goal, points, rule=rule, shorten=False)
+    tree = fmt_on(world, start, goal, points, rule=rule, shorten=False)
     assert full.solved or not tree.solved
     known = Roadmap.build(world.space, points, rule).in_world(world)
     once, twice = (known.query(start, goal, shorten=False) for _ in range(2))
@@ -71,13 +72,13 @@ def test_every_planner_works_in_every_space_and_lazy_equals_full(case, rule):
 @pytest.mark.parametrize("case", CASES)
 def test_growing_solves_them_all(case):
     world, start, goal, _ = CASES[case]
-    result = plan_anytime(world, start, goal)
+    result = plan_growing(world, start, goal)
     assert result.solved
     assert world.motion_valid(result.path[:-1], result.path[1:]).all()
 
 
 @pytest.mark.parametrize(("d", "k"), [(2, 10), (5, 10), (6, 20), (10, 20)])
-@pytest.mark.parametrize("planner", [plan, fmt])
+@pytest.mark.parametrize("planner", [plan_on, fmt_on])
 def test_the_default_k_grows_with_the_dimension(planner, d, k):
     result = planner(_corridor(d, 0.4), np.zeros(d), np.ones(d), draw("sobol", 16, d))
     assert result.rule == f"k={k} symmetrised"
@@ -130,7 +131,7 @@ def test_joints_are_not_drawn_in():
 def test_a_plan_and_a_roadmap_in_space_take_what_their_rule_wants(rule):
     world, start, goal, _ = CASES["SE3"]
     points = even_points(100, world.space, rule)
-    asked, given = plan(world, start, goal, 100, rule=rule), plan(world, start, goal, points, rule=rule)
+    asked, given = plan_on(world, start, goal, 100, rule=rule), plan_on(world, start, goal, points, rule=rule)
     np.testing.assert_array_equal(asked.path, given.path)
     assert asked.counts == given.counts
     assert Roadmap.build(world.space, 100, rule).points == points

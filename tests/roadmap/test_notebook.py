@@ -2,7 +2,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from evenroad import plan
+from evenroad.planning import PRM, plan
 from evenroad.points import draw
 from evenroad.roadmap import Status
 from evenroad.space import BoxSpace
@@ -17,7 +17,7 @@ def html_of(result):
 
 
 def test_a_solved_plan_shows_its_answer_and_one_line_a_coordinate():
-    result = plan(WORLD, [0.1, 0.5], [0.4, 0.5], draw("halton", 64, 2))
+    result = plan(WORLD, [0.1, 0.5], [0.4, 0.5], PRM(draw("halton", 64, 2)))
     assert result.status is Status.SOLVED
     page = html_of(result)
     assert "solved" in "".join(page.itertext())
@@ -27,7 +27,7 @@ def test_a_solved_plan_shows_its_answer_and_one_line_a_coordinate():
 
 
 def test_a_plan_without_path_says_why():
-    result = plan(WORLD, np.array([0.1, 0.5]), np.array([5.0, 0.5]), draw("halton", 8, 2))
+    result = plan(WORLD, np.array([0.1, 0.5]), np.array([5.0, 0.5]), PRM(draw("halton", 8, 2)))
     page = html_of(result)
     assert "goal" in "".join(page.itertext())
     assert page.findall(".//polyline") == []

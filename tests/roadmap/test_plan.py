@@ -5,11 +5,12 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
-from evenroad.roadmap import KNearest, Radius, Status, plan
+from evenroad.roadmap import KNearest, Radius, Status
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space import BoxSpace
 from evenroad.space.path import path_length
 from evenroad.world import FunctionWorld, GridMap
+from tests.plan_on import plan_on
 
 
 def _map(*rows):
@@ -22,21 +23,21 @@ GAP = _map(*(["." * 20] * 9 + ["#" * 14 + "." * 6] + ["." * 20] * 10))
 
 
 def test_an_open_map_is_solved_by_a_straight_line():
-    result = plan(OPEN.world(1.0), (2, 2), (18, 18), draw("halton", 50, 2))
+    result = plan_on(OPEN.world(1.0), (2, 2), (18, 18), draw("halton", 50, 2))
     assert result.status is Status.SOLVED
     np.testing.assert_array_equal(result.path, [[2, 2], [18, 18]])
     assert result.cost == pytest.approx(16 * np.sqrt(2))
 
 
 def test_no_way_around_a_wall_is_an_answer_with_its_reason():
-    result = plan(WALL.world(0.5), (2, 2), (18, 18), draw("halton", 64, 2))
+    result = plan_on(WALL.world(0.5), (2, 2), (18, 18), draw("halton", 64, 2))
     assert result.status is Status.NOT_CONNECTED
     assert not result.solved
     assert result.path is None
     assert result.counts["start_component"] + result.counts["goal_component"] <= result.counts["valid"]
     assert f"start reaches {result.counts['start_component']}" in result.message
     assert "try n=128 or a larger k" in result.message
-    by_radius = plan(WALL.world(0.5), (2, 2), (18, 18), draw("halton", 64, 2), rule=Radius(4.0))
+    by_radius = plan_on(WALL.world(0.5), (2, 2), (18, 18), draw("halton", 64, 2), rule=Radius(4.0))
     assert "or a larger radius" in by_radius.message
 
 
@@ -48,7 +49,7 @@ def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
             space, lambda q: np.abs(q[:, 0] / end[0] - 0.5) > 0.2, resolution=0.02 * end.max()
         )
         points = draw(family, n, d, rng=4)
-        return plan(wall, 0.1 * end, 0.9 * end, points, rule=KNearest(k)).message
+        return plan_on(wall, 0.1 * end, 0.9 * end, points, rule=KNearest(k)).message
 
     # The six nearest of this lattice of 128 points lie in a plane, the ten nearest of 96 in five dimensions in three.
     assert "the nearest 6 of this lattice leave directions out, 7 would not" in message("even", 128, 3, 6)
@@ -86,7 +87,7 @@ def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
     ],
 )
 def test_an_end_in_collision_is_an_answer_and_nothing_is_searched(start, goal, status):
-    result = plan(WALL.world(1.0), start, goal, draw("halton", 64, 2))
+    result = plan_on(WALL.world(1.0), start, goal, draw("halton", 64, 2))
     assert result.status is status
     assert result.path is None
     assert result.roadmap is None
@@ -94,12 +95,12 @@ def test_an_end_in_collision_is_an_answer_and_nothing_is_searched(start, goal, s
 
 
 def test_an_end_in_collision_says_with_what_and_by_how_much():
-    touching = plan(WALL.world(1.0), (2, 8.5), (18, 18), draw("halton", 64, 2))
+    touching = plan_on(WALL.world(1.0), (2, 8.5), (18, 18), draw("halton", 64, 2))
     assert touching.message == (
         "the start is in collision: the obstacle at (2, 9) is 0.5 away, the disk needs 1; the nearest free place is"
         " (2, 8)"
     )
-    inside = plan(WALL.world(1.0), (2, 2), (18, 9.5), draw("halton", 64, 2))
+    inside = plan_on(WALL.world(1.0), (2, 2), (18, 9.5), draw("halton", 64, 2))
     assert inside.message == (
         "the goal is in collision: its centre lies in an obstacle or outside the map; the nearest free place is"
         " (18, 8)"
@@ -116,13 +117,13 @@ def test_a_world_that_cannot_explain_itself_is_planned_in_all_the_same():
         def motion_valid(self, a, b):
             return self.valid(a) & self.valid(b)
 
-    assert plan(Silent(), (2, 8), (18, 18), draw("halton", 64, 2)).message == "the start is in collision"
-    assert plan(Silent(), (6, 8), (18, 18), draw("halton", 64, 2)).solved
+    assert plan_on(Silent(), (2, 8), (18, 18), draw("halton", 64, 2)).message == "the start is in collision"
+    assert plan_on(Silent(), (6, 8), (18, 18), draw("halton", 64, 2)).solved
 
 
 def test_the_path_begins_at_the_start_and_ends_at_the_goal_and_every_motion_is_free():
     world = GAP.world(1.0)
-    result = plan(world, (2, 2), (2, 18), draw("halton", 200, 2))
+    result = plan_on(world, (2, 2), (2, 18), draw("halton", 200, 2))
     for path in (result.path, result.milestone_path):
         np.testing.assert_array_equal(path[[0, -1]], [[2, 2], [2, 18]])
         assert world.motion_valid(path[:-1], path[1:]).all()
@@ -132,7 +133,7 @@ def test_the_path_begins_at_the_start_and_ends_at_the_goal_and_every_motion_is_f
 
 
 def test_the_same_question_gets_the_same_answer_bit_for_bit():
-    answers = [plan(GAP.world(1.0), (2, 2), (2, 18), draw("uniform", 200, 2, rng=3)) for _ in range(2)]
+    answers = [plan_on(GAP.world(1.0), (2, 2), (2, 18), draw("uniform", 200, 2, rng=3)) for _ in range(2)]
     assert answers[0].path.tobytes() == answers[1].path.tobytes()
     assert answers[0].counts == answers[1].counts
 
@@ -156,32 +157,32 @@ def test_the_path_agrees_with_a_plain_reading_of_algorithm_1():
                 min(cost[i], cost[j] + distances[i][j]),
                 min(cost[j], cost[i] + distances[i][j]),
             )
-    result = plan(world, (2, 2), (2, 18), points, rule=KNearest(k), links=None)
+    result = plan_on(world, (2, 2), (2, 18), points, rule=KNearest(k), links=None)
     assert result.counts["edges_checked"] == len(edges)
     assert result.counts["edges_free"] == len(free)
     assert result.milestone_cost == pytest.approx(cost[-1])
 
 
 def test_without_shortcut_the_path_is_the_milestone_path():
-    result = plan(GAP.world(1.0), (2, 2), (2, 18), draw("halton", 200, 2), shorten=False)
+    result = plan_on(GAP.world(1.0), (2, 2), (2, 18), draw("halton", 200, 2), shorten=False)
     np.testing.assert_array_equal(result.path, result.milestone_path)
     assert "shortcut" not in result.timings
 
 
 def test_no_points_at_all_still_joins_ends_that_see_each_other():
     empty = PointSet(np.empty((0, 2)))
-    assert plan(OPEN.world(1.0), (2, 2), (18, 18), empty).solved
-    assert plan(GAP.world(1.0), (2, 2), (2, 18), empty).status is Status.NOT_CONNECTED
+    assert plan_on(OPEN.world(1.0), (2, 2), (18, 18), empty).solved
+    assert plan_on(GAP.world(1.0), (2, 2), (2, 18), empty).status is Status.NOT_CONNECTED
 
 
 def test_start_may_equal_goal():
-    result = plan(OPEN.world(1.0), (5, 5), (5, 5), draw("halton", 10, 2))
+    result = plan_on(OPEN.world(1.0), (5, 5), (5, 5), draw("halton", 10, 2))
     assert result.solved
     assert result.cost == 0.0
 
 
 def test_the_radius_rule_is_named_in_the_result():
-    result = plan(OPEN.world(1.0), (2, 2), (18, 18), draw("halton", 50, 2), rule=Radius(6.0))
+    result = plan_on(OPEN.world(1.0), (2, 2), (18, 18), draw("halton", 50, 2), rule=Radius(6.0))
     assert result.solved
     assert result.rule == "radius=6"
 
@@ -189,12 +190,12 @@ def test_the_radius_rule_is_named_in_the_result():
 @pytest.mark.parametrize("bad", [(1, 2, 3), (np.nan, 1), "ab", 5.0])
 def test_a_query_of_the_wrong_kind_is_refused_by_name(bad):
     with pytest.raises(InvalidValue, match="start must be 2 finite numbers"):
-        plan(OPEN.world(1.0), bad, (1, 1), draw("halton", 10, 2))
+        plan_on(OPEN.world(1.0), bad, (1, 1), draw("halton", 10, 2))
 
 
 def test_points_of_another_dimension_are_refused():
     with pytest.raises(InvalidValue, match="d=3"):
-        plan(OPEN.world(1.0), (2, 2), (3, 3), draw("halton", 10, 3))
+        plan_on(OPEN.world(1.0), (2, 2), (3, 3), draw("halton", 10, 3))
 
 
 @settings(max_examples=25, deadline=None)
@@ -202,7 +203,7 @@ def test_points_of_another_dimension_are_refused():
 def test_shortcutting_never_lengthens_and_only_uses_free_motions(seed):
     random = np.random.default_rng(seed)
     world = GridMap(random.random((20, 20)) < 0.12).world(0.4)
-    result = plan(world, (0.5, 0.5), (19.5, 19.5), draw("uniform", 150, 2, rng=seed), shorten=False)
+    result = plan_on(world, (0.5, 0.5), (19.5, 19.5), draw("uniform", 150, 2, rng=seed), shorten=False)
     if not result.solved:
         return
     path, motions = shortcut(world, result.path)

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from evenroad.points import draw
-from evenroad.roadmap import Budget, KNearest, Roadmap, Status, fmt, plan, plan_anytime
+from evenroad.roadmap import Budget, KNearest, Roadmap, Status
 from evenroad.roadmap.search import confirmed
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space.path import path_length
 from evenroad.world import GridMap
 from tests.counting import Counting
+from tests.plan_on import fmt_on, plan_growing, plan_on
 from tests.roadmap.gappy import GappyWorld
 
 # A slalom: the way from the lower left to the upper right goes round the free ends of four thin walls.
@@ -22,15 +23,17 @@ def _kept(world, start, goal, points, **options):
 
 
 def _grown(world, start, goal, points, **options):
-    return plan_anytime(world, start, goal, first=64, budget=Budget(samples=512), until="settled", **options)
+    return plan_growing(world, start, goal, first=64, budget=Budget(samples=512), until="settled", **options)
 
 
 PLANNERS = {
-    "full": plan,
-    "lazy": lambda *query, **options: plan(*query, search="lazy", **options),
-    "lazy milestones": lambda *query, **options: plan(*query, search="lazy", lazy_milestones=True, **options),
-    "any": lambda *query, **options: plan(*query, success_only=True, **options),
-    "fmt": fmt,
+    "full": plan_on,
+    "lazy": lambda *query, **options: plan_on(*query, search="lazy", **options),
+    "lazy milestones": lambda *query, **options: plan_on(
+        *query, search="lazy", lazy_milestones=True, **options
+    ),
+    "any": lambda *query, **options: plan_on(*query, success_only=True, **options),
+    "fmt": fmt_on,
     "anytime": _grown,
     "kept": _kept,
 }
@@ -58,7 +61,7 @@ def test_the_weak_check_alone_would_have_handed_out_a_path_through_a_wall():
     class Careless(GappyWorld):
         recheck = None
 
-    result = plan(Careless(SLALOM), START, GOAL, draw("sobol", 512, 2, rng=0))
+    result = plan_on(Careless(SLALOM), START, GOAL, draw("sobol", 512, 2, rng=0))
     assert result.solved
     assert not GappyWorld(SLALOM).truly_free(result.path[:-1], result.path[1:]).all()
 
@@ -102,9 +105,9 @@ def test_only_doubtful_motions_are_asked_about_and_runs_of_them_together():
 
 def test_a_disk_on_a_grid_map_is_exact_and_a_counting_world_says_what_its_own_says():
     disk = GridMap(np.zeros((9, 9), dtype=bool)).world(0.5)
-    assert plan(disk, (1, 1), (8, 8), draw("halton", 16, 2)).proof == "exact"
-    assert plan(Counting(disk), (1, 1), (8, 8), draw("halton", 16, 2)).proof == "exact"
-    assert plan(Counting(disk), (1, 1), (20, 8), draw("halton", 16, 2)).proof is None
+    assert plan_on(disk, (1, 1), (8, 8), draw("halton", 16, 2)).proof == "exact"
+    assert plan_on(Counting(disk), (1, 1), (8, 8), draw("halton", 16, 2)).proof == "exact"
+    assert plan_on(Counting(disk), (1, 1), (20, 8), draw("halton", 16, 2)).proof is None
     gappy = Counting(GappyWorld(SLALOM))
-    result = plan(gappy, START, GOAL, draw("sobol", 512, 2, rng=0))
+    result = plan_on(gappy, START, GOAL, draw("sobol", 512, 2, rng=0))
     assert gappy.world.truly_free(result.path[:-1], result.path[1:]).all()

@@ -11,8 +11,8 @@ from evenroad.trajectory.limits import Limits
 CELLS = np.zeros((40, 60), dtype=bool)
 CELLS[:25, 30:34] = True
 WORLD = er.GridMap(CELLS, resolution=0.1).world(radius=0.2)
-RESULT = er.find_path(WORLD, (0.5, 3.5), (5.5, 3.5))
-BLOCKED = er.find_path(WORLD, (3.2, 3.5), (5.5, 3.5))
+RESULT = er.plan(WORLD, (0.5, 3.5), (5.5, 3.5))
+BLOCKED = er.plan(WORLD, (3.2, 3.5), (5.5, 3.5))
 
 
 def test_states_along_the_path_lie_on_it_and_close_together():
@@ -55,7 +55,7 @@ def test_on_a_map_the_speed_is_that_along_the_path():
 
 def test_the_path_of_an_arm_has_the_limits_of_its_robot():
     world = er.ArmWorld("ur5")
-    result = er.find_path(world, (0, -1.5, 0, -1.5, 0, 0), (1, -1.5, 0.5, -1.5, 0, 0))
+    result = er.plan(world, (0, -1.5, 0, -1.5, 0, 0), (1, -1.5, 0.5, -1.5, 0, 0))
     trajectory = result.trajectory(speed=0.3)
     assert trajectory.names[:6] == world.robot.joint_names
     assert trajectory.duration > 0.0

@@ -1,4 +1,4 @@
-"""An oracle: the trees of ``evenroad.robot.trees``, the same steps one after the other in Python."""
+"""An oracle: the trees of ``evenroad.planning.arm_trees``, the same steps one after the other in Python."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ class _Growth:
 
 
 def grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
-    """Join a start, the first of `ends`, to one of the goals, the others; see :func:`evenroad.robot.trees.connect`."""
+    """Join a start, the first of `ends`, to one of the goals, the others; see `arm_trees.connect`."""
     space, dim = world.space, world.space.dim
     roots, free = space.interpolate(ends, ends, 0.0), world.valid(ends)
     order = np.argsort(

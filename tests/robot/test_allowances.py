@@ -36,7 +36,7 @@ START = [0.5, -1.9, 1.8, -1.5, -1.57, 0.0]
 
 def placed(xyz):
     """A configuration with the tool there, pointing down."""
-    result = er.plan_arm(UR5, Scene(name="air"), START, Pose.from_rpy(xyz, DOWN), tip="tool0")
+    result = er.plan(Scene(name="air"), START, Pose.from_rpy(xyz, DOWN), robot=UR5, tip="tool0")
     assert result.solved
     return result.path[-1]
 
@@ -78,8 +78,8 @@ def deepest(path, points):
 
 def test_what_may_touch_near_the_ends_touches_nothing_else(ends):
     points = scanned()
-    assert er.plan_arm(UR5, scene(), ends[0], ends[1]).status == "start_invalid"
-    result = er.plan_arm(UR5, scene(near_ends=frozenset({("block", "scan", NEAR)})), ends[0], ends[1])
+    assert er.plan(scene(), ends[0], ends[1], robot=UR5).status == "start_invalid"
+    result = er.plan(scene(near_ends=frozenset({("block", "scan", NEAR)})), ends[0], ends[1], robot=UR5)
     assert result.solved, result.message
     assert "not tested" not in result.message
     first, last = poses_along(result.path)[[0, -1]]
@@ -92,7 +92,7 @@ def test_what_may_touch_near_the_ends_touches_nothing_else(ends):
 
 def test_an_allowance_with_a_whole_cloud_lets_a_block_pass_through_and_is_said(ends):
     allowed = frozenset({("block", "scan"), ("base_link", "scan")})
-    result = er.plan_arm(UR5, scene(allowed=allowed), ends[0], ends[1])
+    result = er.plan(scene(allowed=allowed), ends[0], ends[1], robot=UR5)
     assert result.solved
     assert deepest(result.path, scanned()).max() == pytest.approx(RADIUS)
     assert "not tested, as the scene allows: 'block' against the whole cloud 'scan'" in result.message
@@ -101,8 +101,8 @@ def test_an_allowance_with_a_whole_cloud_lets_a_block_pass_through_and_is_said(e
 
 def test_a_goal_that_is_a_pose_has_its_ends_where_it_is_reached(ends):
     goal = Pose.from_rpy((0.5, -0.2, 0.2), DOWN)
-    result = er.plan_arm(
-        UR5, scene(near_ends=frozenset({("block", "scan", NEAR)})), ends[0], goal, tip="tool0"
+    result = er.plan(
+        scene(near_ends=frozenset({("block", "scan", NEAR)})), ends[0], goal, robot=UR5, tip="tool0"
     )
     assert result.solved, result.message
     points = scanned()
@@ -129,7 +129,7 @@ def test_in_a_region_a_link_may_touch_and_others_may_not(ends):
     assert not outside.any()
     world = ArmWorld(robot, divided)
     assert world.valid(ends).all()
-    result = er.plan_arm(UR5, divided, ends[0], ends[1])
+    result = er.plan(divided, ends[0], ends[1], robot=UR5)
     assert result.solved, result.message
     assert deepest(result.path, parts["scan"]).max() < 0.0
     # The same place is closed to the other links.
@@ -212,13 +212,13 @@ def test_a_start_inside_of_the_scan_is_said_to_be_one():
     poses = link_poses(UR5, q[np.newaxis])[0]
     cloud = PointCloud(np.concatenate([scanned(), poses[[UR5.links.index("forearm_link")], :3, 3]]), RADIUS)
     scan = Obstacle("scan", cloud)
-    result = er.plan_arm(UR5, Scene((scan,), name="desk"), q, [0.0, -1.57, 0, -1.57, 0, 0])
+    result = er.plan(Scene((scan,), name="desk"), q, [0.0, -1.57, 0, -1.57, 0, 0], robot=UR5)
     assert result.status == "start_invalid"
     assert "the robot stands in its scan, " in result.message
     assert "touches 'scan': seen_at" in result.message
     seen = replace(scan, seen=Seen(",".join(map(str, START))))
     assert (
-        er.plan_arm(UR5, Scene((seen,), name="desk"), q, [0.0, -1.57, 0, -1.57, 0, 0]).status
+        er.plan(Scene((seen,), name="desk"), q, [0.0, -1.57, 0, -1.57, 0, 0], robot=UR5).status
         != "start_invalid"
     )
 

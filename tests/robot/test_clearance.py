@@ -7,17 +7,16 @@ import numpy as np
 import pytest
 import trimesh
 
-from evenroad.arms import plan_arm
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Box, Mesh, PointCloud
-from evenroad.roadmap.find_path import find_path
+from evenroad.planning import plan
+from evenroad.planning.arm_trees import connect, shorten
 from evenroad.robot import configuration, load_robot, load_scene
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kinematics import capsule_ends
 from evenroad.robot.scene import Obstacle, Scene
-from evenroad.robot.trees import connect, shorten
 from tests.robot.kernel_arms import box_scene, edge, random_scene, random_tree, ur5
 from tests.robot.oracle import clearance
 from tests.robot.test_trees import GOAL, START, dense_states
@@ -123,7 +122,7 @@ def test_what_is_nearer_than_the_clearance_is_told_so_and_what_touches_is_told_t
     nearer = np.array(["clearance" in text for text in told])
     np.testing.assert_array_equal(nearer, free & ~world.valid(q))
     assert nearer.sum() > 20
-    result = plan_arm(robot, scene, q[world.valid(q)][0], q[nearer][0], clearance=0.3)
+    result = plan(scene, q[world.valid(q)][0], q[nearer][0], robot=robot, clearance=0.3)
     assert result.status == "goal_invalid"
     assert "is nearer than the clearance 0.3 to 'wall'" in result.message
 
@@ -145,9 +144,9 @@ def test_a_clearance_that_makes_no_sense_is_refused(value):
 
 
 def test_a_plan_keeps_the_clearance_it_is_asked_for():
-    result = plan_arm("ur5", "box-reach", "home", "inside", clearance=0.005)
+    result = plan("box-reach", "home", "inside", robot="ur5", clearance=0.005)
     assert result.solved
-    assert plan_arm("ur5", "box-reach", "home", "inside").solved
+    assert plan("box-reach", "home", "inside", robot="ur5").solved
     world = ArmWorld(load_robot("ur5"), load_scene("box-reach"), clearance=0.005)
     assert world.recheck(result.path).all()
 
@@ -157,7 +156,7 @@ def test_a_path_tells_a_clearance_that_it_keeps_and_hardly_more():
     world = ArmWorld(load_robot("ur5"), load_scene("box-reach"))
     scene = load_scene("box-reach")
     ends = [configuration(world.robot, name, scene) for name in ("home", "inside")]
-    result = find_path(world, *ends)
+    result = plan(world, *ends)
     assert result.clearance is not None
     along = np.concatenate(
         [a + np.linspace(0.0, 1.0, 60)[:, np.newaxis] * (b - a) for a, b in pairwise(result.path)]

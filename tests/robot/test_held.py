@@ -119,7 +119,7 @@ def test_an_attached_object_of_a_scene_file_is_held_and_may_touch_what_it_says(t
     assert robot.holds == ("crate",)
     assert in_scene(robot, scene) == robot
     home = [0, -1.57, 0, -1.57, 0, 0]
-    result = er.plan_arm("ur5", tmp_path / "pick.yaml", home, [0.8, -1.2, 1.0, -1.0, -1.57, 0])
+    result = er.plan(tmp_path / "pick.yaml", home, [0.8, -1.2, 1.0, -1.0, -1.57, 0], robot="ur5")
     assert result.solved
 
 
@@ -219,7 +219,7 @@ def test_a_goal_pose_may_be_that_of_what_is_held():
     )
     goal = Pose.from_rpy((0.4, 0.2, 0.5), (0.0, 2.5, 0.0))
     start = [0.5, -1.9, 1.2, -0.8, -1.57, 0.0]
-    result = er.plan_arm("ur5", Scene(name="air", attached=(held,)), start, goal, tip="crate")
+    result = er.plan(Scene(name="air", attached=(held,)), start, goal, robot="ur5", tip="crate")
     assert result.solved
     robot = in_scene(UR5, Scene(name="air", attached=(held,)))
     at = link_poses(robot, result.path[-1:])[0]

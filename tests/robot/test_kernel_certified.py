@@ -7,6 +7,7 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Capsule
+from evenroad.planning.connectors import ARM_TREES
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.joint import Joint
@@ -61,8 +62,11 @@ def test_paths_are_shortened_by_compiled_code_and_stay_proved():
     a, b = free_motions(world.world, 200, seed=4)
     hop = np.flatnonzero(world.motion_valid(a[:-1], b[:-1]) & world.motion_valid(b[:-1], a[1:]))
     paths = [np.stack([a[i], b[i], a[i + 1]]) for i in hop]
-    lengths = [[path_length(path, world.space) for path in (each, world.shorten(each)[0])] for each in paths]
-    assert all(world.recheck(world.shorten(each)[0]).all() for each in paths)
+    lengths = [
+        [path_length(path, world.space) for path in (each, ARM_TREES.smooth(world, each)[0])]
+        for each in paths
+    ]
+    assert all(world.recheck(ARM_TREES.smooth(world, each)[0]).all() for each in paths)
     before, after = np.transpose(lengths)
     assert (after <= before * (1 + 1e-12)).all()
     assert after.sum() < 0.95 * before.sum()
@@ -72,7 +76,7 @@ def test_with_a_tolerance_that_shorter_motions_do_not_keep_a_path_stays_as_it_wa
     world = CertifiedWorld(WORLDS["ur5"], 0.5)
     a, b = free_motions(world.world, 20, seed=4)
     for path in np.stack([a, b, a[::-1]], axis=1):
-        shorter, _ = world.shorten(path)
+        shorter, _ = ARM_TREES.smooth(world, path)
         assert np.array_equal(shorter, path) or world.recheck(shorter).all()
 
 

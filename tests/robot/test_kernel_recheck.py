@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
+from evenroad.planning import PRM, plan
 from evenroad.points import draw
-from evenroad.roadmap import plan
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.world import FunctionWorld
@@ -37,7 +37,7 @@ def shortcut_paths(robot, scenes):
         points = draw("sobol", 128, world.space.cube_dim, rng=0)
         for start, goal in zip(q[0:4:2], q[1:4:2], strict=True):
             weak = Careless(world.space, world.valid, world.resolution)
-            result = plan(weak, start, goal, points, search="lazy")
+            result = plan(weak, start, goal, PRM(points, search="lazy"))
             if result.path is not None:
                 yield world, result.path
 

@@ -9,9 +9,10 @@ import pytest
 
 import evenroad as er
 from evenroad.cli import main
-from evenroad.roadmap.find_path import find_path
+from evenroad.planning import plan
 from evenroad.robot import ArmWorld, Obstacle, Scene, configuration, in_scene
 from evenroad.robot.robot import with_limits
+from tests.plan_on import may_connect
 from tests.robot.kernel_arms import ur5
 from tests.robot.urdf_texts import joint, link, urdf, write
 
@@ -25,9 +26,9 @@ WRITTEN = 3.14159
 
 def planners():
     def by_points(world, start, goal):
-        return er.plan(world, start, goal, 256)
+        return er.plan(world, start, goal, er.PRM(256))
 
-    return [pytest.param(find_path, id="trees"), pytest.param(by_points, id="points")]
+    return [pytest.param(er.plan, id="trees"), pytest.param(by_points, id="points")]
 
 
 def test_a_world_keeps_to_the_limits_of_its_scene():
@@ -67,23 +68,23 @@ def test_goals_are_outside_where_all_are_and_in_collision_where_one_is():
     start, hit = world.space.from_cube(np.random.default_rng(0).random((400, 6))), None
     free = world.valid(start)
     hit, start = start[~free][0], start[free][0]
-    outside = find_path(world, start, [BENT, BENT])
+    outside = plan(world, start, [BENT, BENT])
     assert (outside.status, "all 2 goals are outside the limits" in outside.message) == (
         "goal_outside_limits",
         True,
     )
-    mixed = find_path(world, start, [hit, BENT])
+    mixed = plan(world, start, [hit, BENT])
     assert mixed.status == "goal_invalid"
     assert "all 2 goals are in collision or outside the limits" in mixed.message
 
 
 def test_plan_arm_gives_the_status_and_texts_name_the_scene(tmp_path):
-    result = er.plan_arm(ur5(), NARROW, FREE, BENT)
+    result = er.plan(NARROW, FREE, BENT, robot=ur5())
     assert result.status == "goal_outside_limits"
     with pytest.raises(
         er.errors.InvalidValue, match=r"elbow_joint' at 2 rad, 1 rad outside the limits of scene 'cell 7'"
     ):
-        er.plan_arm(ur5(), NARROW, FREE, "elbow_joint=2")
+        er.plan(NARROW, FREE, "elbow_joint=2", robot=ur5())
 
 
 # ---- five printed decimals
@@ -134,7 +135,7 @@ def test_trees_around_obstacles_end_there_as_well():
     rows = np.flatnonzero(~world.motion_valid(starts[:n], goals[:n]))[:4]
     assert len(rows) == 4
     for start, goal in zip(starts[rows], goals[rows], strict=True):
-        result = find_path(world, start, goal)
+        result = plan(world, start, goal)
         assert result.solved, result.message
         assert (result.path[0].tolist(), result.path[-1].tolist()) == (start.tolist(), goal.tolist())
         assert world.recheck(result.path).all()
@@ -147,8 +148,8 @@ def test_no_proof_of_absence_comes_from_an_end_that_exceeds_a_limit_by_rounding(
         a, b = FREE.copy(), FREE.copy()
         a[0], b[0] = sign * (WRITTEN + 9e-6), rng.uniform(-1.0, 1.0)
         assert world.valid(np.stack([a, b])).all()
-        assert world.may_connect(a, b)
-        assert world.may_connect(b, a)
+        assert may_connect(world, a, b)
+        assert may_connect(world, b, a)
 
 
 def test_states_texts_and_the_command_take_such_values_alike(tmp_path, monkeypatch):
@@ -170,11 +171,11 @@ def test_states_texts_and_the_command_take_such_values_alike(tmp_path, monkeypat
     assert configuration(robot, "round").tolist() == [3.1415927, 3.1415927]
     assert configuration(robot, "there", scene).tolist() == [-math.pi, 0.0]
     assert configuration(robot, "180,0", degrees=True)[0] == math.pi
-    result = er.plan_arm(robot, scene, "there", [math.pi, 3.1415927])
+    result = er.plan(scene, "there", [math.pi, 3.1415927], robot=robot)
     assert result.solved
     assert result.path[[0, -1]].tolist() == [[-math.pi, 0.0], [math.pi, 3.1415927]]
     alone = er.load_robot(path, group="a")
-    held = er.plan_arm(alone, replace(scene, states={"up": {"a": 0.0, "b": math.pi}}), "up", "1")
+    held = er.plan(replace(scene, states={"up": {"a": 0.0, "b": math.pi}}), "up", "1", robot=alone)
     assert held.solved
     monkeypatch.chdir(tmp_path)
     (tmp_path / "desk.yaml").write_text("obstacles: {}\n")
@@ -192,6 +193,6 @@ def test_an_endless_joint_that_a_scene_ends_at_pi_as_it_is_written_takes_pi():
     )
     scene = Scene(name="problem", limits={f"wrist_{k}_joint": (-WRITTEN, WRITTEN) for k in (1, 2, 3)})
     goal = np.array([0.5, -1.2, 0.5, math.pi, -math.pi, 3.1415927])
-    result = er.plan_arm(replace(robot, joints=joints, pairs=()), scene, FREE, goal)
+    result = er.plan(scene, FREE, goal, robot=replace(robot, joints=joints, pairs=()))
     assert result.solved, result.message
     assert result.path[-1].tolist() == goal.tolist()

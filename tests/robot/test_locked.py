@@ -8,12 +8,14 @@ import pytest
 from scipy.ndimage import label
 
 from evenroad.geometry.shapes import Capsule
-from evenroad.roadmap import Budget, find_path
+from evenroad.planning import plan
+from evenroad.roadmap import Budget
 from evenroad.robot import ArmWorld, Robot, Scene, in_scene
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.locked import BEYOND, SLACK, Bodies, first_links, piece_of, thinner
 from evenroad.robot.scene import Obstacle
 from evenroad.robot.separated import apart
+from tests.plan_on import may_connect
 from tests.robot.kernel_arms import STRAIGHT, Z, random_scene, random_tree
 
 
@@ -66,8 +68,8 @@ def is_apart(world, a, b):
 def test_a_post_beside_the_upper_arm_locks_it():
     world = ArmWorld(flat_arm(), posts(at(1.0, 0.3)))
     a, b = np.array([0.0, 0.5]), np.array([2.0, 0.5])
-    assert not world.may_connect(a, b)
-    result = find_path(world, a, b, budget=Budget(motions=300_000))
+    assert not may_connect(world, a, b)
+    result = plan(world, a, b, limits=Budget(motions=300_000))
     assert result.status == "not_connected"
     assert result.message.startswith("proved: there is no path: joint joint0 alone cannot get there")
     assert "shown for the robot's capsules" in result.message
@@ -76,21 +78,21 @@ def test_a_post_beside_the_upper_arm_locks_it():
 
 def test_a_post_that_only_the_forearm_meets_locks_nothing():
     world = ArmWorld(flat_arm(), posts(at(1.0, 0.8)))
-    assert world.may_connect(np.array([0.0, 0.5]), np.array([2.0, 0.5]))
+    assert may_connect(world, np.array([0.0, 0.5]), np.array([2.0, 0.5]))
 
 
 def test_a_joint_that_turns_on_goes_round_the_other_way():
     a, b = np.array([0.0, 0.5]), np.array([2.0, 0.5])
     one = ArmWorld(flat_arm("continuous"), posts(at(1.0, 0.3)))
-    assert one.may_connect(a, b)
-    assert find_path(one, a, b).solved
+    assert may_connect(one, a, b)
+    assert plan(one, a, b).solved
     for turn in np.linspace(-3.0, 3.0, 7):
         # Wherever the range happens to be cut.
         angles = 1.0 + turn, -1.0 + turn
         two = ArmWorld(flat_arm("continuous"), posts(*(at(angle, 0.3) for angle in angles)))
         start, goal = np.array([turn, 0.5]), np.array([2.0 + turn, 0.5])
-        assert not two.may_connect(start, goal)
-        assert two.may_connect(start, np.array([turn + 0.3, -0.5]))
+        assert not may_connect(two, start, goal)
+        assert may_connect(two, start, np.array([turn + 0.3, -0.5]))
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -199,9 +201,9 @@ def test_a_joint_that_turns_on_is_one_piece_all_the_way_round(turn):
     ring = [Obstacle.of(f"ball{i}", "sphere", (0.06,), (*at(0.2 * i, 0.4), 0.0)) for i in range(32)]
     world = ArmWorld(robot, Scene(tuple(ring), name="ring"))
     up, down = np.array([turn, 0.8]), np.array([turn + 2.0, -0.8])
-    assert not world.may_connect(up, down)
-    assert world.may_connect(up, np.array([turn + 3.1, 0.7]))
-    assert world.may_connect(up, np.array([turn - 3.1, 0.7]))
+    assert not may_connect(world, up, down)
+    assert may_connect(world, up, np.array([turn + 3.1, 0.7]))
+    assert may_connect(world, up, np.array([turn - 3.1, 0.7]))
 
 
 def test_a_place_at_a_limit_is_in_a_cell_that_is_looked_at():
@@ -221,11 +223,11 @@ def test_a_scene_that_narrows_a_range_narrows_what_is_proved():
     a, b = np.array([0.0, 0.5]), np.array([2.0, 0.5])
     around = np.array([2.0 - math.tau, 0.5])
     world = ArmWorld(robot, posts(at(1.0, 0.3)))
-    assert world.may_connect(a, around)
-    assert not world.may_connect(a, b)
+    assert may_connect(world, a, around)
+    assert not may_connect(world, a, b)
     narrow = Scene(world.scene.obstacles, name="narrow", limits={"joint0": (-2.0, 3.0)})
     world = ArmWorld(in_scene(robot, narrow), narrow)
-    assert not world.may_connect(a, b)
+    assert not may_connect(world, a, b)
 
 
 def test_links_of_the_first_joints_block_each_other_where_the_pair_is_tested():
@@ -236,10 +238,10 @@ def test_links_of_the_first_joints_block_each_other_where_the_pair_is_tested():
     world = ArmWorld(robot, Scene(name="empty"))
     a, b = np.array([0.0, 0.5]), np.array([-1.6, 0.5])
     assert apart(world, a, b[np.newaxis], quickly=True).proved
-    result = find_path(world, a, b)
+    result = plan(world, a, b)
     assert result.status == "not_connected"
     free = ArmWorld(replace(robot, pairs=()), Scene(name="empty"))
-    assert free.may_connect(a, b)
+    assert may_connect(free, a, b)
 
 
 def test_what_a_later_joint_moves_is_gone_with_its_followers():

@@ -6,10 +6,11 @@ import trimesh
 import yaml
 
 import evenroad as er
-from evenroad.arms import arm_query
 from evenroad.cli import main
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.geometry import Box, Mesh, PointCloud, Pose, TriangleMesh
+from evenroad.planning.arm_request import arm_request
+from evenroad.planning.request import Reading
 from evenroad.robot import (
     ArmWorld,
     Obstacle,
@@ -141,7 +142,7 @@ def test_a_cloud_of_the_robot_alone_leaves_nothing(ur5):
 def test_where_a_robot_cannot_stand_it_has_seen_nothing(ur5, seen_at, error, says):
     scan = Scene((Obstacle("scan", PointCloud(table(10), 0.01), seen=Seen(seen_at)),), name="s")
     with pytest.raises(error, match=says):
-        arm_query(ur5, scan, UPRIGHT, UPRIGHT)
+        arm_request(ur5, scan, UPRIGHT, UPRIGHT, Reading())
 
 
 def test_the_command_plans_above_a_scanned_table(tmp_path, monkeypatch, ur5, capsys):
@@ -209,7 +210,7 @@ def test_clouds_tell_scenes_apart(ur5):
     ]
     first, again, other = (scene.fingerprint() for scene in scenes)
     assert first == again != other
-    assert er.plan_arm(ur5, scenes[0].without("scan"), UPRIGHT, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0]).solved
+    assert er.plan(scenes[0].without("scan"), UPRIGHT, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0], robot=ur5).solved
 
 
 def shelf_file(folder, suffix):

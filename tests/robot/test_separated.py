@@ -12,6 +12,7 @@ from evenroad.robot.inverse_kinematics import task_of
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.locked import Bodies, Cells, Piece
 from evenroad.robot.separated import apart, is_beyond
+from tests.plan_on import may_connect
 from tests.robot.kernel_arms import random_tree
 
 START = np.array([0.0, 0.6, 0.0, -0.8, 0.0, 0.5, 0.0])
@@ -61,7 +62,7 @@ def place_of(robot, q):
 def test_a_place_is_not_out_of_reach_because_the_postures_found_are(barred, witness):
     goal = PoseGoal(place_of(barred.robot, witness), position_only=True)
     assert barred.connect(START, np.array([witness])).goal == 0
-    result = er.plan_arm(barred.robot, barred.scene, START, goal, seconds=3.0)
+    result = er.plan(barred.scene, START, goal, robot=barred.robot, seconds=3.0)
     assert result.status in ("solved", "budget_spent")
     if not result.solved:
         assert "be reached: joints shoulder_pan, shoulder_tilt alone" in result.message
@@ -71,7 +72,7 @@ def test_a_place_is_not_out_of_reach_because_the_postures_found_are(barred, witn
 
 def test_the_place_of_the_issue_is_not_called_impossible(barred):
     goal = PoseGoal(Pose((0.403498, -0.222401, 0.870594)), position_only=True)
-    result = er.plan_arm(barred.robot, barred.scene, START, goal, seconds=3.0)
+    result = er.plan(barred.scene, START, goal, robot=barred.robot, seconds=3.0)
     # In a scene that is like the issue's.
     assert result.status != "not_connected"
     assert "proved" not in result.message
@@ -80,18 +81,18 @@ def test_the_place_of_the_issue_is_not_called_impossible(barred):
 def test_a_place_beyond_what_the_bars_leave_is_proved_for_all_postures(barred):
     """Behind the arm: the elbow cannot turn to where the forearm would be long enough."""
     goal = PoseGoal(Pose((-0.75, 0.0, 0.5)), position_only=True)
-    result = er.plan_arm(barred.robot, barred.scene, START, goal, seconds=3.0)
+    result = er.plan(barred.scene, START, goal, robot=barred.robot, seconds=3.0)
     assert result.status == "not_connected"
     assert result.message.startswith("proved: there is no path: joints shoulder_pan, shoulder_tilt alone")
     # One more goal that can be reached, or may be, and nothing is proved.
     for more in (PoseGoal(place_of(barred.robot, WITNESSES[0]), position_only=True), WITNESSES[1]):
-        result = er.plan_arm(barred.robot, barred.scene, START, [goal, more], seconds=3.0)
+        result = er.plan(barred.scene, START, [goal, more], robot=barred.robot, seconds=3.0)
         assert result.status in ("solved", "budget_spent")
 
 
 def test_straight_ways_are_planned_to_some_postures_alone(barred):
     goal = PoseGoal(Pose((-0.75, 0.0, 0.5)), position_only=True)
-    result = er.plan_arm(barred.robot, barred.scene, START, goal, seconds=3.0, straight=Straight(0.02))
+    result = er.plan(barred.scene, START, goal, robot=barred.robot, seconds=3.0, straight=Straight(0.02))
     assert not result.solved
     assert "proved" not in result.message
 
@@ -165,8 +166,8 @@ def test_a_flat_link_passes_a_slot_that_its_capsules_do_not(tmp_path, gap):
     world = ArmWorld(robot, slot(gap))
     assert world.valid(np.array([A, B])).all()
     assert not world.valid(np.zeros((1, 1)))[0]
-    assert world.may_connect(A, B)
-    result = er.plan_arm(robot, world.scene, A, B, seconds=2.0)
+    assert may_connect(world, A, B)
+    result = er.plan(world.scene, A, B, robot=robot, seconds=2.0)
     assert result.status == "budget_spent"
     assert "for the capsules that stand for the robot's shapes" in result.message
     assert "proved: " not in result.message
@@ -174,7 +175,7 @@ def test_a_flat_link_passes_a_slot_that_its_capsules_do_not(tmp_path, gap):
 
 def test_a_slot_narrower_than_the_link_itself_is_proved(tmp_path):
     robot = flat_link(tmp_path)
-    result = er.plan_arm(robot, slot(0.01), A, B, seconds=2.0)
+    result = er.plan(slot(0.01), A, B, robot=robot, seconds=2.0)
     assert result.status == "not_connected"
     assert "(shown for bodies inside of the robot's shapes)" in result.message
 
@@ -187,15 +188,15 @@ def test_a_goal_that_only_capsules_keep_out_of_is_not_left_out_of_a_proof(tmp_pa
     behind, within = np.array([0.8]), np.array([0.0])
     world = ArmWorld(robot, scene)
     assert world.valid(np.array([A, behind, within])).tolist() == [True, True, False]
-    assert er.plan_arm(robot, scene, A, behind, seconds=2.0).status == "not_connected"
-    result = er.plan_arm(robot, scene, A, [behind, within], seconds=2.0)
+    assert er.plan(scene, A, behind, robot=robot, seconds=2.0).status == "not_connected"
+    result = er.plan(scene, A, [behind, within], robot=robot, seconds=2.0)
     assert result.status == "budget_spent"
 
 
 def test_a_robot_made_of_capsules_is_what_they_are(tmp_path):
     robot = flat_link(tmp_path, '<capsule radius=".05" length=".3"/>')
     assert robot.inner is None
-    result = er.plan_arm(robot, slot(0.05), A, B, seconds=2.0)
+    result = er.plan(slot(0.05), A, B, robot=robot, seconds=2.0)
     assert result.status == "not_connected"
     assert "(shown for the robot's capsules)" in result.message
 
@@ -207,12 +208,12 @@ def test_what_is_held_counts_by_what_is_inside_of_it(tmp_path):
     assert robot.inner is None
     assert {each.link for each in held.inner} == {"plate", "plate_held"}
     assert held.empty_handed() == robot
-    assert ArmWorld(held, slot(0.05)).may_connect(A, B)
-    assert not ArmWorld(held, slot(0.018)).may_connect(A, B)
+    assert may_connect(ArmWorld(held, slot(0.05)), A, B)
+    assert not may_connect(ArmWorld(held, slot(0.018)), A, B)
     tooled = robot.with_tool([plate], "plate", prefix="a_")
     assert {each.link for each in tooled.inner} == {"plate", "a_tool"}
-    assert ArmWorld(tooled, slot(0.05)).may_connect(A, B)
-    assert not ArmWorld(tooled, slot(0.018)).may_connect(A, B)
+    assert may_connect(ArmWorld(tooled, slot(0.05)), A, B)
+    assert not may_connect(ArmWorld(tooled, slot(0.018)), A, B)
 
 
 def test_what_is_inside_decides_no_verdict_and_is_kept_with_the_robot(tmp_path):
@@ -230,7 +231,7 @@ def test_nothing_is_inside_of_an_open_mesh_and_its_hull_proves_nothing(tmp_path)
     box.export(tmp_path / "open.stl")
     robot = flat_link(tmp_path, '<mesh filename="open.stl"/>')
     assert robot.inner == ()
-    result = er.plan_arm(robot, slot(0.01), A, B, seconds=2.0)
+    result = er.plan(slot(0.01), A, B, robot=robot, seconds=2.0)
     assert result.status == "budget_spent"
     assert "for the capsules that stand for the robot's shapes" in result.message
 
@@ -239,8 +240,8 @@ def test_a_clouds_balls_and_a_closed_mesh_block_as_they_are(tmp_path):
     robot = flat_link(tmp_path, '<sphere radius=".05"/>')
     cloud = er.geometry.PointCloud(np.array([[0.0, 0.0, z] for z in (-0.12, 0.12)]), 0.06)
     wider = er.geometry.PointCloud(cloud.points, 0.08)
-    assert ArmWorld(robot, Scene((Obstacle("cloud", cloud),), name="cloud")).may_connect(A, B)
-    assert not ArmWorld(robot, Scene((Obstacle("cloud", wider),), name="cloud")).may_connect(A, B)
+    assert may_connect(ArmWorld(robot, Scene((Obstacle("cloud", cloud),), name="cloud")), A, B)
+    assert not may_connect(ArmWorld(robot, Scene((Obstacle("cloud", wider),), name="cloud")), A, B)
     found = apart(
         ArmWorld(robot, Scene((Obstacle("cloud", wider),), name="cloud")), A, B[np.newaxis], quickly=True
     )

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
+from evenroad.planning.arm_trees import connect, shorten
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
-from evenroad.robot.trees import connect, shorten
 from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
 from tests.robot.test_trees import GOAL, START, box_world, dense_states

@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from evenroad.arms import plan_arm
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.planning import plan
 from evenroad.robot import ArmWorld, Scene, configuration, held_values, load_model, load_robot
 from evenroad.robot.groups import chains, choose_group, group_notes
 from evenroad.robot.srdf import read_srdf, srdf_text
@@ -234,7 +234,7 @@ def test_states_of_one_name_of_several_groups_are_one(tmp_path):
 def test_two_groups_plan_together_in_the_order_of_the_wish(tmp_path):
     text = ARM.replace("radius='0.05'", "radius='0.02'")
     path, srdf = write(tmp_path, text), write(tmp_path, f"<robot name='a'>{TWO_GROUPS}</robot>", "arm.srdf")
-    turned = plan_arm(path, Scene(name="s"), "home", "0.1,0.3,0.5", srdf=srdf, group=("fingers", "arm"))
+    turned = plan(Scene(name="s"), "home", "0.1,0.3,0.5", robot=path, srdf=srdf, group=("fingers", "arm"))
     assert turned.solved, turned.message
     np.testing.assert_allclose(turned.path[0], [0.3, 0.1, 0.2])
     np.testing.assert_allclose(turned.path[-1], [0.1, 0.3, 0.5])
@@ -324,7 +324,7 @@ def test_the_srdf_of_an_arm_with_a_hand_is_read_again_and_planned_with(tmp_path)
     assert model.robot.group == ("shoulder", "elbow")
     assert not model.always_touching
     assert any("planned for is the group 'hand'" in note for note in model.notes)
-    assert plan_arm(path, Scene(name="nothing"), "home", "0.5,0.5", srdf=srdf).solved
+    assert plan(Scene(name="nothing"), "home", "0.5,0.5", robot=path, srdf=srdf).solved
     everything = load_model(path, srdf=srdf, group="planned").robot
     home = configuration(everything, "home")
     np.testing.assert_array_equal(home, [0.0, 0.0, 0.02])

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
+from evenroad.planning.arm_trees import connect, shorten, tighten
 from evenroad.robot import Obstacle, Scene, load_robot
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
@@ -22,7 +23,6 @@ from evenroad.robot.kernel.motion_states import BATCHES as DONE
 from evenroad.robot.kernel.motion_states import COUNTS
 from evenroad.robot.kernel.tighten import CLEARANCE
 from evenroad.robot.tree_sequences import ball_points, sphere_points
-from evenroad.robot.trees import connect, shorten, tighten
 from tests.robot.kernel_arms import box_scene, edge, random_scene, random_tree, ur5
 from tests.robot.oracle import clearance, link_poses
 from tests.robot.surface_oracle import all_clearance, mesh_clearance
@@ -159,7 +159,7 @@ def test_another_process_tightens_to_the_same_bits(detour):
     tight, motions = tighten(world, path, batches=BATCHES)
     code = (
         "import sys\nimport numpy as np\n"
-        "from evenroad.robot.trees import tighten\nfrom tests.robot.test_trees import box_world\n"
+        "from evenroad.planning.arm_trees import tighten\nfrom tests.robot.test_trees import box_world\n"
         "path = np.frombuffer(bytes.fromhex(sys.stdin.read())).reshape(-1, 5)\n"
         f"tight, motions = tighten(box_world(), path, batches={BATCHES})\nprint(motions, tight.tobytes().hex())"
     )
@@ -269,7 +269,7 @@ def on_motion(q, a, b):
 
 def test_straight_paths_need_no_other_program():
     code = (
-        "import numpy as np\nfrom evenroad.robot.trees import tighten\n"
+        "import numpy as np\nfrom evenroad.planning.arm_trees import tighten\n"
         "from evenroad.robot.kernel import shorten\nfrom tests.robot.test_trees import START, box_world\n"
         "tighten(box_world(), np.stack([START, START + 0.1]), batches=9)\nprint(len(shorten.shorten_points.overloads))"
     )

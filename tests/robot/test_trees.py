@@ -11,8 +11,8 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Box
-from evenroad.roadmap import Budget
-from evenroad.roadmap.find_path import find_path
+from evenroad.planning import plan
+from evenroad.planning.arm_trees import connect, grown_trees, shorten
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.joint import Joint
@@ -20,7 +20,6 @@ from evenroad.robot.kinematics import link_poses
 from evenroad.robot.robot import Robot, with_limits
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot.tree_sequences import ball_points, cube_points, reversed_halton
-from evenroad.robot.trees import connect, grown_trees, shorten
 from tests.robot.kernel_arms import STRAIGHT, box_scene, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
 from tests.robot.plain_trees import grown
@@ -102,7 +101,7 @@ def split():
 
 
 def test_slices_change_nothing(split, monkeypatch):
-    from evenroad.robot import trees
+    from evenroad.planning import arm_trees as trees
 
     whole = connect(split, ABOVE, [BELOW], most_motions=2_000, seconds=60)
     monkeypatch.setattr(trees, "_SLICE", 1)
@@ -112,7 +111,7 @@ def test_slices_change_nothing(split, monkeypatch):
 
 
 def test_trees_that_outgrow_their_room_get_more(split, monkeypatch):
-    from evenroad.robot import trees
+    from evenroad.planning import arm_trees as trees
 
     many = connect(split, ABOVE, [BELOW], most_motions=20_000, seconds=60)
     assert many.goal == -1
@@ -177,7 +176,7 @@ def test_without_lanes_no_trees_grow_and_points_find_the_way():
     world = box_world("scalar")
     assert connect(world, START, [GOAL]).goal == -1
     near = START + np.array([0.6, 0.3, 0.0, 0.0, 0.0])
-    result = find_path(world, START, near, budget=Budget(seconds=60))
+    result = plan(world, START, near, seconds=60)
     assert result.solved
     assert world.recheck(result.path).all()
 

@@ -44,7 +44,7 @@ def test_a_path_keeps_the_axis_upright_where_one_that_is_not_told_to_does_not(to
     plain = []
     for seed in (1, 2, 5, 6):
         scene, start, goal = problem(seed)
-        result = er.plan_arm(ARM7, scene, start, goal, upright=Upright(tolerance))
+        result = er.plan(scene, start, goal, robot=ARM7, upright=Upright(tolerance))
         assert result.solved
         tilt = tilt_along(ARM7, result.path, "flange")
         assert tilt <= tolerance
@@ -54,7 +54,7 @@ def test_a_path_keeps_the_axis_upright_where_one_that_is_not_told_to_does_not(to
         assert world.recheck(result.path).all()
         assert result.proof == "certified"
         assert result.path[0].tolist() == start.tolist()
-        plain.append(tilt_along(ARM7, er.plan_arm(ARM7, scene, start, goal).path, "flange"))
+        plain.append(tilt_along(ARM7, er.plan(scene, start, goal, robot=ARM7).path, "flange"))
     assert max(plain) > 0.3
 
 
@@ -95,17 +95,17 @@ def test_a_start_or_goals_that_are_tilted_are_refused():
     _, start, _ = problem(1)
     tilted = start.copy()
     tilted[5] += 0.4
-    result = er.plan_arm(ARM7, Scene(name="empty"), tilted, start, upright=Upright(0.1, axis="z"))
+    result = er.plan(Scene(name="empty"), tilted, start, robot=ARM7, upright=Upright(0.1, axis="z"))
     assert result.status is er.Status.START_INVALID
     assert "at the start axis z of 'flange' is tilted by" in result.message
-    result = er.plan_arm(ARM7, Scene(name="empty"), start, tilted, upright=Upright(0.1))
+    result = er.plan(Scene(name="empty"), start, tilted, robot=ARM7, upright=Upright(0.1))
     assert result.status is er.Status.GOAL_INVALID
     assert "more than 0.1" in result.message
 
 
 def test_straight_and_upright_go_together():
     scene, start, goal = problem(6)
-    result = er.plan_arm(ARM7, scene, start, goal, upright=Upright(0.1), straight=Straight(0.05, away="up"))
+    result = er.plan(scene, start, goal, robot=ARM7, upright=Upright(0.1), straight=Straight(0.05, away="up"))
     assert result.solved
     assert set(result.deviation) == {"tilt_rad", "line_m", "line_rad"}
     assert tilt_along(ARM7, result.path, "flange") <= 0.1
@@ -121,7 +121,7 @@ def test_lines_keep_another_link_upright_too():
     def plan(tolerance):
         line = Straight(retreat=0.4, away=(1.6, -1.3, -0.6), tip="tool0")
         upright = Upright(tolerance, axis, tip="forearm_link")
-        return er.plan_arm(robot, Scene(name="empty"), start, goal, straight=line, upright=upright)
+        return er.plan(Scene(name="empty"), start, goal, robot=robot, straight=line, upright=upright)
 
     refused = plan(0.1)
     assert "from the start: along it axis (" in refused.message
@@ -148,7 +148,7 @@ def test_a_path_that_is_tilted_by_too_much_on_the_finer_grid_is_not_handed_out(m
     through = UprightWorld.path_through
     monkeypatch.setattr(UprightWorld, "path_through", lambda *a, **options: (through(*a, **options)[0], 0.11))
     scene, start, goal = problem(6)
-    result = er.plan_arm(ARM7, scene, start, goal, upright=Upright(0.1))
+    result = er.plan(scene, start, goal, robot=ARM7, upright=Upright(0.1))
     assert result.status is er.Status.NOT_CONNECTED
     assert "tilted by 0.11 rad, more than 0.1" in result.message
     assert result.path is None

@@ -8,8 +8,7 @@ import numpy as np
 import evenroad as er
 from evenroad.points import draw
 from evenroad.points.samplers import make_sampler
-from evenroad.roadmap import Budget, Roadmap, fmt, plan, plan_anytime
-from evenroad.roadmap.find_path import find_path
+from evenroad.roadmap import Budget, Roadmap
 from evenroad.robot import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.space import SE2, SE3, BoxSpace
@@ -17,6 +16,7 @@ from evenroad.space.path import subdivide
 from evenroad.world import FunctionWorld, GridMap
 from evenroad.world.gridmap import DiskWorld
 from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld
+from tests.plan_on import find_path, fmt_on, plan_growing, plan_on
 from tests.robot.kernel_arms import random_rotation
 from tests.robot.oracle import clearance
 from tests.studies.worlds.solids_oracle import gap
@@ -39,25 +39,27 @@ def _kept(world, start, goal, **options):
 
 def _several(world, start, goal, **options):
     goals = np.stack([goal, world.space.interpolate(goal[None], start[None], np.array([0.1]))[0]])
-    return plan(world, start, goals, _points(world), search="lazy", **options)
+    return plan_on(world, start, goals, _points(world), search="lazy", **options)
 
 
 def _arm(world, start, goal, **options):
-    return er.plan_arm(world.robot, world.scene, start, goal, **options)
+    return er.plan(
+        world.scene, start, goal, robot=world.robot, smooth=options.pop("shorten", True), **options
+    )
 
 
 PLANNERS = {
-    "full": lambda world, *ends, **options: plan(world, *ends, _points(world), **options),
-    "lazy": lambda world, *ends, **options: plan(world, *ends, _points(world), search="lazy", **options),
-    "lazy milestones": lambda world, *ends, **options: plan(
+    "full": lambda world, *ends, **options: plan_on(world, *ends, _points(world), **options),
+    "lazy": lambda world, *ends, **options: plan_on(world, *ends, _points(world), search="lazy", **options),
+    "lazy milestones": lambda world, *ends, **options: plan_on(
         world, *ends, _points(world), search="lazy", lazy_milestones=True, **options
     ),
-    "success only": lambda world, *ends, **options: plan(
+    "success only": lambda world, *ends, **options: plan_on(
         world, *ends, _points(world), success_only=True, **options
     ),
     "several goals": _several,
-    "fmt*": lambda world, *ends, **options: fmt(world, *ends, _points(world), **options),
-    "anytime": lambda world, *ends, **options: plan_anytime(
+    "fmt*": lambda world, *ends, **options: fmt_on(world, *ends, _points(world), **options),
+    "anytime": lambda world, *ends, **options: plan_growing(
         world, *ends, make_sampler("sobol"), until="settled", budget=BUDGET, **options
     ),
     "kept": _kept,

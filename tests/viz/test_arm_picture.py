@@ -7,8 +7,8 @@ from PIL import Image, ImageColor
 
 from evenroad.errors import BrokenFile
 from evenroad.geometry.rotation import rotation_from_rpy
+from evenroad.planning import PRM, plan
 from evenroad.points import draw
-from evenroad.roadmap import plan
 from evenroad.robot import (
     ArmWorld,
     Obstacle,
@@ -197,7 +197,7 @@ def test_an_empty_scene_and_a_huge_floor_are_drawn_too(tmp_path):
     ):
         world = ArmWorld(robot, scene)
         goal = np.full(7, 0.5)
-        save_arm_picture(tmp_path / "a.png", plan(world, np.zeros(7), goal, draw("halton", 8, 7)), world)
+        save_arm_picture(tmp_path / "a.png", plan(world, np.zeros(7), goal, PRM(draw("halton", 8, 7))), world)
         assert (tmp_path / "a.png").exists()
 
 

@@ -12,8 +12,8 @@ import evenroad.viz.show as shows
 
 CELLS = np.zeros((40, 60), dtype=bool)
 MAP = er.GridMap(CELLS, resolution=0.1)
-ON_A_MAP = er.find_path(MAP.world(radius=0.2), (0.5, 3.5), (5.5, 3.5))
-OF_AN_ARM = er.find_path(er.ArmWorld("ur5"), (0, -1.5, 0, -1.5, 0, 0), (0.5, -1.5, 0.5, -1.5, 0, 0))
+ON_A_MAP = er.plan(MAP.world(radius=0.2), (0.5, 3.5), (5.5, 3.5))
+OF_AN_ARM = er.plan(er.ArmWorld("ur5"), (0, -1.5, 0, -1.5, 0, 0), (0.5, -1.5, 0.5, -1.5, 0, 0))
 
 
 class Page:

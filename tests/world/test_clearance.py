@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from evenroad.roadmap.find_path import find_path
+from evenroad.planning import plan
 from evenroad.world import GridMap
 from evenroad.world.clearance import largest_kept, least_distance
 
@@ -32,7 +32,7 @@ def test_the_clearance_of_a_disks_path_is_the_least_distance_along_it(seed):
     world = grid.world(0.7)
     free = world.space.from_cube(np.random.default_rng(seed).random((200, 2)))
     free = free[world.valid(free)]
-    result = find_path(world, free[0], free[-1])
+    result = plan(world, free[0], free[-1])
     if not result.solved:
         pytest.skip("no path to measure")
     along = np.concatenate(

@@ -110,7 +110,7 @@ def test_the_class_of_a_cell_holds_in_all_of_its_closed_square(radius):
     seen = set()
     for _ in range(40):
         occupied = random_map(rng, largest=12)
-        cells = GridMap(occupied).world(radius)._tables.cells
+        cells = GridMap(occupied).world(radius).tables.cells
         for row, col in np.argwhere(~occupied):
             state = cells[row + 1, col + 1]
             seen.add(int(min(state, 2)))

@@ -7,6 +7,7 @@ import pytest
 from scipy import ndimage
 
 from evenroad.errors import InvalidValue
+from evenroad.planning.connectors import CELLS
 from evenroad.world import ConnectsItself, GridMap, MapFrame, Separates
 from evenroad.world.gridmap.components import find_gates, label_components
 
@@ -42,9 +43,9 @@ def test_what_is_known_of_narrow_passages_is_in_proportion_to_the_pixels():
     world = GridMap(np.zeros((1, 20_000), dtype=bool)).world(0.3)
     a, b = np.array([0.4, 0.5]), np.array([19_999.6, 0.5])
     assert world.may_connect(a, b)
-    gates = find_gates(world._tables.cells)
+    gates = find_gates(world.tables.cells)
     assert gates.sum() == 20_000
-    assert sum(array.nbytes for array in label_components(world._tables, gates)) < 70 * 20_000
+    assert sum(array.nbytes for array in label_components(world.tables, gates)) < 70 * 20_000
     assert world.cells_of(world.component(a)).all()
 
 
@@ -65,7 +66,7 @@ def test_what_hangs_together_is_found_and_what_is_proved_apart_does_not(radius):
         for a, b in pairwise(places):
             in_fine = [label[int(y * FINE), int(x * FINE)] for x, y in (a, b)]
             together = in_fine[0] == in_fine[1] != 0
-            connection = world.connect(a, b[np.newaxis])
+            connection = CELLS.connect(world, a, b[np.newaxis])
             if connection.goal < 0:
                 assert not together
                 assert connection.path.shape == (0, 2)
@@ -103,20 +104,22 @@ def test_a_door_is_passed_by_a_disk_that_fits_and_a_larger_one_is_proved_to_fail
     # A turned frame rounds: there the disk that fits exactly may do so or not.
     for radius in (exact if frame is None else exact * (1 - 1e-9), 2.9 * pixel):
         world = grid.world(radius)
-        path = world.connect(a, b[np.newaxis]).path
+        path = CELLS.connect(world, a, b[np.newaxis]).path
         assert len(path) > 2
         assert world.motion_valid(path[:-1], path[1:]).all()
     for radius in (3.05 * pixel, 4.0 * pixel):
         world = grid.world(radius)
         assert not world.may_connect(a, b)
-        assert world.connect(a, b[np.newaxis]).goal == -1
+        assert CELLS.connect(world, a, b[np.newaxis]).goal == -1
 
 
 def test_of_several_goals_the_one_that_is_reached_first_is_named():
     occupied = np.zeros((40, 60), dtype=bool)
     occupied[:, 30] = True
     world = GridMap(occupied).world(2.0)
-    connection = world.connect(np.array([5.0, 5.0]), np.array([[50.0, 5.0], [25.0, 30.0], [6.0, 20.0]]))
+    connection = CELLS.connect(
+        world, np.array([5.0, 5.0]), np.array([[50.0, 5.0], [25.0, 30.0], [6.0, 20.0]])
+    )
     assert connection.goal == 2
 
 
@@ -124,7 +127,7 @@ def test_a_bound_on_motions_is_kept():
     rng = np.random.default_rng(0)
     world = GridMap(cluttered(rng)).world(1.3)
     a, b = free_places(world, rng, 2)
-    assert world.connect(a, b[np.newaxis], most_motions=1).goal == -1
+    assert CELLS.connect(world, a, b[np.newaxis], most_motions=1).goal == -1
 
 
 @pytest.mark.parametrize("frame", FRAMES)
@@ -134,10 +137,10 @@ def test_a_shortened_path_is_free_and_not_longer(frame):
     for _ in range(20):
         world = GridMap(cluttered(rng, 40, 60), frame).world(1.2 * (frame.resolution if frame else 1.0))
         a, b = free_places(world, rng, 2)
-        path = world.connect(a, b[np.newaxis]).path
+        path = CELLS.connect(world, a, b[np.newaxis]).path
         if not len(path):
             continue
-        short, motions = world.shorten(path)
+        short, motions = CELLS.smooth(world, path)
         before, after = (np.hypot(*np.diff(each, axis=0).T).sum() for each in (path, short))
         assert world.motion_valid(short[:-1], short[1:]).all()
         assert (short[[0, -1]] == path[[0, -1]]).all()

@@ -7,16 +7,14 @@ from dataclasses import asdict, replace
 from pathlib import Path
 
 from evenroad._compiled import say_if_compiling
-from evenroad.arms import SEARCH, ArmPlanner, Goal, arm_query, finished, plan_query
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     chosen_budget,
-    chosen_rule,
+    chosen_planner,
     common_query,
     finish,
     load_compiled_code,
     output_files,
-    planned_points,
     wants_points,
 )
 from evenroad.cli.roadmap import kept_roadmap
@@ -24,12 +22,14 @@ from evenroad.cli.robot import bodiless_rows
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
-from evenroad.roadmap import default_rule
+from evenroad.planning.arm_request import arm_request
+from evenroad.planning.arm_trees import prepare
+from evenroad.planning.plan import Wishes, finished, solve
+from evenroad.planning.request import Goal, Reading
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.robot.straight import Straight
-from evenroad.robot.trees import prepare
 from evenroad.robot.upright import Upright
 from evenroad.robot_roadmap.ask import prepare as prepare_roadmap
 from evenroad.robot_roadmap.cell import day_and_all
@@ -58,28 +58,30 @@ def plan_arm(plan: PlanArm) -> int:
     _say_if_compiling(plan)
     robot = kept.robot if kept is not None and plan.robot is None else plan.robot
     assert robot is not None
-    query = arm_query(
+    request = arm_request(
         robot,
         scene if kept is None else day_and_all(kept.cell, scene)[1],
         " ".join(plan.start),
         asked_goals,
+        Reading(plan.deg, plan.tip, plan.frame),
         resolution=plan.resolution,
         clearance=plan.clearance,
-        degrees=plan.deg,
         **({} if plan.robot is None else plan.options()),
     )
-    known = None if kept is None else SceneRoadmap(kept, query.world.scene, query.world.robot)
-    query = query if known is None else replace(query, world=known.world)
-    world, start, goals = query.world, query.start, query.goals
-    rule = chosen_rule(plan, default_rule(world.space).k)
-    points = planned_points(plan, world.space.cube_dim) if wants_points(plan) else None
-    load_compiled_code(world, start, goals, points, rule, SEARCH)
+    known = None if kept is None else SceneRoadmap(kept, request.world.scene, request.world.robot)
+    request = request if known is None else replace(request, world=known.world)
+    world = request.world
+    planner = chosen_planner(plan, request) if known is None else known
+    load_compiled_code(request, planner)
 
-    along = None if known is None else known.plan
-    planner = ArmPlanner(budget, points, rule, plan.improve, not plan.raw, *ways, along)
-    result, meshes = finished(query, plan_query(query, planner), certified=plan.certified)
-    more_rows, trajectory = trajectory_rows(plan, query, result, ways)
-    robot, model = world.robot, query.model
+    straight, upright = ways
+    wishes = Wishes(budget, not plan.raw, plan.seed, plan.certified, straight, upright)
+    # Where the tip is told its way, worlds of other kinds are planned in: each has its own planner.
+    by = None if not wants_points(plan) and known is None and upright is not None else planner
+    result, meshes = finished(request, solve(request, by, wishes), certified=plan.certified)
+    more_rows, trajectory = trajectory_rows(plan, request, result, ways)
+    robot, model, given = world.robot, request.model, request.given
+    assert given is not None
     made = plan.options()
     asked = {
         "scene": str(plan.world),
@@ -89,10 +91,10 @@ def plan_arm(plan: PlanArm) -> int:
         "bodies": None if plan.bodies is None else str(plan.bodies),
         **{name: made[name] for name in ("use_visuals", "packages", "arguments")},
         "joints": list(robot.group),
-        "goal_names": list(query.goal_names),
+        "goal_names": list(request.goal_names),
         "held": held_values(robot),
         "holds": list(robot.holds),
-        "goal_poses": query.given.records(world, None if result.path is None else result.path[-1]),
+        "goal_poses": given.records(world, None if result.path is None else result.path[-1]),
         "resolution": world.resolution,
         "clearance": world.clearance,
     }
@@ -111,7 +113,7 @@ def plan_arm(plan: PlanArm) -> int:
             "goal pose",
             f"{goal}: {reached.branches} postures, {reached.blocked} in collision ({reached.solver})",
         )
-        for goal, reached in query.given.poses
+        for goal, reached in given.poses
     ]
     rows += [] if model is None else bodiless_rows(model)
     rows += [("checked by", world.checked_with), *([] if meshes is None else [("meshes", str(meshes))])]

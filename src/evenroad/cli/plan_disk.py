@@ -3,36 +3,35 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from evenroad import roadmap
 from evenroad._compiled import say_if_compiling
 from evenroad.cli.certify import guarantee_rows, guarantees
 from evenroad.cli.plan import PlanDisk
 from evenroad.cli.plan_parts import (
     chosen_budget,
+    chosen_planner,
     chosen_rule,
     common_query,
     finish,
     load_compiled_code,
     output_files,
-    planned_points,
     wants_points,
 )
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
-from evenroad.roadmap import Status, find_path
-from evenroad.roadmap.answer import PROVED, require_certified
+from evenroad.planning.plan import Wishes, finished, solve
+from evenroad.planning.read_request import read_request
+from evenroad.planning.request import Reading
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.load import map_files
 
 
 def plan_disk(plan: PlanDisk) -> int:
     """Plan, write, report; return 0 when solved, else 1."""
-    rule = chosen_rule(plan, default_k=10)
+    chosen_rule(plan)
     budget = chosen_budget(plan)
     if plan.guarantees and not wants_points(plan):
         raise InvalidValue("--guarantees speaks of a roadmap: say of how many points with -n")
@@ -50,28 +49,16 @@ def plan_disk(plan: PlanDisk) -> int:
     for name, value in (("start", start), *(("goal", goal) for goal in goals)):
         _require_on_map(gridmap, name, value)
     say_if_compiling("evenroad.world.gridmap.search", "find_path", 15)
-    if wants_points(plan):
+    if wants_points(plan) and gridmap.unknown.any():
         # Points are drawn over the rectangle: most of one that is mostly unknown is not worth any.
-        world = (gridmap.cropped() if gridmap.unknown.any() else gridmap).world(
-            plan.robot_radius, clearance=plan.clearance
-        )
-        points = planned_points(plan, 2)
-        load_compiled_code(world, start, goals, points, rule)
-        shorten, certify = not plan.raw, plan.guarantees
-        result = roadmap.plan(
-            world, start, goals, points, rule=rule, shorten=shorten, budget=budget, certify=certify
-        )
-        if result.status is Status.NOT_CONNECTED and not any(
-            world.may_connect(result.start, goal) for goal in result.goals
-        ):
-            # No number of points would help.
-            result = replace(result, message=PROVED)
-    else:
-        world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
-        load_compiled_code(world, start, goals, None, rule)
-        result = find_path(world, start, goals, budget=budget, shorten=not plan.raw, improve=plan.improve)
-    if plan.certified:
-        result = require_certified(world, result)
+        gridmap = gridmap.cropped()
+    world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
+    request = read_request(world, start, goals, Reading())
+    of_roadmap = dict(search="full", certify=plan.guarantees) if wants_points(plan) else {}
+    planner = chosen_planner(plan, request, **of_roadmap)
+    load_compiled_code(request, planner)
+    wishes = Wishes(budget, smooth=not plan.raw, certified=plan.certified)
+    result, _ = finished(request, solve(request, planner, wishes), certified=plan.certified)
     query = {
         "map": str(plan.world),
         "robot_radius": plan.robot_radius,

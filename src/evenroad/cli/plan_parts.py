@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from evenroad import roadmap
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
@@ -17,10 +15,15 @@ from evenroad.cli.plan import PlanOptions
 from evenroad.cli.sampler import chosen_sampler, draw_points, require_seed, speaks_of_points
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
+from evenroad.planning.connectors import connector_of
+from evenroad.planning.plan import Wishes, solve
+from evenroad.planning.planner import Planner
+from evenroad.planning.prm import PRM, rule_of
+from evenroad.planning.request import Request
+from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points import PointSet
 from evenroad.roadmap import Budget, KNearest, PlanResult, Radius, Rule
-from evenroad.roadmap.find_path import SECONDS
-from evenroad.world import ConnectsItself, Rechecks, World
+from evenroad.world import Rechecks
 
 DEFAULT_N = 512
 
@@ -34,13 +37,21 @@ _FEW = 16
 """Number of points of a plan that only loads compiled code."""
 
 
-def chosen_rule(plan: PlanOptions, default_k: int) -> Rule:
-    """Return the connection rule that was asked for."""
+def chosen_rule(plan: PlanOptions) -> Rule | None:
+    """Return the connection rule that was asked for, or None."""
     if plan.connect_radius is None:
-        return KNearest(default_k if plan.k is None else plan.k)
+        return None if plan.k is None else KNearest(plan.k)
     if plan.k is not None:
         raise InvalidValue("give -k or --connect-radius, not both")
     return Radius(plan.connect_radius)
+
+
+def chosen_planner(plan: PlanOptions, request: Request, **of_prm: Any) -> Planner:
+    """Return the planner that was asked for: a roadmap of points, else what plans in this kind of world."""
+    if not wants_points(plan):
+        return default_planner(request.world, improve=plan.improve)
+    points = draw_points(plan, _n(plan), request.world.space.cube_dim)[0]
+    return PRM(points, rule=chosen_rule(plan), **of_prm)
 
 
 def wants_points(plan: PlanOptions) -> bool:
@@ -58,37 +69,30 @@ def chosen_budget(plan: PlanOptions) -> Budget:
         raise InvalidValue("--improve goes without points: a roadmap of exactly so many has one best path")
     if plan.time is not None:
         return Budget(seconds=require_positive("time", plan.time))
-    return Budget() if wants_points(plan) else Budget(seconds=SECONDS)
-
-
-def planned_points(plan: PlanOptions, d: int) -> PointSet:
-    """Draw the set of points in d dimensions that was asked for."""
-    return draw_points(plan, _n(plan), d)
+    return Budget(seconds=PRM.seconds if wants_points(plan) else RRTConnect.seconds)
 
 
 def _n(plan: PlanOptions) -> int:
     return DEFAULT_N if plan.n is None else plan.n
 
 
-def load_compiled_code(
-    world: World,
-    start: npt.ArrayLike,
-    goals: npt.ArrayLike,
-    points: PointSet | None,
-    rule: Rule,
-    search: str = "full",
-) -> None:
+def load_compiled_code(request: Request, planner: Planner) -> None:
     """Plan once for nothing, with a few of the points: else the times would be those of loading compiled code."""
-    if points is None:
-        roadmap.find_path(world, start, start, budget=Budget(samples=1))
+    world = request.world
+    if not isinstance(planner, PRM):
+        stay = Request(world, request.start, request.start[np.newaxis])
+        solve(stay, None, Wishes(Budget(samples=1)))
         return
-    few = PointSet(points.points[:_FEW])
-    roadmap.plan(world, start, goals, few, rule=rule, search=search)
-    stay = np.array([start, start], dtype=np.float64)
+    assert isinstance(planner.points, PointSet)
+    few = PRM(
+        PointSet(planner.points.points[:_FEW]), rule=rule_of(planner, world.space), search=planner.search
+    )
+    solve(Request(world, request.start, request.goals), few, Wishes(Budget()))
+    still = np.stack([request.start, request.start])
     if isinstance(world, Rechecks):
-        world.recheck(stay)
-        if isinstance(world, ConnectsItself):
-            world.shorten(stay)
+        world.recheck(still)
+        if (connector := connector_of(world)) is not None:
+            connector.smooth(world, still)
 
 
 def output_files(

@@ -11,9 +11,10 @@ import numpy as np
 
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
-from evenroad.arms import ArmQuery, mesh_check
 from evenroad.cli.plan import PlanArm
 from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.planning.arm_request import mesh_check
+from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult
 from evenroad.robot.straight import Straight
 from evenroad.robot.upright import Upright
@@ -55,7 +56,7 @@ def _remove_earlier(plan: PlanArm) -> None:
 
 
 def trajectory_rows(
-    plan: PlanArm, query: ArmQuery, result: PlanResult, ways: tuple[Straight | None, Upright | None]
+    plan: PlanArm, request: Request, result: PlanResult, ways: tuple[Straight | None, Upright | None]
 ) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:
     """Write the trajectory of a solved plan; return rows for the table, and what the record says of it."""
     if not plan.trajectory:
@@ -67,7 +68,7 @@ def trajectory_rows(
     from evenroad.trajectory import arm_trajectory, limits_of
     from evenroad.trajectory.files import save_trajectories
 
-    world, tip = query.world, query.ends.tip
+    world, tip = request.world, request.tip
     straight, upright = (None if way is None else replace(way, tip=way.tip or tip) for way in ways)
     joints = plan.controller_joints
     order = None if joints is None else [*map(str.strip, joints.split(","))]
@@ -83,7 +84,7 @@ def trajectory_rows(
             rounded_by_controller=any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory),
             ways=(straight, upright),  # type: ignore[arg-type]
         )
-        meshes = mesh_check(query, trajectory.positions)
+        meshes = mesh_check(request, trajectory.positions)
         if meshes is not None and meshes.verdict == "in collision":
             raise NotAvailable(
                 "the trajectory is free for the robot's capsules, but not for the shapes that they stand for:"

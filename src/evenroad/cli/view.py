@@ -11,11 +11,13 @@ import tyro
 
 from evenroad._arrays import Floats
 from evenroad._files import require_writable_folder
-from evenroad.arms import ArmPlanner, ArmQuery, arm_query, plan_query
 from evenroad.cli.plan import RobotOptions
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import load_plan
-from evenroad.points import draw
+from evenroad.planning import PRM
+from evenroad.planning.arm_request import arm_request
+from evenroad.planning.plan import Wishes, solve
+from evenroad.planning.request import Reading, Request
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.robot import find_robot, load_scene
 from evenroad.robot.goals import Goals
@@ -65,23 +67,23 @@ class View(RobotOptions):
             if self.gif.suffix.lower() != ".gif":
                 raise InvalidValue(f"--gif must name a .gif, got {str(self.gif)!r}")
             require_writable_folder(self.gif)
-        query, result = self._query()
+        request, result = self._request()
         if self.gif is not None:
             from evenroad.viz.arm import save_arm_gif
 
-            save_arm_gif(self.gif, result, query.world)
+            save_arm_gif(self.gif, result, request.world)
             print(f"wrote {self.gif}")
             return 0
         from evenroad.viz.page import ArmPage
 
         def plan(start: Floats, goal: Floats) -> PlanResult:
             goals = goal[np.newaxis]
-            return self._planned(replace(query, start=start, goals=goals, given=Goals(goals, ("",))))
+            return self._planned(replace(request, start=start, goals=goals, given=Goals(goals, ("",))))
 
-        file = query.source
+        file = request.source
         if file is None and self.robot is not None:
             file = RobotFile(find_robot(self.robot)[0])
-        page = ArmPage(query.world, result, plan, file, port=self.port)
+        page = ArmPage(request.world, result, plan, file, port=self.port)
         print(f"{page.address}   (Ctrl-C ends it)", flush=True)
         try:
             page.serve()
@@ -89,14 +91,14 @@ class View(RobotOptions):
             page.close()
         return 0
 
-    def _query(self) -> tuple[ArmQuery, PlanResult]:
+    def _request(self) -> tuple[Request, PlanResult]:
         options = self.options()
         if self.world.suffix.lower() != ".json":
             if self.robot is None:
                 raise InvalidValue("give --robot, the arm that moves in this scene")
             goal = self.start if self.goal is None else self.goal
-            query = arm_query(self.robot, self.world, self.start, goal, **options)
-            return query, self._planned(query)
+            request = arm_request(self.robot, self.world, self.start, goal, Reading(), **options)
+            return request, self._planned(request)
         result, asked = load_plan(self.world)
         robot: Any = self.robot or asked.get("robot")
         kept = asked.get("roadmap")
@@ -111,14 +113,16 @@ class View(RobotOptions):
             roadmap = load_robot_roadmap(kept)
             scene = day_and_all(roadmap.cell, scene)[1]
             robot, options = (roadmap.robot, {}) if robot is None else (robot, options)
-        query = arm_query(robot, scene, result.start, list(result.goals), held=asked["held"], **options)
+        request = arm_request(
+            robot, scene, result.start, list(result.goals), Reading(), held=asked["held"], **options
+        )
         if self.n is not None:
-            result = self._planned(query)
-        return query, result
+            result = self._planned(request)
+        return request, result
 
-    def _planned(self, query: ArmQuery) -> PlanResult:
-        points = None if self.n is None else draw("even", self.n, query.world.space.cube_dim)
-        return plan_query(query, ArmPlanner(Budget(seconds=SECONDS), points))
+    def _planned(self, request: Request) -> PlanResult:
+        planner = None if self.n is None else PRM(self.n)
+        return solve(request, planner, Wishes(Budget(seconds=SECONDS)))
 
 
 def _require_sound(file: Path, asked: dict[str, Any]) -> None:

@@ -13,24 +13,14 @@ from evenroad.errors import EvenroadError
 from evenroad.points.measures.rank_one import least_neighbours
 from evenroad.points.measures.short_vectors import MOST_AXES, lattice_basis
 from evenroad.roadmap.attempt import Attempt, Searched
+from evenroad.roadmap.connector import Connection
 from evenroad.roadmap.neighbours import flat_metric
-from evenroad.roadmap.result import PlanResult, SearchedGraph, Status, require_ends
+from evenroad.roadmap.result import PlanResult, SearchedGraph, Status, make_result
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
-from evenroad.roadmap.shortcut import shortcut, shorten
+from evenroad.roadmap.shortcut import shortcut
 from evenroad.space import Space
 from evenroad.space.path import path_length
-from evenroad.world import (
-    Apart,
-    Connection,
-    Explains,
-    ExplainsStarts,
-    Rechecks,
-    Separates,
-    ShowsApart,
-    World,
-)
-
-PROVED = "proved: there is no path; start and goal lie in two components of the free space"
+from evenroad.world import Explains, ExplainsStarts, Rechecks, ShowsApart, World
 
 
 def refusal(attempt: Attempt) -> PlanResult | None:
@@ -81,8 +71,8 @@ def answer(
         nodes, q = best.found.nodes, best.states.configurations
         goal = attempt.goals[nodes[-1] - len(q)]
         # A disk's paths along a roadmap keep the bits that published rows have.
-        by_world = attempt.query.edge_cost is None and isinstance(attempt.world, Rechecks)
-        result = _with_path(attempt, q[nodes], best.cost, int(goal), counts, by_world=by_world)
+        by_connector = attempt.query.edge_cost is None and isinstance(attempt.world, Rechecks)
+        result = _with_path(attempt, q[nodes], best.cost, int(goal), counts, by_connector=by_connector)
         return replace(result, roadmap=graph)
     so_far, missing = _reach(attempt, searched, counts)
     made = f"(n={points}, {attempt.rule})"
@@ -102,14 +92,14 @@ def answer(
 
 
 def connected(attempt: Attempt, connection: Connection) -> PlanResult:
-    """Return the result of a world that found a path by itself."""
+    """Return the result of a connector that found a path."""
     path, goal = connection.path, int(attempt.goals[connection.goal])
     length = path_length(path, attempt.world.space)
-    return _with_path(attempt, path, length, goal, _counts_of(attempt, connection), by_world=True)
+    return _with_path(attempt, path, length, goal, _counts_of(attempt, connection), by_connector=True)
 
 
 def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
-    """Return the result of a world that found no path by itself within the budget."""
+    """Return the result of a connector that found no path within the budget."""
     message = (
         f"no path within {attempt.query.budget.text(samples=False)}: {connection.nodes} nodes were grown and"
         f" {connection.motions} motions checked; give it more time"
@@ -124,15 +114,10 @@ def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None
     """
     world, query = attempt.world, attempt.query
     with attempt.watch("proof"):
-        if isinstance(world, ShowsApart):
-            ask = query.apart or (lambda start, goals, quick: world.apart(start, goals, quickly=quick))
-            found = ask(query.start, query.goals, quickly)
-        elif isinstance(world, Separates):
-            free = query.goals[attempt.goals]
-            joined = any(world.may_connect(query.start, goal) for goal in free)
-            found = None if joined else Apart(PROVED, proved=True)
-        else:
+        if not isinstance(world, ShowsApart):
             return None
+        prove = query.apart or (lambda start, goals, quick: world.apart(start, goals, quickly=quick))
+        found = prove(query.start, query.goals, quickly)
     if found is None:
         return None
     status = Status.NOT_CONNECTED if found.proved else Status.BUDGET_SPENT
@@ -148,20 +133,22 @@ def _counts_of(attempt: Attempt, connection: Connection) -> dict[str, int]:
 
 
 def _with_path(
-    attempt: Attempt, raw: Floats, raw_cost: float, goal: int, counts: dict[str, int], *, by_world: bool
+    attempt: Attempt, raw: Floats, raw_cost: float, goal: int, counts: dict[str, int], *, by_connector: bool
 ) -> PlanResult:
-    """Return the result with a path, shortened if wanted: by the world itself where it can and may."""
+    """Return the result with a path, smoothed if wanted: by the connector where it can and may."""
     world, query = attempt.world, attempt.query
     path, length, cost = raw, raw_cost, query.edge_cost
     if query.shorten:
         with attempt.watch("shortcut"):
-            way = shorten if by_world else shortcut
-            path, counts["shortcut_motions"] = way(world, raw, cost, attempt.deadline)
+            if by_connector and query.connector is not None:
+                path, counts["shortcut_motions"] = query.connector.smooth(world, raw)
+            else:
+                path, counts["shortcut_motions"] = shortcut(world, raw, cost, attempt.deadline)
             measure = world.space.distance if cost is None else cost
             length = float(np.sum(measure(path[:-1], path[1:])))
     named = "length" if cost is None else "cost"
     to = f" to goal {goal}" if len(query.goals) > 1 else ""
-    result = _result(
+    return _result(
         attempt,
         Status.SOLVED,
         f"path of {named} {length:.6g} with {len(path)} waypoints{to}",
@@ -173,7 +160,6 @@ def _with_path(
         milestone_cost=raw_cost,
         counts=counts,
     )
-    return require_ends(world.space, result)
 
 
 def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tuple[str, str]:
@@ -236,19 +222,15 @@ def _axis_scales(space: Space) -> Floats | None:
 
 
 def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> PlanResult:
-    return PlanResult(
-        status=status,
-        message=message,
-        start=attempt.query.start,
-        goals=attempt.query.goals,
+    query = attempt.query
+    named = dict(
         origin=attempt.origin,
         rule=attempt.rule,
-        links=attempt.query.links,
+        links=query.links,
         planner=attempt.planner,
         timings=attempt.watch.seconds,
-        world=attempt.world,
-        **more,
     )
+    return make_result(attempt.world, query.start, query.goals, status, message, **named, **more)
 
 
 def _searched_graph(states: EdgeStates, ends: int) -> SearchedGraph:

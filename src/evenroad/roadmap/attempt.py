@@ -10,6 +10,7 @@ from evenroad._arrays import Bools, Floats, Ints32
 from evenroad._clock import now
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch
+from evenroad.roadmap.connector import Connection, Connector
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.query import BOUND, Query, edge_costs
 from evenroad.roadmap.rules import Rule
@@ -27,7 +28,7 @@ from evenroad.roadmap.search import (
     length_along,
     search_problem,
 )
-from evenroad.world import Connection, ConnectsAnew, ConnectsItself, World
+from evenroad.world import World
 
 NO_LIMIT = 2**31 - 1
 """Motions that nobody asks for."""
@@ -135,12 +136,11 @@ class Attempt:
             return Searched(states, found, length_along(edge_costs(space, q, edges[found.edges], cost)))
 
     def connect(
-        self, world: ConnectsItself, variant: int = 0, most: int = NO_LIMIT, goal: int | None = None
+        self, connector: Connector, variant: int = 0, most: int = NO_LIMIT, goal: int | None = None
     ) -> Connection:
-        """Let the world join the start to one of the free goals, or to this one, within what is left of the budget.
+        """Join the start to one of the free goals, or to this one, within what is left of the budget.
 
-        A variant >= 1 has it do so in another way; only a world that is `ConnectsAnew` can.  It gives up after `most`
-        motions.
+        A variant >= 1 does so in another way, where the connector `varies`.  It gives up after `most` motions.
         """
         start, goals, motions = self.query.start, self.query.goals[self.goals], self.query.budget.motions
         goals = goals if goal is None else goals[goal : goal + 1]
@@ -148,10 +148,8 @@ class Attempt:
             most = min(most, max(motions - self.motions_checked, 1))
         seconds = min(max(self.deadline - now(), 1e-3), _LONG)
         with self.watch("search"):
-            if variant and isinstance(world, ConnectsAnew):
-                found = world.connect_anew(start, goals, variant=variant, most_motions=most, seconds=seconds)
-            else:
-                found = world.connect(start, goals, most_motions=most, seconds=seconds)
+            limits = dict(variant=variant, most_motions=most, seconds=seconds)
+            found = connector.connect(self.world, start, goals, **limits)  # type: ignore[arg-type]
         self.motions_checked += found.motions
         return found if goal is None or found.goal < 0 else replace(found, goal=goal)
 

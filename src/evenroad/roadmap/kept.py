@@ -17,8 +17,10 @@ from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import answer, connected, refusal, shown_apart
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.connector import Connector
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
-from evenroad.roadmap.query import BOUND, LINKS, EdgeCost, Query, as_points, edge_costs, read_places
+from evenroad.roadmap.points_of import as_points
+from evenroad.roadmap.query import BOUND, LINKS, EdgeCost, Query, edge_costs, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import KNearest, Rule
 from evenroad.roadmap.search import (
@@ -32,7 +34,7 @@ from evenroad.roadmap.search import (
     SearchProblem,
 )
 from evenroad.space import Space
-from evenroad.world import ConnectsItself, World
+from evenroad.world import World
 
 
 class Prices(NamedTuple):
@@ -189,7 +191,7 @@ class WorldRoadmap:
         shorten: bool = True,
         keep_graph: bool = False,
         links: int | None = LINKS,
-        connect: bool = True,
+        connector: Connector | None = None,
         budget: Budget | None = None,
     ) -> PlanResult:
         """Find a short free path from start to goal; what is known is never asked again.
@@ -202,8 +204,8 @@ class WorldRoadmap:
         ----------
         start, goal, search, success_only, shorten, links, budget
             As in :func:`plan`, whose errors these are; by default lazily.
-        connect : bool
-            Let a world that connects itself look for a path where the roadmap has none; not with an `edge_cost`.
+        connector : Connector, optional
+            Smooths the path, and looks for one where the roadmap has none; not with an `edge_cost`.
         keep_graph : bool
             Put the searched graph into the result, for pictures.
         """
@@ -215,6 +217,7 @@ class WorldRoadmap:
             edge_cost=self._edge_cost,
             links=links,
             budget=budget or Budget(),
+            connector=connector,
         )
         roadmap = self.roadmap
         rule, planner = f"{roadmap.rule} of all points", query.planner(self.lazy_milestones)
@@ -225,23 +228,22 @@ class WorldRoadmap:
             with attempt.watch("neighbours"):
                 states, problem = self._link(attempt)
             searched = attempt.search(query.find, states, problem)
-            if connect and searched.cost is None and not attempt.spent:
-                joined = self._connect(attempt, states)
+            if connector is not None and searched.cost is None and not attempt.spent:
+                joined = self._connect(attempt, states, connector)
                 if joined is not None:
                     return joined
             return answer(attempt, searched, roadmap.points.n, keep_graph=keep_graph)
 
-    def _connect(self, attempt: Attempt, states: EdgeStates) -> PlanResult | None:
-        """Return the result of the world's own planner, or None where there is none, or it finds nothing."""
-        world = self.world
-        if self._edge_cost is not None or not isinstance(world, ConnectsItself) or shown_apart(attempt):
+    def _connect(self, attempt: Attempt, states: EdgeStates, connector: Connector) -> PlanResult | None:
+        """Return the result of a connector, or None where it finds nothing."""
+        if self._edge_cost is not None or shown_apart(attempt):
             return None
         attempt.motions_checked += states.motions_checked
-        connection = attempt.connect(world)
+        connection = attempt.connect(connector)
         if connection.goal < 0:
             attempt.spent = True
             return None
-        attempt.planner = f"{attempt.planner}, then {world.planner}"
+        attempt.planner = f"{attempt.planner}, then {connector.planner}"
         result = connected(attempt, connection)
         return replace(result, counts=result.counts | {"edges_checked": attempt.motions_checked})
 

@@ -12,16 +12,11 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints32
 from evenroad._checks import require_count, require_known
-from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
-from evenroad.points.pointset import PointSet
-from evenroad.points.samplers import make_sampler
-from evenroad.points.samplers.even import DRAWN_IN_FROM, drawn_in
-from evenroad.points.samplers.poses import Sliced
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.rules import Rule
+from evenroad.roadmap.connector import Connector
 from evenroad.roadmap.search import FINDERS, Finder, find_any
-from evenroad.space import SO3, BoxSpace, Product, Space
+from evenroad.space import Space
 from evenroad.world import Apart
 
 LINKS = 100
@@ -34,9 +29,6 @@ A start in a narrow place sees few of its nearest milestones.  On shelves, 100 l
 FEW = 256
 """Up to so many milestones, start and goals are linked to all."""
 
-
-SPARSE = 6
-"""Neighbours up to which points are chosen for being connected, more than for reaching everywhere."""
 
 EdgeCost: TypeAlias = Callable[[Floats, Floats], Floats]
 """Costs of the motions between the rows of two (m, dim) arrays, (m,); the same both ways, >= their lengths."""
@@ -51,8 +43,8 @@ AsksApart: TypeAlias = Callable[[Floats, Floats, bool], Apart | None]
 class Query:
     """From where to where, and how; never changed.
 
-    `start`, (dim,), and `goals`, (g, dim), are what :func:`read_places` gives; the others are as in :func:`plan`, and
-    `apart` is as in :func:`find_path`.
+    `start`, (dim,), and `goals`, (g, dim), are what :func:`read_places` gives.  `connector` is what plans and smooths
+    in this kind of world where there is something; the others are as in :class:`evenroad.PRM`.
     UnknownName if there is no such search.
     """
 
@@ -66,6 +58,7 @@ class Query:
     links: int | None = None
     budget: Budget = field(default_factory=Budget)
     apart: AsksApart | None = None
+    connector: Connector | None = None
 
     def __post_init__(self) -> None:
         require_known("search", self.search, FINDERS)
@@ -109,36 +102,6 @@ def read_places(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) -> tupl
         several = f"or an array (g, {dim}) of g >= 1 goals"
         raise InvalidValue(f"goal must be {dim} finite numbers, {several}, got {goal!r}")
     return first, goals.reshape(-1, dim)
-
-
-def as_points(points: PointSet | int, space: Space, rule: Rule | None = None) -> PointSet:
-    """Return points of the space's cube: those given, or so many for the rule; InvalidValue for anything else."""
-    if not isinstance(points, PointSet):
-        if isinstance(points, bool) or not isinstance(points, int | np.integer):
-            raise InvalidValue(
-                "points must be a PointSet, such as draw('even', 512, 2), or how many points to draw,"
-                f" got {points!r}"
-            )
-        points = even_points(require_count("points", points), space, rule)
-    if points.d != space.cube_dim:
-        raise InvalidValue(f"the points have d={points.d}, the space has {space.cube_dim} dimensions")
-    return points
-
-
-def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0) -> PointSet:
-    """Return n points of the space's cube, as planners take them: `even`, but others in SE(3) and for sparse roadmaps.
-
-    In SE(3) evenness is worth nothing: there they are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
-    points.  In a box of seven dimensions and more, for a rule of at most 6 neighbours, they are drawn in to the middle.
-    """
-    d = space.cube_dim
-    k = None if rule is None else rule.reach(n, space).k
-    sparse = k is not None and k <= SPARSE
-    parts = space.parts if isinstance(space, Product) else ()
-    if [(type(part), part.dim) for part in parts] == [(BoxSpace, 3), (SO3, 4)]:
-        return (Sliced() if sparse else make_sampler("sobol")).draw(n, d, rng=rng)
-    points = make_sampler("even").draw(n, d, rng=rng)
-    return drawn_in(points) if sparse and d >= DRAWN_IN_FROM and isinstance(space, BoxSpace) else points
 
 
 def _finite(value: npt.ArrayLike) -> Floats:

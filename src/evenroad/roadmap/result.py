@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from evenroad.roadmap.notebook import as_html
 from evenroad.roadmap.result_methods import ResultMethods
 from evenroad.space import Space
 from evenroad.world import MeasuresPaths, World
+
+NO_POINTS = Origin(family="none", method="no points")
+"""The origin of a result whose planner draws no points."""
 
 NEAR = 1e-6
 """An end of a path that is no farther from what was asked than this, for numbers of 1, is there but for rounding."""
@@ -183,8 +187,20 @@ class PlanResult(ResultMethods):
         return as_html(rows, self.path)
 
 
+def make_result(
+    world: World | None, start: Floats, goals: Floats, status: Status, message: str, **more: Any
+) -> PlanResult:
+    """Return the answer to a query: every result is made here, and a path leads from its start to its goal.
+
+    `more` are attributes of the result; by default there are no points, no rule and no planner.
+    """
+    named: dict[str, Any] = {"origin": NO_POINTS, "rule": "none", "planner": "none"} | more
+    result = PlanResult(status=status, message=message, start=start, goals=goals, world=world, **named)
+    return result if world is None else require_ends(world.space, result)
+
+
 def require_ends(space: Space, result: PlanResult) -> PlanResult:
-    """Return a result whose paths lead from its start to its goal: every one that has a path is made with this.
+    """Return a result whose paths lead from its start to its goal.
 
     Coordinates that wrap may differ by whole turns.  AssertionError for anything else, which is evenroad's own fault:
     whatever found the path, a robot is not to drive it.

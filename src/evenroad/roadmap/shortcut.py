@@ -1,4 +1,4 @@
-"""Shortening of a path: by the world itself where it can, else by shortcuts that the world calls free."""
+"""Shortcutting: straighten a path with motions that the world itself calls free."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from evenroad.roadmap.query import EdgeCost
 from evenroad.roadmap.search import confirmed, shortest_path
 from evenroad.space import Space
 from evenroad.space.path import motion_lengths, subdivide
-from evenroad.world import Shortens, World
+from evenroad.world import World
 
 Indices: TypeAlias = npt.NDArray[np.integer]
 SPREADS = (32, 96)
@@ -28,18 +28,6 @@ PATIENCE = 4
 """After every so many motions that fail a strict check in a round, their neighbours are given up one step further."""
 WORTH_WHILE = 1e-2
 """A round that shortens the path by less than this share is the last one with so many waypoints."""
-
-
-def shorten(
-    world: World, path: Floats, cost: EdgeCost | None = None, deadline: float = math.inf
-) -> tuple[Floats, int]:
-    """Return a path that does not cost more, and how many motions were checked: in compiled code where the world can.
-
-    Maps and arms shorten by length; other costs and other worlds are left to :func:`shortcut`.
-    """
-    if cost is None and isinstance(world, Shortens):
-        return world.shorten(path)
-    return shortcut(world, path, cost, deadline)
 
 
 def shortcut(

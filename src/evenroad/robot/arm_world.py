@@ -31,15 +31,13 @@ from evenroad.robot.robot import Robot, within_scene
 from evenroad.robot.scene import Scene, limits_in_words
 from evenroad.robot.separated import apart
 from evenroad.robot.states import as_configuration
-from evenroad.robot.tree_sequences import shifted_cube_points
-from evenroad.robot.trees import MOST_MOTIONS, SECONDS, connect, shorten
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import SLACK
 from evenroad.world.bisection import require_few_segments
 from evenroad.world.clearance import largest_kept
 from evenroad.world.one_or_many import OneOrMany, one_or_many
-from evenroad.world.protocol import Apart, Connection
+from evenroad.world.protocol import Apart
 
 MOST_CLEARANCE = 1.0
 """No robot of this world is asked to keep farther from obstacles [m]."""
@@ -256,33 +254,6 @@ class ArmWorld(OneOrMany):
         )
         return proved
 
-    @property
-    def planner(self) -> str:
-        """How `connect` plans, in results."""
-        return "trees"
-
-    def connect(
-        self, start: Floats, goals: Floats, *, most_motions: int = MOST_MOTIONS, seconds: float = SECONDS
-    ) -> Connection:
-        """Join a start, (dim,), to one of the goals, (g, dim), by motions that are proved free.
-
-        See :func:`evenroad.robot.trees.connect`.
-        """
-        return connect(self, start, goals, most_motions=most_motions, seconds=seconds)
-
-    def connect_anew(
-        self,
-        start: Floats,
-        goals: Floats,
-        *,
-        variant: int,
-        most_motions: int = MOST_MOTIONS,
-        seconds: float = SECONDS,
-    ) -> Connection:
-        """As `connect`, with trees that another even sequence drives for each variant >= 1."""
-        sequence = shifted_cube_points(self._space.dim, variant)
-        return connect(self, start, goals, most_motions=most_motions, seconds=seconds, sequence=sequence)
-
     def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
         """Return what keeps the start, (dim,), from all goals, (g, dim); None says nothing.
 
@@ -300,11 +271,6 @@ class ArmWorld(OneOrMany):
 
         return largest_kept(keeps, self.clearance, MOST_CLEARANCE, 1e-4)
 
-    def may_connect(self, a: Floats, b: Floats) -> bool:
-        """Return False where it is proved that no path joins two free places, (dim,) each; True says nothing."""
-        found = self.apart(a, np.atleast_2d(b))
-        return found is None or not found.proved
-
     @property
     def margin(self) -> float:
         """Bodies nearer to each other than this may touch by single precision [m]."""
@@ -316,13 +282,6 @@ class ArmWorld(OneOrMany):
         """Return what tells of configurations, (n, dim), which are free for a robot with other bodies, or a group."""
         # Ranges are those of the robot.
         return replace(self, robot=robot, scene=replace(self.scene, limits={})).valid
-
-    def shorten(self, path: Floats) -> tuple[Floats, int]:
-        """Return a path that is not longer and whose new motions are proved free, and how many were looked at.
-
-        See :func:`evenroad.robot.trees.shorten`.
-        """
-        return shorten(self, path)
 
     def fingerprint(self) -> str:
         """Return a text that two worlds share whose robot, scene, resolution and clearance are the same."""

@@ -24,7 +24,6 @@ from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.trees import shorten
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 
@@ -65,14 +64,6 @@ class CertifiedWorld:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,)."""
         waypoints = as_batch("path", path, self.space.dim)
         return self.motion_valid(waypoints[:-1], waypoints[1:])
-
-    def shorten(self, path: Floats) -> tuple[Floats, int]:
-        """Return a path that is not longer and proved free here, and how many motions were looked at.
-
-        By :func:`evenroad.robot.trees.shorten`, which keeps 1 mm away; with a larger `tolerance` the path may stay.
-        """
-        shorter, motions = shorten(self.world, path)
-        return (shorter if self.recheck(shorter).all() else path), motions
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of the world inside and the tolerance: equal for worlds of the same verdicts."""

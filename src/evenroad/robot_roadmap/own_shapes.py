@@ -89,10 +89,6 @@ class OwnShapesWorld:
         """Return which motions, (m, dim) each, are free: (m,)."""
         return self.motion_certified(a, b, RECHECK_TOLERANCE)
 
-    def shorten(self, path: Floats) -> tuple[Floats, int]:
-        """Return a path that is not longer, its new motions proved for the capsules, and how many were looked at."""
-        return self.capsules.shorten(path)
-
     def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free."""
         if self._clouds is not None and not self._clouds.valid(q[np.newaxis])[0]:

@@ -10,8 +10,8 @@ import numpy.typing as npt
 from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
 from evenroad.roadmap import PlanResult, Status
-from evenroad.roadmap.find_path import NO_POINTS
 from evenroad.roadmap.query import read_places
+from evenroad.roadmap.result import NO_POINTS
 from evenroad.robot import ArmWorld, configuration
 from evenroad.robot.goals import Goals, goals_of
 from evenroad.robot.pose_goal import PoseGoal

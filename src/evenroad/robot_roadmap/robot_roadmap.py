@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from evenroad.geometry.shapes import Shape
+from evenroad.planning.planner import Problem
+from evenroad.planning.trees import RRTConnect
 from evenroad.roadmap import Budget, PlanResult
-from evenroad.roadmap.find_path import find_path
 from evenroad.robot import Scene
 from evenroad.robot_roadmap.known_motions import KnownMotions, world_of
 from evenroad.robot_roadmap.places import Goal, Place, read_ends
@@ -60,4 +61,6 @@ class RobotRoadmap(KnownMotions):
         if isinstance(ends, PlanResult):
             return ends
         first, given = ends
-        return find_path(world, first, given.configurations, budget=budget, apart=given.apart(world))
+        budget = budget or Budget(seconds=RRTConnect.seconds)
+        problem = Problem(world, first, given.configurations, budget=budget, apart=given.apart(world))
+        return RRTConnect().solve(problem)

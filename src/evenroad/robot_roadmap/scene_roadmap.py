@@ -13,14 +13,17 @@ from evenroad._checks import counted, require_count
 from evenroad._clock import now
 from evenroad._shared import OwnLock, one_at_a_time
 from evenroad.geometry.shapes import Shape
+from evenroad.planning.arm_trees import tighten
+from evenroad.planning.connectors import ArmTrees
+from evenroad.planning.hemmed_in import with_reasons
+from evenroad.planning.planner import Problem
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
-from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
+from evenroad.roadmap.connector import Connection
 from evenroad.roadmap.query import Query
-from evenroad.roadmap.result import require_ends
+from evenroad.roadmap.result import NO_POINTS, require_ends
 from evenroad.robot import ArmWorld, Robot, Scene
-from evenroad.robot.trees import tighten
 from evenroad.robot_roadmap.ask import Asked, Checks, ask, prepare
 from evenroad.robot_roadmap.cell import left_to_check
 from evenroad.robot_roadmap.known_motions import KnownMotions, world_of
@@ -31,9 +34,11 @@ from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.search_memory import CUT_OFF, NODES, NONE
 from evenroad.robot_roadmap.ways_out import learn_ways_out
 from evenroad.space.path import path_length
-from evenroad.world.protocol import Connection
 
 PLANNER = "robot roadmap"
+
+SECONDS = 5.0
+"""Wall time of a query whose budget is not given."""
 
 SHARE = 0.5
 """Of the time, for the roadmap; the rest is the trees', where it does not lead to the goal."""
@@ -187,6 +192,10 @@ class SceneRoadmap:
     def _size(self) -> int:
         return len(self.roadmap.milestones)
 
+    def solve(self, problem: Problem) -> PlanResult:
+        """Plan along the roadmap, in its world, as planners of :func:`evenroad.plan` do."""
+        return self.plan(problem.start, problem.goals, budget=problem.budget, shorten=problem.smooth)
+
     @one_at_a_time
     def plan(
         self,
@@ -251,7 +260,7 @@ class SceneRoadmap:
         if self._own is not None:
             budget = budget.rest(deadline, asked.motions)
             return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
-        query = Query(first, goals, shorten=shorten, budget=budget)
+        query = Query(first, goals, shorten=shorten, budget=budget, connector=ArmTrees(self.world))
         attempt = Attempt(self._asked[0], query, NO_POINTS, "none", PLANNER)
         attempt.deadline, attempt.motions_checked = deadline, asked.motions
         attempt.watch.seconds["search"] = now() - began
@@ -291,7 +300,7 @@ class SceneRoadmap:
     def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
         """Return what trees find, and learn it."""
         attempt.planner = f"{PLANNER}, then trees"
-        grown = attempt.connect(self.world)
+        grown = attempt.connect(ArmTrees(self.world))
         if grown.goal >= 0:
             self._graph.learn(grown.path)
         checked = asked.milestones + grown.configurations, asked.motions + grown.motions

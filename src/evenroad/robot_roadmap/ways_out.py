@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from evenroad._arrays import Floats
 from evenroad._clock import now
+from evenroad.planning.arm_trees import connect, shorten
 from evenroad.robot import ArmWorld
-from evenroad.robot.trees import connect, shorten
 from evenroad.robot_roadmap.known_graph import KnownGraph
 
 AROUND, ONWARD = 32, 4.0

@@ -13,10 +13,10 @@ from PIL import ImageColor
 from evenroad._arrays import Floats
 from evenroad._checks import require_extra
 from evenroad.geometry.shapes import PointCloud
+from evenroad.planning.arm_trees import grown_trees
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld, tip_links
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.trees import grown_trees
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import place_at
 from evenroad.viz import style

@@ -6,14 +6,9 @@ from evenroad.world.gridmap import GridMap as GridMap
 from evenroad.world.gridmap import MapFrame as MapFrame
 from evenroad.world.gridmap import load_map as load_map
 from evenroad.world.protocol import Apart as Apart
-from evenroad.world.protocol import Connection as Connection
-from evenroad.world.protocol import ConnectsAnew as ConnectsAnew
-from evenroad.world.protocol import ConnectsItself as ConnectsItself
 from evenroad.world.protocol import Explains as Explains
 from evenroad.world.protocol import ExplainsStarts as ExplainsStarts
 from evenroad.world.protocol import MeasuresPaths as MeasuresPaths
 from evenroad.world.protocol import Rechecks as Rechecks
-from evenroad.world.protocol import Separates as Separates
-from evenroad.world.protocol import Shortens as Shortens
 from evenroad.world.protocol import ShowsApart as ShowsApart
 from evenroad.world.protocol import World as World

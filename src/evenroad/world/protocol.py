@@ -59,66 +59,12 @@ class Rechecks(Protocol):
         """Return which motions of a path, (p, dim), are free by the strict check: (p - 1,)."""
 
 
-@dataclass(frozen=True, eq=False)
-class Connection:
-    """What a world that plans by itself found between a start and its goals."""
-
-    path: Floats
-    """Waypoints from the start to one goal, (p, dim), every motion free; (0, dim) when there is none."""
-    goal: int
-    """Which of the goals the path ends at; -1 when there is none."""
-    nodes: int
-    """Grown."""
-    configurations: int
-    """Checked."""
-    motions: int
-    """Checked."""
-
-
 @runtime_checkable
 class MeasuresPaths(Protocol):
     """A world that can tell how near a path comes to an obstacle."""
 
     def path_clearance(self, path: Floats) -> float | None:
         """Return how far a path, (p, dim), stays from all obstacles, never more than it does; None says nothing."""
-
-
-@runtime_checkable
-class Shortens(Protocol):
-    """A world with a compiled way of making paths shorter."""
-
-    def shorten(self, path: Floats) -> tuple[Floats, int]:
-        """Return a path that is not longer and passes the strict check, and how many motions were checked."""
-
-
-@runtime_checkable
-class ConnectsItself(Shortens, Protocol):
-    """A world with a compiled planner of its own; planners ask it before they build a roadmap."""
-
-    @property
-    def planner(self) -> str:
-        """What results call this planner."""
-
-    def connect(self, start: Floats, goals: Floats, *, most_motions: int, seconds: float) -> Connection:
-        """Join the start, (dim,), to the first of the goals, (g, dim), that can be reached within the budget."""
-
-
-@runtime_checkable
-class ConnectsAnew(ConnectsItself, Protocol):
-    """A world whose own planner finds other paths when it is asked again; a planner that improves asks it often."""
-
-    def connect_anew(
-        self, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float
-    ) -> Connection:
-        """As `connect`, planned in another way for each variant >= 1; the same one gives the same path."""
-
-
-@runtime_checkable
-class Separates(Protocol):
-    """A world that can prove that no path leads from one configuration to another."""
-
-    def may_connect(self, a: Floats, b: Floats) -> bool:
-        """Return False where it is proved that no path leads from `a` to `b`, (dim,) each; True says nothing."""
 
 
 @dataclass(frozen=True)

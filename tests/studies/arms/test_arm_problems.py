@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from evenroad.planning.arm_trees import connect
 from evenroad.robot import ArmWorld
 from evenroad_studies.arms.problems import (
     ARM_ROBOTS,
@@ -24,7 +25,7 @@ def test_a_problem_has_free_ends_that_no_straight_motion_joins_and_that_trees_do
     ends = np.stack([problem.start, problem.goal])
     assert problem.world.valid(ends).all()
     assert not problem.world.motion_valid(ends[:1], ends[1:])[0]
-    found = problem.world.connect(problem.start, problem.goal[np.newaxis])
+    found = connect(problem.world, problem.start, problem.goal[np.newaxis])
     assert found.goal == 0
     assert problem.world.recheck(found.path).all()
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evenroad.points import PointSet
-from evenroad.roadmap import plan, rule_named
+from evenroad.roadmap import rule_named
 from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld
 from evenroad.world.gridmap.shipped import load_maze
@@ -18,6 +18,7 @@ from evenroad_studies.bench.samplers import SAMPLERS, draw_set
 from evenroad_studies.bench.task import Problem, ProblemSource, Task
 from evenroad_studies.problems import PROBLEMS, source_named
 from evenroad_studies.worlds import Corridor
+from tests.plan_on import plan_on
 
 TASK = Task("corridor-2d-0.1", 0, "uniform", 256, "k=10 symmetrised", "full", 3, 7)
 
@@ -45,7 +46,7 @@ def test_a_task_gives_what_plan_gives_for_its_set():
     problem = source_named(TASK.problem).make(0)
     of_set, _ = np.random.SeedSequence(TASK.seed, spawn_key=(TASK.run,)).spawn(2)
     points, _ = draw_set(TASK.sampler, TASK.n, 2, TASK.run, np.random.default_rng(of_set))
-    result = plan(
+    result = plan_on(
         problem.world,
         problem.start,
         problem.goal,

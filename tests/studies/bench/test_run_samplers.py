@@ -9,7 +9,7 @@ from evenroad.points.bank import Bank
 from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.even import drawn_in
 from evenroad.roadmap import KNearest
-from evenroad.roadmap.query import even_points
+from evenroad.roadmap.points_of import even_points
 from evenroad.space import SE3, BoxSpace
 from evenroad_studies.bench.samplers import SAMPLERS, draw_set, why_not
 

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from evenroad.points import draw
-from evenroad.roadmap import KEarlier, KNearest, plan
+from evenroad.roadmap import KEarlier, KNearest
 from evenroad_studies.problems import source_named
 from evenroad_studies.problems.puzzles import cubicles, pillar, twistycool
 from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld
+from tests.plan_on import plan_on
 
 NAMES = ["cubicles", "twistycool", "cubicles-6d", "twistycool-6d"]
 
@@ -83,7 +84,7 @@ def test_the_plate_of_twistycool_is_between_start_and_goal():
 def test_a_path_through_the_window_is_found():
     problem = source_named("twistycool").make(0)
     points = draw("uniform", 1024, 6, rng=0)
-    result = plan(
+    result = plan_on(
         problem.world, problem.start, problem.goal, points, rule=KEarlier(10), links=None, shorten=False
     )
     assert result.solved
@@ -103,7 +104,7 @@ def test_the_goal_of_cubicles_has_no_way_in_but_from_below():
     closed = SolidWorld(world.space, world.body, [*world.obstacles, *holes], world.resolution)
     points = draw("halton", 3000, 6, rng=0)
     ways = [
-        plan(
+        plan_on(
             scene,
             problem.start,
             problem.goal,

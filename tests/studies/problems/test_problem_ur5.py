@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 from evenroad.points import draw
-from evenroad.roadmap import KNearest, plan
+from evenroad.roadmap import KNearest
 from evenroad_studies.problems import source_named
+from tests.plan_on import plan_on
 
 
 @pytest.fixture(autouse=True)
@@ -43,7 +44,7 @@ def test_the_share_of_free_configurations_is_that_of_the_published_rows():
 def test_the_problem_can_be_solved():
     problem = source_named("ur5-c").make(0)
     solved = [
-        plan(
+        plan_on(
             problem.world,
             problem.start,
             problem.goal,

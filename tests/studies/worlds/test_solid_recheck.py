@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.roadmap import plan
+from evenroad.planning import PRM, plan
 from evenroad.space import SE2, SE3, BoxSpace
 from evenroad.space.path import subdivide
 from evenroad.world import FunctionWorld
@@ -58,7 +58,7 @@ def test_paths_that_are_handed_out_are_free_between_states_shortened_or_not(worl
     q = q[world.valid(q)]
     solved = 0
     for start, goal in zip(q[0:8:2], q[1:8:2], strict=True):
-        result = plan(world, start, goal, 128)
+        result = plan(world, start, goal, PRM(128))
         if result.solved:
             solved += 1
             assert result.proof == "certified"

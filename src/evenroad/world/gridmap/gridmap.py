@@ -25,12 +25,11 @@ from evenroad.world.gridmap.kernel import (
     nearest_obstacle_points,
     points_are_free,
 )
-from evenroad.world.gridmap.search import find_path, straighten
 from evenroad.world.one_or_many import OneOrMany, one_or_many
-from evenroad.world.protocol import Connection
+from evenroad.world.protocol import Apart
 
-_SPREADS = (32, 96)
-"""Number of points along a path between which shortcuts are tried, in the coarse rounds and in the fine ones."""
+PROVED = "proved: there is no path; start and goal lie in two components of the free space"
+
 _CLOSE = 1e-3
 """Largest error of a reported clearance, which is too small by it [pixels]."""
 _SMALLEST_RADIUS = 1e-150
@@ -112,17 +111,15 @@ class DiskWorld(OneOrMany):
 
     proof: ClassVar[str] = "exact"
     """What is shown of a motion called free."""
-    planner: ClassVar[str] = "cells"
-    """How `connect` plans, in results."""
 
     grid: GridMap
     radius: float
     margin: float = 0.0
-    _tables: DiskTables = field(init=False, repr=False)
+    tables: DiskTables = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         radius = require_positive("radius", self.radius)
-        set_fields(self, radius=radius, _tables=_tables_of(self.grid, radius))
+        set_fields(self, radius=radius, tables=_tables_of(self.grid, radius))
 
     @property
     def space(self) -> Rectangle:
@@ -139,12 +136,12 @@ class DiskWorld(OneOrMany):
 
         Of one point, (2,), a bool; `motion_valid`, too.
         """
-        return points_are_free(as_batch("q", q, 2), self._tables)
+        return points_are_free(as_batch("q", q, 2), self.tables)
 
     @one_or_many
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,)."""
-        return motions_are_free(*as_batch_pair(a, b, 2), self._tables)
+        return motions_are_free(*as_batch_pair(a, b, 2), self.tables)
 
     @one_or_many
     def distance(self, q: Floats) -> Floats:
@@ -165,7 +162,7 @@ class DiskWorld(OneOrMany):
 
     def _from_centre(self, q: Floats) -> Floats:
         """Return the distance from the disk's centre, (n, 2), to the nearest obstacle, (n,)."""
-        return nearest_obstacle_points(q, self._tables)[1] * self.grid.frame.resolution
+        return nearest_obstacle_points(q, self.tables)[1] * self.grid.frame.resolution
 
     def path_clearance(self, path: Floats) -> float:
         """Return how far the disk stays from all obstacles along a path, (p, 2), within 1e-3 pixels and never more."""
@@ -179,7 +176,7 @@ class DiskWorld(OneOrMany):
         A point in an obstacle or outside the map is its own; of several equally near ones, always the same is returned.
         """
         centres = as_batch("q", q, 2)
-        pixels, distance = nearest_obstacle_points(centres, self._tables)
+        pixels, distance = nearest_obstacle_points(centres, self.tables)
         # A centre that is its own nearest point is returned as it came, without the detour through pixels.
         nearest, away = centres.copy(), distance > 0.0
         nearest[away] = self.grid.frame.to_map(pixels[away])
@@ -191,7 +188,7 @@ class DiskWorld(OneOrMany):
         It is the nearest of the surely free cells, and of a lattice of quarter pixels in those that are partly free.
         """
         column, row = self._pixels(q)
-        x, y = nearest_free_point(column + 1.0, row + 1.0, self._tables)
+        x, y = nearest_free_point(column + 1.0, row + 1.0, self.tables)
         return None if math.isnan(x) else self.grid.frame.to_map(np.array([[x - 1.0, y - 1.0]]))[0]
 
     def may_connect(self, a: Floats, b: Floats) -> bool:
@@ -202,6 +199,15 @@ class DiskWorld(OneOrMany):
         the disk by less than about a tenth of a pixel.
         """
         return self.component(a) == self.component(b) != 0
+
+    def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
+        """Return the proof that no path leads from a start, (2,), to any goal, (g, 2); None says nothing.
+
+        The components of the whole map are made for it once, which is not quick.
+        """
+        if quickly or any(self.may_connect(start, goal) for goal in goals):
+            return None
+        return Apart(PROVED, proved=True)
 
     def component(self, q: Floats) -> int:
         """Return the number, from 1 on, of the component that a map point, (2,), lies in; 0 where no disk is free."""
@@ -228,31 +234,13 @@ class DiskWorld(OneOrMany):
         return inside[1:-1, 1:-1]
 
     @cached_property
-    def _gates(self) -> Bools:
-        return find_gates(self._tables.cells)
+    def gates(self) -> Bools:
+        """Cells between components, where the disk may pass: (rows + 2, cols + 2) with the border."""
+        return find_gates(self.tables.cells)
 
     @cached_property
     def _components(self) -> Components:
-        return Components(*label_components(self._tables, self._gates))
-
-    def connect(
-        self, start: Floats, goals: Floats, *, most_motions: int = 2**31 - 1, seconds: float = math.inf
-    ) -> Connection:
-        """Find a path from a free map point, (2,), to the one of several, (g, 2), that is nearest on the lattice.
-
-        It leads over cell centres, and over half cells where it is narrow; it is found wherever `may_connect` holds
-        but for passages hardly wider than the disk.  `most_motions` are tested; the size of the map bounds the time,
-        `seconds` is not looked at.
-        """
-        first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
-        last = as_batch("goals", goals, 2)
-        path, goal, nodes, motions = find_path(first, last, self._tables, self._gates, most_motions)
-        return Connection(path, int(goal), nodes, 0, motions)
-
-    def shorten(self, path: Floats) -> tuple[Floats, int]:
-        """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and how many were tested."""
-        points = as_batch("path", path, 2)
-        return straighten(points, self._tables, _SPREADS) if len(points) > 1 else (points.copy(), 0)
+        return Components(*label_components(self.tables, self.gates))
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of map, frame and radius: equal for two worlds that give the same verdicts."""

@@ -8,9 +8,10 @@ import time
 import numpy as np
 
 from evenroad.errors import InvalidValue
+from evenroad.planning.arm_trees import connect
+from evenroad.roadmap.connector import Connection
 from evenroad.robot import ArmWorld
 from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
-from evenroad.world.protocol import Connection
 from evenroad_studies.arms.problems import draw_problem, robot_and_generator, stream_of
 from evenroad_studies.arms.roadmaps import roadmap_of
 from evenroad_studies.bench.task import Outcome, Problem, Task
@@ -59,7 +60,7 @@ def _asked(task: Task, robot: str, problem: Problem) -> tuple[Connection, str, f
     if task.search == TREES:
         began = time.thread_time()
         world = ArmWorld(problem.world.robot, problem.world.scene)
-        return world.connect(problem.start, goals, most_motions=MOST_MOTIONS), "", time.thread_time() - began
+        return connect(world, problem.start, goals, most_motions=MOST_MOTIONS), "", time.thread_time() - began
     if (parts := _RULE.fullmatch(task.rule)) is None:
         raise InvalidValue(f"a kept roadmap needs a rule like 'k=10 ends=100', got {task.rule!r}")
     k, links = map(int, parts.groups())

@@ -17,7 +17,7 @@ from evenroad.points.randomise import Symmetry, randomise
 from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.lattice import MAX_D
 from evenroad.roadmap import Rule
-from evenroad.roadmap.query import even_points
+from evenroad.roadmap.points_of import even_points
 from evenroad.space import Space
 
 PERMUTED_FROM = 5

@@ -15,8 +15,9 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from evenroad._arrays import Floats
 from evenroad.errors import NotAvailable
 from evenroad.geometry import rotation_from_quaternion
+from evenroad.planning import PRM, plan
 from evenroad.points import draw
-from evenroad.roadmap import KNearest, PlanResult, plan
+from evenroad.roadmap import KNearest, PlanResult
 from evenroad.robot import ArmWorld
 from evenroad.space.path import place_at
 from evenroad.viz import style
@@ -75,7 +76,7 @@ def find_path(problem: Problem) -> PlanResult:
     for n, k in TRIES:
         points = draw("halton", n, problem.world.space.cube_dim)
         query = (problem.world, problem.start, problem.goal)
-        result = plan(*query, points, rule=KNearest(k), search="lazy", links=None)
+        result = plan(*query, PRM(points, rule=KNearest(k), links=None))
         if result.solved:
             break
     return result

@@ -14,13 +14,13 @@ from evenroad._checks import require_count, require_positive
 from evenroad._clock import now
 from evenroad._compiled import compile_beside
 from evenroad.errors import InvalidValue
+from evenroad.roadmap.connector import Connection
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 from evenroad.space.path import motion_lengths, place_at
-from evenroad.world.protocol import Connection
 
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0

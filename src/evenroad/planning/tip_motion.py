@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult, Status
-from evenroad.roadmap.find_path import NO_POINTS
-from evenroad.roadmap.result import require_ends
+from evenroad.roadmap.result import make_result, require_ends
 from evenroad.robot import ArmWorld
 from evenroad.robot.chain import Chain, chain_of, default_tip
 from evenroad.robot.straight import Line, Straight, line_from
@@ -21,32 +21,28 @@ from evenroad.world import World
 LINES = 16
 """Goals that are planned to, the nearest to which a straight line leads."""
 
-Planner = Callable[[World, Floats, Floats, bool], PlanResult]
+PlanOnce = Callable[[World, Floats, Floats, bool], PlanResult]
 """Plans in a world from a start, (dim,), to goals, (g, dim), and shortens the path or not."""
 
 
-@dataclass(frozen=True, eq=False)
-class Ends:
-    """A world, a start, (dim,), goals, (g, dim), and the tip that goal poses are of, or nothing."""
-
-    world: ArmWorld
-    start: Floats
-    goals: Floats
-    tip: str = ""
-
-    def chain(self, tip: str) -> Chain:
-        """Return the chain of a link: the one named, else that of the goal poses, else the last one."""
-        robot = self.world.robot
-        return chain_of(robot, tip or self.tip or default_tip(robot))
-
-    def refused(self, status: Status, message: str) -> PlanResult:
-        """Return the result of a plan that was not made."""
-        places = dict(start=self.start, goals=self.goals, origin=NO_POINTS, rule="none", planner="none")
-        return PlanResult(status=status, message=message, **places)  # type: ignore[arg-type]
+def refused(request: Request, status: Status, message: str) -> PlanResult:
+    """Return the result of a plan that was not made."""
+    return make_result(request.world, request.start, request.goals, status, message)
 
 
-def plan_ways(
-    ends: Ends, straight: Straight | None, upright: Upright | None, plan: Planner, *, shorten: bool = True
+def _chain(request: Request, tip: str) -> Chain:
+    """Return the chain of a link: the one named, else that of the goal poses, else the last one."""
+    robot = request.world.robot
+    return chain_of(robot, tip or request.tip or default_tip(robot))
+
+
+def plan_tip_motion(
+    request: Request,
+    straight: Straight | None,
+    upright: Upright | None,
+    plan: PlanOnce,
+    *,
+    shorten: bool = True,
 ) -> PlanResult:
     """Plan with `plan` so that the tip takes the ways it is told to, if any.
 
@@ -54,26 +50,26 @@ def plan_ways(
     to goals.  The largest deviations, on fine grids, are in the result.
     """
     if upright is None:
-        return _between_lines(ends, straight, plan, ends.world, shorten)
-    world = upright_world(ends.world, ends.chain(upright.tip), upright, ends.start)
-    if (refused := _tilted(ends, world)) is not None:
-        return refused
+        return _between_lines(request, straight, plan, request.world, shorten)
+    world = upright_world(request.world, _chain(request, upright.tip), upright, request.start)
+    if (tilted := _tilted(request, world)) is not None:
+        return tilted
 
     def plan_upright(_: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
         return _through(world, plan(world, start, goals, False), shorten)
 
-    return _between_lines(ends, straight, plan_upright, world, shorten)
+    return _between_lines(request, straight, plan_upright, world, shorten)
 
 
-def _tilted(ends: Ends, world: UprightWorld) -> PlanResult | None:
+def _tilted(request: Request, world: UprightWorld) -> PlanResult | None:
     """Return the result where the start, or every goal, is tilted by too much."""
-    start, goals = world.tilts(ends.start[np.newaxis])[0], world.tilts(ends.goals)
+    start, goals = world.tilts(request.start[np.newaxis])[0], world.tilts(request.goals)
     if start > world.tolerance:
-        return ends.refused(Status.START_INVALID, f"at the start {world.explain(ends.start)}")
+        return refused(request, Status.START_INVALID, f"at the start {world.explain(request.start)}")
     if goals.min() > world.tolerance:
-        best = ends.goals[int(goals.argmin())]
+        best = request.goals[int(goals.argmin())]
         which = "the goal" if len(goals) == 1 else f"every one of {len(goals)} goals; at the nearest"
-        return ends.refused(Status.GOAL_INVALID, f"at {which} {world.explain(best)}")
+        return refused(request, Status.GOAL_INVALID, f"at {which} {world.explain(best)}")
     return None
 
 
@@ -90,28 +86,29 @@ def _through(world: UprightWorld, result: PlanResult, shorten: bool) -> PlanResu
 
 
 def _between_lines(
-    ends: Ends, straight: Straight | None, plan: Planner, within: World, shorten: bool
+    request: Request, straight: Straight | None, plan: PlanOnce, within: World, shorten: bool
 ) -> PlanResult:
     """Plan between the lines that leave the start and lead to goals."""
     if straight is None:
-        return plan(ends.world, ends.start, ends.goals, shorten)
-    chain, free = ends.chain(straight.tip), within.valid(np.concatenate([ends.start[np.newaxis], ends.goals]))
+        return plan(request.world, request.start, request.goals, shorten)
+    chain = _chain(request, straight.tip)
+    free = within.valid(np.concatenate([request.start[np.newaxis], request.goals]))
     if not free[0] or not free[1:].any():
         # The planner says what is in the way.
-        return plan(ends.world, ends.start, ends.goals, shorten)
-    leaving = Line(ends.start[np.newaxis])
+        return plan(request.world, request.start, request.goals, shorten)
+    leaving = Line(request.start[np.newaxis])
     if straight.retreat:
-        leaving = _line(within, ends.world, chain, straight, ends.start, straight.retreat)
+        leaving = _line(within, request.world, chain, straight, request.start, straight.retreat)
         if leaving.why:
-            return ends.refused(Status.NOT_CONNECTED, f"no straight way from the start: {leaving.why}")
+            return refused(request, Status.NOT_CONNECTED, f"no straight way from the start: {leaving.why}")
     rows = np.flatnonzero(free[1:])
-    first, why = np.broadcast_to(leaving.path[-1], ends.goals[rows].shape), ""
-    rows = rows[np.argsort(ends.world.space.distance(first, ends.goals[rows]), kind="stable")]
+    first, why = np.broadcast_to(leaving.path[-1], request.goals[rows].shape), ""
+    rows = rows[np.argsort(request.world.space.distance(first, request.goals[rows]), kind="stable")]
     coming: dict[int, Line] = {}
     for row in rows.tolist():
-        line = Line(ends.goals[row : row + 1])
+        line = Line(request.goals[row : row + 1])
         if straight.approach:
-            line = _line(within, ends.world, chain, straight, ends.goals[row], straight.approach)
+            line = _line(within, request.world, chain, straight, request.goals[row], straight.approach)
         if line.why:
             why = why or line.why
             continue
@@ -120,10 +117,10 @@ def _between_lines(
             break
     if not coming:
         every = "the goal" if len(rows) == 1 else f"any of {len(rows)} goals; to the nearest"
-        return ends.refused(Status.NOT_CONNECTED, f"no straight way to {every}: {why}")
+        return refused(request, Status.NOT_CONNECTED, f"no straight way to {every}: {why}")
     beginnings = np.array([line.path[-1] for line in coming.values()])
-    result = plan(ends.world, leaving.path[-1], beginnings, shorten)
-    result = replace(result, start=ends.start, goals=ends.goals)
+    result = plan(request.world, leaving.path[-1], beginnings, shorten)
+    result = replace(result, start=request.start, goals=request.goals)
     if result.path is None or result.goal_index is None:
         return replace(result, message=f"between the straight lines: {result.message}")
     row, last = list(coming.items())[result.goal_index]
@@ -135,7 +132,7 @@ def _between_lines(
     if isinstance(within, UprightWorld):
         tilted = [within.largest_tilt(line.path) for line in (leaving, last)]
         deviation |= {"tilt_rad": max(deviation.get("tilt_rad", 0.0), *tilted)}
-    return _with_path(ends.world, result, whole[0], whole[1], deviation)
+    return _with_path(request.world, result, whole[0], whole[1], deviation)
 
 
 def _line(within: World, world: ArmWorld, chain: Chain, straight: Straight, q: Floats, length: float) -> Line:

@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import KW_ONLY, dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_count, require_known
 from evenroad._clock import now
-from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
+from evenroad.planning.connectors import connector_of
+from evenroad.planning.hemmed_in import with_reasons
+from evenroad.planning.planner import Problem
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import Sampler, make_sampler
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt, Searched
-from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.query import LINKS, EdgeCost, Query, as_points, read_places
+from evenroad.roadmap.points_of import as_points
+from evenroad.roadmap.query import LINKS, EdgeCost, Query
 from evenroad.roadmap.result import PlanResult, Stage
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily
-from evenroad.world import World
 
 UNTIL = ("solved", "settled", "budget")
 GROWING = 5
@@ -30,64 +32,71 @@ SETTLED = 0.01
 """A path counts as settled when doubling the points has shortened it by no more than this share."""
 
 
-def plan_anytime(
-    world: World,
-    start: npt.ArrayLike,
-    goal: npt.ArrayLike,
-    sampler: Sampler | None = None,
-    *,
-    first: int = 64,
-    until: str = "solved",
-    links: int | None = LINKS,
-    budget: Budget | None = None,
-    rng: RngLike = 0,
-    rule: Rule | None = None,
-    edge_cost: EdgeCost | None = None,
-    shorten: bool = True,
-) -> PlanResult:
-    """Plan with `first` points, then with twice as many, and so on, lazily, until the answer is good enough.
+@dataclass(frozen=True)
+class GrowingPRM:
+    """A roadmap of more and more points of one sequence: `first`, then twice as many, lazily, until the answer is good.
 
-    Each stage finds what ``plan(..., search="lazy")`` finds with its points, but nothing that an earlier stage has
-    checked is checked again.  The best path of all stages is the answer.
+    Each stage finds what ``PRM(points)`` finds with its points, but nothing that an earlier stage has checked is
+    checked again.  The best path of all stages is the answer.
 
     Parameters
     ----------
-    world, start, goal, rule, edge_cost, shorten, links
-        As in :func:`plan`.
     sampler : Sampler, optional
-        Whose sets of more points begin with those of fewer; default: ``growing``, which needs 6 % fewer checks of
+        Whose sets of more points begin with those of fewer.  Default: ``growing``, which needs 6 % fewer checks of
         motions than scrambled Sobol points, and these from six dimensions on, where it was not tried.
     first : int
         Points of the first stage.
     until : {"solved", "settled", "budget"}
-        Stop with the first path, or when a path has become at most 1 % shorter from one stage to the next, or
-        only when the budget is spent.
-    budget : Budget, optional
-        Default: 65536 samples and a minute.
-    rng : int or SeedSequence
-        For the sampler.
+        Stop with the first path, or when a path has become at most 1 % shorter from one stage to the next, or only when
+        the budget is spent.
+    rule, edge_cost, links
+        As in :class:`evenroad.PRM`.
 
-    The status is ``budget_spent`` when there was no path until then; ``stages`` tells how it went.  Counts are those of
-    the last stage, checks those of all.  Raises as :func:`plan`, and InvalidValue if the sampler's sets do not begin
-    with the smaller ones.
+    Without a path the status is ``budget_spent``, and the message says where start or goal can hardly leave their
+    places; ``stages`` tells how it went.  Counts are those of the last stage,
+    checks those of all.  Raises as :class:`evenroad.PRM`, and InvalidValue if the sampler's sets do not begin with the
+    smaller ones.
     """
-    require_known("until", until, UNTIL)
-    first = require_count("first", first)
-    rule = default_rule(world.space) if rule is None else rule
-    budget = budget or Budget()
-    places = read_places(start, goal, world.space)
-    query = Query(*places, shorten=shorten, edge_cost=edge_cost, links=links, budget=budget)
-    if sampler is None:
-        # By name: the module of Sobol's points imports scipy.stats, half a second that nobody else needs.
-        sampler = make_sampler("growing" if world.space.cube_dim <= GROWING else "sobol")
-    points = _draw(sampler, min(first, budget.samples), world, rng, None)
-    attempt = Attempt(world, query, points.origin, str(rule), "prm anytime", grows=True)
-    if (refused := refusal(attempt)) is not None:
-        return refused
-    growth = _Growth(attempt, rule)
-    while growth.take(points) and not growth.is_done(until) and points.n < budget.samples:
-        points = _draw(sampler, min(2 * points.n, budget.samples), world, rng, points)
-    return growth.result(points.n)
+
+    seconds: ClassVar[float] = 5.0
+
+    sampler: Sampler | None = None
+    _: KW_ONLY
+    first: int = 64
+    until: str = "solved"
+    rule: Rule | None = None
+    edge_cost: EdgeCost | None = None
+    links: int | None = LINKS
+
+    def __post_init__(self) -> None:
+        require_known("until", self.until, UNTIL)
+        require_count("first", self.first)
+
+    def solve(self, problem: Problem) -> PlanResult:
+        """Return the best path of all stages; see :class:`GrowingPRM`."""
+        world, budget = problem.world, problem.budget
+        rule = default_rule(world.space) if self.rule is None else self.rule
+        query = Query(
+            problem.start,
+            problem.goals,
+            shorten=problem.smooth,
+            edge_cost=self.edge_cost,
+            links=self.links,
+            budget=budget,
+            connector=connector_of(world),
+        )
+        sampler = self.sampler
+        if sampler is None:
+            # By name: the module of Sobol's points imports scipy.stats, half a second that nobody else needs.
+            sampler = make_sampler("growing" if world.space.cube_dim <= GROWING else "sobol")
+        points = _draw(sampler, min(self.first, budget.samples), problem, None)
+        attempt = Attempt(world, query, points.origin, str(rule), "prm anytime", grows=True)
+        if (refused := refusal(attempt)) is not None:
+            return refused
+        growth = _Growth(attempt, rule)
+        while growth.take(points) and not growth.is_done(self.until) and points.n < budget.samples:
+            points = _draw(sampler, min(2 * points.n, budget.samples), problem, points)
+        return with_reasons(world, growth.result(points.n))
 
 
 class _Growth:
@@ -165,9 +174,10 @@ def _keys(pairs: npt.NDArray[np.int64]) -> list[int]:
     return (pairs.min(axis=1) << 32 | pairs.max(axis=1)).tolist()
 
 
-def _draw(sampler: Sampler, n: int, world: World, rng: RngLike, before: PointSet | None) -> PointSet:
+def _draw(sampler: Sampler, n: int, problem: Problem, before: PointSet | None) -> PointSet:
     """Draw n points, and make sure that they go on where those `before` ended."""
-    points = as_points(sampler.draw(n, world.space.cube_dim, rng=rng), world.space)
+    space = problem.world.space
+    points = as_points(sampler.draw(n, space.cube_dim, rng=problem.rng), space)
     if before is not None and not np.array_equal(points.points[: before.n], before.points):
         raise InvalidValue(
             f"the {n} points of {sampler.name} do not begin with its {before.n} points: growing needs a sequence"

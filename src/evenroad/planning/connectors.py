@@ -1,0 +1,130 @@
+"""Which connector joins a start to a goal in which kind of world: an arm's trees, a map's cells, trees for the rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.planning import arm_trees
+from evenroad.planning.plain_trees import grow_trees
+from evenroad.roadmap.connector import Connection, Connector
+from evenroad.roadmap.shortcut import shortcut
+from evenroad.robot import ArmWorld
+from evenroad.robot.tree_sequences import shifted_cube_points
+from evenroad.space.batch import as_batch
+from evenroad.world import World
+from evenroad.world.gridmap.gridmap import DiskWorld
+from evenroad.world.gridmap.search import find_path, straighten
+
+BEFORE_PROOF = 200_000
+"""Motions after which a world is asked whether there can be a path at all: more than hard queries take."""
+BEFORE_QUICK_PROOF = 4_000
+"""Motions after which one is asked that can say so quickly: most queries take fewer."""
+
+_SPREADS = (32, 96)
+"""Points that a disk's path is offered to be straightened with, in the coarse rounds and in the fine ones."""
+
+
+@dataclass(frozen=True)
+class ArmTrees:
+    """Two trees in compiled code, every motion proved free; for arms, where sixteen lanes work.
+
+    They grow in the arm's world `inside` where the world that is asked is another, as of the robot's own shapes.
+    """
+
+    planner: ClassVar[str] = "trees"
+    varies: ClassVar[bool] = True
+    stages: ClassVar[tuple[tuple[int, bool], ...]] = ((BEFORE_QUICK_PROOF, True), (BEFORE_PROOF, False))
+
+    inside: ArmWorld | None = None
+
+    def connect(
+        self,
+        world: ArmWorld,
+        start: Floats,
+        goals: Floats,
+        *,
+        variant: int,
+        most_motions: int,
+        seconds: float,
+    ) -> Connection:
+        """See :func:`evenroad.planning.arm_trees.connect`; each variant >= 1 is driven by another even sequence."""
+        sequence = shifted_cube_points(world.space.dim, variant) if variant else None
+        limits = dict(most_motions=most_motions, seconds=seconds)
+        return arm_trees.connect(self.inside or world, start, goals, sequence=sequence, **limits)  # type: ignore[arg-type]
+
+    def smooth(self, world: ArmWorld, path: Floats) -> tuple[Floats, int]:
+        """See :func:`evenroad.planning.arm_trees.shorten`."""
+        return arm_trees.shorten(self.inside or world, path)
+
+
+@dataclass(frozen=True)
+class Cells:
+    """A search over the cells of a map in compiled code; for disks, exact."""
+
+    planner: ClassVar[str] = "cells"
+    varies: ClassVar[bool] = False
+    stages: ClassVar[tuple[tuple[int, bool], ...]] = ((BEFORE_PROOF, False),)
+
+    def connect(
+        self,
+        world: DiskWorld,
+        start: Floats,
+        goals: Floats,
+        *,
+        variant: int = 0,
+        most_motions: int = 2**31 - 1,
+        seconds: float = np.inf,
+    ) -> Connection:
+        """Find a path from a free map point, (2,), to the one of several, (g, 2), that is nearest on the lattice.
+
+        It leads over cell centres, and over half cells where it is narrow.  It is found wherever
+        `DiskWorld.may_connect` holds but for passages hardly wider than the disk.  `most_motions` are tested.  The size
+        of the map bounds the time: `seconds` is not looked at, and there are no variants.
+        """
+        first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
+        last = as_batch("goals", goals, 2)
+        path, goal, nodes, motions = find_path(first, last, world.tables, world.gates, most_motions)
+        return Connection(path, int(goal), nodes, 0, motions)
+
+    def smooth(self, world: DiskWorld, path: Floats) -> tuple[Floats, int]:
+        """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and how many were tested."""
+        points = as_batch("path", path, 2)
+        return straighten(points, world.tables, _SPREADS) if len(points) > 1 else (points.copy(), 0)
+
+
+@dataclass(frozen=True)
+class PlainTrees:
+    """Two trees in Python that ask any world about batches of motions; for users' own functions."""
+
+    planner: ClassVar[str] = "trees"
+    varies: ClassVar[bool] = True
+    stages: ClassVar[tuple[tuple[int, bool], ...]] = ((BEFORE_QUICK_PROOF, True), (BEFORE_PROOF, False))
+
+    def connect(
+        self, world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float
+    ) -> Connection:
+        """See :func:`evenroad.planning.plain_trees.grow_trees`."""
+        return grow_trees(world, start, goals, variant=variant, most_motions=most_motions, seconds=seconds)
+
+    def smooth(self, world: World, path: Floats) -> tuple[Floats, int]:
+        """See :func:`evenroad.roadmap.shortcut.shortcut`."""
+        return shortcut(world, path)
+
+
+ARM_TREES, CELLS, PLAIN_TREES = ArmTrees(), Cells(), PlainTrees()
+
+
+def connector_of(world: Any) -> Connector | None:
+    """Return the compiled connector for this kind of world, or None where there is none."""
+    if isinstance(world, ArmWorld):
+        return ARM_TREES
+    return CELLS if isinstance(world, DiskWorld) else None
+
+
+def trees_for(world: Any) -> Connector:
+    """Return the trees that grow in this kind of world: compiled ones for an arm whose lanes work, else plain ones."""
+    return ARM_TREES if isinstance(world, ArmWorld) and world.backend == "lanes" else PLAIN_TREES

@@ -1,0 +1,78 @@
+"""Why there is no path: whether the start or a goal can hardly leave its place, and what is in the way."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.roadmap.points_of import as_points
+from evenroad.roadmap.result import PlanResult, Status
+from evenroad.world import Explains, World
+
+DIRECTIONS = 128
+"""Number of short motions that are tried from a configuration."""
+SHORT = 0.1
+"""Length of these motions, as a share of the median distance to an even point of the space."""
+HEMMED = 0.1
+"""Largest share of free motions from a configuration that is hemmed in."""
+_SHARES = np.linspace(0.05, 1.0, 20)
+"""Shares along a short motion at which something may touch."""
+
+
+def with_reasons(world: World, result: PlanResult) -> PlanResult:
+    """Return a result without a path, its message with what is in the way of the start or the goals.
+
+    Nothing is added where there is a path, a proof that there is none, or nothing to be said.  Costs some hundred
+    checks for the start and for each goal.
+    """
+    if result.path is not None or result.status not in (Status.NOT_CONNECTED, Status.BUDGET_SPENT):
+        return result
+    several = len(result.goals) > 1
+    places = [("the start", result.start)] + [
+        (f"goal {i}" if several else "the goal", goal)
+        for i, goal in enumerate(result.goals)
+        if world.valid(goal[np.newaxis])[0]
+    ]
+    reasons = [text for name, place in places if (text := why_hemmed(world, name, place)) is not None]
+    sentences = [result.message, *(text[0].upper() + text[1:] for text in reasons)]
+    return replace(result, message=". ".join(sentences)) if reasons else result
+
+
+def why_hemmed(world: World, name: str, place: Floats) -> str | None:
+    """Return in words how few short motions leave a free place, (dim,), and what touches; None where enough do."""
+    samples = world.space.from_cube(as_points(DIRECTIONS, world.space).points)
+    here = np.broadcast_to(place, samples.shape)
+    distances = world.space.distance(here, samples)
+    step = SHORT * float(np.median(distances))
+    ends = world.space.interpolate(here, samples, np.minimum(1.0, step / np.maximum(distances, step)))
+    free = world.motion_valid(here, ends)
+    number = int(np.count_nonzero(free))
+    if number > HEMMED * DIRECTIONS:
+        return None
+    away = distances[world.valid(samples)].min(initial=np.inf)
+    can = "cannot leave its place" if number == 0 else "can hardly leave its place"
+    text = (
+        f"{name} {can}: {number} of {DIRECTIONS} motions of length {step:.2g} from it are free"
+        f"{_what_touches(world, here[~free], ends[~free])}"
+    )
+    return f"{text}; the nearest free sample is {away:.3g} away" if np.isfinite(away) else text
+
+
+def _what_touches(world: World, a: Floats, b: Floats) -> str:
+    """Return what most of the blocked motions meet first, where the world can tell."""
+    if not isinstance(world, Explains):
+        return ""
+    met: Counter[str] = Counter()
+    for first, last in zip(a, b, strict=True):
+        shape = (len(_SHARES), len(first))
+        states = world.space.interpolate(np.broadcast_to(first, shape), np.broadcast_to(last, shape), _SHARES)
+        blocked = np.flatnonzero(~world.valid(states))
+        if len(blocked):
+            met[world.explain(states[blocked[0]])] += 1
+    if not met:
+        return ""
+    reason, times = met.most_common(1)[0]
+    return f", {reason} in {times}"

@@ -1,0 +1,115 @@
+"""RRT-Connect for any world: two trees that ask it about batches of motions (Kuffner and LaValle 2000).
+
+Each step takes the next batch of an even sequence.  Every sample is joined to its nearest node of the tree whose turn
+it is, by at most one step, and the whole batch is checked at once.  The other tree then tries to reach each new node.
+Trees of robots are compiled, see `arm_trees`; these are for worlds that only answer in Python.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evenroad._arrays import Floats, Ints
+from evenroad._clock import now
+from evenroad.points.samplers import make_sampler
+from evenroad.roadmap.connector import Connection
+from evenroad.world import World
+
+BATCH = 16
+"""Samples that a tree is grown by at once: a world in Python answers about a batch in little more time than about one.
+"""
+STEP = 0.2
+"""Longest motion of a tree, as a share of the median distance between two samples."""
+FIRST, MOST_SAMPLES = 1 << 10, 1 << 18
+"""Samples that are drawn first, doubled as often as they are used up; after the last one the trees end."""
+MOST_STEPS = 64
+"""Steps that a tree takes towards a new node of the other one."""
+
+
+class _Tree:
+    """Nodes, (n, dim), each with the number of its parent; roots have -1."""
+
+    def __init__(self, roots: Floats) -> None:
+        self.nodes, self.parents = roots.copy(), np.full(len(roots), -1)
+
+    def nearest(self, world: World, q: Floats) -> Ints:
+        """Return the node nearest to each configuration, (n, dim) -> (n,); of equals the earlier one."""
+        pairs = np.repeat(q, len(self.nodes), axis=0), np.tile(self.nodes, (len(q), 1))
+        return world.space.distance(*pairs).reshape(len(q), -1).argmin(axis=1)
+
+    def add(self, nodes: Floats, parents: Ints) -> None:
+        """Add nodes, (n, dim), below these parents, (n,)."""
+        self.nodes = np.concatenate([self.nodes, nodes])
+        self.parents = np.concatenate([self.parents, parents])
+
+    def branch(self, node: int) -> list[int]:
+        """Return the numbers of the nodes from one to its root."""
+        way = [node]
+        while self.parents[way[-1]] >= 0:
+            way.append(int(self.parents[way[-1]]))
+        return way
+
+
+def grow_trees(
+    world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float
+) -> Connection:
+    """Join a start, (dim,), to one of the goals, (g, dim), that are free; each variant scrambles the sequence anew."""
+    trees = [_Tree(start[np.newaxis]), _Tree(np.asarray(goals, dtype=np.float64))]
+    deadline, motions, turn = now() + seconds, 0, 0
+    samples = _samples(world, FIRST, variant)
+    step = STEP * float(np.median(world.space.distance(samples[:128], samples[128:256])))
+    # The straight motions to the goals come first: many queries need no trees.
+    ahead = np.asarray(goals, dtype=np.float64)
+    for first in range(-BATCH, MOST_SAMPLES, BATCH):
+        own, other = trees[turn], trees[1 - turn]
+        if first >= len(samples):
+            samples = _samples(world, 2 * len(samples), variant)
+        targets = ahead if first < 0 else samples[first : first + BATCH]
+        near = own.nearest(world, targets)
+        new = _towards(world, own.nodes[near], targets, np.inf if first < 0 else step)
+        free = world.motion_valid(own.nodes[near], new)
+        motions += len(new)
+        begin = len(own.nodes)
+        own.add(new[free], near[free])
+        for node in range(begin, len(own.nodes)):
+            reached, asked = _reach(world, other, own.nodes[node], step, most_motions - motions)
+            motions += asked
+            if reached >= 0:
+                ways = own.branch(node)[::-1], other.branch(reached)
+                path = np.concatenate([own.nodes[ways[0]], other.nodes[ways[1]]])
+                path = path if turn == 0 else path[::-1]
+                path = path[np.append(True, (path[1:] != path[:-1]).any(axis=1))]
+                goal = int(np.flatnonzero((goals == path[-1]).all(axis=1))[0])
+                return Connection(path, goal, sum(len(tree.nodes) for tree in trees), 0, motions)
+        if motions >= most_motions or now() >= deadline:
+            break
+        turn = 1 - turn
+    return Connection(np.empty((0, len(start))), -1, sum(len(tree.nodes) for tree in trees), 0, motions)
+
+
+def _samples(world: World, n: int, variant: int) -> Floats:
+    """Return n configurations, (n, dim); fewer of them are the first of more."""
+    return world.space.from_cube(make_sampler("sobol").draw(n, world.space.cube_dim, rng=variant).points)
+
+
+def _reach(world: World, tree: _Tree, target: Floats, step: float, most: int) -> tuple[int, int]:
+    """Grow a tree towards a configuration, (dim,); return the node that is there, or -1, and the motions checked."""
+    node = int(tree.nearest(world, target[np.newaxis])[0])
+    for asked in range(min(MOST_STEPS, max(most, 0))):
+        here = tree.nodes[node : node + 1]
+        if (here[0] == target).all():
+            return node, asked
+        new = _towards(world, here, target[np.newaxis], step)
+        if not world.motion_valid(here, new)[0]:
+            return -1, asked + 1
+        tree.add(new, np.array([node]))
+        node = len(tree.nodes) - 1
+    return (node if (tree.nodes[node] == target).all() else -1), MOST_STEPS
+
+
+def _towards(world: World, a: Floats, b: Floats, step: float) -> Floats:
+    """Return the places at most a step from rows of `a` towards those of `b`, (n, dim) each."""
+    away = world.space.distance(a, b)
+    share = np.minimum(1.0, step / np.maximum(away, 1e-300))
+    new = world.space.interpolate(a, b, share)
+    return np.where((share >= 1.0)[:, np.newaxis], b, new)

@@ -1,0 +1,221 @@
+"""``er.plan``: from a world, a start and a goal, as values, names or files, to a path, or why there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from evenroad._arrays import Floats
+from evenroad._rng import RngLike
+from evenroad.errors import InvalidValue, shown
+from evenroad.planning.arm_request import mesh_check
+from evenroad.planning.planner import Planner, Problem
+from evenroad.planning.prm import PRM
+from evenroad.planning.read_request import read_request
+from evenroad.planning.request import Goal, Place, Reading, Request
+from evenroad.planning.tip_motion import plan_tip_motion, refused
+from evenroad.planning.trees import RRTConnect, default_planner
+from evenroad.points.pointset import PointSet
+from evenroad.roadmap.answer import require_certified
+from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.result import PlanResult, Status
+from evenroad.robot import ArmWorld
+from evenroad.robot.reference.recheck import MeshCheck
+from evenroad.robot.scan import allowed_everywhere
+from evenroad.robot.straight import Straight
+from evenroad.robot.upright import Upright
+from evenroad.world import ShowsApart, World
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What is wanted of a path, whoever plans it; see :func:`plan`."""
+
+    budget: Budget = field(default_factory=lambda: Budget(seconds=RRTConnect.seconds))
+    smooth: bool = True
+    rng: RngLike = 0
+    certified: bool = False
+    straight: Straight | None = None
+    upright: Upright | None = None
+
+
+def plan(
+    world: Any,
+    start: Place,
+    goal: Goal | Sequence[Goal],
+    planner: Planner | PointSet | None = None,
+    *,
+    seconds: float | None = None,
+    limits: Budget | Mapping[str, int] | None = None,
+    smooth: bool = True,
+    rng: RngLike = 0,
+    certified: bool = False,
+    straight: Straight | None = None,
+    upright: Upright | None = None,
+    degrees: bool = False,
+    tip: str = "",
+    frame: str = "",
+    **of_world: Any,
+) -> PlanResult:
+    """Plan a path: until there is one, or a proof that there is none, or the budget is spent.
+
+    Parameters
+    ----------
+    world : World, GridMap, Scene, str or path-like
+        Where to plan.  A map, or its file, goes with ``radius=``; a scene, its file or the name of a shipped one, with
+        ``robot=``.
+    start : array_like, shape (dim,), str or mapping
+        A configuration in the units of the world's space.  Of an arm also joint -> value, or a text: the name of a
+        state, ``0,-1.57,...`` or ``name=value``.  A value may exceed its joint's limits by 1e-5, as five printed
+        decimals do, and stays what it is.
+    goal : as `start`, Pose, PoseGoal, or a sequence of such
+        Of several, also of all configurations known to bring an arm's tip to a pose, the path ends at the nearest,
+        where that is soon reached; along a roadmap, or with ``improve``, at the cheapest.
+    planner : Planner or PointSet, optional
+        Such as ``er.RRTConnect()``, ``er.PRM(512)`` or ``er.FMT(1024)``.  Default: trees for an arm, a search of cells
+        for a disk on a map, points that grow for any other world.  A PointSet stands for ``er.PRM(points)``.
+    seconds : float, optional
+        Wall time to plan at most, > 0.  Default: 5; for planners on points that are drawn beforehand 60.
+    limits : mapping or Budget, optional
+        Other limits: ``motions``, ``samples``, ``rounds``; integers >= 1.  With these the same call gives the same
+        answer on every machine, unless the time is over before.  A :class:`evenroad.roadmap.Budget` says the time, too.
+    smooth : bool
+        Whether the path is made shorter once it is found.
+    rng : int, SeedSequence or Generator
+        For what the planner draws; the same seed gives the same path.
+    certified : bool
+        Check once more that every motion is proved free throughout.  Where one is not, the status is
+        ``not_certified``, and the message says which.
+    straight : Straight, optional
+        How far an arm's tip moves in straight lines from its start and to its goal.
+    upright : Upright, optional
+        Which axis of an arm's tip is to be upright along the whole path.
+    degrees : bool
+        Angles in texts are degrees.
+    tip, frame : str
+        Of which link goal poses are, and in the frame of which; default: the last link, and the root.
+    **of_world
+        ``radius``, ``clearance``, ``unknown_is_free`` of a map; ``robot``, ``clearance``, ``resolution``, and what
+        :func:`evenroad.load_robot` takes, of a scene.
+
+    Returns
+    -------
+    PlanResult
+        Without a path, ``status`` and ``message`` say why.  ``mesh_collision`` is the status of a path that is free for
+        an arm's capsules, but not for the meshes of its file; ``goal_unreachable`` that of a pose that no configuration
+        was found for.
+
+    Raises
+    ------
+    InvalidValue, UnknownName, BrokenFile, NotAvailable
+        If an argument is none of these.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.plan("box-reach", "home", "inside", robot="ur5").status
+    <Status.SOLVED: 'solved'>
+    """
+    if isinstance(planner, PointSet):
+        planner = PRM(planner)
+    if planner is not None and not isinstance(planner, Planner):
+        raise InvalidValue(
+            "planner must be a planner, such as er.RRTConnect(), er.PRM(512) or a roadmap within a world, got"
+            f" {shown(planner)}"
+        )
+    request = read_request(world, start, goal, Reading(degrees, tip, frame), planner, **of_world)
+    budget = budget_of(planner, seconds, limits)
+    wishes = Wishes(budget, smooth, rng, certified, straight, upright)
+    return finished(request, solve(request, planner, wishes), certified=certified)[0]
+
+
+def budget_of(
+    planner: Planner | None, seconds: float | None, limits: Budget | Mapping[str, int] | None
+) -> Budget:
+    """Return what a planner may spend: the given limits, else its own."""
+    if isinstance(limits, Budget):
+        if seconds is not None:
+            raise InvalidValue("give seconds, or limits that are a Budget, not both")
+        return limits
+    if seconds is None:
+        seconds = getattr(planner, "seconds", RRTConnect.seconds)
+    try:
+        return Budget(seconds=seconds, **({} if limits is None else limits))
+    except TypeError:
+        raise InvalidValue(f"limits must be of motions, samples or rounds, got {shown(limits)}") from None
+
+
+def solve(request: Request, planner: Planner | None, wishes: Wishes) -> PlanResult:
+    """Plan what is asked; the path is free in its world."""
+    straight, upright, given = wishes.straight, wishes.upright, request.given
+    if given is not None and given.unreached:
+        status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
+        return replace(refused(request, status, given.unreached), timings={"goals": given.seconds})
+    apart = None if given is None else given.apart(request.world, straight=straight is not None)
+
+    def plan_once(world: World, start: Floats, goals: Floats, smooth: bool) -> PlanResult:
+        problem = Problem(
+            world, start, goals, budget=wishes.budget, smooth=smooth, rng=wishes.rng, apart=apart
+        )
+        return (default_planner(world) if planner is None else planner).solve(problem)
+
+    if straight is None and upright is None:
+        return plan_once(request.world, request.start, request.goals, wishes.smooth)
+    if not isinstance(request.world, ArmWorld):
+        raise InvalidValue(f"straight and upright speak of an arm's tip, got {request.world!r}")
+    return plan_tip_motion(request, straight, upright, plan_once, shorten=wishes.smooth)
+
+
+def finished(
+    request: Request, result: PlanResult, *, certified: bool = False
+) -> tuple[PlanResult, MeshCheck | None]:
+    """Return a plan with the name of its goal and the status that its path has after the last checks.
+
+    The meshes of the robot's URDF are asked where it has some or where capsules always touch; what they say is None
+    where there is no path, or nothing to ask.
+    """
+    given, world = request.given, request.world
+    if given is not None and given.poses and not given.unreached:
+        result = replace(result, timings={"goals": given.seconds, **result.timings})
+    if result.status is Status.NOT_CONNECTED and "points" in result.counts:
+        result = _with_proof(request, result)
+    name = (
+        "" if result.goal_index is None or not request.goal_names else request.goal_names[result.goal_index]
+    )
+    if name and len(request.goals) > 1:
+        to = f"to goal {result.goal_index}"
+        result = replace(result, message=result.message.replace(to, f"{to} ({name})", 1))
+    if (
+        result.path is not None
+        and isinstance(world, ArmWorld)
+        and (pairs := allowed_everywhere(world.robot, world.scene))
+    ):
+        untested = ", ".join(f"{link!r} against the whole cloud {cloud!r}" for link, cloud in pairs)
+        result = replace(result, message=f"{result.message}; not tested, as the scene allows: {untested}")
+    if certified:
+        result = require_certified(world, result)
+    if not result.solved or result.path is None:
+        return result, None
+    meshes = mesh_check(request, result.path)
+    if meshes is None or meshes.verdict != "in collision":
+        return result, meshes
+    message = (
+        "the path is free for the robot's capsules, but not for the shapes that they stand for: in collision"
+        f" {meshes.message}"
+    )
+    return replace(result, status=Status.MESH_COLLISION, message=message), meshes
+
+
+def _with_proof(request: Request, result: PlanResult) -> PlanResult:
+    """Return the result of a roadmap that did not lead to the goal, with the proof that no number of points would."""
+    world: Any = request.world
+    start, goals = request.start, request.goals
+    if not isinstance(request.world, ShowsApart):
+        return result
+    found = (
+        world.apart(start, goals)
+        if request.given is None
+        else request.given.apart(world)(start, goals, False)
+    )
+    return replace(result, message=found.message) if found is not None and found.proved else result

@@ -1,0 +1,52 @@
+"""Problem and Planner: what is to be solved, and who solves it."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass
+from typing import Protocol, runtime_checkable
+
+from evenroad._arrays import Floats
+from evenroad._rng import RngLike
+from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.query import AsksApart
+from evenroad.roadmap.result import PlanResult
+from evenroad.world import World
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Find a path in a world from a start to one of some goals.
+
+    Attributes
+    ----------
+    world : World
+        Says which configurations and motions are free.
+    start, goals : ndarrays, shapes (dim,) and (g, dim)
+        Configurations.
+    budget : Budget
+        What the search may spend.
+    smooth : bool
+        Whether the path is made shorter once it is found.
+    rng : int, SeedSequence or Generator
+        For what a planner draws.
+    apart : callable, optional
+        Asked in place of the world what keeps the start from the goals, where they are not all that would do: it is
+        given start, goals and whether to be quick, and returns an :class:`evenroad.world.Apart` or None.
+    """
+
+    world: World
+    start: Floats
+    goals: Floats
+    _: KW_ONLY
+    budget: Budget
+    smooth: bool = True
+    rng: RngLike = 0
+    apart: AsksApart | None = None
+
+
+@runtime_checkable
+class Planner(Protocol):
+    """Solves problems; a frozen value that says all there is to be told of how."""
+
+    def solve(self, problem: Problem) -> PlanResult:
+        """Return a path, or why there is none."""

@@ -1,0 +1,219 @@
+"""PRM and FMT: planners on points that were drawn beforehand (ps-PRM, Chahine et al. 2025; Janson et al. 2015)."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass, replace
+from typing import ClassVar, Protocol
+
+from evenroad._checks import require_count, require_known
+from evenroad.errors import InvalidValue
+from evenroad.planning.connectors import connector_of
+from evenroad.planning.planner import Problem
+from evenroad.points.pointset import PointSet
+from evenroad.roadmap.answer import answer, refusal
+from evenroad.roadmap.attempt import Attempt
+from evenroad.roadmap.certify import certify_graph
+from evenroad.roadmap.points_of import as_points
+from evenroad.roadmap.query import LINKS, EdgeCost, Query
+from evenroad.roadmap.result import PlanResult, Status
+from evenroad.roadmap.rules import KNearest, Rule, default_rule
+from evenroad.roadmap.search import FINDERS, FREE, Finder, march
+from evenroad.space import Space
+
+
+@dataclass(frozen=True)
+class PRM:
+    """A roadmap of points that are drawn beforehand: Algorithm 1 of Chahine et al. (2025).
+
+    Parameters
+    ----------
+    points : int or PointSet
+        Points of the unit cube, or how many even ones to draw; the space maps them to configurations.
+    k : int, optional
+        Joins each milestone to its k nearest, symmetrised; in place of `rule`.
+    rule : Rule, optional
+        Which pairs of milestones to try.  Default: that of :func:`evenroad.roadmap.default_rule`.
+    search : {"lazy", "full"}
+        Check only the edges that could lie on the shortest path, or every edge before the search.  Both find the same
+        path, bit for bit.
+    lazy_milestones : bool
+        Check milestones, too, only where they could lie on the path.  The rule then joins all points, free or not, so
+        it is another roadmap than that of the free ones alone.
+    success_only : bool
+        Only find out whether there is a path; the one returned is not the shortest.
+    edge_cost : callable, optional
+        Costs of the motions between the rows of two (m, dim) arrays, at least their lengths.  Default: the lengths.
+    links : int or None
+        To how many of the nearest milestones start and goals are linked, besides those of the rule; to all up to 256.
+        None: as the rule says, which is what published protocols do.
+    certify : bool
+        Put a :class:`evenroad.roadmap.Certificate` into the result: how much longer than the best path the one along
+        the roadmap can be, and what clearance a path would have had to have that was not found.
+
+    Raises
+    ------
+    InvalidValue
+        If both `k` and `rule` are given, points are of another dimension than the space, an edge costs less than its
+        length, or a certificate is asked for with `edge_cost` or `success_only`.
+    NotAvailable
+        If a certificate is asked for where the metric is not flat.
+    UnknownName
+        If there is no such search.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+    >>> er.plan(world, (3, 3), (27, 17), er.PRM(64)).status
+    <Status.SOLVED: 'solved'>
+    """
+
+    seconds: ClassVar[float] = 60.0
+
+    points: PointSet | int = 512
+    _: KW_ONLY
+    k: int | None = None
+    rule: Rule | None = None
+    search: str = "lazy"
+    lazy_milestones: bool = False
+    success_only: bool = False
+    edge_cost: EdgeCost | None = None
+    links: int | None = LINKS
+    certify: bool = False
+
+    def __post_init__(self) -> None:
+        require_known("search", self.search, FINDERS)
+        _require_one_rule(self)
+        if self.certify and (self.success_only or self.edge_cost is not None):
+            raise InvalidValue("certify speaks of shortest paths: it goes without edge_cost and success_only")
+
+    def __repr__(self) -> str:
+        return _text(self)
+
+    def solve(self, problem: Problem) -> PlanResult:
+        """Return the shortest path along the roadmap, smoothed; see :class:`PRM`."""
+        query = _query(self, problem, search=self.search, success_only=self.success_only)
+        planner = query.planner(self.lazy_milestones)
+        return _on_points(self, problem, query, planner, query.find)
+
+
+@dataclass(frozen=True)
+class FMT:
+    """A tree over points that grows outwards in the order of cost: FMT* (Janson et al. 2015).
+
+    Each milestone is joined to the tree over the neighbour that would be best if nothing were in the way, and only that
+    motion is checked.  So the tree is nearly the shortest one, for about one check a milestone.  It can miss a path
+    that :class:`PRM` finds with the same points.  Without a path, the count ``start_component`` is the size of the
+    tree.  Parameters and errors are those of :class:`PRM`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+    >>> er.plan(world, (3, 3), (27, 17), er.FMT(64)).planner
+    'fmt*'
+    """
+
+    seconds: ClassVar[float] = 60.0
+    lazy_milestones: ClassVar[bool] = False
+    certify: ClassVar[bool] = False
+
+    points: PointSet | int = 1024
+    _: KW_ONLY
+    k: int | None = None
+    rule: Rule | None = None
+    edge_cost: EdgeCost | None = None
+    links: int | None = LINKS
+
+    def __post_init__(self) -> None:
+        _require_one_rule(self)
+
+    def __repr__(self) -> str:
+        return _text(self)
+
+    def solve(self, problem: Problem) -> PlanResult:
+        """Return the path along the tree, smoothed; see :class:`FMT`."""
+        return _on_points(self, problem, _query(self, problem), "fmt*", march)
+
+
+class _OnPoints(Protocol):
+    """What PRM and FMT have in common."""
+
+    @property
+    def points(self) -> PointSet | int: ...
+    @property
+    def k(self) -> int | None: ...
+    @property
+    def rule(self) -> Rule | None: ...
+    @property
+    def lazy_milestones(self) -> bool: ...
+    @property
+    def edge_cost(self) -> EdgeCost | None: ...
+    @property
+    def links(self) -> int | None: ...
+    @property
+    def certify(self) -> bool: ...
+
+
+def rule_of(planner: _OnPoints, space: Space) -> Rule:
+    """Return which pairs of milestones a planner tries in a space."""
+    if planner.rule is not None:
+        return planner.rule
+    return default_rule(space) if planner.k is None else KNearest(planner.k)
+
+
+def _require_one_rule(planner: _OnPoints) -> None:
+    if planner.k is not None:
+        require_count("k", planner.k)
+        if planner.rule is not None:
+            raise InvalidValue("give k or rule, not both")
+
+
+def _text(planner: _OnPoints) -> str:
+    points, rule = planner.points, planner.rule if planner.k is None else f"k={planner.k}"
+    what = f"{points.n} points" if isinstance(points, PointSet) else str(points)
+    return f"{type(planner).__name__}({what}{'' if rule is None else f', {rule}'})"
+
+
+def _query(planner: _OnPoints, problem: Problem, **more: object) -> Query:
+    return Query(
+        problem.start,
+        problem.goals,
+        shorten=problem.smooth,
+        budget=problem.budget,
+        apart=problem.apart,
+        connector=connector_of(problem.world),
+        edge_cost=planner.edge_cost,
+        links=planner.links,
+        **more,  # type: ignore[arg-type]
+    )
+
+
+def _on_points(planner: _OnPoints, problem: Problem, query: Query, name: str, find: Finder) -> PlanResult:
+    """Map the points into the space, join them by the rule, and find a path along what the world calls free."""
+    world = problem.world
+    # The points are chosen for a rule that was given.
+    given = rule_of(planner, world.space) if planner.rule is not None or planner.k is not None else None
+    points = as_points(planner.points, world.space, given, rng=problem.rng)
+    rule = default_rule(world.space) if given is None else given
+    attempt = Attempt(world, query, points.origin, str(rule), name)
+    if (refused := refusal(attempt)) is not None:
+        return refused
+    milestones = world.space.from_cube(points.points)
+    if not planner.lazy_milestones:
+        milestones = milestones[attempt.valid(milestones)]
+    states = attempt.candidates(rule, milestones)
+    states.node_states[len(milestones) if planner.lazy_milestones else 0 :] = FREE
+    certificate = None
+    if planner.certify:
+        ends = 1 + len(attempt.goals)
+        certificate = certify_graph(points, world.space, states.configurations, states.edges, ends)
+    result = answer(attempt, attempt.search(find, states), points.n)
+    if certificate is not None and result.status in (Status.SOLVED, Status.NOT_CONNECTED):
+        message = result.message
+        if not result.solved and certificate.complete:
+            message += f"; certified: no path has a clearance of {certificate.dispersion:.6g}"
+        result = replace(result, certificate=certificate, message=message)
+    return result

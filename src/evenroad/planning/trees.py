@@ -1,0 +1,231 @@
+"""Planners without a number of points: trees, a search over cells, and which of them a kind of world is planned by.
+
+Each plans until there is a path, a proof that there is none, or the budget is spent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import count, pairwise
+from typing import Any, ClassVar
+
+import numpy as np
+
+from evenroad._clock import now
+from evenroad._rng import RngLike, generator, seed_of
+from evenroad.errors import InvalidValue
+from evenroad.planning.connectors import CELLS, connector_of, trees_for
+from evenroad.planning.growing import GrowingPRM
+from evenroad.planning.hemmed_in import with_reasons
+from evenroad.planning.planner import Planner, Problem
+from evenroad.roadmap.answer import connected, gave_up, refusal, shown_apart
+from evenroad.roadmap.attempt import NO_LIMIT, Attempt
+from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.connector import Connection, Connector
+from evenroad.roadmap.query import Query
+from evenroad.roadmap.result import NO_POINTS, PlanResult, Stage
+from evenroad.world.gridmap.gridmap import DiskWorld
+
+NO_BETTER = 1e-9
+"""Share by which a path may exceed the shortest possible one and not be improved on."""
+LEAST_MOTIONS, LONGER = 1000, 4
+"""Motions after which a round gives up: so many, or so many times those of the first path, whichever is more."""
+TO_NEAREST = 300
+"""Most motions that are checked on the way to the nearest of several goals alone."""
+
+
+@dataclass(frozen=True)
+class RRTConnect:
+    """Two trees that grow from start and goals until they meet (Kuffner and LaValle 2000), along an even sequence.
+
+    Trees of arms are compiled, and every motion is proved free; trees in other worlds ask them about batches.  They are
+    led to the nearest of several goals first, for a short while, then to all.  Where they do not meet soon, a world
+    that can tell is asked whether there can be a path at all.
+
+    Parameters
+    ----------
+    improve : bool
+        Go on after the first path, until the budget is spent, and return the best of all.  The count ``rounds`` then
+        says how often it was planned anew, and `stages` when better paths were found.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> world = er.ArmWorld("ur5", "box-reach")
+    >>> er.plan(world, "home", "inside", er.RRTConnect()).status
+    <Status.SOLVED: 'solved'>
+    """
+
+    seconds: ClassVar[float] = 5.0
+
+    improve: bool = False
+
+    def solve(self, problem: Problem) -> PlanResult:
+        """Return a path, a proof that there is none, or what was tried; see :class:`RRTConnect`."""
+        return solve_by(problem, trees_for(problem.world), improve=self.improve)
+
+
+@dataclass(frozen=True)
+class GridSearch:
+    """A search over the cells of a map for a disk: exact, and it proves where there is no path.
+
+    It leads to the goal that is nearest on the map, around what is in the way.  With `improve` a roadmap then grows
+    beside the path until the budget is spent.
+
+    Raises
+    ------
+    InvalidValue
+        From :meth:`solve`, if the world is no disk on a map.
+    """
+
+    seconds: ClassVar[float] = 5.0
+
+    improve: bool = False
+
+    def solve(self, problem: Problem) -> PlanResult:
+        """Return a path, or the proof that there is none; see :class:`GridSearch`."""
+        if not isinstance(problem.world, DiskWorld):
+            raise InvalidValue(f"GridSearch plans for disks on maps, got {problem.world!r}")
+        return solve_by(problem, CELLS, improve=self.improve)
+
+
+def default_planner(world: Any, *, improve: bool = False) -> Planner:
+    """Return what plans in this kind of world where no planner is named."""
+    connector = connector_of(world)
+    if connector is None:
+        return _growing(improve)
+    return GridSearch(improve) if connector is CELLS else RRTConnect(improve)
+
+
+def _growing(improve: bool) -> GrowingPRM:
+    return GrowingPRM(until="budget" if improve else "solved")
+
+
+def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -> PlanResult:
+    """Plan with a connector until there is a path, a proof that there is none, or the budget is spent."""
+    world = problem.world
+    query = Query(
+        problem.start,
+        problem.goals,
+        shorten=problem.smooth,
+        budget=problem.budget,
+        apart=problem.apart,
+        connector=connector,
+    )
+    attempt = Attempt(world, query, NO_POINTS, "none", connector.planner)
+    if (refused := refusal(attempt)) is not None:
+        return refused
+    variant = _variant(problem.rng)
+    stages = [*connector.stages, (NO_LIMIT, False)]
+    connection = _connection(attempt, connector, stages[0][0], variant)
+    for (most, quickly), (more, _) in pairwise(stages):
+        if connection.goal >= 0:
+            break
+        ended = connection.motions < most or attempt.left() is None
+        if (apart_for := shown_apart(attempt, quickly=quickly and not ended)) is not None:
+            return apart_for
+        if ended:
+            break
+        # The same search again, and further.
+        attempt.motions_checked -= connection.motions
+        connection = _connection(attempt, connector, more, variant)
+    if connection.goal >= 0:
+        result = connected(attempt, connection)
+        return _improved(attempt, connector, result, variant) if improve else result
+    if (left := attempt.left()) is None:
+        return with_reasons(world, gave_up(attempt, connection))
+    return _growing(improve).solve(_rest(attempt, left))
+
+
+def _variant(rng: RngLike) -> int:
+    """Return which sequence drives the trees: 0 is the one that was tuned, and each seed has another."""
+    seed, drawn = seed_of(rng), generator(rng)
+    return int(drawn.integers(1, 2**31)) if seed is None else seed
+
+
+def _connection(attempt: Attempt, connector: Connector, most: int, variant: int) -> Connection:
+    """Join the start to a goal, by trees to the nearest one first: of many they may meet a far one."""
+    start, goals = attempt.query.start, attempt.query.goals[attempt.goals]
+    if len(goals) == 1 or not connector.varies:
+        return attempt.connect(connector, variant, most)
+    nearest = int(np.argmin(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals)))
+    near = attempt.connect(connector, variant, min(most, TO_NEAREST), nearest)
+    if near.goal >= 0 or attempt.left() is None:
+        return near
+    found = attempt.connect(connector, variant, most - near.motions)
+    return replace(
+        found,
+        nodes=near.nodes + found.nodes,
+        configurations=near.configurations + found.configurations,
+        motions=near.motions + found.motions,
+    )
+
+
+def _improved(attempt: Attempt, connector: Connector, first: PlanResult, variant: int) -> PlanResult:
+    """Return the best path within what is left of the budget, or of its rounds; never a worse one than the first."""
+    nodes = first.counts["nodes"]
+    stage = Stage(nodes, nodes, attempt.motions_checked, first.cost, attempt.elapsed())
+    if connector.varies:
+        return _by_rounds(attempt, connector, first, stage, variant)
+    return _by_growth(attempt, first, stage)
+
+
+def _by_rounds(
+    attempt: Attempt, connector: Connector, first: PlanResult, stage: Stage, variant: int
+) -> PlanResult:
+    """Plan again and again, each time driven by another sequence."""
+    best, stages, nodes, counts, done = first, [stage], stage.points, dict(first.counts), 0
+    # A round that is much longer than the first was takes the time of many others.
+    most = max(LEAST_MOTIONS, LONGER * attempt.motions_checked)
+    for number in count(1):
+        if not _goes_on(attempt, best, number):
+            break
+        connection = attempt.connect(connector, variant + number, most)
+        done, nodes = number, nodes + connection.nodes
+        counts["configurations_checked"] += connection.configurations
+        if connection.goal < 0:
+            continue
+        result = connected(attempt, connection)
+        if attempt.query.shorten:
+            counts["shortcut_motions"] += result.counts["shortcut_motions"]
+        if _cost(result) < _cost(best):
+            best = result
+            stages.append(Stage(nodes, nodes, attempt.motions_checked, best.cost, attempt.elapsed()))
+    counts |= {"nodes": nodes, "edges_checked": attempt.motions_checked, "rounds": done}
+    message = f"{best.message}, the best of {done + 1}" if done else best.message
+    return replace(best, message=message, counts=counts, stages=tuple(stages), timings=attempt.watch.seconds)
+
+
+def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
+    """Grow a roadmap beside the first path."""
+    left = attempt.left()
+    if left is None or not _goes_on(attempt, first, 1):
+        return replace(first, counts=first.counts | {"rounds": 0}, stages=(stage,))
+    before = attempt.elapsed()
+    grown = GrowingPRM(until="budget").solve(_rest(attempt, left))
+    stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
+    best = grown if grown.cost is not None and grown.cost < _cost(first) else first
+    return replace(best, counts=best.counts | {"rounds": len(grown.stages)}, stages=tuple(stages))
+
+
+def _goes_on(attempt: Attempt, best: PlanResult, number: int) -> bool:
+    """Return whether the budget allows this round, and the path exceeds the distance to the nearest goal."""
+    budget, start, goals = attempt.query.budget, attempt.query.start, attempt.query.goals[attempt.goals]
+    least = float(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals).min())
+    return (
+        now() < attempt.deadline
+        and (budget.rounds is None or number <= budget.rounds)
+        and (budget.motions is None or attempt.motions_checked < budget.motions)
+        and _cost(best) > (1.0 + NO_BETTER) * least
+    )
+
+
+def _cost(result: PlanResult) -> float:
+    assert result.cost is not None
+    return result.cost
+
+
+def _rest(attempt: Attempt, left: Budget) -> Problem:
+    """Return the problem of an attempt with what is left of its budget."""
+    query = attempt.query
+    return Problem(attempt.world, query.start, query.goals, budget=left, smooth=query.shorten)

@@ -1,0 +1,50 @@
+"""Which points a roadmap takes in a space, where only their number is given."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evenroad._checks import require_count
+from evenroad._rng import RngLike
+from evenroad.errors import InvalidValue
+from evenroad.points.pointset import PointSet
+from evenroad.points.samplers import make_sampler
+from evenroad.points.samplers.even import DRAWN_IN_FROM, drawn_in
+from evenroad.points.samplers.poses import Sliced
+from evenroad.roadmap.rules import Rule
+from evenroad.space import SO3, BoxSpace, Product, Space
+
+SPARSE = 6
+"""Neighbours up to which points are chosen for being connected, more than for reaching everywhere."""
+
+
+def as_points(
+    points: PointSet | int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0
+) -> PointSet:
+    """Return points of the space's cube: those given, or so many for the rule; InvalidValue for anything else."""
+    if not isinstance(points, PointSet):
+        if isinstance(points, bool) or not isinstance(points, int | np.integer):
+            raise InvalidValue(
+                "points must be a PointSet, such as draw('even', 512, 2), or how many points to draw,"
+                f" got {points!r}"
+            )
+        points = even_points(require_count("points", points), space, rule, rng=rng)
+    if points.d != space.cube_dim:
+        raise InvalidValue(f"the points have d={points.d}, the space has {space.cube_dim} dimensions")
+    return points
+
+
+def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0) -> PointSet:
+    """Return n points of the space's cube, as planners take them: `even`, but others in SE(3) and for sparse roadmaps.
+
+    In SE(3) evenness is worth nothing: there they are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
+    points.  In a box of seven dimensions and more, for a rule of at most 6 neighbours, they are drawn in to the middle.
+    """
+    d = space.cube_dim
+    k = None if rule is None else rule.reach(n, space).k
+    sparse = k is not None and k <= SPARSE
+    parts = space.parts if isinstance(space, Product) else ()
+    if [(type(part), part.dim) for part in parts] == [(BoxSpace, 3), (SO3, 4)]:
+        return (Sliced() if sparse else make_sampler("sobol")).draw(n, d, rng=rng)
+    points = make_sampler("even").draw(n, d, rng=rng)
+    return drawn_in(points) if sparse and d >= DRAWN_IN_FROM and isinstance(space, BoxSpace) else points
