@@ -39,7 +39,7 @@ MAY_IMPORT = {
     "planning": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "io": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
     "testing": BASE | {"space", "world"},
-    "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
+    "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "planning"},
     "robot": BASE | {"space", "geometry", "world"},
     "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "planning"},
     "trajectory": BASE | {"space", "world", "robot"},

@@ -23,7 +23,7 @@ OF_PLANNERS = {
 
 NOT_YET = {
     *("Budget", "KNearest", "Radius", "Roadmap", "Status", "Straight", "Upright"),
-    *("plan_arm", "plan_anytime", "find_path", "plan", "load_roadmap", "save_roadmap"),
+    *("load_roadmap", "save_roadmap"),
     *("load_robot_roadmap", "save_robot_roadmap", "make_roadmap"),
 }
 """Names of the root that are about to move or to go."""

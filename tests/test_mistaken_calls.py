@@ -179,7 +179,7 @@ def _values():
         "points": er.draw("sobol", 64, 2),
         "gridmap": gridmap,
         "disk": disk,
-        "result": er.find_path(disk, (0.05, 0.05), (0.95, 0.95)),
+        "result": er.plan(disk, (0.05, 0.05), (0.95, 0.95)),
         "robot": robot,
         "scene": scene,
         "arm": er.ArmWorld(robot, scene),

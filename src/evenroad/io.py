@@ -41,7 +41,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
     >>> import numpy as np
     >>> import evenroad as er
     >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
-    >>> result = er.find_path(world, (3, 3), (27, 17))
+    >>> result = er.plan(world, (3, 3), (27, 17))
     >>> er.io.plan_record(result, {"radius": 2.0})["status"]
     'solved'
     """
@@ -96,7 +96,7 @@ def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
     >>> import numpy as np
     >>> import evenroad as er
     >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
-    >>> result = er.find_path(world, (3, 3), (27, 17))
+    >>> result = er.plan(world, (3, 3), (27, 17))
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     er.io.save_result(result, f"{folder}/plan.csv")
     """
@@ -138,7 +138,7 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
     >>> import numpy as np
     >>> import evenroad as er
     >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
-    >>> result = er.find_path(world, (3, 3), (27, 17))
+    >>> result = er.plan(world, (3, 3), (27, 17))
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     result.save(f"{folder}/plan.json")
     ...     er.io.load_plan(f"{folder}/plan.json")[0].solved

@@ -58,14 +58,14 @@ def robot(tmp_path_factory):
 
 
 def test_a_band_that_the_foot_blocks_is_proved_in_an_empty_scene(robot):
-    result = er.plan_arm(robot, Scene(), UP, OVER, seconds=2.0)
+    result = er.plan(Scene(), UP, OVER, robot=robot, seconds=2.0)
     assert result.status == "not_connected"
     assert result.message == (
         "proved: there is no path: joint lift alone cannot get there, whatever the others do (shown for bodies inside"
         " of the robot's shapes)"
     )
-    assert er.plan_arm(robot, Scene(), UP, ROUND, seconds=2.0).status == "solved"
-    assert er.plan_arm(robot, Scene(), UP, [OVER, ROUND], seconds=2.0).status == "solved"
+    assert er.plan(Scene(), UP, ROUND, robot=robot, seconds=2.0).status == "solved"
+    assert er.plan(Scene(), UP, [OVER, ROUND], robot=robot, seconds=2.0).status == "solved"
 
 
 def test_it_is_soon_shown_again(robot):
@@ -85,7 +85,7 @@ def test_a_pair_that_is_not_tested_blocks_nothing(robot):
     for pairs in ((), tuple(pair for pair in robot.pairs if pair != ("foot", "arm"))):
         allowed = replace(robot, pairs=pairs)
         assert ArmWorld(allowed).may_connect(UP, OVER)
-        assert er.plan_arm(allowed, Scene(), UP, OVER, seconds=2.0).status == "solved"
+        assert er.plan(Scene(), UP, OVER, robot=allowed, seconds=2.0).status == "solved"
 
 
 def test_what_is_no_solid_blocks_nothing(tmp_path):
@@ -100,7 +100,7 @@ def test_a_pose_is_out_of_reach_only_where_all_of_its_postures_are(robot):
     behind = PoseGoal(Pose((-0.55, 0.0, 0.3)), "hand", position_only=True)
     either = with_limits(robot, {"lift": (-1.0, 3.2)})
     narrow = with_limits(either, {"pan": (-0.5, 0.5)})
-    results = [er.plan_arm(each, Scene(), np.zeros(3), behind, seconds=2.0) for each in (either, narrow)]
+    results = [er.plan(Scene(), np.zeros(3), behind, robot=each, seconds=2.0) for each in (either, narrow)]
     assert [result.status for result in results] == ["solved", "not_connected"]
     assert "joint lift alone" in results[1].message
 

@@ -131,7 +131,7 @@ class PlanResult(ResultMethods):
     >>> import numpy as np
     >>> import evenroad as er
     >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
-    >>> round(er.find_path(world, (3, 3), (27, 17)).cost, 3)
+    >>> round(er.plan(world, (3, 3), (27, 17)).cost, 3)
     27.785
     """
 

@@ -62,7 +62,7 @@ class ResultMethods:
         >>> import numpy as np
         >>> import evenroad as er
         >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
-        >>> er.find_path(world, (3, 3), (27, 17)).resample(0.5).shape
+        >>> er.plan(world, (3, 3), (27, 17)).resample(0.5).shape
         (57, 2)
         """
         path, world = self._required("resampled")
@@ -92,7 +92,7 @@ class ResultMethods:
         >>> import evenroad as er
         >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
         >>> with tempfile.TemporaryDirectory() as folder:
-        ...     er.find_path(world, (3, 3), (27, 17)).save(f"{folder}/plan.json")
+        ...     er.plan(world, (3, 3), (27, 17)).save(f"{folder}/plan.json")
         ...     er.io.load_plan(f"{folder}/plan.json")[0].status
         <Status.SOLVED: 'solved'>
         """
@@ -124,7 +124,7 @@ class ResultMethods:
         >>> import numpy as np
         >>> import evenroad as er
         >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
-        >>> er.find_path(world, (3, 3), (27, 17)).plot().format
+        >>> er.plan(world, (3, 3), (27, 17)).plot().format
         'PNG'
         """
         return above("PlanResult.plot")(self, path, world)
@@ -156,7 +156,7 @@ class ResultMethods:
         >>> import numpy as np
         >>> import evenroad as er
         >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
-        >>> er.find_path(world, (3, 3), (27, 17)).trajectory(speed=5.0)
+        >>> er.plan(world, (3, 3), (27, 17)).trajectory(speed=5.0)
         Trajectory(5.992 s, 2 joints, 750 states)
         """
         path, world = self._required("driven")

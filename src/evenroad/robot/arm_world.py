@@ -124,7 +124,7 @@ class ArmWorld(OneOrMany):
         object.__setattr__(self, "scene", with_planes(self.scene, self.robot.planes, self.robot.links))
         if self.scene.near_ends:
             raise InvalidValue(
-                f"scene {self.scene.name!r} allows contacts near the ends, which a world does not know: plan_arm does,"
+                f"scene {self.scene.name!r} allows contacts near the ends, which a world does not know: plan does,"
                 " or give it allowed_near_ends(robot, scene, ends)"
             )
         space, longest, of_robot, by_joint, bounds, by_joint_at = prepared(self.robot)

@@ -114,7 +114,7 @@ class RobotMethods:
     ) -> Floats:
         """Return the configurations that bring a link to a pose: inverse kinematics.
 
-        Nothing is tested for collisions; :func:`evenroad.plan_arm` takes poses as goals, and does.
+        Nothing is tested for collisions; :func:`evenroad.plan` takes poses as goals, and does.
 
         Parameters
         ----------

@@ -76,7 +76,7 @@ class Trajectory:
     >>> import numpy as np
     >>> import evenroad as er
     >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
-    >>> trajectory = er.find_path(world, (3, 3), (27, 17)).trajectory(speed=5.0)
+    >>> trajectory = er.plan(world, (3, 3), (27, 17)).trajectory(speed=5.0)
     >>> trajectory
     Trajectory(5.992 s, 2 joints, 750 states)
     """
@@ -122,7 +122,7 @@ class Trajectory:
         >>> import numpy as np
         >>> import evenroad as er
         >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
-        >>> trajectory = er.find_path(world, (3, 3), (27, 17)).trajectory(speed=5.0)
+        >>> trajectory = er.plan(world, (3, 3), (27, 17)).trajectory(speed=5.0)
         >>> trajectory.columns()[0]
         ('joint_1', 'joint_2')
         """

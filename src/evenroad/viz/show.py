@@ -9,8 +9,8 @@ from typing import Any
 from evenroad._arrays import Floats
 from evenroad._checks import require_extra
 from evenroad.errors import InvalidValue, NotAvailable, shown
+from evenroad.planning import plan
 from evenroad.roadmap import PlanResult
-from evenroad.roadmap.find_path import find_path
 from evenroad.robot import ArmWorld
 from evenroad.viz.page import ArmPage
 from evenroad.world.gridmap import GridMap
@@ -46,7 +46,7 @@ def show(what: PlanResult | GridMap, *, port: int = 0) -> Any:
     Examples
     --------
     >>> import evenroad as er
-    >>> result = er.find_path(er.ArmWorld("ur5"), (0, -1.5, 0, -1.5, 0, 0), (1, -1.5, 0.5, -1.5, 0, 0))
+    >>> result = er.plan(er.ArmWorld("ur5"), (0, -1.5, 0, -1.5, 0, 0), (1, -1.5, 0.5, -1.5, 0, 0))
     >>> er.show(result)  # doctest: +SKIP
     """
     if not isinstance(what, PlanResult | GridMap):
@@ -63,10 +63,10 @@ def show(what: PlanResult | GridMap, *, port: int = 0) -> Any:
         return picture
     world = what.world
 
-    def plan(start: Floats, goal: Floats) -> PlanResult:
-        return find_path(world, start, goal)
+    def plan_again(start: Floats, goal: Floats) -> PlanResult:
+        return plan(world, start, goal)
 
-    page = ArmPage(world, what, plan, port=port)
+    page = ArmPage(world, what, plan_again, port=port)
     if notebook is not None:
         notebook.display(notebook.IFrame(page.address, "100%", HEIGHT))
         return page
