@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.roadmap.connector import Connection
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.tree_sequences import ball_points
-from evenroad.world.protocol import Connection
 
 Floats = npt.NDArray[np.float64]
 

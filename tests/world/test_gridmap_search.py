@@ -8,7 +8,7 @@ from scipy import ndimage
 
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import CELLS
-from evenroad.world import ConnectsItself, GridMap, MapFrame, Separates
+from evenroad.world import GridMap, MapFrame
 from evenroad.world.gridmap.components import find_gates, label_components
 
 FINE = 12
@@ -47,12 +47,6 @@ def test_what_is_known_of_narrow_passages_is_in_proportion_to_the_pixels():
     assert gates.sum() == 20_000
     assert sum(array.nbytes for array in label_components(world.tables, gates)) < 70 * 20_000
     assert world.cells_of(world.component(a)).all()
-
-
-def test_the_world_follows_both_protocols():
-    world = GridMap(np.zeros((9, 9), dtype=bool)).world(1.0)
-    assert isinstance(world, ConnectsItself)
-    assert isinstance(world, Separates)
 
 
 @pytest.mark.parametrize("radius", [0.5, 1.0, 1.37, 2.0, 2.5])

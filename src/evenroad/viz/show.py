@@ -9,7 +9,7 @@ from typing import Any
 from evenroad._arrays import Floats
 from evenroad._checks import require_extra
 from evenroad.errors import InvalidValue, NotAvailable, shown
-from evenroad.planning import plan
+from evenroad.planning import plan as plan_path
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld
 from evenroad.viz.page import ArmPage
@@ -64,7 +64,7 @@ def show(what: PlanResult | GridMap, *, port: int = 0) -> Any:
     world = what.world
 
     def plan_again(start: Floats, goal: Floats) -> PlanResult:
-        return plan(world, start, goal)
+        return plan_path(world, start, goal)
 
     page = ArmPage(world, what, plan_again, port=port)
     if notebook is not None:
