@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from evenroad.points import draw
-from evenroad.roadmap import KNearest, Roadmap
+from evenroad.roadmap import KNearest
+from evenroad.roadmap.kept import roadmap_of_points
 from evenroad.world import GridMap
 
 
@@ -20,35 +21,34 @@ START, GOAL = (5.0, 5.0), (55.0, 35.0)
 
 
 def known(world, n=32, **options):
-    return Roadmap.build(world.space, draw("sobol", n, 2, rng=0), KNearest(6)).in_world(world, **options)
+    return roadmap_of_points(world.space, draw("sobol", n, 2, rng=0), KNearest(6)).within(world, **options)
 
 
 def test_trees_join_what_the_roadmap_does_not():
     world = walled(gap=5)
     roadmap = known(world)
-    alone = roadmap.query(START, GOAL, connect=False)
+    alone = roadmap.plan(START, GOAL, connect=False)
     assert alone.status == "not_connected"
-    joined = roadmap.query(START, GOAL, shorten=False)
+    joined = roadmap.plan(START, GOAL, shorten=False)
     assert joined.solved
     assert joined.planner == "prm lazy, then cells"
     assert world.motion_valid(joined.path[:-1], joined.path[1:]).all()
-    shorter = roadmap.query(START, GOAL)
+    shorter = roadmap.plan(START, GOAL)
     assert shorter.cost < joined.cost
 
 
 def test_what_the_search_learned_stays():
     roadmap = known(walled(gap=5))
-    first = roadmap.query(START, GOAL)
-    states = roadmap.states
-    again = roadmap.query(START, GOAL)
+    first = roadmap.plan(START, GOAL)
+    before = roadmap.known
+    again = roadmap.plan(START, GOAL)
     assert np.array_equal(first.path, again.path)
     assert again.counts["edges_checked"] < first.counts["edges_checked"]
-    for before, after in zip(states, roadmap.states, strict=True):
-        assert np.array_equal(before, after)
+    assert roadmap.known == before
 
 
 def test_a_path_along_the_roadmap_needs_no_trees():
-    result = known(walled(gap=5)).query(START, (20.0, 30.0))
+    result = known(walled(gap=5)).plan(START, (20.0, 30.0))
     assert result.solved
     assert result.planner == "prm lazy"
 
@@ -56,7 +56,7 @@ def test_a_path_along_the_roadmap_needs_no_trees():
 def test_where_it_is_proved_that_there_is_no_path_nobody_looks_for_one(monkeypatch):
     world = walled(gap=3)
     monkeypatch.setattr(type(world), "connect", lambda *_, **__: pytest.fail("was asked"))
-    result = known(world).query(START, GOAL)
+    result = known(world).plan(START, GOAL)
     assert result.status == "not_connected"
     assert result.counts["start_component"] > 0
 
@@ -65,4 +65,4 @@ def test_paths_by_another_cost_come_from_the_roadmap_alone():
     def twice(a, b):
         return 2.0 * np.hypot(*(a - b).T)
 
-    assert known(walled(gap=5), edge_cost=twice).query(START, GOAL).status == "not_connected"
+    assert known(walled(gap=5), edge_cost=twice).plan(START, GOAL).status == "not_connected"

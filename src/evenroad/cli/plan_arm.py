@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 
 from evenroad._compiled import say_if_compiling
@@ -31,9 +31,8 @@ from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.robot.straight import Straight
 from evenroad.robot.trees import prepare
 from evenroad.robot.upright import Upright
-from evenroad.robot_roadmap.ask import prepare as prepare_roadmap
-from evenroad.robot_roadmap.cell import day_and_all
-from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.query import prepare as prepare_roadmap
+from evenroad.robot_roadmap.static_scene import joined_scenes
 
 
 def plan_arm(plan: PlanArm) -> int:
@@ -48,8 +47,6 @@ def plan_arm(plan: PlanArm) -> int:
     inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
-    if plan.roadmap is not None and plan.clearance:
-        raise InvalidValue("--clearance goes without --roadmap: what it knows of motions is known without")
     kept = None if plan.roadmap is None else kept_roadmap(plan)
     if kept is not None:
         prepare_roadmap()
@@ -60,7 +57,7 @@ def plan_arm(plan: PlanArm) -> int:
     assert robot is not None
     query = arm_query(
         robot,
-        scene if kept is None else day_and_all(kept.cell, scene)[1],
+        scene if kept is None else joined_scenes(kept.scene, scene),
         " ".join(plan.start),
         asked_goals,
         resolution=plan.resolution,
@@ -68,14 +65,12 @@ def plan_arm(plan: PlanArm) -> int:
         degrees=plan.deg,
         **({} if plan.robot is None else plan.options()),
     )
-    known = None if kept is None else SceneRoadmap(kept, query.world.scene, query.world.robot)
-    query = query if known is None else replace(query, world=known.world)
     world, start, goals = query.world, query.start, query.goals
     rule = chosen_rule(plan, default_rule(world.space).k)
     points = planned_points(plan, world.space.cube_dim) if wants_points(plan) else None
     load_compiled_code(world, start, goals, points, rule, SEARCH)
 
-    along = None if known is None else known.plan
+    along = None if kept is None else kept.within(world).plan
     planner = ArmPlanner(budget, points, rule, plan.improve, not plan.raw, *ways, along)
     result, meshes = finished(query, plan_query(query, planner), certified=plan.certified)
     more_rows, trajectory = trajectory_rows(plan, query, result, ways)
@@ -178,5 +173,5 @@ def _say_if_compiling(plan: PlanArm) -> None:
     # Where the lanes do not work, the search and the trees are never compiled; to find that out, other things are.
     if said or points or lanes_failure() is not None:
         return
-    if plan.roadmap is None or not say_if_compiling("evenroad.robot_roadmap.lane_search", "find_way", 10):
+    if plan.roadmap is None or not say_if_compiling("evenroad.robot_roadmap.lane_search", "find_path", 10):
         say_if_compiling(f"{kernel}.trees", "grow", 5)
