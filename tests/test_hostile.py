@@ -17,10 +17,8 @@ from evenroad._yaml import read_mapping
 from evenroad.errors import LONGEST, BrokenFile, EvenroadError, InvalidValue, shown
 from evenroad.geometry import load_cloud, load_mesh
 from evenroad.points.npz import load_points
-from evenroad.roadmap.npz import load_roadmap
 from evenroad.robot import load_robot, load_scene
-from evenroad.robot_roadmap.file import load_robot_roadmap
-from evenroad.space import BoxSpace
+from evenroad.robot_roadmap.file import load_roadmap
 
 pytest.importorskip("trimesh")
 # Loaded before, so that its own time and memory are not a file's.
@@ -56,7 +54,7 @@ TEXT = npy(header((), "<U1"), "x".encode("utf-32-le"))
 BOMB = npy(header((90_000_000 // 16, 2)), bytes(90_000_000))
 VAST = npy(header((10**12, 2)), bytes(160))
 """A header of terabytes, behind which there are ten rows."""
-ROADMAP = ("format", "origin", "rule", "configurations", "edges", "digest")
+ROADMAP = ("format", "origin", "version", "rule", "milestones", "edges", "lengths", "digest")
 
 DRAWN = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit meter="1"/></asset>
@@ -120,10 +118,10 @@ HOSTILE = {
     ),
     "vast.npy": (load_points, VAST),
     "roadmap.npz": (
-        lambda path: load_roadmap(path, BoxSpace([0, 0], [1, 1])),
+        load_roadmap,
         npz(points=BOMB, **dict.fromkeys(ROADMAP, TEXT)),
     ),
-    "robot.npz": (load_robot_roadmap, npz(points=BOMB)),
+    "robot.npz": (load_roadmap, npz(points=BOMB)),
     "vast_cloud.npy": (load_cloud, VAST),
     "vast.ply": (
         load_cloud,

@@ -15,10 +15,13 @@ from evenroad.planning.connectors import ARM_TREES
 from evenroad.planning.trees import default_planner
 from evenroad.points.measures import MEASURES
 from evenroad.roadmap import Status
-from evenroad.robot import Obstacle, link_poses
+from evenroad.roadmap.kept import roadmap_of_points
+from evenroad.robot import ArmWorld, Obstacle, link_poses
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.chain import chain_of
 from evenroad.robot.upright import upright_world
+from evenroad.robot_roadmap.build import arm_roadmap
+from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.space.path import subdivide
 from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
 from evenroad.world.gridmap.shipped import load_maze
@@ -140,10 +143,10 @@ def points_and_rules():
 
 def a_kept_roadmap():
     world = er.ArmWorld(robot(), box_scene())
-    kept = er.Roadmap.build(world.space, er.draw("uniform", 128, 3, rng=2))
-    here = kept.in_world(world)
-    asks = [lambda a=a, b=b: here.query(a, b) for a, b in ends()]
-    return [*asks, lambda: kept.in_world(world, lazy_milestones=True).query(*ends()[0])]
+    kept = roadmap_of_points(world.space, er.draw("uniform", 128, 3, rng=2))
+    here = kept.within(world)
+    asks = [lambda a=a, b=b: here.plan(a, b) for a, b in ends()]
+    return [*asks, lambda: kept.within(world, lazy_milestones=True).plan(*ends()[0])]
 
 
 def a_disk_on_a_map():
@@ -167,15 +170,12 @@ def a_function():
 @cache
 def known():
     """A robot's roadmap on its table."""
-    return er.make_roadmap(ur5(limits=math.pi, joints=3), TABLE, 40, k=4, gamma=0.0, ends=100)
+    return arm_roadmap(ArmWorld(ur5(limits=math.pi, joints=3), TABLE), 40, 4, recipe=Recipe(0.0, 100))
 
 
 def a_robot_roadmap():
     own = replace(known(), robot=robot())
-    scene = box_scene()
-
-    alone = [lambda a=a, b=b: own.in_scene(scene).plan(a, b) for a, b in ends()]
-    return [*alone, lambda: own.plan(scene, *ends()[1])]
+    return [lambda a=a, b=b: own.within(ArmWorld(own.robot, box_scene())).plan(a, b) for a, b in ends()]
 
 
 def samplers():
@@ -199,13 +199,13 @@ def files(folder):
     """Saved once, loaded by all, and saved by all."""
     world = load_maze(2).world()
     er.draw("uniform", 64, 2, rng=2).save(folder / "p.npz")
-    er.save_roadmap(folder / "r.npz", er.Roadmap.build(world.space, 64))
-    er.save_robot_roadmap(folder / "r.roadmap", known())
+    er.build_roadmap(world, 64).save(folder / "r.npz")
+    known().save(folder / "r.roadmap")
     save_trajectory(folder / "t.json", make_trajectory(ends()[0], Limits((1.0,) * 3, (4.0,) * 3)))
     return [
         lambda: er.load_points(folder / "p.npz"),
-        lambda: er.load_roadmap(folder / "r.npz", world.space).edges,
-        lambda: er.load_robot_roadmap(folder / "r.roadmap").milestones,
+        lambda: er.load_roadmap(folder / "r.npz").edges,
+        lambda: er.load_roadmap(folder / "r.roadmap").milestones,
         lambda: load_trajectory(folder / "t.json").positions,
         lambda: er.load_robot("arm7") == er.load_robot("arm7"),
         lambda: er.load_scene("box-reach") == er.load_scene("box-reach"),
@@ -248,7 +248,7 @@ def test_eight_threads_read_and_write_files_as_one(tmp_path):
 def test_a_robot_roadmap_that_learns_gives_each_thread_the_path_that_it_asked_for():
     """What was learned before decides which path that is: each is looked at in double precision."""
     arm, scene, paths = ur5(limits=math.pi, joints=3), box_scene(), {}
-    shared = known().in_scene(scene)
+    shared = known().within(ArmWorld(arm, scene))
     # More than once: the later ones of what was learned.
     asks = 4 * [lambda a=a, b=b: shared.plan(a, b) for a, b in ends()]
     for results in together(*asks):

@@ -9,7 +9,8 @@ import pytest
 from evenroad.geometry import Mesh, PointCloud
 from evenroad.geometry.shapes import along_z
 from evenroad.robot import ArmWorld, Obstacle, Scene, capsule_ends, load_robot
-from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.build import arm_roadmap
+from evenroad.robot_roadmap.recipe import Recipe
 from tests_peers.engines.surface import shape_surface
 
 pytest.importorskip("coal")
@@ -26,7 +27,7 @@ def robot():
 
 @pytest.fixture(scope="module")
 def roadmap(robot):
-    return make_roadmap(robot, None, 64, ends=30)
+    return arm_roadmap(ArmWorld(robot), 64, recipe=Recipe(4.0, 30))
 
 
 def _thin(robot, share=0.7):
@@ -62,9 +63,9 @@ def _fine(world, path):
 def test_shapes_decide_where_capsules_touch(robot, roadmap):
     ball = _beside(robot, START)
     scene = Scene((ball, Obstacle.of("post", "box", (0.1, 0.1, 0.5), (0.35, 0.45, 0.4))), name="beside")
-    blocked = roadmap.in_scene(scene).plan(START, GOAL)
+    blocked = roadmap.within(ArmWorld(robot, scene)).plan(START, GOAL)
     assert blocked.status == "start_invalid"
-    result = roadmap.in_scene(scene, _thin(robot)).plan(START, GOAL)
+    result = roadmap.within(OwnShapesWorld(ArmWorld(robot, scene), _thin(robot))).plan(START, GOAL)
     assert result.solved
     assert result.proof == "resolution"
     assert _fine(CoalWorld(robot, scene, _thin(robot)), result.path)
@@ -75,7 +76,7 @@ def test_what_capsules_prove_is_not_asked(robot, roadmap, monkeypatch):
     def asked(*_):
         raise AssertionError("coal was asked")
 
-    known = roadmap.in_scene(Scene(name="nothing"), _thin(robot))
+    known = roadmap.within(OwnShapesWorld(ArmWorld(robot), _thin(robot)))
     monkeypatch.setattr(CoalWorld, "valid", asked)
     monkeypatch.setattr(
         CoalWorld, "motion_valid", lambda self, a, b: asked() if len(a) else np.empty(0, bool)
@@ -108,7 +109,9 @@ def test_verdicts_are_those_of_either(robot):
 def test_clouds_block_as_they_do_for_capsules(robot, roadmap):
     ball = _beside(robot, START)
     cloud = Obstacle("ball", PointCloud(np.array([ball.xyz]), 0.02))
-    result = roadmap.in_scene(Scene((cloud,), name="scanned"), _thin(robot)).plan(START, GOAL)
+    result = roadmap.within(
+        OwnShapesWorld(ArmWorld(robot, Scene((cloud,), name="scanned")), _thin(robot))
+    ).plan(START, GOAL)
     assert result.status == "start_invalid"
     assert "ball" in result.message
 
@@ -121,7 +124,7 @@ def test_later_queries_go_on_from_what_earlier_ones_found(robot, roadmap):
         ),
         name="posts",
     )
-    known = roadmap.in_scene(scene, _thin(robot))
+    known = roadmap.within(OwnShapesWorld(ArmWorld(robot, scene), _thin(robot)))
     first = known.plan(START, GOAL)
     assert first.solved
     again = known.plan(first.milestone_path[1], GOAL)

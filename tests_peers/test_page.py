@@ -6,8 +6,8 @@ import time
 import numpy as np
 import pytest
 from evenroad.arms import arm_query
-from evenroad.roadmap.find_path import find_path
 
+from evenroad.planning.plan import plan as find_path
 from evenroad.roadmap import Budget
 from evenroad.robot.kinematics import link_poses
 

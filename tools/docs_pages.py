@@ -52,11 +52,10 @@ REFERENCE = {
     "robot_roadmaps": (
         "Robots' roadmaps",
         (
-            "evenroad.robot_roadmap.make",
-            "evenroad.robot_roadmap.robot_roadmap",
-            "evenroad.robot_roadmap.scene_roadmap",
+            "evenroad.robot_roadmap.build",
+            "evenroad.robot_roadmap.arm_roadmap",
+            "evenroad.robot_roadmap.world_roadmap",
             "evenroad.robot_roadmap.file",
-            "evenroad.robot_roadmap.certify",
         ),
     ),
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),

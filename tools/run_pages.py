@@ -46,7 +46,7 @@ pose = er.Pose.from_rpy((0.65, 0, 0.2), (0, 1.5708, 0))
 """
 ROADMAP = """
 from pathlib import Path
-er.save_robot_roadmap(Path("my_arm.roadmap"), er.make_roadmap(robot, n=16, ends=0))
+er.build_roadmap(ArmWorld(robot), er.draw("even", 16, 6)).save(Path("my_arm.roadmap"))
 """
 CLOUD = """
 import numpy as np, trimesh
@@ -118,7 +118,7 @@ INSTEAD = {
 }
 """A command, or how it begins -> what is run in its place."""
 
-SMALLER = {"er.make_roadmap(robot, cell, n=1024)": "er.make_roadmap(robot, cell, n=16, ends=0)"}
+SMALLER = {"er.ArmWorld(robot, cell), 1024)": 'er.ArmWorld(robot), er.draw("even", 16, 6))'}
 """Python that takes long -> what is run in its place."""
 
 

@@ -24,8 +24,6 @@ from evenroad.roadmap import PlanResult as PlanResult
 from evenroad.roadmap import Radius as Radius
 from evenroad.roadmap import Roadmap as Roadmap
 from evenroad.roadmap import Status as Status
-from evenroad.roadmap import load_roadmap as load_roadmap
-from evenroad.roadmap import save_roadmap as save_roadmap
 from evenroad.robot import ArmWorld as ArmWorld
 from evenroad.robot import PoseGoal as PoseGoal
 from evenroad.robot import Robot as Robot
@@ -34,9 +32,8 @@ from evenroad.robot import Straight as Straight
 from evenroad.robot import Upright as Upright
 from evenroad.robot import load_robot as load_robot
 from evenroad.robot import load_scene as load_scene
-from evenroad.robot_roadmap.file import load_robot_roadmap as load_robot_roadmap
-from evenroad.robot_roadmap.file import save_robot_roadmap as save_robot_roadmap
-from evenroad.robot_roadmap.make import make_roadmap as make_roadmap
+from evenroad.robot_roadmap.build import build_roadmap as build_roadmap
+from evenroad.robot_roadmap.file import load_roadmap as load_roadmap
 from evenroad.trajectory import Trajectory as Trajectory
 from evenroad.viz.show import show as show
 from evenroad.world import FunctionWorld as FunctionWorld

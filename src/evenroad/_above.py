@@ -20,10 +20,10 @@ FUNCTIONS = {
     "PointSet.discrepancy": "scipy.stats.qmc:discrepancy",
     "PointSet.save": "evenroad.points.npz:write_points",
     "Robot.configuration": "evenroad.robot.states:as_configuration",
-    "Robot.limits": "evenroad.robot.robot_questions:joint_limits",
-    "Robot.fk": "evenroad.robot.robot_questions:pose_of_link",
-    "Robot.ik": "evenroad.robot.robot_questions:configurations_at",
-    "Robot.random": "evenroad.robot.robot_questions:random_configurations",
+    "Robot.limits": "evenroad.robot.robot_queries:joint_limits",
+    "Robot.fk": "evenroad.robot.robot_queries:pose_of_link",
+    "Robot.ik": "evenroad.robot.robot_queries:configurations_at",
+    "Robot.random": "evenroad.robot.robot_queries:random_configurations",
 }
 """Method -> the function that it is, ``module:name``; it is given the value, or what one is made of."""
 

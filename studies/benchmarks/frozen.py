@@ -29,11 +29,10 @@ from studies.benchmarks.clouds import points_on, triangles_of
 from evenroad import Budget, draw
 from evenroad.geometry import Mesh, PointCloud
 from evenroad.planning import FMT, PRM, GrowingPRM, plan
-from evenroad.roadmap import KNearest, PlanResult, Roadmap
+from evenroad.roadmap import KNearest, PlanResult
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.scene import Obstacle, Scene
-from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.build import build_roadmap
 from evenroad.world import World
 from evenroad.world.gridmap.shipped import load_maze
 from evenroad_studies.bench.execute import run_task
@@ -155,8 +154,8 @@ def map_plans() -> Lines:
             anytime = plan(world, start, goal, GrowingPRM(), limits=Budget(seconds=None, samples=4096))
             lines.append(line_of(f"anytime {level} {i}", anytime))
     world, queries = map_queries(3, 30)
-    known = Roadmap.build(world.space, draw("even", 512, 2)).in_world(world)
-    lines += [line_of(f"kept {i}", known.query(*pair, budget=budget)) for i, pair in enumerate(queries)]
+    known = build_roadmap(world, draw("even", 512, 2)).within(world)
+    lines += [line_of(f"kept {i}", known.plan(*pair, budget=budget)) for i, pair in enumerate(queries)]
     return lines
 
 
@@ -187,10 +186,10 @@ def robot_roadmap_plans() -> Lines:
     lines = []
     for name in ("ur5", "arm7"):
         pool = Pool(arm_named(name))
-        made = make_roadmap(pool.robot, None, 128)
+        made = build_roadmap(ArmWorld(pool.robot), 128)
         lines.append(f"milestones {name}: {hashlib.sha256(made.milestones.tobytes()).hexdigest()[:16]}")
         for problem in problems(pool, SEEDS):
-            known = SceneRoadmap(made, problem.scene)
+            known = made.within(ArmWorld(pool.robot, problem.scene))
             for trees in (True, False):
                 budget = Budget(seconds=None, motions=20_000)
                 result = known.plan(problem.start, problem.goal, budget=budget, trees=trees)

@@ -11,6 +11,7 @@ import pytest
 import evenroad as er
 from evenroad._npz import digest
 from evenroad.cli import main
+from evenroad.robot_roadmap.static_scene import joined_scenes
 
 CELL = """\
 obstacles:
@@ -30,15 +31,15 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def made(folder):
-    line = ["roadmap", "ur5", "--cell", "cell.yaml", "-n", "64", "--gamma", "0", "-o", "my.roadmap"]
+    line = ["roadmap", "ur5", "--cell", "cell.yaml", "-n", "64", "-o", "my.roadmap"]
     assert main(line) == 0
     return folder
 
 
 def test_it_makes_the_roadmap_that_python_makes(made):
     robot, cell = er.load_robot("ur5"), er.load_scene("cell.yaml")
-    expected = er.make_roadmap(robot, cell, 64, gamma=0.0)
-    roadmap = er.load_robot_roadmap("my.roadmap", robot, cell)
+    expected = er.build_roadmap(er.ArmWorld(robot, cell), 64)
+    roadmap = er.load_roadmap("my.roadmap")
     np.testing.assert_array_equal(roadmap.milestones, expected.milestones)
     np.testing.assert_array_equal(roadmap.edges, expected.edges)
 
@@ -46,8 +47,9 @@ def test_it_makes_the_roadmap_that_python_makes(made):
 def test_a_plan_along_it_is_that_of_python_and_proved(made):
     assert main(["plan", "box-reach.yaml", "--roadmap", "my.roadmap", *ENDS, "--out", "a"]) == 0
     record = json.loads((made / "a.json").read_text())
-    scene = er.load_scene("box-reach")
-    result = er.load_robot_roadmap("my.roadmap").in_scene(scene).plan("home", "inside")
+    roadmap = er.load_roadmap("my.roadmap")
+    world = er.ArmWorld(roadmap.robot, joined_scenes(roadmap.scene, er.load_scene("box-reach")))
+    result = roadmap.within(world).plan("home", "inside")
     assert record["path"] == result.path.tolist()
     assert record["proof"] == "certified"
     assert (
@@ -63,7 +65,6 @@ def test_a_plan_along_it_is_that_of_python_and_proved(made):
         (["roadmap", "ur5", "-n", "0"], "n must be"),
         (["roadmap", "ur5", "-n", "99999"], "n must be at most 32768"),
         (["roadmap", "ur5", "-k", "0"], "k must be"),
-        (["roadmap", "ur5", "--gamma", "nan"], "gamma must be"),
         (["roadmap", "ur5", "--resolution", "0"], "resolution must be"),
         (["roadmap", "ur5", "--resolution", "1e-9"], "resolution must be larger"),
         (["roadmap", "ur5", "--seed", "-1"], "--seed must be"),
@@ -80,7 +81,7 @@ def test_a_plan_along_it_is_that_of_python_and_proved(made):
         (["roadmap", "ur5", "--cell", "cell.yaml", "-o", "cell.yaml"], "would overwrite"),
         (
             ["plan", "box-reach.yaml", "--roadmap", "cell.yaml", *ENDS],
-            "is text, not a .npz roadmap of a robot",
+            "is text, not a .npz roadmap",
         ),
         (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS], "no such file: none"),
         (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS, "-n", "5"], "goes without points"),
@@ -114,14 +115,13 @@ def test_bad_input_is_refused_before_anything_is_compiled(made):
     free = "0,-1.5,0,0,0,0"
     every = [
         ["roadmap", "ur5", "-n", "0"],
-        ["roadmap", "ur5", "--gamma", "-1"],
+        ["roadmap", "ur5", "--resolution", "-1"],
         ["roadmap", "ur5", "-o", "no/where.roadmap"],
         ["roadmap", "ur5", "--cell", "limits.yaml"],
         [*plan, "nowhere"],
         [*plan, free, "--out", "no/where"],
         [*plan, free, "--goal", "99,-1.5,0,0,0,0"],
         [*plan, free, "--goal", "1,-1.5"],
-        [*plan, free, "--resolution", "0.1"],
         [*plan, free, "-n", "0"],
         ["plan", "today.yaml", *plan[2:], free],
     ]
@@ -155,9 +155,9 @@ def test_a_roadmap_that_is_no_more_what_was_written_gets_one_line(made, capsys):
         (whole[:last] + bytes([whole[last] ^ 255]) + whole[last + 1 :], "damaged"),
         (kept("older", version="0.0.1"), "of evenroad 0.0.1"),
         (kept("empty", **nothing, turns=np.empty((0, 6), np.int8)), "must have a milestone or more"),
-        (kept("robotless", robot="{}"), "lacks some of what a roadmap of a robot holds"),
-        (kept("nested", robot="[" * 100_000), "lacks some of what a roadmap of a robot holds"),
-        (kept("coarse", settings='{"resolution": "a", "gamma": 4}'), "resolution must be"),
+        (kept("robotless", robot="{}"), "lacks some of what a roadmap of an arm holds"),
+        (kept("nested", robot="[" * 100_000), "lacks some of what a roadmap of an arm holds"),
+        (kept("coarse", settings='{"resolution": "a"}'), "resolution must be"),
     ):
         (made / "other.roadmap").write_bytes(content)
         assert main(["plan", "box-reach.yaml", "--roadmap", "other.roadmap", *ENDS, "--out", "a"]) == 2
@@ -181,7 +181,7 @@ def test_what_contradicts_the_roadmap_gets_one_line(made, capsys):
     for words, said in (
         (["today.yaml"], "'table' of scene 'today' is a box"),
         (["cell.yaml", "--robot", "arm7"], "made for another robot, 'ur5'"),
-        (["cell.yaml", "--resolution", "0.1"], "made with --resolution 0.05"),
+        (["cell.yaml", "--clearance", "0.01"], "was built with 0 m"),
         (["cell.yaml", "--robot", "ur5", "--group", "elbow_joint"], "among its joints of the group"),
     ):
         capsys.readouterr()
@@ -192,5 +192,5 @@ def test_what_contradicts_the_roadmap_gets_one_line(made, capsys):
 
 
 def test_one_milestone_is_said_to_be_one(folder, capsys):
-    assert main(["roadmap", "ur5", "-n", "1", "--gamma", "0", "-o", "one.roadmap"]) == 0
+    assert main(["roadmap", "ur5", "-n", "1", "-o", "one.roadmap"]) == 0
     assert "1 milestone and 0 motions, free" in " ".join(capsys.readouterr().out.split())

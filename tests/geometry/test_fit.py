@@ -64,7 +64,7 @@ def test_a_capsule_contains_the_rims_of_a_cylinder(radius, length):
 def test_a_sphere_and_a_capsule_are_kept():
     (ball,) = fit_capsules(Sphere(0.1, pose=PLACE, link="x"))
     assert ball == Capsule(XYZ, XYZ, 0.1, link="x")
-    (capsule,) = fit_capsules(Capsule.along_z(0.1, 0.4, PLACE, "x"))
+    (capsule,) = fit_capsules(Capsule(0.1, 0.4, pose=PLACE, link="x"))
     assert capsule.radius == 0.1
     assert math.dist(capsule.a, capsule.b) == pytest.approx(0.4)
 

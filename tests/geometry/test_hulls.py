@@ -42,7 +42,7 @@ def test_a_hull_contains_its_shape_and_little_else(shape, corners):
 
 
 def test_round_shapes_are_kept():
-    ball, stick = piece_of(Sphere(0.2, link="a")).hull, piece_of(Capsule.along_z(0.1, 0.4, link="a")).hull
+    ball, stick = piece_of(Sphere(0.2, link="a")).hull, piece_of(Capsule(0.1, 0.4, link="a")).hull
     assert ball.is_round
     assert stick.is_round
     assert ball.radius == pytest.approx(0.2, abs=1e-8)

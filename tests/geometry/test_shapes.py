@@ -35,7 +35,7 @@ FLAT = TriangleMesh(np.eye(3), [[0, 1, 2]], "flat")
         (lambda: Cylinder(1, 0), "length of a cylinder"),
         (lambda: Capsule((0, 0, math.nan), (0, 0, 1), 1), "end a of a capsule .*nan"),
         (lambda: Capsule((0, 0, 0), (0, 0, 1), 0.0), "radius of a capsule .* > 0, got 0.0"),
-        (lambda: Capsule.along_z(1, 0), "length of a capsule"),
+        (lambda: Capsule(1, 0), "length of a capsule"),
         (lambda: Mesh(FLAT, (1, 0, 1)), "scale of mesh flat must not be 0"),
         (lambda: PointCloud(np.zeros((3, 2))), "points of a cloud .*3, 2"),
         (lambda: PointCloud(np.zeros((0, 3))), "one point or more"),
@@ -55,9 +55,7 @@ def test_an_unknown_shape_is_named_with_those_there_are():
         shape_of("cone", (1.0,))
 
 
-@pytest.mark.parametrize(
-    "shape", [Box((1, 2, 3)), Sphere(0.5), Cylinder(0.5, 2), Capsule.along_z(0.5, 2)], ids=str
-)
+@pytest.mark.parametrize("shape", [Box((1, 2, 3)), Sphere(0.5), Cylinder(0.5, 2), Capsule(0.5, 2)], ids=str)
 def test_a_shape_is_made_again_from_its_kind_and_size(shape):
     placed = replace(shape, pose=PLACE, link="arm")
     assert shape_of(placed.kind, placed.size, placed.pose, placed.link) == placed
@@ -104,7 +102,7 @@ def test_a_capsule_without_a_length_is_a_sphere():
 
 
 def test_a_capsule_without_its_pose_has_its_ends_in_the_outer_frame():
-    capsule = Capsule.along_z(0.1, 2.0, PLACE, "arm")
+    capsule = Capsule(0.1, 2.0, pose=PLACE, link="arm")
     moved = without_pose(capsule)
     np.testing.assert_allclose(moved.a, PLACE.apply((0, 0, -1)))
     np.testing.assert_allclose(moved.b, PLACE.apply((0, 0, 1)))

@@ -16,11 +16,11 @@ from evenroad.roadmap import (
     KNearest,
     KStar,
     Radius,
-    Roadmap,
     Status,
     certify,
     certify_roadmap,
 )
+from evenroad.roadmap.kept import roadmap_of_points
 from evenroad.space import SO3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
 from tests.clear_paths import DiscWorld, Plane, shortest_around
@@ -184,7 +184,7 @@ def test_an_end_that_is_not_joined_to_its_nearest_milestone_voids_the_certificat
 
 def test_a_kept_roadmap_is_certified_by_its_edges():
     points = draw("cover", 400, 2)
-    roadmap = Roadmap.build(SQUARE, points, KNearest(20))
+    roadmap = roadmap_of_points(SQUARE, points, KNearest(20))
     certificate = certify_roadmap(roadmap)
     edges = {tuple(edge) for edge in roadmap.edges}
     q = points.points
@@ -198,8 +198,8 @@ def test_a_kept_roadmap_is_certified_by_its_edges():
     away = np.sort(np.linalg.norm(ends[:, None] - q[None], axis=2), axis=1)
     # Ends are linked to their hundred nearest.
     assert certificate.ends < away[:, 99].min()
-    assert certify_roadmap(Roadmap.build(SQUARE, points, Radius(0.3)), links=None).ends == 0.3
-    assert certify_roadmap(Roadmap.build(SQUARE, points, Complete())).ends == math.inf
+    assert certify_roadmap(roadmap_of_points(SQUARE, points, Radius(0.3)), links=None).ends == 0.3
+    assert certify_roadmap(roadmap_of_points(SQUARE, points, Complete())).ends == math.inf
 
 
 def test_lengths_are_those_of_the_spaces_metric():

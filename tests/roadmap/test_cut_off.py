@@ -5,7 +5,8 @@ import pytest
 
 from evenroad.planning.connectors import CELLS, Cells
 from evenroad.points import draw
-from evenroad.roadmap import KNearest, Roadmap
+from evenroad.roadmap import KNearest
+from evenroad.roadmap.kept import roadmap_of_points
 from evenroad.world import GridMap
 
 
@@ -21,35 +22,34 @@ START, GOAL = (5.0, 5.0), (55.0, 35.0)
 
 
 def known(world, n=32, **options):
-    return Roadmap.build(world.space, draw("sobol", n, 2, rng=0), KNearest(6)).in_world(world, **options)
+    return roadmap_of_points(world.space, draw("sobol", n, 2, rng=0), KNearest(6)).within(world, **options)
 
 
 def test_trees_join_what_the_roadmap_does_not():
     world = walled(gap=5)
     roadmap = known(world)
-    alone = roadmap.query(START, GOAL)
+    alone = roadmap.plan(START, GOAL)
     assert alone.status == "not_connected"
-    joined = roadmap.query(START, GOAL, shorten=False, connector=CELLS)
+    joined = roadmap.plan(START, GOAL, shorten=False, connector=CELLS)
     assert joined.solved
     assert joined.planner == "prm lazy, then cells"
     assert world.motion_valid(joined.path[:-1], joined.path[1:]).all()
-    shorter = roadmap.query(START, GOAL, connector=CELLS)
+    shorter = roadmap.plan(START, GOAL, connector=CELLS)
     assert shorter.cost < joined.cost
 
 
 def test_what_the_search_learned_stays():
     roadmap = known(walled(gap=5))
-    first = roadmap.query(START, GOAL, connector=CELLS)
-    states = roadmap.states
-    again = roadmap.query(START, GOAL, connector=CELLS)
+    first = roadmap.plan(START, GOAL, connector=CELLS)
+    before = roadmap.known
+    again = roadmap.plan(START, GOAL, connector=CELLS)
     assert np.array_equal(first.path, again.path)
     assert again.counts["edges_checked"] < first.counts["edges_checked"]
-    for before, after in zip(states, roadmap.states, strict=True):
-        assert np.array_equal(before, after)
+    assert roadmap.known == before
 
 
 def test_a_path_along_the_roadmap_needs_no_trees():
-    result = known(walled(gap=5)).query(START, (20.0, 30.0), connector=CELLS)
+    result = known(walled(gap=5)).plan(START, (20.0, 30.0), connector=CELLS)
     assert result.solved
     assert result.planner == "prm lazy"
 
@@ -60,7 +60,7 @@ class Unasked(Cells):
 
 
 def test_where_it_is_proved_that_there_is_no_path_nobody_looks_for_one():
-    result = known(walled(gap=3)).query(START, GOAL, connector=Unasked())
+    result = known(walled(gap=3)).plan(START, GOAL, connector=Unasked())
     assert result.status == "not_connected"
     assert result.counts["start_component"] > 0
 
@@ -69,4 +69,4 @@ def test_paths_by_another_cost_come_from_the_roadmap_alone():
     def twice(a, b):
         return 2.0 * np.hypot(*(a - b).T)
 
-    assert known(walled(gap=5), edge_cost=twice).query(START, GOAL, connector=CELLS).status == "not_connected"
+    assert known(walled(gap=5), edge_cost=twice).plan(START, GOAL, connector=CELLS).status == "not_connected"

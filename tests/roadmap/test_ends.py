@@ -17,7 +17,8 @@ from evenroad.roadmap import Budget
 from evenroad.roadmap.connector import Connection
 from evenroad.roadmap.result import NEAR, NO_POINTS, PlanResult, Status, require_ends
 from evenroad.robot import ArmWorld, Joint, Robot, Scene, Straight
-from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.build import arm_roadmap
+from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.space import SE3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
 from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, ur5
@@ -113,10 +114,11 @@ def test_what_a_connector_found_is_looked_at(connector, smooth):
 
 
 def test_what_a_robot_roadmap_found_is_looked_at(monkeypatch):
-    known = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, ends=100).in_scene(Scene(name="today"))
+    world = ArmWorld(ur5(joints=3), TABLE)
+    known = arm_roadmap(world, 40, 4, recipe=Recipe(0.0, 0)).within(world)
     a, b, c = known.roadmap.milestones[:3]
-    ask = known._ask
-    monkeypatch.setattr(known, "_ask", lambda start, goals, *rest, **more: ask(c, goals, *rest, **more))
+    search = known._search
+    monkeypatch.setattr(known, "_search", lambda start, goals, *rest: search(c, goals, *rest))
     for shorten in (True, False):
         with pytest.raises(AssertionError, match="does not start"):
             known.plan(a, b, shorten=shorten)

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
-from evenroad.roadmap import Budget, KNearest, Roadmap, Status
+from evenroad.roadmap import Budget, KNearest, Status
+from evenroad.roadmap.kept import roadmap_of_points
 from evenroad.world import GridMap
 from tests.plan_on import fmt_on, plan_growing, plan_on
 from tests.roadmap.worlds import ChanceWorld
@@ -20,11 +21,11 @@ GOALS = np.array([(1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])
 @given(seed=st.integers(0, 10**6), free=st.floats(0.2, 0.9), lazy_milestones=st.booleans())
 def test_several_goals_are_reached_at_the_cost_of_the_cheapest_one(seed, free, lazy_milestones):
     world, points = ChanceWorld(seed, 0.8, free), draw("uniform", 40, 2, rng=seed)
-    known = Roadmap.build(world.space, points, KNearest(6)).in_world(world, lazy_milestones=lazy_milestones)
+    known = roadmap_of_points(world.space, points, KNearest(6)).within(world, lazy_milestones=lazy_milestones)
     # On a kept roadmap a goal's links do not depend on the other goals, so that each can be asked alone.
-    alone = [known.query(START, goal, shorten=False) for goal in GOALS]
+    alone = [known.plan(START, goal, shorten=False) for goal in GOALS]
     costs = [np.inf if result.cost is None else result.cost for result in alone]
-    together = known.query(START, GOALS, shorten=False)
+    together = known.plan(START, GOALS, shorten=False)
     assert together.solved == np.isfinite(min(costs))
     np.testing.assert_array_equal(together.goals, GOALS)
     if together.solved:
@@ -33,8 +34,6 @@ def test_several_goals_are_reached_at_the_cost_of_the_cheapest_one(seed, free, l
         np.testing.assert_array_equal(together.path[-1], GOALS[together.goal_index])
         np.testing.assert_array_equal(together.goal, GOALS[together.goal_index])
         assert f"to goal {together.goal_index}" in together.message
-    some = known.query(START, GOALS, success_only=True, shorten=False)
-    assert some.status is together.status
 
 
 @settings(max_examples=40, deadline=None)
@@ -63,7 +62,7 @@ WALL[9] = True
 @pytest.mark.parametrize("kept", [False, True])
 def test_goals_in_collision_are_left_out_and_only_if_all_are_it_is_said(kept):
     world, points = GridMap(WALL).world(0.5), draw("halton", 64, 2)
-    ask = Roadmap.build(world.space, points).in_world(world).query if kept else None
+    ask = roadmap_of_points(world.space, points).within(world).plan if kept else None
 
     def answer(goals):
         return ask((2, 2), goals) if kept else plan_on(world, (2, 2), goals, points)
@@ -108,14 +107,10 @@ def test_start_and_goals_are_linked_to_the_nearest_hundred_or_to_all_of_a_few(n)
         assert len(linked) <= len(nearest) + 60
     same = {tuple(edge) for edge in plain.roadmap.edges.tolist()}
     assert same <= {tuple(edge) for edge in edges.tolist()}
-    kept = (
-        Roadmap.build(world.space, points, KNearest(4))
-        .in_world(world)
-        .query(START, GOALS[:2], keep_graph=True)
-    )
-    assert kept.counts["edges_considered"] - len(Roadmap.build(world.space, points, KNearest(4)).edges) == (
-        3 * min(n, 100 if n > 256 else n) + 2
-    )
+    kept = roadmap_of_points(world.space, points, KNearest(4)).within(world).plan(START, GOALS[:2])
+    assert kept.counts["edges_considered"] - len(
+        roadmap_of_points(world.space, points, KNearest(4)).edges
+    ) == (3 * min(n, 100 if n > 256 else n) + 2)
 
 
 def test_a_start_that_is_blocked_from_all_that_is_near_is_connected_by_its_links():
@@ -136,7 +131,7 @@ def test_a_start_that_is_blocked_from_all_that_is_near_is_connected_by_its_links
     assert plan_on(*query, links=None).status is Status.NOT_CONNECTED
     assert plan_on(*query).solved
     assert fmt_on(*query).solved
-    assert Roadmap.build(Ringed.space, query[3], KNearest(10)).in_world(query[0]).query(*query[1:3]).solved
+    assert roadmap_of_points(Ringed.space, query[3], KNearest(10)).within(query[0]).plan(*query[1:3]).solved
 
 
 @pytest.mark.parametrize("links", [0, -1, 2.5, True])

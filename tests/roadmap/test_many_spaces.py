@@ -7,7 +7,8 @@ from evenroad.points import draw
 from evenroad.points.samplers import Sobol
 from evenroad.points.samplers.even import drawn_in
 from evenroad.points.samplers.poses import Sliced
-from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap
+from evenroad.roadmap import KEarlier, KNearest, Radius
+from evenroad.roadmap.kept import roadmap_of_points
 from evenroad.roadmap.points_of import even_points
 from evenroad.space import SE2, SE3, SO3, BoxSpace, JointSpace, Product
 from evenroad.world import FunctionWorld
@@ -61,8 +62,8 @@ def test_every_planner_works_in_every_space_and_lazy_equals_full(case, rule):
         assert full.cost >= world.space.distance(full.start[None], full.goal[None])[0] * (1 - 1e-12)
     tree = fmt_on(world, start, goal, points, rule=rule, shorten=False)
     assert full.solved or not tree.solved
-    known = Roadmap.build(world.space, points, rule).in_world(world)
-    once, twice = (known.query(start, goal, shorten=False) for _ in range(2))
+    known = roadmap_of_points(world.space, points, rule).within(world)
+    once, twice = (known.plan(start, goal, shorten=False) for _ in range(2))
     assert once.status is twice.status
     if once.solved:
         assert once.path.tobytes() == twice.path.tobytes()
@@ -134,4 +135,4 @@ def test_a_plan_and_a_roadmap_in_space_take_what_their_rule_wants(rule):
     asked, given = plan_on(world, start, goal, 100, rule=rule), plan_on(world, start, goal, points, rule=rule)
     np.testing.assert_array_equal(asked.path, given.path)
     assert asked.counts == given.counts
-    assert Roadmap.build(world.space, 100, rule).points == points
+    assert roadmap_of_points(world.space, 100, rule).points == points

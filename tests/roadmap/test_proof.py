@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from evenroad.points import draw
-from evenroad.roadmap import Budget, KNearest, Roadmap, Status
+from evenroad.roadmap import Budget, KNearest, Status
+from evenroad.roadmap.kept import roadmap_of_points
 from evenroad.roadmap.search import confirmed
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space.path import path_length
@@ -19,7 +20,7 @@ START, GOAL = np.array([0.05, 0.05]), np.array([0.95, 0.95])
 
 
 def _kept(world, start, goal, points, **options):
-    return Roadmap.build(world.space, points).in_world(world).query(start, goal, **options)
+    return roadmap_of_points(world.space, points).within(world).plan(start, goal, **options)
 
 
 def _grown(world, start, goal, points, **options):
@@ -78,10 +79,10 @@ def test_a_shortcut_still_shortens_and_never_takes_what_fails():
 
 def test_a_kept_roadmap_remembers_which_motions_failed_and_which_passed():
     world = GappyWorld(SLALOM)
-    known = Roadmap.build(world.space, draw("sobol", 512, 2, rng=0), KNearest(10)).in_world(world)
-    first = known.query(START, GOAL, links=None, shorten=False)
+    known = roadmap_of_points(world.space, draw("sobol", 512, 2, rng=0), KNearest(10)).within(world)
+    first = known.plan(START, GOAL, links=None, shorten=False)
     asked, rechecked = world.asked_motions, world.rechecked
-    again = known.query(START, GOAL, links=None, shorten=False)
+    again = known.plan(START, GOAL, links=None, shorten=False)
     assert again.path.tobytes() == first.path.tobytes()
     # Only the links of start and goal are new: at most ten each, and the motion between the two.
     assert world.rechecked - rechecked <= world.asked_motions - asked <= 21

@@ -15,10 +15,9 @@ from evenroad.roadmap import (
     Complete,
     KNearest,
     Radius,
-    Roadmap,
     Status,
-    WorldRoadmap,
 )
+from evenroad.roadmap.kept import WorldRoadmap, roadmap_of_points
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.space import Rectangle, Space
 from evenroad.world import GridMap
@@ -41,13 +40,13 @@ def reuses(draw_value):
     rule = draw_value(st.sampled_from([KNearest(4), KNearest(8), Radius(0.3), Complete()]))
     world = ChanceWorld(seed, draw_value(st.sampled_from([1.0, 0.8])), draw_value(st.floats(0.3, 0.9)))
     queries = [tuple(CORNERS[i] for i in random.integers(4, size=2)) for _ in range(6)]
-    return Roadmap.build(SQUARE, PointSet(points), rule), world, queries
+    return roadmap_of_points(SQUARE, PointSet(points), rule), world, queries
 
 
 def _cheapest(roadmap, world, start, goal, lazy_milestones, links):
     """The definition: both ends joined as the rule's reach says, and the least cost by Bellman and Ford."""
-    q = np.concatenate([roadmap.configurations, [start], [goal]])
-    n = len(roadmap.configurations)
+    q = np.concatenate([roadmap.milestones, [start], [goal]])
+    n = len(roadmap.milestones)
     valid = world.valid(q)
     usable = np.ones(n, dtype=bool) if lazy_milestones else valid[:n]
     reach = roadmap.rule.reach(n, roadmap.space)
@@ -74,9 +73,9 @@ def _cheapest(roadmap, world, start, goal, lazy_milestones, links):
 @given(reuses(), st.booleans(), st.sampled_from([None, 100]))
 def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, lazy_milestones, links):
     roadmap, world, queries = reuse
-    known = roadmap.in_world(world, lazy_milestones=lazy_milestones)
+    known = roadmap.within(world, lazy_milestones=lazy_milestones)
     for start, goal in queries:
-        result = known.query(start, goal, links=links, shorten=False)
+        result = known.plan(start, goal, links=links, shorten=False)
         expected = _cheapest(roadmap, world, start, goal, lazy_milestones, links)
         assert result.solved == np.isfinite(expected)
         if result.solved:
@@ -89,11 +88,11 @@ def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, 
 @given(reuses(), st.booleans(), st.sampled_from(["full", "lazy"]))
 def test_an_answer_does_not_depend_on_what_was_asked_before(reuse, lazy_milestones, search):
     roadmap, world, queries = reuse
-    known = roadmap.in_world(world, lazy_milestones=lazy_milestones)
+    known = roadmap.within(world, lazy_milestones=lazy_milestones)
     for start, goal in queries:
-        late = known.query(start, goal, shorten=False)
-        again = roadmap.in_world(world, lazy_milestones=lazy_milestones)
-        fresh = again.query(start, goal, search=search, shorten=False)
+        late = known.plan(start, goal, shorten=False)
+        again = roadmap.within(world, lazy_milestones=lazy_milestones)
+        fresh = again.plan(start, goal, search=search, shorten=False)
         assert late.status is fresh.status
         assert late.counts["edges_checked"] <= fresh.counts["edges_checked"]
         if late.solved:
@@ -102,14 +101,14 @@ def test_an_answer_does_not_depend_on_what_was_asked_before(reuse, lazy_mileston
 
 
 def test_no_edge_of_the_roadmap_is_asked_about_twice():
-    roadmap = Roadmap.build(SQUARE, draw("sobol", 64, 2), KNearest(6))
+    roadmap = roadmap_of_points(SQUARE, draw("sobol", 64, 2), KNearest(6))
     world = ChanceWorld(5, 0.9, 0.8)
-    known = roadmap.in_world(world)
+    known = roadmap.within(world)
     assert world.asked_configurations == 64
     for _ in range(2):
-        known.query(CORNERS[0], CORNERS[3], search="full", shorten=False)
+        known.plan(CORNERS[0], CORNERS[3], search="full", shorten=False)
     asked = world.asked_motions
-    again = known.query(CORNERS[0], CORNERS[3], shorten=False)
+    again = known.plan(CORNERS[0], CORNERS[3], shorten=False)
     assert world.asked_motions - asked == again.counts["edges_checked"] <= 13
     assert again.counts["configurations_checked"] == 2
     states = known.known
@@ -118,71 +117,69 @@ def test_no_edge_of_the_roadmap_is_asked_about_twice():
 
 
 def test_a_roadmap_is_made_once_and_cannot_be_changed():
-    roadmap = Roadmap.build(SQUARE, draw("sobol", 64, 2))
+    roadmap = roadmap_of_points(SQUARE, draw("sobol", 64, 2))
     assert str(roadmap.rule) == "k=20 symmetrised"
-    for array in (roadmap.configurations, roadmap.edges):
+    for array in (roadmap.milestones, roadmap.edges):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
 
 
 def test_one_roadmap_serves_several_worlds():
-    roadmap = Roadmap.build(SQUARE, draw("sobol", 64, 2))
-    assert not roadmap.in_world(ChanceWorld(1, 1.0, 0.0)).query(*CORNERS[::3]).solved
-    assert roadmap.in_world(ChanceWorld(1, 1.0, 1.0)).query(*CORNERS[::3]).solved
+    roadmap = roadmap_of_points(SQUARE, draw("sobol", 64, 2))
+    assert not roadmap.within(ChanceWorld(1, 1.0, 0.0)).plan(*CORNERS[::3]).solved
+    assert roadmap.within(ChanceWorld(1, 1.0, 1.0)).plan(*CORNERS[::3]).solved
 
 
 def test_every_planner_shortens_its_paths_unless_told_not_to():
     assert inspect.signature(plan).parameters["smooth"].default
-    assert inspect.signature(WorldRoadmap.query).parameters["shorten"].default
+    assert inspect.signature(WorldRoadmap.plan).parameters["shorten"].default
 
 
 def test_statuses_counts_and_names_of_a_query():
     world = GridMap(np.eye(20, dtype=bool)).world(0.5)
-    known = Roadmap.build(world.space, draw("sobol", 64, 2), KNearest(8)).in_world(world)
-    assert known.query((0.2, 5), (5, 15)).status is Status.START_INVALID
-    assert known.query((5, 15), (0.2, 5)).status is Status.GOAL_INVALID
-    apart = known.query((5, 15), (15, 5))
+    known = roadmap_of_points(world.space, draw("sobol", 64, 2), KNearest(8)).within(world)
+    assert known.plan((0.2, 5), (5, 15)).status is Status.START_INVALID
+    assert known.plan((5, 15), (0.2, 5)).status is Status.GOAL_INVALID
+    apart = known.plan((5, 15), (15, 5))
     assert apart.status is Status.NOT_CONNECTED
     assert 0 < apart.counts["start_component"] < apart.counts["valid"]
-    joined = known.query((5, 15), (5, 18), keep_graph=True)
+    joined = known.plan((5, 15), (5, 18))
     assert joined.solved
     assert joined.rule == "k=8 symmetrised of all points"
     assert joined.planner == "prm lazy"
     assert joined.counts["points"] == 64
-    assert joined.roadmap.configurations.shape[1] == 2
-    np.testing.assert_array_equal(joined.roadmap.configurations[-2:], [(5, 15), (5, 18)])
     with pytest.raises(UnknownName, match="full, lazy"):
-        known.query((5, 15), (5, 18), search="best")
+        known.plan((5, 15), (5, 18), search="best")
     with pytest.raises(InvalidValue, match="start must be 2"):
-        known.query((5, 15, 1), (5, 18))
+        known.plan((5, 15, 1), (5, 18))
 
 
 def test_ends_far_outside_of_the_milestones_are_measured_as_well():
-    roadmap = Roadmap.build(SQUARE, PointSet(np.array([[0.5, 0.5], [0.5, 0.5 + 1e-12]])), KNearest(1))
-    known = roadmap.in_world(ChanceWorld(0, 1.0, 1.0))
-    assert known.query((-1e6, 0.0), (1e6, 0.0)).cost == pytest.approx(2e6)
-    assert known.query((0.0, 0.0), (1.0, 1.0)).cost == pytest.approx(np.sqrt(2))
+    roadmap = roadmap_of_points(SQUARE, PointSet(np.array([[0.5, 0.5], [0.5, 0.5 + 1e-12]])), KNearest(1))
+    known = roadmap.within(ChanceWorld(0, 1.0, 1.0))
+    assert known.plan((-1e6, 0.0), (1e6, 0.0)).cost == pytest.approx(2e6)
+    assert known.plan((0.0, 0.0), (1.0, 1.0)).cost == pytest.approx(np.sqrt(2))
 
 
 def test_a_world_of_another_space_is_refused():
-    roadmap = Roadmap.build(SQUARE, draw("sobol", 16, 2), KNearest(4))
+    roadmap = roadmap_of_points(SQUARE, draw("sobol", 16, 2), KNearest(4))
     wide = GridMap(np.zeros((4, 9), dtype=bool)).world(0.1)
     with pytest.raises(InvalidValue, match="was built for"):
-        roadmap.in_world(wide)
+        roadmap.within(wide)
     same = ChanceWorld(0)
     same.space = Rectangle((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
-    roadmap.in_world(same)
+    roadmap.within(same)
 
 
 def test_an_edge_cost_is_kept_over_all_queries():
     def twice(a, b):
         return 2.0 * np.linalg.norm(a - b, axis=1)
 
-    roadmap = Roadmap.build(SQUARE, draw("sobol", 64, 2), KNearest(6))
-    known = roadmap.in_world(ChanceWorld(5, 1.0, 0.8), edge_cost=twice)
-    plain = roadmap.in_world(ChanceWorld(5, 1.0, 0.8))
+    roadmap = roadmap_of_points(SQUARE, draw("sobol", 64, 2), KNearest(6))
+    known = roadmap.within(ChanceWorld(5, 1.0, 0.8), edge_cost=twice)
+    plain = roadmap.within(ChanceWorld(5, 1.0, 0.8))
     for goal in CORNERS[1:]:
-        costs = [each.query(CORNERS[0], goal).milestone_cost for each in (known, plain)]
+        costs = [each.plan(CORNERS[0], goal).milestone_cost for each in (known, plain)]
         assert costs[0] == pytest.approx(2.0 * costs[1])
 
 
@@ -210,37 +207,37 @@ def test_newcomers_find_the_usable_milestones_that_are_nearest(seed, n, k, radiu
 def test_queries_between_many_places_of_a_maze_soon_need_few_checks():
     maze = load_maze(2)
     world = maze.world()
-    known = Roadmap.build(world.space, draw("sobol", 1024, 2), KNearest(10)).in_world(world)
+    known = roadmap_of_points(world.space, draw("sobol", 1024, 2), KNearest(10)).within(world)
     places = world.space.from_cube(draw("uniform", 400, 2, rng=1).points)
     places = places[world.valid(places)][:200].reshape(-1, 2, 2)
-    checks = [known.query(*pair, shorten=False).counts["edges_checked"] for pair in places]
+    checks = [known.plan(*pair, shorten=False).counts["edges_checked"] for pair in places]
     assert np.median(checks[-50:]) < np.median(checks[:10])
 
 
 def test_the_graph_of_a_set_from_a_pool_is_joined_once_and_others_each_time():
     space = GridMap(np.zeros((20, 20), dtype=bool)).space
     banked, other = draw("hickernell", 64, 2), draw("uniform", 64, 2)
-    assert Roadmap.build(space, banked).edges is Roadmap.build(space, banked).edges
-    assert Roadmap.build(space, other).edges is not Roadmap.build(space, other).edges
+    assert roadmap_of_points(space, banked).edges is roadmap_of_points(space, banked).edges
+    assert roadmap_of_points(space, other).edges is not roadmap_of_points(space, other).edges
     for different in (
-        Roadmap.build(space, banked, KNearest(5)),
-        Roadmap.build(space, draw("hickernell", 64, 2, rng=1)),
-        Roadmap.build(GridMap(np.zeros((20, 30), dtype=bool)).space, banked),
+        roadmap_of_points(space, banked, KNearest(5)),
+        roadmap_of_points(space, draw("hickernell", 64, 2, rng=1)),
+        roadmap_of_points(GridMap(np.zeros((20, 30), dtype=bool)).space, banked),
     ):
-        assert different.edges is not Roadmap.build(space, banked).edges
+        assert different.edges is not roadmap_of_points(space, banked).edges
 
 
 def test_threads_that_share_a_roadmap_get_the_answers_that_each_would_get_alone():
     maze = load_maze(2)
     world = maze.world()
-    known = Roadmap.build(world.space, draw("sobol", 256, 2, rng=1), KNearest(10)).in_world(world)
+    known = roadmap_of_points(world.space, draw("sobol", 256, 2, rng=1), KNearest(10)).within(world)
     places = world.space.from_cube(draw("uniform", 400, 2, rng=5).points)
     queries = places[world.valid(places)][:120].reshape(-1, 2, 2)
-    alone = [known.query(start, goal, shorten=False) for start, goal in queries]
-    shared = known.roadmap.in_world(world)
+    alone = [known.plan(start, goal, shorten=False) for start, goal in queries]
+    shared = known.roadmap.within(world)
     with ThreadPoolExecutor(8) as pool:
         together = list(
-            pool.map(lambda query: shared.query(*query, shorten=False), [*queries, *queries, *queries])
+            pool.map(lambda query: shared.plan(*query, shorten=False), [*queries, *queries, *queries])
         )
     for mine, expected in zip(together, 3 * alone, strict=True):
         assert (mine.status, mine.cost) == (expected.status, expected.cost)
@@ -248,12 +245,12 @@ def test_threads_that_share_a_roadmap_get_the_answers_that_each_would_get_alone(
 
 
 def test_a_roadmap_in_a_world_can_be_sent_to_another_process():
-    known = Roadmap.build(SQUARE, draw("sobol", 32, 2), KNearest(6)).in_world(
+    known = roadmap_of_points(SQUARE, draw("sobol", 32, 2), KNearest(6)).within(
         GridMap(np.zeros((1, 1), dtype=bool)).world(0.01)
     )
-    known.query((0.1, 0.1), (0.9, 0.9))
+    known.plan((0.1, 0.1), (0.9, 0.9))
     sent = pickle.loads(pickle.dumps(known))
-    assert sent.query((0.1, 0.1), (0.9, 0.9)).cost == known.query((0.1, 0.1), (0.9, 0.9)).cost
+    assert sent.plan((0.1, 0.1), (0.9, 0.9)).cost == known.plan((0.1, 0.1), (0.9, 0.9)).cost
 
 
 def test_a_roadmap_measures_its_edges_once_and_only_when_asked():
@@ -272,26 +269,26 @@ def test_a_roadmap_measures_its_edges_once_and_only_when_asked():
             return a + np.reshape(t, (-1, 1)) * (b - a)
 
     space = Ruled()
-    roadmap = Roadmap.build(space, draw("sobol", 256, 2), Radius(0.1))
+    roadmap = roadmap_of_points(space, draw("sobol", 256, 2), Radius(0.1))
     Ruled.measured = 0
     worlds = [ChanceWorld(seed, 1.0, 0.9) for seed in range(3)]
     for world in worlds:
         world.space = space
-    known = [roadmap.in_world(world) for world in worlds]
+    known = [roadmap.within(world) for world in worlds]
     assert Ruled.measured == 0
     for one in known:
-        one.query(*CORNERS[::3], shorten=False)
+        one.plan(*CORNERS[::3], shorten=False)
     # The edges once, and what each query measures of all milestones.
     assert len(roadmap.edges) <= Ruled.measured < 2 * len(roadmap.edges) + 3 * 3 * 300
-    assert np.array_equal(roadmap.lengths, space.distance(*roadmap.configurations[roadmap.edges.T]))
+    assert np.array_equal(roadmap.lengths, space.distance(*roadmap.milestones[roadmap.edges.T]))
 
 
 def test_a_budget_of_a_query_is_kept_to_and_what_was_asked_is_kept():
     world = ChanceWorld(5, 1.0, 0.0)
-    known = Roadmap.build(SQUARE, draw("sobol", 64, 2), KNearest(6)).in_world(world)
-    result = known.query(*CORNERS[::3], search="full", links=None, budget=Budget(motions=10))
+    known = roadmap_of_points(SQUARE, draw("sobol", 64, 2), KNearest(6)).within(world)
+    result = known.plan(*CORNERS[::3], search="full", links=None, budget=Budget(motions=10))
     assert result.status is Status.BUDGET_SPENT
     assert world.asked_motions == result.counts["edges_checked"] == 10
     assert result.message.startswith("no path within 10 motions, 60 s; start reaches")
-    known.query(*CORNERS[::3], search="full", links=None)
+    known.plan(*CORNERS[::3], search="full", links=None)
     assert world.asked_motions <= 10 + len(known.roadmap.edges) + 13

@@ -227,6 +227,12 @@ def test_the_cache_takes_notice_of_every_change(tmp_path, changed):
     assert load_robot(path, **options) != before
 
 
+def test_the_cache_knows_shapes_by_all_their_digits(tmp_path):
+    box = "<collision><geometry><box size='0.1 0.1 {}'/></geometry></collision>"
+    robots = [load_robot(write(tmp_path, two_joints(box.format(z)))) for z in ("0.3", "0.30000001")]
+    assert robots[0] != robots[1]
+
+
 def test_an_srdf_without_a_pair_is_told_from_no_srdf_and_from_one_that_is_empty(tmp_path):
     path, empty = write(tmp_path, two_joints()), write(tmp_path, "", "empty")
     assert load_model(path).pairs_from == "computed"

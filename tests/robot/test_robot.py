@@ -16,8 +16,6 @@ from evenroad.robot import (
     with_group,
     with_limits,
 )
-from evenroad.robot_roadmap.file import load_robot_roadmap
-from evenroad.robot_roadmap.make import make_roadmap
 from tests.robot.urdf_texts import joint, link, urdf, write
 
 UR5 = load_robot("ur5")
@@ -122,8 +120,6 @@ def test_a_rigid_tool_is_capsules_as_they_are():
 @pytest.mark.parametrize(
     "called",
     [
-        lambda robot: make_roadmap(robot, None, 8),
-        lambda robot: load_robot_roadmap("some.roadmap", robot),
         lambda robot: in_scene(robot, Scene(name="nothing")),
         lambda robot: with_limits(robot, {}),
         lambda robot: with_group(robot, ()),

@@ -22,7 +22,8 @@ from evenroad.robot import (
     scene_seen_by,
     without_robot,
 )
-from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.build import arm_roadmap
+from evenroad.robot_roadmap.recipe import Recipe
 from tests.robot.surface_oracle import all_clearance
 
 UPRIGHT = "0,-1.5707963,0,-1.5707963,0,0"
@@ -183,10 +184,10 @@ def test_the_command_plans_above_a_scanned_table(tmp_path, monkeypatch, ur5, cap
 
 def test_a_roadmap_of_a_robot_serves_in_a_scan(ur5):
     home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
-    roadmap = make_roadmap(ur5, None, n=32, ends=100, rng=0)
+    roadmap = arm_roadmap(ArmWorld(ur5), 32, recipe=Recipe(4.0, 100))
     cloud = PointCloud(np.concatenate([table(), skin(ur5, home)]), 0.006)
     scene = scene_seen_by(ur5, Scene((Obstacle("scan", cloud, seen=Seen(UPRIGHT)),), name="s"))
-    result = roadmap.plan(scene, home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
+    result = roadmap.within(ArmWorld(ur5, scene)).plan(home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
     assert result.solved
     assert ArmWorld(ur5, scene).recheck(result.path).all()
 
@@ -195,11 +196,11 @@ def test_a_cell_that_was_scanned_is_made_without_the_robot_in_it(ur5):
     home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
     cloud = PointCloud(np.concatenate([table(), skin(ur5, home)]), 0.006)
     cell = Scene((Obstacle("scan", cloud, seen=Seen(UPRIGHT)),), name="s")
-    roadmap = make_roadmap(ur5, cell, n=32, ends=20, rng=0)
+    roadmap = arm_roadmap(ArmWorld(ur5, cell), 32, recipe=Recipe(4.0, 20))
     without = scene_seen_by(ur5, cell)
-    assert roadmap.cell == without
+    assert roadmap.scene == without
     assert all_clearance(ur5, without, roadmap.milestones).min() > 0.0
-    result = roadmap.plan(Scene(name="nothing else"), home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
+    result = roadmap.within(ArmWorld(ur5, without)).plan(home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
     assert result.solved
     assert ArmWorld(ur5, without).recheck(result.path).all()
 

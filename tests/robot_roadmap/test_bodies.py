@@ -6,9 +6,11 @@ import pytest
 from evenroad.geometry.shapes import Capsule
 from evenroad.roadmap import Budget
 from evenroad.robot import ArmWorld, Joint, Obstacle, Robot, Scene
-from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.build import arm_roadmap
+from evenroad.robot_roadmap.recipe import Recipe
 from tests.robot.kernel_arms import STRAIGHT, X, Y, Z
 from tests.robot.oracle import clearance
+from tests.robot_roadmap.worlds import within
 
 ROOM = 1.5
 SHORT = Budget(seconds=0.3)
@@ -49,12 +51,12 @@ def _wall(gap):
 def test_a_body_has_a_roadmap_and_goes_through_a_window(names):
     robot = _body(*names)
     cell = Scene((Obstacle.of("pillar", "box", (0.3, 0.3, 3.0), (0.8, 0.8, 0.0)),), name="room")
-    roadmap = make_roadmap(robot, cell, 64, ends=20)
+    roadmap = arm_roadmap(ArmWorld(robot, cell), 64, recipe=Recipe(4.0, 20))
     assert clearance(robot, cell, roadmap.milestones).min() > 0.0
     start, goal = np.zeros((2, len(names)))
     start[0], goal[0] = -0.9, 0.9
     scene = Scene(_wall(0.8), name="wall")
-    result = roadmap.plan(scene, start, goal)
+    result = within(roadmap, scene).plan(start, goal)
     assert result.solved
     assert result.proof == "certified"
     whole = ArmWorld(robot, Scene((*cell.obstacles, *scene.obstacles), name="all"))
@@ -63,12 +65,12 @@ def test_a_body_has_a_roadmap_and_goes_through_a_window(names):
         for a, b in zip(result.path[:-1], result.path[1:], strict=True)
     ]
     assert clearance(robot, whole.scene, np.concatenate(states)).min() > 0.0
-    assert not roadmap.plan(Scene(_wall(0.02), name="shut"), start, goal, budget=SHORT).solved
+    assert not within(roadmap, Scene(_wall(0.02), name="shut")).plan(start, goal, budget=SHORT).solved
 
 
 def test_turning_on_is_a_way_for_a_body():
     """From a heading of 170 to one of -170 degrees it is 20 degrees."""
-    roadmap = make_roadmap(_body("x", "y", "yaw"), None, 64, ends=20)
+    roadmap = arm_roadmap(ArmWorld(_body("x", "y", "yaw")), 64, recipe=Recipe(4.0, 20))
     start, goal = np.array([-0.9, 0.0, np.radians(170)]), np.array([0.9, 0.0, np.radians(-170)])
-    result = roadmap.plan(Scene(name="nothing"), start, goal)
+    result = within(roadmap, Scene(name="nothing")).plan(start, goal)
     assert result.cost < 1.9

@@ -7,10 +7,11 @@ import pytest
 
 from evenroad import _threads
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, with_group, with_limits
-from evenroad.robot_roadmap import pockets, sight
-from evenroad.robot_roadmap.chance import Surroundings, chance_of_freedom
-from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.robot_roadmap.pockets import ends_in_pockets, links_of
+from evenroad.robot_roadmap import pockets
+from evenroad.robot_roadmap.build import arm_roadmap
+from evenroad.robot_roadmap.freedom import Surroundings, chance_of_freedom
+from evenroad.robot_roadmap.pockets import ends_in_pockets
+from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.spread import spread_order
 from tests.robot.kernel_arms import ur5
 
@@ -95,7 +96,7 @@ def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, mo
         assert world.motion_valid(np.broadcast_to(pool[end], (len(found), 4)), pool[found]).all()
         # Of the first ones whatever can be reached, of the others the nearest that can.
         reached = world.motion_valid(np.broadcast_to(pool[end], pool.shape), pool)
-        reached = np.flatnonzero(reached & world.valid(pool[end] + sight.EARLY * (pool - pool[end])))
+        reached = np.flatnonzero(reached & world.valid(pool[end] + pockets.EARLY * (pool - pool[end])))
         apart = np.linalg.norm(pool - pool[end], axis=1)
         nearest = 150 + np.argsort(apart[150:])[:60]
         tried = np.append(np.arange(150), nearest)
@@ -117,33 +118,6 @@ def test_the_number_of_processors_changes_nothing(arm, pool, monkeypatch):
     for one, several in zip(*seen, strict=True):
         assert one.tolist() == several.tolist()
     assert chances[0].tolist() == chances[1].tolist()
-
-
-@pytest.mark.parametrize("endless", [False, True])
-def test_looks_at_sixteen_motions_at_once_only_find_sooner_what_each_motion_touches(arm, endless):
-    if endless:
-        first, *others = arm.joints
-        arm = replace(arm, joints=(replace(first, kind="continuous", lower=-np.inf, upper=np.inf), *others))
-    wall = Obstacle.of("wall", "box", (0.05, 1.0, 1.0), (0.45, 0.2, 0.3))
-    post = Obstacle.of("post", "box", (0.1, 0.1, 1.0), (-0.4, 0.3, 0.5))
-    inside = ArmWorld(arm, Scene((post,), name="cell"), resolution=0.2)
-    pocket = ArmWorld(replace(arm, pairs=()), Scene((wall,), name="pocket"), resolution=0.2)
-    pool = inside.space.from_cube(np.random.default_rng(5).random((3000, 4)))
-    pool = pool[inside.valid(pool)]
-    rows, count = np.arange(len(pool)), 0
-    for end in np.flatnonzero(pocket.valid(pool))[:40].tolist():
-        here = np.broadcast_to(pool[end], pool.shape)
-        free = pocket.valid(pool) & pocket.valid(pocket.space.interpolate(here, pool, sight.EARLY))
-        free &= pocket.motion_valid(here, pool) & inside.motion_valid(here, pool) & (rows != end)
-        found = sight.joined_to(pocket, inside, pool, end, rows)
-        assert found.tolist() == np.flatnonzero(free).tolist()
-        # The slow checks, in double precision, are free wherever the others are.
-        slow = ArmWorld(pocket.robot, pocket.scene, resolution=0.2, backend="scalar")
-        by_slow = sight.joined_to(slow, inside, pool, end, rows)
-        assert set(found.tolist()) <= set(by_slow.tolist())
-        assert len(by_slow) <= 1.01 * len(found) + 2
-        count += len(found)
-    assert 0.02 < count / (40 * len(rows)) < 0.9
 
 
 def test_an_arm_whose_tip_stays_where_it_is_has_no_pockets(arm, pool):
@@ -178,7 +152,9 @@ def test_more_ends_see_a_roadmap_that_learned_from_others():
     arm = load_robot("ur5")
     arm = with_limits(with_group(arm, arm.group[:5]), dict.fromkeys(arm.group[:5], (-3.14, 3.14)))
     world = ArmWorld(arm, TABLE)
-    learned, plain = (make_roadmap(arm, TABLE, 24, gamma=0.0, ends=ends).milestones for ends in (600, 0))
+    learned, plain = (
+        arm_roadmap(ArmWorld(arm, TABLE), 24, recipe=Recipe(0.0, ends)).milestones for ends in (600, 0)
+    )
     q = world.space.from_cube(np.random.default_rng(99).random((2400, 5)))
     q = q[world.valid(q)][:700]
     everything = np.concatenate([q, learned, plain])
@@ -193,13 +169,3 @@ def test_more_ends_see_a_roadmap_that_learned_from_others():
         for kind in (0, 1)
     ]
     assert share[0] > share[1] + 0.03
-
-
-def test_ends_are_linked_to_all_of_few_milestones_and_to_a_falling_share_of_many():
-    assert [links_of(n) for n in (1, 64, 256, 1024, 4096)] == [1, 64, 256, 512, 1024]
-
-
-@pytest.mark.parametrize("ends", [-1, 1.5])
-def test_a_number_of_ends_that_is_none_is_refused(ends):
-    with pytest.raises(ValueError, match="ends"):
-        make_roadmap(ur5(joints=3), NOTHING, 8, ends=ends)

@@ -1,7 +1,6 @@
 """What a robot's roadmap is made of, what it is refused for, and its file."""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,19 +10,20 @@ from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
 from evenroad.geometry.shapes import Box, Capsule
 from evenroad.roadmap import Status
 from evenroad.robot import ArmWorld, Joint, Mimic, Obstacle, Scene, link_poses, with_group, with_limits
-from evenroad.robot_roadmap import chance
-from evenroad.robot_roadmap.cell import day_and_all
-from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
+from evenroad.robot_roadmap import freedom
+from evenroad.robot_roadmap.build import arm_roadmap, build_roadmap
+from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
+from evenroad.robot_roadmap.static_scene import joined_scenes
 from evenroad.robot_roadmap.turns import whole_turns
 from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, box_scene, ur5
 from tests.robot.surface_oracle import mesh_clearance, point_clearance
+from tests.robot_roadmap.worlds import within
 
 
 @pytest.fixture(scope="module")
 def roadmap():
-    return make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, ends=100)
+    return arm_roadmap(ArmWorld(ur5(joints=3), TABLE), 40, 4, recipe=Recipe(0.0, 100))
 
 
 def test_milestones_and_motions_are_free_of_robot_and_cell(roadmap):
@@ -48,16 +48,16 @@ def test_clouds_and_meshes_of_a_cell_are_kept_in_its_file(tmp_path):
         Obstacle("scan", PointCloud(points, 0.02, pose=Pose((0.0, 0.05, 0.0)))),
     )
     robot = ur5(joints=3)
-    made = make_roadmap(robot, cell, 40, k=4, ends=20)
+    made = arm_roadmap(ArmWorld(robot, cell), 40, 4, recipe=Recipe(4.0, 20))
     assert mesh_clearance(robot, cell.without("scan", "table"), made.milestones, True).min() > 0.0
     assert point_clearance(robot, cell, made.milestones).min() > 0.0
-    plain = make_roadmap(robot, TABLE, 40, k=4, ends=20)
+    plain = arm_roadmap(ArmWorld(robot, TABLE), 40, 4, recipe=Recipe(4.0, 20))
     assert not ArmWorld(robot, cell).valid(plain.milestones).all(), "they are in the way of something"
-    er.save_robot_roadmap(tmp_path / "a.roadmap", made)
-    again = er.load_robot_roadmap(tmp_path / "a.roadmap", robot, cell)
-    assert again.cell == cell
+    made.save(tmp_path / "a.roadmap")
+    again = er.load_roadmap(tmp_path / "a.roadmap")
+    assert again.scene == cell
     np.testing.assert_array_equal(again.edges, made.edges)
-    known = again.in_scene(Scene((Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),), name="today"))
+    known = within(again, Scene((Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),), name="today"))
     assert [each.name for each in known.world.scene.obstacles] == ["table", "wedge", "scan", "ball"]
     solved = 0
     for start, goal in zip(made.milestones[:8], made.milestones[8:16], strict=True):
@@ -68,14 +68,14 @@ def test_clouds_and_meshes_of_a_cell_are_kept_in_its_file(tmp_path):
     assert solved >= 4
     moved = cell.without("wedge").with_(Obstacle("wedge", Mesh(wedge), cell=True))
     with pytest.raises(er.errors.InvalidValue, match="'wedge' of scene 'cell' is a mesh"):
-        er.load_robot_roadmap(tmp_path / "a.roadmap", cell=moved)
+        again.within(ArmWorld(robot, moved))
 
 
 def test_the_same_arguments_give_the_same_roadmap(roadmap):
-    again = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, ends=100)
+    again = arm_roadmap(ArmWorld(ur5(joints=3), TABLE), 40, 4, recipe=Recipe(0.0, 100))
     np.testing.assert_array_equal(again.milestones, roadmap.milestones)
     np.testing.assert_array_equal(again.edges, roadmap.edges)
-    other = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, ends=100, rng=1)
+    other = arm_roadmap(ArmWorld(ur5(joints=3), TABLE), 40, 4, recipe=Recipe(0.0, 100), rng=1)
     assert not np.array_equal(other.milestones, roadmap.milestones)
 
 
@@ -90,37 +90,35 @@ def test_each_milestone_is_the_farthest_from_those_before():
 
 
 def test_random_scenes_leave_more_room_to_an_arm_that_is_folded(monkeypatch):
-    monkeypatch.setattr(chance, "SEEN", 100)
+    monkeypatch.setattr(freedom, "SEEN", 100)
     straight, folded = [0.0, -0.3, 0.0], [0.0, -1.57, 2.6]
     q = np.concatenate([np.random.default_rng(0).uniform(-3, 3, (98, 3)), [straight, folded]])
-    shares = chance.chance_of_freedom(ur5(joints=3), q, 200, np.random.default_rng(1))
+    shares = freedom.chance_of_freedom(ur5(joints=3), q, 200, np.random.default_rng(1))
     assert 0.3 < shares[-2] < shares[-1] <= 1.0
 
 
 def test_one_milestone_and_ones_that_cannot_be_made():
-    one = make_roadmap(ur5(joints=3), TABLE, 1, gamma=0.0, ends=100)
+    one = arm_roadmap(ArmWorld(ur5(joints=3), TABLE), 1, recipe=Recipe(0.0, 100))
     assert one.edges.shape == (0, 2)
-    assert one.plan(Scene(name="today"), [0.0, -1.5, 0.0], [1.0, -1.5, 0.0]).solved
+    assert within(one, Scene(name="today")).plan([0.0, -1.5, 0.0], [1.0, -1.5, 0.0]).solved
     for n in (0, -3, 1.5, 1 << 16):
         with pytest.raises(er.errors.InvalidValue, match="n must be"):
-            make_roadmap(ur5(), TABLE, n)
-    for wrong in ({"k": 0}, {"gamma": -1.0}, {"gamma": np.nan}, {"resolution": 0.0}):
+            arm_roadmap(ArmWorld(ur5(), TABLE), n)
+    for wrong in ({"k": 0},):
         with pytest.raises(er.errors.InvalidValue, match=next(iter(wrong))):
-            make_roadmap(ur5(), TABLE, 8, **wrong)
+            arm_roadmap(ArmWorld(ur5(), TABLE), 8, **wrong)
 
 
 def test_a_robot_that_is_never_free_is_refused_with_what_blocks():
-    with pytest.raises(er.errors.InvalidValue, match="never free in its cell: 'base' always touches 'table'"):
-        make_roadmap(ur5(), replace(TABLE, allowed=frozenset()), 8)
+    with pytest.raises(er.errors.InvalidValue, match="never free: 'base' always touches 'table'"):
+        arm_roadmap(ArmWorld(ur5(), replace(TABLE, allowed=frozenset())), 8)
     wall = Obstacle.of("room", "box", (4.0, 4.0, 4.0))
     links = ("base", "shoulder", "upperarm")
+    full = Scene((wall,), name="full", allowed=frozenset((link, "room") for link in links))
     with pytest.raises(
-        er.errors.InvalidValue,
-        match=r"never free in its cell: of \d+ .* in .* of the last 100 .* touches 'room'",
+        er.errors.InvalidValue, match=r"never free: of \d+ .* in .* of the last 100 .* touches 'room'"
     ):
-        make_roadmap(
-            ur5(joints=3), Scene((wall,), name="full", allowed=frozenset((link, "room") for link in links)), 8
-        )
+        arm_roadmap(ArmWorld(ur5(joints=3), full), 8)
 
 
 def test_a_turn_of_a_joint_that_others_follow_is_not_nothing():
@@ -151,27 +149,29 @@ def test_a_slider_that_goes_straight_up_has_a_roadmap():
         (),
         ("lift",),
     )
-    roadmap = make_roadmap(robot, None, 16, ends=100)
+    roadmap = arm_roadmap(ArmWorld(robot), 16, recipe=Recipe(4.0, 100))
     assert displacement_weights(robot, roadmap.milestones).tolist() == [1.0]
     lid = Scene((Obstacle.of("lid", "box", (1, 1, 0.1), (0, 0, 0.8)),), name="lid")
-    assert roadmap.plan(lid, [0.0], [0.5]).solved
-    assert roadmap.plan(lid, [0.0], [0.9]).status == "goal_invalid"
+    assert within(roadmap, lid).plan([0.0], [0.5]).solved
+    assert within(roadmap, lid).plan([0.0], [0.9]).status == "goal_invalid"
 
 
 def test_several_goals_and_none_that_is_free(roadmap):
     inside, free, far = [0.0, 0.6, 0.0], [1.0, -1.5, 0.0], [3.0, -1.5, 0.0]
-    result = roadmap.plan(box_scene(), [0.0, -1.5, 0.0], [inside, far, free])
+    result = within(roadmap, box_scene()).plan([0.0, -1.5, 0.0], [inside, far, free])
     assert result.solved
     assert result.goal_index == 2
     assert result.proof == "certified"
-    assert roadmap.plan(box_scene(), [0.0, -1.5, 0.0], [inside, inside]).status == "goal_invalid"
-    assert roadmap.plan(box_scene(), inside, free).status == "start_invalid"
+    assert within(roadmap, box_scene()).plan([0.0, -1.5, 0.0], [inside, inside]).status == "goal_invalid"
+    assert within(roadmap, box_scene()).plan(inside, free).status == "start_invalid"
 
 
 def test_the_cell_is_there_even_where_the_scene_does_not_name_it(roadmap):
-    assert roadmap.plan(Scene(name="today"), [0.0, -1.5, 0.0], [0.0, 0.6, 0.0]).status == "goal_invalid"
-    named = roadmap.plan(TABLE, [0.0, -1.5, 0.0], [1.0, -1.5, 0.0])
-    unnamed = roadmap.plan(Scene(name="today"), [0.0, -1.5, 0.0], [1.0, -1.5, 0.0])
+    assert (
+        within(roadmap, Scene(name="today")).plan([0.0, -1.5, 0.0], [0.0, 0.6, 0.0]).status == "goal_invalid"
+    )
+    named = within(roadmap, TABLE).plan([0.0, -1.5, 0.0], [1.0, -1.5, 0.0])
+    unnamed = within(roadmap, Scene(name="today")).plan([0.0, -1.5, 0.0], [1.0, -1.5, 0.0])
     np.testing.assert_array_equal(named.path, unnamed.path)
 
 
@@ -180,9 +180,9 @@ def test_a_scene_that_contradicts_the_cell_is_refused(roadmap):
     with pytest.raises(
         er.errors.InvalidValue, match=r"'table' of scene 'cell' is a box of 1, 1.2, 0.05 at \(0.25, 0, 0.1\)"
     ):
-        roadmap.in_scene(replace(TABLE, obstacles=(higher,)))
+        roadmap.within(ArmWorld(roadmap.robot, replace(TABLE, obstacles=(higher,))))
     with pytest.raises(er.errors.InvalidValue, match="does not allow 'base' to touch it"):
-        roadmap.in_scene(replace(TABLE, allowed=frozenset({("shoulder", "table")})))
+        roadmap.within(ArmWorld(roadmap.robot, replace(TABLE, allowed=frozenset({("shoulder", "table")}))))
 
 
 def test_ranges_of_cell_and_scene_both_hold():
@@ -190,7 +190,7 @@ def test_ranges_of_cell_and_scene_both_hold():
         Scene(name="cell", limits={"a": (-1.0, 1.0), "b": (0.0, 1.0)}),
         Scene(name="today", limits={"a": (0.0, 3.0)}),
     )
-    assert day_and_all(cell, scene)[1].limits == {"a": (0.0, 1.0), "b": (0.0, 1.0)}
+    assert joined_scenes(cell, scene).limits == {"a": (0.0, 1.0), "b": (0.0, 1.0)}
 
 
 def thick(capsule):
@@ -225,13 +225,9 @@ def lifted(joint):
         ),
     ],
 )
-def test_another_robot_is_refused_with_what_differs(roadmap, tmp_path, change, said):
-    file = tmp_path / "arm.roadmap"
-    er.save_robot_roadmap(file, roadmap)
+def test_another_robot_is_refused_with_what_differs(roadmap, change, said):
     with pytest.raises(er.errors.InvalidValue, match=said):
-        er.load_robot_roadmap(file, change(ur5(joints=3)))
-    with pytest.raises(er.errors.InvalidValue, match=said):
-        SceneRoadmap(roadmap, TABLE, change(ur5(joints=3)))
+        within(roadmap, TABLE, change(ur5(joints=3)))
 
 
 def test_a_joint_that_turns_on_may_have_limits_in_the_cell_but_none_of_a_day(roadmap, tmp_path):
@@ -239,64 +235,59 @@ def test_a_joint_that_turns_on_may_have_limits_in_the_cell_but_none_of_a_day(roa
     body = Capsule((0.2, 0, 0.1), (0.6, 0, 0.1), 0.05, link="arm")
     robot = er.Robot("turner", ("base", "arm"), (joint,), (body,), (), ("turn",))
     limited = Scene(name="limited", limits={"turn": (-1.0, 2.0)})
-    endless, kept = make_roadmap(robot, None, 8, ends=20), make_roadmap(robot, limited, 8, ends=20)
-    er.save_robot_roadmap(tmp_path / "a.roadmap", kept)
-    assert er.load_robot_roadmap(tmp_path / "a.roadmap", robot, limited).milestones.min() >= -1.0
-    assert SceneRoadmap(kept, Scene(name="today"), robot).world.space.high == (2.0,)
+    recipe = Recipe(4.0, 20)
+    endless = arm_roadmap(ArmWorld(robot), 8, recipe=recipe)
+    kept = arm_roadmap(ArmWorld(robot, limited), 8, recipe=recipe)
+    kept.save(tmp_path / "a.roadmap")
+    assert er.load_roadmap(tmp_path / "a.roadmap").milestones.min() >= -1.0
+    assert within(kept, Scene(name="today"), robot).world.space.high == (2.0,)
     post = Scene((Obstacle.of("post", "box", (0.1, 0.1, 1.0), (0.5, 0.0, 0.0)),), name="post")
-    result = endless.plan(post, [-0.5], [0.5])
+    result = within(endless, post).plan([-0.5], [0.5])
     assert result.solved
-    assert endless.in_scene(post).world.recheck(result.path).all()
+    assert within(endless, post).world.recheck(result.path).all()
     assert len(result.path) > 2
     with pytest.raises(er.errors.InvalidValue, match="'turn' had kind continuous, now revolute"):
-        endless.in_scene(limited)
+        within(endless, limited)
 
 
 def test_other_limits_are_no_other_robot(roadmap):
     narrow = with_limits(ur5(joints=3), {"elbow_joint": (-1.0, 1.0)})
-    assert SceneRoadmap(roadmap, TABLE, narrow).world.space.high[2] == 1.0
+    assert within(roadmap, TABLE, narrow).world.space.high[2] == 1.0
 
 
 def test_a_file_gives_back_all_of_it(roadmap, tmp_path):
     file = tmp_path / "arm.roadmap"
-    er.save_robot_roadmap(file, roadmap)
-    again = er.load_robot_roadmap(file, ur5(joints=3), TABLE)
+    roadmap.save(file)
+    again = er.load_roadmap(file)
     for name in ("milestones", "edges", "turns", "weights"):
         np.testing.assert_array_equal(getattr(again, name), getattr(roadmap, name))
-    assert (again.robot, again.cell, again.gamma, again.resolution) == (roadmap.robot, TABLE, 0.0, 0.05)
-    first, second = (r.plan(box_scene(), [0.0, -1.5, 0.0], [2.0, -1.0, 1.0]) for r in (roadmap, again))
+    assert (again.robot, again.scene, again.clearance, again.resolution) == (roadmap.robot, TABLE, 0.0, 0.05)
+    first, second = (
+        within(r, box_scene()).plan([0.0, -1.5, 0.0], [2.0, -1.0, 1.0]) for r in (roadmap, again)
+    )
     np.testing.assert_array_equal(first.path, second.path)
-
-
-def test_another_cell_is_refused_with_what_differs(roadmap, tmp_path):
-    file = tmp_path / "arm.roadmap"
-    er.save_robot_roadmap(file, roadmap)
-    with pytest.raises(er.errors.InvalidValue, match="with left, right, .* among its obstacles"):
-        er.load_robot_roadmap(file, cell=box_scene())
-    with pytest.raises(er.errors.InvalidValue, match="limits"):
-        er.load_robot_roadmap(file, cell=replace(TABLE, limits={"elbow_joint": (0.0, 1.0)}))
 
 
 def test_a_damaged_file_and_one_of_another_version_are_broken(roadmap, tmp_path, monkeypatch):
     file = tmp_path / "arm.roadmap"
-    er.save_robot_roadmap(file, roadmap)
+    roadmap.save(file)
     content = file.read_bytes()
     for damaged in (b"", content[:-30], content[:200] + b"\0" + content[201:], b"obstacles: {}"):
         file.write_bytes(damaged)
         with pytest.raises(er.errors.BrokenFile):
-            er.load_robot_roadmap(file)
+            er.load_roadmap(file)
     with pytest.raises(er.errors.BrokenFile, match="no such file"):
-        er.load_robot_roadmap(tmp_path / "other.roadmap")
-    monkeypatch.setattr("evenroad.robot_roadmap.file.__version__", "0.0.1")
-    er.save_robot_roadmap(file, roadmap)
+        er.load_roadmap(tmp_path / "other.roadmap")
+    monkeypatch.setattr("evenroad.roadmap.npz.__version__", "0.0.1")
+    roadmap.save(file)
     monkeypatch.undo()
     with pytest.raises(er.errors.BrokenFile, match="of evenroad 0.0.1, this is"):
-        er.load_robot_roadmap(file)
-    monkeypatch.setattr("evenroad.robot_roadmap.file.FORMAT", 2)
-    er.save_robot_roadmap(file, roadmap)
+        er.load_roadmap(file)
+    monkeypatch.setattr("evenroad.roadmap.npz.FORMAT", 2)
+    roadmap.save(file)
     monkeypatch.undo()
-    with pytest.raises(er.errors.BrokenFile, match=r"format 2 .* make the roadmap anew"):
-        er.load_robot_roadmap(file)
+    with pytest.raises(er.errors.BrokenFile, match=r"format 2 .* build the roadmap anew"):
+        er.load_roadmap(file)
 
 
 @pytest.mark.parametrize(
@@ -307,38 +298,19 @@ def test_a_damaged_file_and_one_of_another_version_are_broken(roadmap, tmp_path,
         ("milestones", lambda a: a + 4.0, "within the ranges"),
         ("weights", lambda a: -a, "weights must be"),
         ("milestones", lambda a: a[:, :2], "milestones must be float64 of shape"),
-        ("milestones", lambda a: a[:0], "a milestone or more"),
+        ("milestones", lambda a: a[:0], "edges must join"),
         ("resolution", lambda a: 1e-300, r"arm\.roadmap: resolution must be larger"),
     ],
 )
 def test_content_that_no_roadmap_has_is_broken(roadmap, tmp_path, field, value, said):
     file = tmp_path / "arm.roadmap"
-    er.save_robot_roadmap(file, replace(roadmap, **{field: value(getattr(roadmap, field))}))
+    replace(roadmap, **{field: value(getattr(roadmap, field))}).save(file)
     with pytest.raises(er.errors.BrokenFile, match=said):
-        er.load_robot_roadmap(file)
-
-
-def test_shapes_are_asked_within_what_the_capsules_left_of_the_budget(roadmap):
-    known = roadmap.in_scene(box_scene())
-    budgets = []
-
-    class Shapes:
-        def plan(self, *ends, budget, **options):
-            budgets.append(budget)
-
-    known._own = Shapes()
-    space = known.world.space
-    q = space.from_cube(np.random.default_rng(0).random((200, space.dim)))
-    q = q[known.world.valid(q)]
-    for start, goal in pairwise(q):
-        known.plan(start, goal, budget=er.Budget(seconds=3.0, motions=50), trees=False)
-    assert budgets
-    assert all(budget.seconds < 3.0 and 1 <= budget.motions <= 50 for budget in budgets)
-    assert any(budget.motions < 50 for budget in budgets)
+        er.load_roadmap(file)
 
 
 def test_a_pose_is_a_goal_as_it_is_elsewhere(roadmap):
-    scene, robot = roadmap.in_scene(Scene(name="today")), roadmap.robot
+    scene, robot = within(roadmap, Scene(name="today")), roadmap.robot
     tip, (start, end) = robot.links[-1], roadmap.milestones[[0, 1]]
     xyz = link_poses(robot, end[np.newaxis])[0, -1, :3, 3]
     pose = er.PoseGoal(er.Pose(tuple(xyz)), tip=tip, position_only=True)
@@ -362,7 +334,7 @@ def test_what_touches_the_base_leaves_no_configuration_free(roadmap, cloud):
         if cloud
         else Box((0.02, 0.02, 0.02), pose=Pose((0.0, 0.0, 0.02)))
     )
-    known = roadmap.in_scene(Scene((Obstacle("clamp", body),), name="today"))
+    known = within(roadmap, Scene((Obstacle("clamp", body),), name="today"))
     assert known.world.fixed_contact is not None
     for trees in (True, False):
         result = known.plan(roadmap.milestones[0], roadmap.milestones[1], trees=trees)
@@ -371,27 +343,46 @@ def test_what_touches_the_base_leaves_no_configuration_free(roadmap, cloud):
     assert known.connect(roadmap.milestones[0], roadmap.milestones[1:2]).goal == -1
 
 
-def test_one_query_in_a_new_scene_goes_by_trees_and_many_along_the_roadmap(roadmap):
-    start, goal = [0.0, -1.5, 0.0], [2.0, -1.0, 1.0]
-    once, known = roadmap.plan(box_scene(), start, goal), roadmap.in_scene(box_scene())
-    assert once.planner == "trees"
-    assert once.proof == "certified"
-    assert known.plan(start, goal).planner == "robot roadmap"
-    assert known.world.recheck(once.path).all()
-
-
 def test_where_trees_do_not_grow_the_roadmap_is_asked_at_once(roadmap, monkeypatch):
     monkeypatch.setattr("evenroad.robot.arm_world.chosen_backend", lambda backend: "scalar")
-    result = roadmap.plan(box_scene(), [0.0, -1.5, 0.0], [2.0, -1.0, 1.0])
-    assert (result.solved, result.planner) == (True, "robot roadmap")
+    result = within(roadmap, box_scene()).plan([0.0, -1.5, 0.0], [2.0, -1.0, 1.0])
+    assert (result.solved, result.planner) == (True, "roadmap")
 
 
 def test_a_spent_budget_is_not_a_roadmap_that_leads_nowhere(roadmap):
-    known = roadmap.in_scene(Scene((Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),), name="today"))
+    known = within(roadmap, Scene((Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),), name="today"))
     statuses = []
     for start, goal in zip(roadmap.milestones[:12], roadmap.milestones[12:24], strict=True):
-        fresh = roadmap.in_scene(known.world.scene)
+        fresh = within(roadmap, known.world.scene)
         if known.plan(start, goal, trees=False).solved:
             statuses.append(fresh.plan(start, goal, trees=False, budget=er.Budget(motions=1)).status)
     assert Status.BUDGET_SPENT in statuses
     assert Status.NOT_CONNECTED not in statuses
+
+
+def test_points_that_are_given_are_the_milestones_where_they_are_free(tmp_path):
+    world = ArmWorld(ur5(joints=3), TABLE)
+    points = er.draw("even", 64, 3)
+    made = build_roadmap(world, points, rule=er.KNearest(4))
+    # Joints of two turns have their milestones within the one in the middle.
+    low, high = made.one_turn.low, made.one_turn.high
+    q = low + points.points * (high - low)
+    np.testing.assert_array_equal(made.milestones, q[world.valid(q)])
+    made.save(tmp_path / "given.roadmap")
+    known = within(er.load_roadmap(tmp_path / "given.roadmap"), box_scene())
+    start, goal = made.milestones[known.world.valid(made.milestones)][:2]
+    assert known.world.recheck(known.plan(start, goal).path).all()
+    with pytest.raises(er.errors.InvalidValue, match="KNearest"):
+        build_roadmap(world, points, rule=er.Radius(0.5))
+
+
+def test_a_world_may_keep_as_far_away_as_the_roadmap_does_but_no_farther():
+    wide = ArmWorld(ur5(joints=3), TABLE, clearance=0.01)
+    made = arm_roadmap(wide, 24, 4, recipe=Recipe(0.0, 0))
+    assert wide.valid(made.milestones).all()
+    for clearance in (0.0, 0.01):
+        assert made.within(ArmWorld(made.robot, TABLE, clearance=clearance)).world.clearance == clearance
+    with pytest.raises(
+        er.errors.InvalidValue, match=r"clearance of 0.03 m, the roadmap was built with 0.01 m"
+    ):
+        made.within(ArmWorld(made.robot, TABLE, clearance=0.03))

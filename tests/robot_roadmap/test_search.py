@@ -1,4 +1,4 @@
-"""The compiled lazy search against Dijkstra's over everything, edge by edge, in plain Python; and what it learns."""
+"""The compiled search against Dijkstra's over everything, edge by edge, in plain Python; and what a scene keeps."""
 
 import heapq
 import itertools
@@ -11,10 +11,9 @@ import pytest
 
 from evenroad.robot import ArmWorld, Scene, with_limits
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
-from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.robot_roadmap.scene_roadmap import GREED, NEARBY, SceneRoadmap
-from evenroad.robot_roadmap.search_memory import BLOCKED, ENTRIES, UNKNOWN
-from evenroad.robot_roadmap.search_metric import BITS
+from evenroad.robot_roadmap.build import arm_roadmap
+from evenroad.robot_roadmap.metric import BITS
+from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.turns import MOST_LIFTED, MOST_TURNS, one_turn
 from evenroad.space import JointSpace
 from tests.robot.kernel_arms import box_scene, ur5
@@ -86,7 +85,13 @@ def roadmap():
     cell = replace(
         cell, obstacles=cell.obstacles[:1], allowed=frozenset(p for p in cell.allowed if p[1] == "table")
     )
-    return make_roadmap(ur5(joints=3), cell, 48, k=5, gamma=2.0, ends=100)
+    return arm_roadmap(ArmWorld(ur5(joints=3), cell), 48, 5, recipe=Recipe(2.0, 100))
+
+
+def within(roadmap, scene=None, robot=None, **options):
+    """The roadmap in a world of boxes, with the roadmap's robot."""
+    scene = box_scene() if scene is None else scene
+    return roadmap.within(ArmWorld(roadmap.robot if robot is None else robot, scene, **options))
 
 
 def length_of(path):
@@ -96,12 +101,12 @@ def length_of(path):
 def test_the_path_is_as_long_as_that_of_a_slow_search_and_proved_again(roadmap):
     rng, found = np.random.default_rng(3), 0
     for goals in (1, 1, 3):
-        known = SceneRoadmap(roadmap, box_scene())
+        known = within(roadmap)
         q = known.world.space.from_cube(rng.random((4000, 3)))
         ends = q[known.world.valid(q)]
         for i in range(0, 8 * (1 + goals), 1 + goals):
             start, there = ends[i], ends[i + 1 : i + 1 + goals]
-            connection = known.connect(start, there, greed=1.0)
+            connection = known.connect(start, there, greed=1.0, links=48)
             greedy = known.connect(start, there)
             expected = shortest(known, start, there)
             if connection.goal < 0:
@@ -121,7 +126,7 @@ def test_the_path_is_as_long_as_that_of_a_slow_search_and_proved_again(roadmap):
 
 
 def test_what_one_query_found_out_is_not_asked_again(roadmap):
-    known = SceneRoadmap(roadmap, box_scene())
+    known = within(roadmap)
     start, goal = far_apart(known)
     first, second = known.connect(start, goal), known.connect(start, goal)
     assert second.motions < first.motions
@@ -137,33 +142,9 @@ def hard(known, least=0.0):
     for start, goal in zip(q[: len(q) // 2], q[::-1], strict=False):
         far = goal[0] - start[0] > least
         straight = known.world.motion_valid(start[np.newaxis], goal[np.newaxis])[0]
-        fresh = SceneRoadmap(known.roadmap, known.world.scene)
+        fresh = within(known.roadmap, known.world.scene)
         if far and not straight and fresh.connect(start, goal[np.newaxis]).goal == 0:
             yield start, goal[np.newaxis]
-
-
-def test_links_of_the_start_that_are_put_off_are_tried_from_the_nearest_on_and_lead_to_as_much(roadmap):
-    scene = box_scene()
-    turned = (
-        roadmap.milestones + TURN * np.array(list(itertools.product((-1, 0, 1), repeat=3)))[:, np.newaxis]
-    )
-    for start, goals in itertools.islice(hard(SceneRoadmap(roadmap, scene)), 12):
-        known, space = SceneRoadmap(roadmap, scene), roadmap.world.space
-        found = known._ask(start, goals, 10**6, np.inf, 48, GREED, 1e6)
-        assert found.goal == 0
-        assert known.world.recheck(found.path).all()
-        away = np.linalg.norm(turned - start, axis=2)
-        away[((turned < space.low) | (turned > space.high)).any(axis=2)] = np.inf
-        away, verdicts = away.min(axis=0), known._graph._links[0, : len(roadmap.milestones)]
-        here = known._graph.nodes[: len(away)] != BLOCKED
-        tried = verdicts != UNKNOWN
-        assert away[tried].max() <= away[here & ~tried].min() + 1e-5
-        # So it is asked, if less strictly, where no trees follow.
-        near, far = roadmap.in_scene(scene), roadmap.in_scene(scene)
-        planned = near.plan(start, goals, shorten=False, trees=False)
-        found = far._ask(start, goals, 10**6, np.inf, 48, GREED, NEARBY)
-        assert planned.counts["edges_checked"] == found.motions
-        np.testing.assert_array_equal(planned.path, found.path)
 
 
 def far_apart(known):
@@ -171,7 +152,7 @@ def far_apart(known):
 
 
 def test_a_goal_more_than_a_turn_away_is_reached_and_no_limit_left(roadmap):
-    known = SceneRoadmap(roadmap, box_scene())
+    known = within(roadmap)
     start, goal = far_apart(known)
     assert goal[0, 0] - start[0] > 1.5 * TURN
     path = known.connect(start, goal).path
@@ -183,7 +164,7 @@ def test_a_goal_more_than_a_turn_away_is_reached_and_no_limit_left(roadmap):
 
 def test_todays_narrower_limits_hold(roadmap):
     scene = replace(box_scene(), limits={"shoulder_pan_joint": (-1.0, 3.5)})
-    known = SceneRoadmap(roadmap, scene)
+    known = within(roadmap, scene)
     for start, goal in itertools.islice(hard(known), 5):
         path = known.connect(start, goal).path
         assert len(path) > 2
@@ -197,9 +178,8 @@ def test_joints_of_very_many_turns_are_followed_over_some_of_them():
     assert one.lifts.tolist() == [True, False]
     assert one.limits[:, 0].tolist() == pytest.approx([-(MOST_TURNS + 0.5) * TURN, (MOST_TURNS + 0.5) * TURN])
     robot = with_limits(ur5(joints=2), {"shoulder_pan_joint": (-200.0, 200.0)})
-    known = make_roadmap(robot, Scene(name="nothing"), 32, gamma=0.0, ends=100).in_scene(
-        Scene(name="nothing")
-    )
+    world = ArmWorld(robot, Scene())
+    known = arm_roadmap(world, 32, recipe=Recipe(0.0, 100)).within(world)
     start = np.array([-60.0, -1.5])
     for turned in (-20.0, 39.0, 70.0):
         result = known.plan(start, [turned, -1.5], shorten=False)
@@ -220,41 +200,42 @@ def test_of_very_many_joints_only_those_turn_on_that_the_search_can_follow():
 
 
 def test_checks_run_out_and_come_back(roadmap):
-    known = SceneRoadmap(roadmap, box_scene())
+    known = within(roadmap)
     start, goal = far_apart(known)
     assert known.connect(start, goal, most_motions=1).motions == 1
     again = known.connect(start, goal)
-    fresh = SceneRoadmap(roadmap, box_scene()).connect(start, goal)
+    fresh = within(roadmap).connect(start, goal)
     np.testing.assert_array_equal(again.path, fresh.path)
 
 
 def test_a_world_without_lanes_finds_the_same_path(roadmap):
-    known, slow = SceneRoadmap(roadmap, box_scene()), SceneRoadmap(roadmap, box_scene())
-    slow._asked = tuple(ArmWorld(each.robot, each.scene, backend="scalar") for each in known._asked)
+    known, slow = within(roadmap), within(roadmap, backend="scalar")
     start, goal = far_apart(known)
     np.testing.assert_array_equal(
         known.connect(start, goal).path, slow.connect(start, goal, seconds=1e3).path
     )
 
 
-def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_learned(roadmap, monkeypatch):
-    monkeypatch.setattr("evenroad.robot_roadmap.scene_roadmap.TRIED_MOTIONS", 1)
-    known = SceneRoadmap(roadmap, box_scene())
+def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_kept(roadmap, monkeypatch):
+    monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.TRIED_MOTIONS", 1)
+    known = within(roadmap)
     start, goal = far_apart(known)
     first = known.plan(start, goal[0], shorten=False)
-    assert first.planner == "robot roadmap, then trees"
+    assert first.planner == "roadmap, then trees"
     assert known.world.recheck(first.path).all()
     monkeypatch.undo()
-    # Both ends are milestones now, and the way between them is proved.
+    # Both are milestones now, and the way between them is proved; in another scene they are not.
     second = known.plan(start, goal[0], shorten=False)
-    assert second.planner == "robot roadmap"
+    assert second.planner == "roadmap"
     assert second.counts["edges_checked"] < 10
     assert known.world.recheck(second.path).all()
+    other = within(roadmap).plan(start, goal[0], shorten=False, trees=False)
+    assert not other.solved or other.counts["edges_checked"] > second.counts["edges_checked"]
 
 
 @pytest.mark.parametrize("copied", [deepcopy, lambda known: pickle.loads(pickle.dumps(known))])
 def test_a_copy_of_a_kept_scene_answers_alike_from_memory_of_its_own(roadmap, copied):
-    known = SceneRoadmap(roadmap, box_scene())
+    known = within(roadmap)
     ends = list(itertools.islice(hard(known), 8))
     assert any(known.plan(start, goal[0]).solved for start, goal in ends[:4])
     copy = copied(known)
@@ -263,42 +244,34 @@ def test_a_copy_of_a_kept_scene_answers_alike_from_memory_of_its_own(roadmap, co
         np.testing.assert_array_equal(known.plan(start, goal[0]).path, copy.plan(start, goal[0]).path)
 
 
-def test_there_is_room_for_more_than_was_taken_at_first(roadmap, monkeypatch):
-    monkeypatch.setattr("evenroad.robot_roadmap.known_graph.ROOM", 2)
-    small = replace(roadmap)
-    known, other = SceneRoadmap(small, box_scene()), SceneRoadmap(roadmap, box_scene())
-    start, goal = far_apart(other)
-    paths = [other.connect(*ends, greed=1.0).path for ends in itertools.islice(hard(other), 6)]
-    for path in paths:
-        known._graph.learn(path)
-    for path in paths:
-        again = known.connect(path[0], path[-1:], greed=1.0)
+def test_there_is_room_for_more_milestones_than_the_roadmap_has(roadmap, monkeypatch):
+    monkeypatch.setattr("evenroad.robot_roadmap.scene_graph.ROOM", 2)
+    monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.TRIED_MOTIONS", 1)
+    known = within(roadmap)
+    some = list(itertools.islice(hard(known), 6))
+    found = [known.plan(start, goal[0], shorten=False) for start, goal in some]
+    assert all(result.solved for result in found)
+    for (start, goal), result in zip(some, found, strict=True):
+        again = known.connect(start, goal, greed=1.0)
         assert again.goal == 0
-        assert length_of(again.path) <= length_of(path) * (1.0 + 1e-6)
+        assert length_of(again.path) <= length_of(result.path) * (1.0 + 1e-6)
         assert known.world.recheck(again.path).all()
-    assert known.connect(start, goal).goal == 0
 
 
-def test_a_search_without_room_begins_again_with_more(roadmap, monkeypatch):
-    known = SceneRoadmap(roadmap, box_scene())
-    start, goal = far_apart(known)
-    expected = SceneRoadmap(roadmap, box_scene()).connect(start, goal)
-    prepare, rooms = known._graph.prepare, []
-
-    def little(*arguments, **more):
-        prepare(*arguments, **more)
-        rooms.append(arguments[-1])
-        if arguments[-1] < 4:
-            known._graph.desk[ENTRIES] = 50
-
-    monkeypatch.setattr(known._graph, "prepare", little)
-    found = known.connect(start, goal)
-    assert rooms == [1, 2, 4]
-    np.testing.assert_array_equal(found.path, expected.path)
+def test_motions_of_many_turns_are_not_kept_but_planned():
+    robot = with_limits(ur5(joints=3), {"shoulder_pan_joint": (-60.0, 60.0)})
+    world = ArmWorld(robot, Scene())
+    known = arm_roadmap(world, 24, 4, recipe=Recipe(0.0, 0)).within(world)
+    # Sixteen turns look like none, and seven turns out is not followed.
+    for start, goal in (([-50.0, 0.1, 0.2], [50.0, 0.3, 0.4]), ([46.0, 0.1, 0.2], [47.0, 0.3, 0.4])):
+        for _ in range(2):
+            result = known.plan(start, goal)
+            assert result.solved
+            assert known.world.recheck(result.path).all()
 
 
 def test_a_goal_that_is_not_free_is_left_out(roadmap):
-    known = SceneRoadmap(roadmap, box_scene())
+    known = within(roadmap)
     start, goal = far_apart(known)
     touching = np.array([0.0, 0.6, 0.0])
     assert not known.world.valid(touching[np.newaxis])[0]

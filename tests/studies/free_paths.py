@@ -8,7 +8,8 @@ import numpy as np
 import evenroad as er
 from evenroad.points import draw
 from evenroad.points.samplers import make_sampler
-from evenroad.roadmap import Budget, Roadmap
+from evenroad.roadmap import Budget
+from evenroad.roadmap.kept import roadmap_of_points
 from evenroad.robot import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.space import SE2, SE3, BoxSpace
@@ -34,7 +35,7 @@ def _points(world):
 
 
 def _kept(world, start, goal, **options):
-    return Roadmap.build(world.space, _points(world)).in_world(world).query(start, goal, **options)
+    return roadmap_of_points(world.space, _points(world)).within(world).plan(start, goal, **options)
 
 
 def _several(world, start, goal, **options):

@@ -1,4 +1,4 @@
-"""``evenroad certify``: what a point set with a connection rule, or an arm's roadmap, guarantees in every world."""
+"""``evenroad certify``: what a point set with a connection rule guarantees in every world."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import tyro
 
-from evenroad._checks import as_row, counted, require_count, require_positive
+from evenroad._checks import as_row, require_count, require_positive
 from evenroad._terminal import print_table
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.npz import load_points
@@ -25,14 +25,12 @@ FACTORS = (3.0, 2.0, 1.5, 1.2)
 class Certify:
     """Say what shortest paths along a roadmap guarantee in every world: from the largest hole between its points.
 
-    A path has clearance C if every place nearer to it than C is free.  Give a point set, which stands for a roadmap in
-    a box, or --roadmap.  Exit code 1 where nothing is guaranteed for the clearance asked for.
+    A path has clearance C if every place nearer to it than C is free.  A point set stands for a roadmap in a box.
+    Exit code 1 where nothing is guaranteed for the clearance asked for.
     """
 
-    set: tyro.conf.Positional[tuple[Path, ...]] = ()
+    set: tyro.conf.Positional[Path]
     """A .npy array of shape (n, d), or a .npz point set."""
-    roadmap: Path | None = None
-    """An arm's roadmap instead, made by ``evenroad roadmap``, its ends linked to all of it; clearances in metres."""
     k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
     """Each milestone is joined to its k nearest, symmetrised (default 10; 20 from six dimensions on)."""
     connect_radius: float | None = None
@@ -42,9 +40,9 @@ class Certify:
     goals: int = 1
     """How many goals a query has at most."""
     clearance: float | None = None
-    """Of the paths that are spoken of, > 0, in units of the box, or metres."""
+    """Of the paths that are spoken of, > 0, in units of the box."""
     length: float | None = None
-    """And how long they are, > 0; not with --roadmap."""
+    """And how long they are, > 0."""
     json: bool = False
     """Print JSON instead of a table."""
 
@@ -53,41 +51,16 @@ class Certify:
         for name in ("clearance", "length"):
             if getattr(self, name) is not None:
                 require_positive(f"--{name}", getattr(self, name))
-        if len(self.set) + (self.roadmap is not None) != 1:
-            raise InvalidValue("give one point set or --roadmap FILE, not both and no more")
         require_count("--goals", self.goals)
         if self.length is not None and self.clearance is None:
             raise InvalidValue("--length goes with --clearance")
-        return self._of_points(self.set[0]) if self.roadmap is None else self._of_arm(self.roadmap)
-
-    def _of_points(self, file: Path) -> int:
-        points = load_points(file)
+        points, file = load_points(self.set), self.set
         sides = (1.0,) * points.d if self.sides is None else _sides(self.sides, points.d)
         rule = self._rule(points.d)
         certificate = certify(points, rule, BoxSpace([0.0] * points.d, sides), goals=self.goals)
         record = {"file": str(file), "n": points.n, "d": points.d, "hash": points.hash, "rule": str(rule)}
         title = f"{file}: n={points.n}, d={points.d}, {points.origin}, {rule}"
-        return self._show(title, record | {"sides": list(sides)}, certificate, 1.0, 0.0, "")
-
-    def _of_arm(self, file: Path) -> int:
-        for name in ("k", "connect_radius", "sides", "length"):
-            if getattr(self, name) is not None:
-                raise InvalidValue(
-                    f"--{name.replace('_', '-')} goes with a point set, not with an arm's roadmap"
-                )
-        # Here, so that sets do not wait for robots to load.
-        from evenroad.robot_roadmap.certify import certify_robot_roadmap
-        from evenroad.robot_roadmap.file import load_robot_roadmap
-
-        roadmap = load_robot_roadmap(file)
-        certificate, per_metre, allowance = certify_robot_roadmap(roadmap)
-        n = len(roadmap.milestones)
-        record = {"file": str(file), "n": n, "d": len(roadmap.weights), "robot": roadmap.robot.name}
-        record |= {"joints_per_metre": per_metre, "allowance": allowance}
-        title = (
-            f"{file}: {counted(n, 'milestone')} of {roadmap.robot.name!r} in its cell {roadmap.cell.name!r}"
-        )
-        return self._show(title, record, certificate, per_metre, allowance, " m")
+        return self._show(title, record | {"sides": list(sides)}, certificate)
 
     def _rule(self, d: int) -> Rule:
         if self.connect_radius is None:
@@ -96,22 +69,13 @@ class Certify:
             raise InvalidValue("give -k or --connect-radius, not both")
         return Radius(self.connect_radius)
 
-    def _show(
-        self,
-        title: str,
-        record: dict[str, Any],
-        certificate: Certificate,
-        scale: float,
-        allowance: float,
-        unit: str,
-    ) -> int:
-        record |= guarantees(certificate, scale, allowance)
-        rows = guarantee_rows(certificate, scale, allowance, unit)
+    def _show(self, title: str, record: dict[str, Any], certificate: Certificate) -> int:
+        record |= guarantees(certificate)
+        rows = guarantee_rows(certificate)
         held = certificate.complete
         if self.clearance is not None:
-            inner = max(self.clearance - allowance, 0.0) * scale
-            factor = certificate.factor(inner) if inner > 0.0 else math.inf
-            held = held and inner >= certificate.dispersion
+            factor = certificate.factor(self.clearance)
+            held = held and self.clearance >= certificate.dispersion
             record |= {"clearance": self.clearance, "guaranteed": held, "factor": _finite(factor)}
             text = (
                 f"at most {factor:.6g} times the best one"
@@ -120,10 +84,10 @@ class Certify:
             )
             text = f"a path is found, {text}" if held else "nothing is guaranteed"
             if self.length is not None:
-                longest = certificate.longest(self.length, inner)
+                longest = certificate.longest(self.length, self.clearance)
                 record |= {"length": self.length, "longest": _finite(longest)}
                 text += f"; at most {longest:.6g} long where the best is {self.length:g}" if held else ""
-            rows.append((f"with {self.clearance:g}{unit}", text))
+            rows.append((f"with {self.clearance:g}", text))
         if self.json:
             print(json.dumps(record, indent=2, allow_nan=False))
         else:
@@ -131,10 +95,10 @@ class Certify:
         return 0 if held else 1
 
 
-def guarantees(certificate: Certificate, scale: float = 1.0, allowance: float = 0.0) -> dict[str, Any]:
-    """Return a certificate as plain JSON values; a clearance c outside is (c - allowance) scale in its metric."""
-    least = certificate.dispersion / scale + allowance if certificate.complete else math.inf
-    clearances = {factor: certificate.clearance_for(factor) / scale + allowance for factor in FACTORS}
+def guarantees(certificate: Certificate) -> dict[str, Any]:
+    """Return a certificate as plain JSON values."""
+    least = certificate.dispersion if certificate.complete else math.inf
+    clearances = {factor: certificate.clearance_for(factor) for factor in FACTORS}
     return {
         "dispersion": certificate.dispersion,
         "dispersion_at_least": certificate.at_least,
@@ -146,15 +110,13 @@ def guarantees(certificate: Certificate, scale: float = 1.0, allowance: float = 
     }
 
 
-def guarantee_rows(
-    certificate: Certificate, scale: float = 1.0, allowance: float = 0.0, unit: str = ""
-) -> list[tuple[str, str]]:
-    """Return a certificate as rows of a table; as :func:`guarantees`."""
-    said = guarantees(certificate, scale, allowance)
+def guarantee_rows(certificate: Certificate) -> list[tuple[str, str]]:
+    """Return a certificate as rows of a table."""
+    said = guarantees(certificate)
     needed = f"all motions up to {2 * certificate.dispersion:.6g} have to be tried"
     path = f"nothing is guaranteed: {needed}; take a larger k or radius, or more points"
     if (least := said["complete_from_clearance"]) is not None:
-        path = f"if one of clearance {least:.6g}{unit} does; if none is found, none does"
+        path = f"if one of clearance {least:.6g} does; if none is found, none does"
     between, ends = (
         f"up to {most:.6g}" if math.isfinite(most) else "of any length"
         for most in (certificate.between, certificate.ends)
@@ -165,7 +127,7 @@ def guarantee_rows(
         ("motions tried", tried),
         ("a path exists", path),
         *(
-            (f"{factor} x the best", f"at most, of those with clearance {clearance:.6g}{unit}")
+            (f"{factor} x the best", f"at most, of those with clearance {clearance:.6g}")
             for factor, clearance in said["clearance_for_factor"].items()
             if clearance is not None
         ),

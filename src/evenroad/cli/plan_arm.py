@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 
 from evenroad._compiled import say_if_compiling
@@ -31,9 +31,8 @@ from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.robot.straight import Straight
 from evenroad.robot.upright import Upright
-from evenroad.robot_roadmap.ask import prepare as prepare_roadmap
-from evenroad.robot_roadmap.cell import day_and_all
-from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.query import prepare as prepare_roadmap
+from evenroad.robot_roadmap.static_scene import joined_scenes
 
 
 def plan_arm(plan: PlanArm) -> int:
@@ -48,8 +47,6 @@ def plan_arm(plan: PlanArm) -> int:
     inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
-    if plan.roadmap is not None and plan.clearance:
-        raise InvalidValue("--clearance goes without --roadmap: what it knows of motions is known without")
     kept = None if plan.roadmap is None else kept_roadmap(plan)
     if kept is not None:
         prepare_roadmap()
@@ -60,7 +57,7 @@ def plan_arm(plan: PlanArm) -> int:
     assert robot is not None
     request = arm_request(
         robot,
-        scene if kept is None else day_and_all(kept.cell, scene)[1],
+        scene if kept is None else joined_scenes(kept.scene, scene),
         " ".join(plan.start),
         asked_goals,
         Reading(plan.deg, plan.tip, plan.frame),
@@ -68,16 +65,14 @@ def plan_arm(plan: PlanArm) -> int:
         clearance=plan.clearance,
         **({} if plan.robot is None else plan.options()),
     )
-    known = None if kept is None else SceneRoadmap(kept, request.world.scene, request.world.robot)
-    request = request if known is None else replace(request, world=known.world)
     world = request.world
-    planner = chosen_planner(plan, request) if known is None else known
+    planner = chosen_planner(plan, request) if kept is None else kept.within(world)
     load_compiled_code(request, planner)
 
     straight, upright = ways
     wishes = Wishes(budget, not plan.raw, plan.seed, plan.certified, straight, upright)
     # Where the tip is told its way, worlds of other kinds are planned in: each has its own planner.
-    by = None if not wants_points(plan) and known is None and upright is not None else planner
+    by = None if not wants_points(plan) and kept is None and upright is not None else planner
     result, meshes = finished(request, solve(request, by, wishes), certified=plan.certified)
     more_rows, trajectory = trajectory_rows(plan, request, result, ways)
     robot, model, given = world.robot, request.model, request.given
@@ -180,5 +175,5 @@ def _say_if_compiling(plan: PlanArm) -> None:
     # Where the lanes do not work, the search and the trees are never compiled; to find that out, other things are.
     if said or points or lanes_failure() is not None:
         return
-    if plan.roadmap is None or not say_if_compiling("evenroad.robot_roadmap.lane_search", "find_way", 10):
+    if plan.roadmap is None or not say_if_compiling("evenroad.robot_roadmap.lane_search", "find_path", 10):
         say_if_compiling(f"{kernel}.trees", "grow", 5)

@@ -17,12 +17,12 @@ from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.plan import Wishes, solve
-from evenroad.planning.planner import Planner
 from evenroad.planning.prm import PRM, rule_of
 from evenroad.planning.request import Request
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points import PointSet
 from evenroad.roadmap import Budget, KNearest, PlanResult, Radius, Rule
+from evenroad.roadmap.problem import Planner
 from evenroad.world import Rechecks
 
 DEFAULT_N = 512

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import tyro
 
-from evenroad._checks import counted
+from evenroad._checks import counted, require_positive
 from evenroad._compiled import say_if_compiling
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table, progress_shown
@@ -18,10 +18,11 @@ from evenroad.cli.plan import PlanArm, RobotOptions
 from evenroad.cli.plan_parts import wants_points
 from evenroad.cli.sampler import require_seed
 from evenroad.errors import InvalidValue
-from evenroad.robot import Scene, find_robot, find_scene, load_model, load_scene
-from evenroad.robot_roadmap.file import load_robot_roadmap, save_robot_roadmap
-from evenroad.robot_roadmap.make import make_roadmap, require_settings
-from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+from evenroad.robot import ArmWorld, Scene, find_robot, find_scene, load_model, load_scene
+from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
+from evenroad.robot_roadmap.build import arm_roadmap, require_size
+from evenroad.robot_roadmap.file import load_roadmap
+from evenroad.robot_roadmap.static_scene import require_same_robot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,10 +40,10 @@ class MakeRoadmap(RobotOptions):
     """How many milestones."""
     k: Annotated[int, tyro.conf.arg(aliases=["-k"])] = 16
     """Each is joined to so many of the nearest ones that it can reach freely."""
-    gamma: float = 4.0
-    """Milestones are as dense as the chance of being free in random scenes to this power, >= 0."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
+    clearance: float = 0.0
+    """How far the arm keeps from the cell, in metres; plans along it may ask for as much of other obstacles."""
     seed: int = 0
     """Seed of everything random; the same command gives the same roadmap."""
     out: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
@@ -52,7 +53,8 @@ class MakeRoadmap(RobotOptions):
         """Load, make, write, report; return 0."""
         # All that can be refused at once is, before anything is read or compiled.
         require_seed(self.seed)
-        require_settings(self.n, self.k, self.gamma, self.resolution)
+        require_size(self.n, self.k)
+        require_positive("resolution", self.resolution)
         inputs = [*find_robot(self.robot), self.srdf, self.bodies]
         inputs += [] if self.cell is None else [find_scene(self.cell)]
         out = Path(f"{Path(self.robot).stem}.roadmap") if self.out is None else self.out
@@ -66,18 +68,10 @@ class MakeRoadmap(RobotOptions):
         model = load_model(self.robot, **self.options())
         began = time.perf_counter()
         with progress_shown("roadmap") as shown:
-            roadmap = make_roadmap(
-                model.robot,
-                cell,
-                self.n,
-                k=self.k,
-                gamma=self.gamma,
-                resolution=self.resolution,
-                rng=self.seed,
-                progress=_progress(shown),
-            )
+            world = ArmWorld(model.robot, cell, resolution=self.resolution, clearance=self.clearance)
+            roadmap = arm_roadmap(world, self.n, self.k, rng=self.seed, progress=_progress(shown))
         seconds = time.perf_counter() - began
-        save_robot_roadmap(out, roadmap)
+        roadmap.save(out)
         n, m = len(roadmap.milestones), len(roadmap.edges)
         robot = roadmap.robot
         wraps = [name for name, lifts in zip(robot.group, roadmap.one_turn.lifts, strict=True) if lifts]
@@ -112,7 +106,15 @@ def _progress(shown: Callable[..., None]) -> Callable[[str, float], None]:
     return progress
 
 
-def kept_roadmap(plan: PlanArm) -> RobotRoadmap:
+def load_arm_roadmap(file: Path | str) -> ArmRoadmap:
+    """Read the roadmap of an arm."""
+    roadmap = load_roadmap(file)
+    if not isinstance(roadmap, ArmRoadmap):
+        raise InvalidValue(f"{file} is no roadmap of an arm, but {roadmap!r}")
+    return roadmap
+
+
+def kept_roadmap(plan: PlanArm) -> ArmRoadmap:
     """Return the roadmap that a plan is told to use, refusing options that do not go with one."""
     assert plan.roadmap is not None
     if wants_points(plan) or plan.improve:
@@ -125,12 +127,7 @@ def kept_roadmap(plan: PlanArm) -> RobotRoadmap:
                 raise InvalidValue(
                     f"--{option.name.replace('_', '-')} goes with --robot; the roadmap knows its arm"
                 )
-    robot = None
+    roadmap = load_arm_roadmap(plan.roadmap)
     if plan.robot is not None:
-        robot = load_model(plan.robot, **plan.options()).robot
-    roadmap = load_robot_roadmap(plan.roadmap, robot)
-    if plan.resolution not in (PlanArm.resolution, roadmap.resolution):
-        raise InvalidValue(
-            f"the roadmap was made with --resolution {roadmap.resolution:g}, got {plan.resolution:g}"
-        )
+        require_same_robot(roadmap.robot, roadmap.scene, load_model(plan.robot, **plan.options()).robot)
     return roadmap

@@ -12,6 +12,7 @@ import tyro
 from evenroad._arrays import Floats
 from evenroad._files import require_writable_folder
 from evenroad.cli.plan import RobotOptions
+from evenroad.cli.roadmap import load_arm_roadmap
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import load_plan
 from evenroad.planning import PRM
@@ -22,8 +23,7 @@ from evenroad.roadmap import Budget, PlanResult
 from evenroad.robot import find_robot, load_scene
 from evenroad.robot.goals import Goals
 from evenroad.robot.urdf_xml import RobotFile
-from evenroad.robot_roadmap.cell import day_and_all
-from evenroad.robot_roadmap.file import load_robot_roadmap
+from evenroad.robot_roadmap.static_scene import joined_scenes
 
 FILES = {
     "srdf": str | None,
@@ -110,8 +110,8 @@ class View(RobotOptions):
         options["group"] = options["group"] or ",".join(asked["joints"])
         scene = load_scene(asked["scene"])
         if kept is not None:
-            roadmap = load_robot_roadmap(kept)
-            scene = day_and_all(roadmap.cell, scene)[1]
+            roadmap = load_arm_roadmap(kept)
+            scene = joined_scenes(roadmap.scene, scene)
             robot, options = (roadmap.robot, {}) if robot is None else (robot, options)
         request = arm_request(
             robot, scene, result.start, list(result.goals), Reading(), held=asked["held"], **options

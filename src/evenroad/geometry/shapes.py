@@ -225,29 +225,6 @@ class Capsule(Shape):
         self._lengths(radius=values["radius"])
         self._place(named)  # type: ignore[arg-type]
 
-    @classmethod
-    def along_z(cls, radius: float, length: float, pose: Pose = IDENTITY, link: str = WORLD) -> Capsule:
-        """Return the capsule along the z axis of its frame.
-
-        Parameters
-        ----------
-        radius, length : float
-            > 0 [m]; the length is without the half balls.
-        pose, link : Pose, str
-            As for every shape.
-
-        Returns
-        -------
-        Capsule
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> er.Capsule.along_z(0.1, 0.4).length
-        0.4
-        """
-        return cls(radius, length, pose=pose, link=link)
-
     @property
     def length(self) -> float:
         """Length of the segment, without the caps [m]."""
@@ -307,7 +284,7 @@ def along_z(capsule: Capsule) -> Capsule | Sphere:
         pose = capsule.pose @ pose
     if length == 0.0:
         return Sphere(capsule.radius, pose=pose, link=capsule.link)
-    return Capsule.along_z(capsule.radius, length, pose, capsule.link)
+    return Capsule(capsule.radius, length, pose=pose, link=capsule.link)
 
 
 def without_pose(capsule: Capsule) -> Capsule:

@@ -13,12 +13,12 @@ from evenroad._clock import now
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.hemmed_in import with_reasons
-from evenroad.planning.planner import Problem
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import Sampler, make_sampler
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.points_of import as_points
+from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.query import LINKS, EdgeCost, Query
 from evenroad.roadmap.result import PlanResult, Stage
 from evenroad.roadmap.rules import Rule, default_rule

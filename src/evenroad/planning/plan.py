@@ -10,7 +10,7 @@ from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.arm_request import mesh_check
-from evenroad.planning.planner import Planner, Problem
+from evenroad.planning.connectors import connector_of
 from evenroad.planning.prm import PRM
 from evenroad.planning.read_request import read_request
 from evenroad.planning.request import Goal, Place, Reading, Request
@@ -19,6 +19,7 @@ from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import require_certified
 from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.result import PlanResult, Status
 from evenroad.robot import ArmWorld
 from evenroad.robot.reference.recheck import MeshCheck
@@ -155,9 +156,9 @@ def solve(request: Request, planner: Planner | None, wishes: Wishes) -> PlanResu
     apart = None if given is None else given.apart(request.world, straight=straight is not None)
 
     def plan_once(world: World, start: Floats, goals: Floats, smooth: bool) -> PlanResult:
-        problem = Problem(
-            world, start, goals, budget=wishes.budget, smooth=smooth, rng=wishes.rng, apart=apart
-        )
+        budget, connector = wishes.budget, connector_of(world)
+        how = dict(budget=budget, smooth=smooth, rng=wishes.rng, apart=apart, connector=connector)
+        problem = Problem(world, start, goals, **how)  # type: ignore[arg-type]
         return (default_planner(world) if planner is None else planner).solve(problem)
 
     if straight is None and upright is None:

@@ -8,12 +8,12 @@ from typing import ClassVar, Protocol
 from evenroad._checks import require_count, require_known
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import connector_of
-from evenroad.planning.planner import Problem
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.certify import certify_graph
 from evenroad.roadmap.points_of import as_points
+from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.query import LINKS, EdgeCost, Query
 from evenroad.roadmap.result import PlanResult, Status
 from evenroad.roadmap.rules import KNearest, Rule, default_rule

@@ -11,9 +11,9 @@ from typing import Any
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning import arm_trees
 from evenroad.planning.arm_request import arm_request, request_in
-from evenroad.planning.planner import Planner
 from evenroad.planning.request import Goal, Place, Reading, Request
 from evenroad.planning.trees import RRTConnect
+from evenroad.roadmap.problem import Planner
 from evenroad.roadmap.query import read_places
 from evenroad.robot import ArmWorld, Scene
 from evenroad.robot.load import RobotOptions

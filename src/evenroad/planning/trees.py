@@ -17,11 +17,11 @@ from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import CELLS, connector_of, trees_for
 from evenroad.planning.growing import GrowingPRM
 from evenroad.planning.hemmed_in import with_reasons
-from evenroad.planning.planner import Planner, Problem
 from evenroad.roadmap.answer import connected, gave_up, refusal, shown_apart
 from evenroad.roadmap.attempt import NO_LIMIT, Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Connection, Connector
+from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.query import Query
 from evenroad.roadmap.result import NO_POINTS, PlanResult, Stage
 from evenroad.world.gridmap.gridmap import DiskWorld

@@ -6,10 +6,6 @@ from evenroad.roadmap.certify import certify as certify
 from evenroad.roadmap.certify import certify_roadmap as certify_roadmap
 from evenroad.roadmap.kept import Roadmap as Roadmap
 from evenroad.roadmap.kept import WorldRoadmap as WorldRoadmap
-from evenroad.roadmap.npz import load_roadmap as load_roadmap
-from evenroad.roadmap.npz import load_world_roadmap as load_world_roadmap
-from evenroad.roadmap.npz import save_roadmap as save_roadmap
-from evenroad.roadmap.npz import save_world_roadmap as save_world_roadmap
 from evenroad.roadmap.query import EdgeCost as EdgeCost
 from evenroad.roadmap.query import Query as Query
 from evenroad.roadmap.result import PlanResult as PlanResult

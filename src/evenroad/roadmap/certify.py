@@ -14,7 +14,7 @@ from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points.measures.covering import DispersionBounds, dispersion_bounds
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.certificate import SAFE, Certificate
-from evenroad.roadmap.kept import Roadmap
+from evenroad.roadmap.kept import PointRoadmap
 from evenroad.roadmap.neighbours import BLOCK, flat_metric
 from evenroad.roadmap.query import LINKS, Query
 from evenroad.roadmap.rules import Complete, KNearest, Radius, Reach, Rule
@@ -61,14 +61,19 @@ def certify(
     return _by_neighbours(points, rule.k, space, bounds, links, goals, turn)
 
 
-def certify_roadmap(roadmap: Roadmap, *, links: int | None = LINKS) -> Certificate:
-    """Return what the queries of a kept roadmap guarantee in every world; errors as :func:`certify`."""
-    bounds, turn = bounds_in(roadmap.points, roadmap.space), _half_turn(roadmap.space)
-    reach = roadmap.rule.reach(roadmap.points.n, roadmap.space)
+def certify_roadmap(roadmap: PointRoadmap, *, links: int | None = LINKS) -> Certificate:
+    """Return what the queries of a kept roadmap guarantee in every world; errors as :func:`certify`.
+
+    InvalidValue also of a roadmap from a file that no world has said the space of yet.
+    """
+    if (space := roadmap.space) is None:
+        raise InvalidValue("the roadmap is from a file: certify that of roadmap.within(world).roadmap")
+    bounds, turn = bounds_in(roadmap.points, space), _half_turn(space)
+    reach = roadmap.rule.reach(roadmap.points.n, space)
     n = roadmap.points.n
     most = n if reach == Reach() else max(_links_among(n, links), reach.k or 0)
-    ends = max(reach.radius or 0.0, linked_within(roadmap.configurations, most, roadmap.space, bounds.upper))
-    between = _nearest_untried(roadmap.configurations, roadmap.edges, roadmap.space)
+    ends = max(reach.radius or 0.0, linked_within(roadmap.milestones, most, space, bounds.upper))
+    between = _nearest_untried(roadmap.milestones, roadmap.edges, space)
     return Certificate(bounds.upper, bounds.lower, min(between, turn), min(ends, turn), True)
 
 

@@ -11,7 +11,7 @@ from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
 from evenroad.roadmap import PlanResult, Status
 from evenroad.roadmap.query import read_places
-from evenroad.roadmap.result import NO_POINTS
+from evenroad.roadmap.result import make_result
 from evenroad.robot import ArmWorld, configuration
 from evenroad.robot.goals import Goals, goals_of
 from evenroad.robot.pose_goal import PoseGoal
@@ -37,16 +37,9 @@ def read_ends(
     given = goals_of(world, first, places, lambda each: read_places(place, _place(world, each), space)[1][0])
     if not given.unreached:
         return first, given
-    return PlanResult(
-        status=Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE,
-        message=given.unreached,
-        start=first,
-        goals=given.configurations,
-        origin=NO_POINTS,
-        rule="none",
-        planner="none",
-        timings={"goals": given.seconds},
-    )
+    status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
+    timings = {"goals": given.seconds}
+    return make_result(world, first, given.configurations, status, given.unreached, timings=timings)
 
 
 def ends_free(world: ArmWorld, start: Floats, goals: Floats) -> bool:

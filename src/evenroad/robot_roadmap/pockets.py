@@ -16,8 +16,7 @@ from evenroad._arrays import Bools, Floats, Ints
 from evenroad._threads import in_order
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
 from evenroad.robot.kinematics import capsule_ends, link_poses
-from evenroad.robot_roadmap.chance import Surroundings
-from evenroad.robot_roadmap.sight import joined_to
+from evenroad.robot_roadmap.freedom import Surroundings
 
 HALF_EXTENTS = ((0.12, 0.25), (0.1, 0.22), (0.1, 0.22))
 """Ranges of a pocket's depth, width and height, halved, as shares of the reach."""
@@ -49,6 +48,9 @@ NEAR = 1500
 STEP = 0.2
 """Of the motions that are tried; nothing is proved here [rad]."""
 
+EARLY = 0.1
+"""How far along a motion it is checked first: most that leave a pocket touch its walls at once."""
+
 BATCH = 64
 """Pockets that are drawn at once."""
 
@@ -63,11 +65,6 @@ ALONG = 3
 
 STILL = 1e-3
 """A tip that does not move so far moves not at all [m]."""
-
-
-def links_of(n: int) -> int:
-    """Return to how many of n milestones start and goal are linked: of up to 256 to all, of 1024 to half."""
-    return min(n, round(16.0 * np.sqrt(n)))
 
 
 class Seen(NamedTuple):
@@ -157,6 +154,19 @@ def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: 
         later = np.argpartition(squared, NEAR)[:NEAR] + FIRST
     rows = np.append(np.arange(min(FIRST, len(pool))), later)
     return joined_to(world, inside, pool, end, rows)
+
+
+def joined_to(pocket: ArmWorld, inside: ArmWorld, pool: Floats, end: int, rows: Ints) -> Ints:
+    """Return which of some rows of a pool, (n, dim), a straight motion joins to the row `end`.
+
+    The end is free of the pocket, all of the pool of what is `inside`, robot and static scene.
+    """
+    rows = rows[rows != end]
+    here = np.broadcast_to(pool[end], (len(rows), pool.shape[1]))
+    free = pocket.valid(pocket.space.interpolate(here, pool[rows], EARLY))
+    for world in (pocket, inside):
+        free[free] = world.motion_valid(here[free], pool[rows[free]])
+    return rows[free]
 
 
 def last_links(robot: Robot) -> list[int]:

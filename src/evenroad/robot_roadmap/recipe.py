@@ -12,7 +12,7 @@ from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
 from evenroad.robot import ArmWorld, Robot
-from evenroad.robot_roadmap.chance import chance_of_freedom
+from evenroad.robot_roadmap.freedom import chance_of_freedom
 from evenroad.robot_roadmap.pockets import FIRST, Seen, ends_in_pockets
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
 from evenroad.robot_roadmap.turns import TURN, OneTurn
@@ -61,9 +61,9 @@ class Known(NamedTuple):
     seen: Seen
 
 
-def ends_for(robot: Robot) -> int:
-    """Return how many ends in pockets milestones of a robot learn from."""
-    return min(ENDS, max(FEWEST_ENDS, ENDS * PAIRS // max(len(robot.pairs), 1)))
+def recipe_for(robot: Robot) -> Recipe:
+    """Return the recipe for a robot: the more pairs it has, the fewer ends in pockets are tried."""
+    return Recipe(GAMMA, min(ENDS, max(FEWEST_ENDS, ENDS * PAIRS // max(len(robot.pairs), 1))))
 
 
 def known_of(
@@ -122,7 +122,7 @@ def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generat
         blocked = Counter(world.explain(each) for each in q[-ASKED:])
         often, count = blocked.most_common(1)[0]
         raise InvalidValue(
-            f"the robot is never free in its cell: of {drawn} configurations none; in {count} of the last"
+            f"the robot is never free: of {drawn} configurations none; in {count} of the last"
             f" {blocked.total()} {often}"
         )
     return free[:count]

@@ -9,7 +9,7 @@ from typing import Any
 from evenroad._arrays import Floats
 from evenroad._checks import require_extra
 from evenroad.errors import InvalidValue, NotAvailable, shown
-from evenroad.planning import plan as plan_path
+from evenroad.planning.plan import plan as plan_path
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld
 from evenroad.viz.page import ArmPage

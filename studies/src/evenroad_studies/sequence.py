@@ -13,8 +13,8 @@ from evenroad._rng import RngLike, generator, seed_of
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.plain import Sobol
+from evenroad_studies.anneal import anneal
 from evenroad_studies.prefixes import SHORTEST, rooted_prefixes, worst_prefix
-from evenroad_studies.training.anneal import anneal
 
 MEASURE = "hickernell"
 TOGETHER = 512

@@ -11,8 +11,8 @@ import pytest
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, WorkerLost
 from evenroad.points import load_points
 from evenroad.points.measures import MEASURES
+from evenroad_studies.anneal import SCHEDULE, anneal
 from evenroad_studies.training import anneal_many
-from evenroad_studies.training.anneal import SCHEDULE, anneal
 
 SMALL = {"n": 8, "d": 2, "objective": "star", "steps": 20}
 

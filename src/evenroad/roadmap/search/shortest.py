@@ -99,7 +99,7 @@ def best_path(problem: SearchProblem, edge_states: States, node_states: States) 
     """
     graph, weights, bounds = problem.graph, problem.weights, problem.bounds
     states, ends = (edge_states, node_states), (problem.start, problem.goals)
-    return Found(*_a_star(graph.nodes, graph.fixed, graph.links, weights, *states, bounds, *ends))
+    return Found(*_a_star(graph.fixed, graph.links, weights, *states, bounds, *ends))
 
 
 def shortest_path(
@@ -126,8 +126,8 @@ def length_along(lengths: Floats) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _a_star(nodes, fixed, links, weights, edge_states, node_states, bounds, start, goals):  # type: ignore[no-untyped-def]
-    unseen = np.iinfo(np.int64).max
+def _a_star(fixed, links, weights, edge_states, node_states, bounds, start, goals):  # type: ignore[no-untyped-def]
+    nodes, unseen = bounds.shape[0], np.iinfo(np.int64).max
     is_goal = np.zeros(nodes, dtype=np.bool_)
     is_goal[goals] = True
     end = -1

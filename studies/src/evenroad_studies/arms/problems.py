@@ -15,8 +15,7 @@ from evenroad.errors import NotAvailable
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
-from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 from evenroad_studies.arms.roadmaps import box_roadmap, cell_of
 from evenroad_studies.arms.robots import arm_named, tool_of
 from evenroad_studies.arms.scenes import GENERATORS, Region, places_of
@@ -107,16 +106,15 @@ def is_worth(robot: str, problem: Problem, rng: np.random.Generator) -> bool:
     return joins(_many(robot), problem, 500)
 
 
-def joins(roadmap: RobotRoadmap, problem: Problem, links: int) -> bool:
+def joins(roadmap: ArmRoadmap, problem: Problem, links: int) -> bool:
     """Say whether a roadmap leads from start to goal."""
     world = problem.world
     assert isinstance(world, ArmWorld)
-    known = SceneRoadmap(roadmap, world.scene)
-    return known.connect(problem.start, problem.goal[np.newaxis], links=links).goal >= 0
+    return roadmap.within(world).connect(problem.start, problem.goal[np.newaxis], links=links).goal >= 0
 
 
 @lru_cache(maxsize=2)
-def _many(robot: str) -> RobotRoadmap:
+def _many(robot: str) -> ArmRoadmap:
     arm = arm_named(robot)
     return box_roadmap(arm, np.random.default_rng(5000).random((ENOUGH, len(arm.group))), ENOUGH_K)
 

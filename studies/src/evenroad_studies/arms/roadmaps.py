@@ -10,8 +10,8 @@ from evenroad._arrays import Floats
 from evenroad.points import draw
 from evenroad.roadmap.neighbours import nearest
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
-from evenroad.robot_roadmap.make import joined, make_roadmap
-from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
+from evenroad.robot_roadmap.build import arm_roadmap, joined
 from evenroad.robot_roadmap.turns import lifted_motions_free, one_turn, shifts
 from evenroad_studies.arms.robots import arm_named
 from evenroad_studies.bench.samplers import SAMPLERS, draw_set, why_not
@@ -22,7 +22,7 @@ BOX_SAMPLERS = ("uniform", "sobol scrambled", "halton scrambled", "even", "hicke
 KNOWING = {
     "rejection": "the first scrambled Sobol points that are free of robot and cell",
     "control": "the same, in the roadmap's metric, motions proved free of robot and cell beforehand",
-    "roadmap": "as evenroad.make_roadmap makes it",
+    "roadmap": "as evenroad.build_roadmap builds it",
 }
 """Name -> what its milestones are."""
 
@@ -43,7 +43,7 @@ def why_no_roadmap(sampler: str, n: int, dim: int) -> str:
 
 
 @lru_cache(maxsize=16)
-def roadmap_of(robot: str, sampler: str, n: int, k: int, run: int, seed: int) -> tuple[RobotRoadmap, str]:
+def roadmap_of(robot: str, sampler: str, n: int, k: int, run: int, seed: int) -> tuple[ArmRoadmap, str]:
     """Return a roadmap of n milestones, each joined to k, and which set of a pool they are."""
     arm = arm_named(robot)
     of_set, of_free = np.random.SeedSequence(seed, spawn_key=(run,)).spawn(2)
@@ -58,13 +58,13 @@ def roadmap_of(robot: str, sampler: str, n: int, k: int, run: int, seed: int) ->
 
 
 @lru_cache(maxsize=4)
-def made_roadmap(robot: str, n: int, run: int, seed: int) -> RobotRoadmap:
+def made_roadmap(robot: str, n: int, run: int, seed: int) -> ArmRoadmap:
     """Return the roadmap that evenroad makes, for all numbers of neighbours."""
     arm = arm_named(robot)
-    return make_roadmap(arm, cell_of(arm), n, rng=np.random.SeedSequence(seed, spawn_key=(run, n)))
+    return arm_roadmap(ArmWorld(arm, cell_of(arm)), n, rng=np.random.SeedSequence(seed, spawn_key=(run, n)))
 
 
-def box_roadmap(robot: Robot, points: Floats, k: int) -> RobotRoadmap:
+def box_roadmap(robot: Robot, points: Floats, k: int) -> ArmRoadmap:
     """Return a roadmap of points of the cube, each joined to its k nearest, whatever is in between."""
     world = ArmWorld(robot, cell_of(robot))
     return _joined_in_box(world, world.space.from_cube(points), k)
@@ -81,7 +81,7 @@ def first_free(world: ArmWorld, n: int, rng: np.random.Generator) -> Floats:
         drawn *= 2
 
 
-def _joined_in_box(world: ArmWorld, milestones: Floats, k: int) -> RobotRoadmap:
+def _joined_in_box(world: ArmWorld, milestones: Floats, k: int) -> ArmRoadmap:
     """Return a roadmap in the metric of the joints; edges that no scene leaves free are left out of it."""
     near = nearest(milestones, min(k, len(milestones) - 1), world.space)
     own = np.repeat(np.arange(len(milestones)), near.shape[1])
@@ -90,13 +90,12 @@ def _joined_in_box(world: ArmWorld, milestones: Floats, k: int) -> RobotRoadmap:
     a, b = milestones[pairs[:, 0]], milestones[pairs[:, 1]]
     turns = shifts(one, a, b)
     free = lifted_motions_free(world, one, a, b, turns)
-    return RobotRoadmap(
+    return ArmRoadmap(
         robot=world.robot,
-        cell=world.scene,
+        scene=world.scene,
         resolution=world.resolution,
         milestones=milestones,
         edges=pairs[free].astype(np.int32),
         turns=turns[free].astype(np.int8),
         weights=np.ones(world.space.dim),
-        gamma=0.0,
     )

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from itertools import product
 
 from evenroad._checks import require_count, require_known
-from evenroad.robot_roadmap.pockets import links_of
+from evenroad.robot_roadmap.world_roadmap import links_of
 from evenroad_studies.arms.execute import KEPT, TREES, kept_rule
 from evenroad_studies.arms.problems import ARM_ROBOTS, problem_name
 from evenroad_studies.arms.roadmaps import BOX_SAMPLERS, KNOWING, why_no_roadmap

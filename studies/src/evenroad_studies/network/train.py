@@ -18,9 +18,9 @@ from evenroad.errors import InvalidValue
 from evenroad.points.measures import star_discrepancy
 from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
 from evenroad.points.samplers import draw
+from evenroad_studies.anneal import LOWEST, Annealed, Callback, anneal, first_rate, noise_over_rate
 from evenroad_studies.network.config import NetworkConfig
 from evenroad_studies.network.layers import adam_step, backward, forward
-from evenroad_studies.training.anneal import LOWEST, Annealed, Callback, anneal, first_rate, noise_over_rate
 from evenroad_studies.training.objective import Objective, parse_objective
 
 Weights: TypeAlias = npt.NDArray[np.float32]
@@ -180,7 +180,7 @@ def refine(
     objective : str or Objective, optional
         What to make small; by default what each set was made for (InvalidValue if its origin does not say).
     steps, callback
-        As for :func:`~evenroad_studies.training.anneal.anneal`, the steps counted over all sets.
+        As for :func:`~evenroad_studies.anneal.anneal`, the steps counted over all sets.
     """
     require_count("steps", steps)
     total = steps * len(sets)

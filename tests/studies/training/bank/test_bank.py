@@ -9,8 +9,8 @@ from evenroad.points.bank import Bank, Trained
 from evenroad.points.bank.bank import DATA, INDEX, SEED
 from evenroad.points.measures import MEASURES
 from evenroad.points.pointset import PointSet
+from evenroad_studies.anneal import anneal
 from evenroad_studies.training import anneal_many
-from evenroad_studies.training.anneal import anneal
 from evenroad_studies.training.bank import MEASURED, Recipe, build, recipes, store
 
 SHIPPED = [each for each in recipes() if Bank().has(each.family, each.n, each.d)]

@@ -1,4 +1,4 @@
-"""What a roadmap was made for, and whether a robot or a scene of today still is that."""
+"""What a roadmap was made for, and whether the robot and the scene of a world still are that."""
 
 from __future__ import annotations
 
@@ -8,67 +8,82 @@ from dataclasses import replace
 from evenroad.errors import InvalidValue
 from evenroad.geometry.rotation import NO_ROTATION
 from evenroad.geometry.shapes import PRIMITIVES
-from evenroad.robot import Obstacle, Robot, Scene, held_values, in_scene
+from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, held_values, in_scene
+from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 
 LONG = 120
 """Characters that tell a body."""
 
 
-def day_and_all(cell: Scene, scene: Scene) -> tuple[Scene, Scene]:
-    """Return the scene of a day without what is in the cell, and with all of it.
+def require_within(roadmap: ArmRoadmap, world: ArmWorld) -> Scene:
+    """Return the dynamic scene: what of a world's is not in the static scene of a roadmap.
 
-    Raises InvalidValue if the scene has an obstacle of the cell elsewhere, of another shape, or lacks a contact with it
-    that the cell allows: the milestones would touch what is not to be touched.
+    Raises InvalidValue if the robot is another one, keeps farther away, has an obstacle of the static scene elsewhere
+    or of another shape, or lacks a contact with it that is allowed there: the milestones would touch what is not to be
+    touched.
     """
-    fixed = {obstacle.name: obstacle for obstacle in cell.obstacles}
+    scene = require_agrees(roadmap.scene, world.scene)
+    require_same_robot(roadmap.robot, roadmap.scene, world.robot.empty_handed())
+    if world.clearance > roadmap.clearance:
+        raise InvalidValue(
+            f"the world has a clearance of {world.clearance:g} m, the roadmap was built with {roadmap.clearance:g} m:"
+            " build it in a world of that clearance"
+        )
+    return scene
+
+
+def require_agrees(static: Scene, scene: Scene) -> Scene:
+    """Return a scene without what is in the static one; raise InvalidValue if they contradict each other."""
+    fixed = {obstacle.name: obstacle for obstacle in static.obstacles}
     named = {obstacle.name for obstacle in scene.obstacles}
     for obstacle in scene.obstacles:
         if obstacle.name in fixed and obstacle.body != fixed[obstacle.name].body:
             raise InvalidValue(
-                f"obstacle {obstacle.name!r} of scene {scene.name!r} is a {_text(obstacle)}, in the roadmap's cell a"
-                f" {_text(fixed[obstacle.name])}: make the roadmap for the cell as it is"
+                f"obstacle {obstacle.name!r} of scene {scene.name!r} is a {_text(obstacle)}, in the roadmap's static"
+                f" scene a {_text(fixed[obstacle.name])}: build the roadmap for the scene as it is"
             )
-    forbidden = sorted(pair for pair in cell.allowed if pair[1] in named and pair not in scene.allowed)
+    forbidden = sorted(pair for pair in static.allowed if pair[1] in named and pair not in scene.allowed)
     if forbidden:
         raise InvalidValue(
             f"scene {scene.name!r} has {forbidden[0][1]!r} but does not allow {forbidden[0][0]!r} to touch it, as the"
-            " roadmap's cell does: allow it, or make the roadmap without"
+            " roadmap's static scene does: allow it, or build the roadmap without"
         )
-    everything = replace(
+    return scene.without(*(name for name in named if name in fixed))
+
+
+def joined_scenes(static: Scene, scene: Scene) -> Scene:
+    """Return a scene with all of the static one, named in it or not; raises as `require_agrees`."""
+    require_agrees(static, scene)
+    named = {obstacle.name for obstacle in scene.obstacles}
+    return replace(
         scene,
-        obstacles=(*(o for o in cell.obstacles if o.name not in named), *scene.obstacles),
-        allowed=scene.allowed | cell.allowed,
-        states={**cell.states, **scene.states},
-        limits={**cell.limits, **_narrower(cell, scene)},
+        obstacles=(*(o for o in static.obstacles if o.name not in named), *scene.obstacles),
+        allowed=scene.allowed | static.allowed,
+        states={**static.states, **scene.states},
+        limits={**static.limits, **_narrower(static, scene)},
     )
-    return scene_without(scene, fixed), everything
 
 
-def left_to_check(robot: Robot, cell: Scene, day: Scene, everything: Scene) -> tuple[Robot, Scene]:
-    """Return robot and scene of what a roadmap, free of the empty-handed robot and its cell, does not know.
+def left_to_check(robot: Robot, static: Scene, moving: Scene, everything: Scene) -> tuple[Robot, Scene]:
+    """Return robot and scene of what a roadmap, free of the empty-handed robot and its static scene, does not know.
 
-    That is the obstacles of the day; and of what the robot holds all obstacles and the robot itself.
+    That is the moving obstacles; and of what the robot holds all obstacles and the robot itself.
     """
     held = set(robot.holds)
     if not held:
-        return replace(robot, pairs=()), day
-    known = {(link, fixed.name) for link in robot.links if link not in held for fixed in cell.obstacles}
+        return replace(robot, pairs=()), moving
+    known = {(link, fixed.name) for link in robot.links if link not in held for fixed in static.obstacles}
     pairs = tuple(pair for pair in robot.pairs if not held.isdisjoint(pair))
     return replace(robot, pairs=pairs), replace(everything, allowed=everything.allowed | known)
 
 
-def _narrower(cell: Scene, scene: Scene) -> dict[str, tuple[float, float]]:
-    """Return the ranges of a scene, cut to those of the cell."""
+def _narrower(static: Scene, scene: Scene) -> dict[str, tuple[float, float]]:
+    """Return the ranges of a scene, cut to those of the static one."""
     ranges = {}
     for joint, (lower, upper) in scene.limits.items():
-        least, most = cell.limits.get(joint, (lower, upper))
+        least, most = static.limits.get(joint, (lower, upper))
         ranges[joint] = (max(lower, least), min(upper, most))
     return ranges
-
-
-def scene_without(scene: Scene, names: dict[str, Obstacle]) -> Scene:
-    """Return a scene without the obstacles of these names, of which it need not have any."""
-    return scene.without(*(obstacle.name for obstacle in scene.obstacles if obstacle.name in names))
 
 
 def _text(obstacle: Obstacle) -> str:
@@ -81,14 +96,14 @@ def _text(obstacle: Obstacle) -> str:
     return f"{obstacle.shape} of {size} at ({xyz}){turned}"
 
 
-def require_same_robot(made: Robot, cell: Scene, given: Robot) -> None:
-    """Raise InvalidValue unless a robot, in the ranges of the cell, moves and is tested as the one of a roadmap.
+def require_same_robot(made: Robot, static: Scene, given: Robot) -> None:
+    """Raise InvalidValue unless a robot, in the static scene's ranges, moves and is tested as the one of a roadmap.
 
     Its limits may differ.  The text says what else does.
     """
     names = {joint.name for joint in given.joints}
-    known = {joint: limits for joint, limits in cell.limits.items() if joint in names}
-    given = in_scene(given, replace(cell, limits=known))
+    known = {joint: limits for joint, limits in static.limits.items() if joint in names}
+    given = in_scene(given, replace(static, limits=known))
     if (difference := next(_differences(made, given), None)) is not None:
         other = (
             "another group of"
@@ -96,22 +111,6 @@ def require_same_robot(made: Robot, cell: Scene, given: Robot) -> None:
             else "another robot,"
         )
         raise InvalidValue(f"the roadmap was made for {other} {made.name!r}: {difference}")
-
-
-def require_same_cell(made: Scene, given: Scene) -> None:
-    """Raise InvalidValue unless a cell is the one that a roadmap was made for; the text says what differs."""
-    ours, theirs = ({obstacle.name: obstacle for obstacle in scene.obstacles} for scene in (made, given))
-    if ours.keys() != theirs.keys():
-        raise InvalidValue(f"the roadmap was made for another cell: {_lists('obstacles', ours, theirs)}")
-    day_and_all(made, given)
-    for what, first, second in (
-        ("allowed", made.allowed, given.allowed),
-        ("limits", made.limits, given.limits),
-    ):
-        if first != second:
-            raise InvalidValue(
-                f"the roadmap was made for another cell: its {what} were {first}, are {second}"
-            )
 
 
 def _differences(made: Robot, given: Robot) -> Iterator[str]:

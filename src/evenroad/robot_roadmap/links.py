@@ -1,4 +1,4 @@
-"""Which milestones the ends of a query are tried to be linked to, in compiled code."""
+"""Which milestones start and goals are tried to be linked to, in compiled code."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.layout import quick
-from evenroad.robot_roadmap.search_memory import (
+from evenroad.robot_roadmap.memory import (
     BLOCKED,
     CAPACITY,
-    ENDS,
     FREE,
     LINKS,
     NODES,
     PROVED,
+    TERMINALS,
     Search,
     kept_in_order,
 )
-from evenroad.robot_roadmap.search_metric import is_at
+from evenroad.robot_roadmap.metric import is_at
 
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
@@ -30,47 +30,47 @@ HALVINGS = 12
 
 
 @quick
-def choose_links(s: Search, end: int) -> None:
-    """Choose milestones that are near, or on the way to the other ends; an end that is one needs no other."""
-    d, n = s.desk, s.desk[NODES]
-    away = s.away[end * d[CAPACITY] : end * d[CAPACITY] + n]
-    same = _milestone_at(s, end, away)
+def choose_links(s: Search, terminal: int) -> None:
+    """Choose milestones that are near, or on the way to the others; a terminal that is a milestone needs no other."""
+    h, n = s.header, s.header[NODES]
+    away = s.away[terminal * h[CAPACITY] : terminal * h[CAPACITY] + n]
+    same = _milestone_at(s, terminal, away)
     if same >= 0:
-        count, s.near[end, 0], s.links[end, same] = 1, same, PROVED
+        count, s.near[terminal, 0], s.links[terminal, same] = 1, same, PROVED
     else:
-        wants = s.away[(d[ENDS] + 1) * d[CAPACITY] :][:n]
-        _write_wants(s, end, away, wants)
-        count = _least(s, wants, d[LINKS], s.near[end])
-    s.radius[end] = 0.0
+        wants = s.away[(h[TERMINALS] + 1) * h[CAPACITY] :][:n]
+        _write_wants(s, terminal, away, wants)
+        count = _least(s, wants, h[LINKS], s.near[terminal])
+    s.radius[terminal] = 0.0
     for rank in range(count):
-        s.radius[end] = max(s.radius[end], away[s.near[end, rank]])
-    for rank in range(count, d[LINKS]):
-        s.near[end, rank] = -1
+        s.radius[terminal] = max(s.radius[terminal], away[s.near[terminal, rank]])
+    for rank in range(count, h[LINKS]):
+        s.near[terminal, rank] = -1
 
 
 @quick
-def _milestone_at(s: Search, end: int, away: Singles) -> int:
-    """Return the first free milestone that an end is, or -1."""
+def _milestone_at(s: Search, terminal: int, away: Singles) -> int:
+    """Return the first free milestone that a terminal is, or -1."""
     some = False
     for i in range(len(away)):
         some |= away[i] == np.float32(0.0)
     if some:
         for i in range(len(away)):
-            if away[i] == 0.0 and s.nodes[i] == FREE and is_at(s, end, i):
+            if away[i] == 0.0 and s.nodes[i] >= FREE and is_at(s, terminal, i):
                 return i
     return -1
 
 
 @quick
-def _write_wants(s: Search, end: int, away: Singles, wants: Singles) -> None:
+def _write_wants(s: Search, terminal: int, away: Singles, wants: Singles) -> None:
     """Write keys, the less the sooner; inf for what is blocked."""
-    d, n, links = s.desk, len(away), s.links[end]
-    beyond = s.away[d[CAPACITY] : d[CAPACITY] + n] if end == 0 else s.away[:n]
+    h, n, links = s.header, len(away), s.links[terminal]
+    beyond = s.away[h[CAPACITY] : h[CAPACITY] + n] if terminal == 0 else s.away[:n]
     for i in range(n):
         wants[i] = beyond[i]
-    if end == 0:
-        for other in range(2, d[ENDS]):
-            beyond = s.away[other * d[CAPACITY] : other * d[CAPACITY] + n]
+    if terminal == 0:
+        for other in range(2, h[TERMINALS]):
+            beyond = s.away[other * h[CAPACITY] : other * h[CAPACITY] + n]
             for i in range(n):
                 wants[i] = beyond[i] if beyond[i] < wants[i] else wants[i]
     for i in range(n):

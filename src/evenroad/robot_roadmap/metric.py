@@ -1,4 +1,4 @@
-"""Milestones after whole turns, and how far they are from each other and from the ends of a query; compiled."""
+"""Milestones after whole turns, and how far they are from each other and from start and goals; compiled."""
 
 from __future__ import annotations
 
@@ -6,17 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.layout import quick
-from evenroad.robot_roadmap.search_memory import (
-    CAPACITY,
-    DIM,
-    ENDLESS,
-    HIGH,
-    LIFTS,
-    LOW,
-    NODES,
-    UNTURNED,
-    Search,
-)
+from evenroad.robot_roadmap.memory import CAPACITY, DIM, ENDLESS, HIGH, LIFTS, LOW, NODES, Search
 from evenroad.robot_roadmap.turns import MOST_LIFTED, TURN
 
 Floats = npt.NDArray[np.float64]
@@ -28,30 +18,30 @@ _OFFSETS = sum(2 ** (BITS - 1) << (BITS * k) for k in range(MOST_LIFTED))
 
 
 @quick
-def measure(s: Search, end: int, first: int) -> None:
-    """Write how far each milestone from the first one on is from an end, after the turns that bring it nearest."""
-    n, capacity = s.desk[NODES], s.desk[CAPACITY]
-    away, turns = s.away[end * capacity + first : end * capacity + n], s.turns[end, first:n]
+def measure(s: Search, terminal: int) -> None:
+    """Write how far each milestone is from a terminal, after the turns that bring it nearest."""
+    n, capacity = s.header[NODES], s.header[CAPACITY]
+    away, turns = s.away[terminal * capacity :][:n], s.turns[terminal, :n]
     for i in range(len(away)):
         away[i] = 0.0
     lifted = False
-    for k in range(s.desk[DIM]):
-        column, here = s.columns[k * capacity + first : k * capacity + n], np.float32(s.ends[end, k])
+    for k in range(s.header[DIM]):
+        column, here = s.columns[k * capacity :][:n], np.float32(s.terminals[terminal, k])
         if s.rules[LIFTS, k] > 0.0:
             low, high = s.rules[LOW, k], s.rules[HIGH, k]
             for i in range(len(away)):
                 if not lifted:
                     turns[i] = 0
-                value = s.milestones[first + i, k]
-                turn = np.rint((s.ends[end, k] - value) / TURN) if s.desk[UNTURNED] == 0 else 0.0
+                value = s.milestones[i, k]
+                turn = np.rint((s.terminals[terminal, k] - value) / TURN)
                 turn = min(max(turn, np.ceil((low - value) / TURN)), np.floor((high - value) / TURN))
-                apart = np.float32(value + TURN * turn - s.ends[end, k])
+                apart = np.float32(value + TURN * turn - s.terminals[terminal, k])
                 away[i] += apart * apart
                 turns[i] += np.int64(turn) << (BITS * k)
             lifted = True
         elif s.rules[ENDLESS, k] > 0.0:
             for i in range(len(away)):
-                apart = np.float32(apart_in(s, k, s.milestones[first + i, k] - s.ends[end, k]))
+                apart = np.float32(apart_in(s, k, s.milestones[i, k] - s.terminals[terminal, k]))
                 away[i] += apart * apart
         else:
             for i in range(len(away)):
@@ -62,55 +52,37 @@ def measure(s: Search, end: int, first: int) -> None:
 
 
 @quick
-def write_distances(s: Search, end: int, weights: Floats, into: Floats) -> None:
-    """Write how far milestones are from an end in the metric of such weights, the short way round."""
-    for i in range(len(into)):
-        into[i] = 0.0
-    for k in range(s.desk[DIM]):
-        first, weight, here = k * s.desk[CAPACITY], weights[k], s.ends[end, k]
-        column = s.columns[first : first + len(into)]
-        turns = s.rules[LIFTS, k] > 0.0 or s.rules[ENDLESS, k] > 0.0
-        for i in range(len(into)):
-            apart = column[i] - here
-            if turns:
-                apart -= TURN * np.rint(apart / TURN)
-            into[i] += (weight * apart) ** 2
-    for i in range(len(into)):
-        into[i] = np.sqrt(into[i])
-
-
-@quick
 def write(s: Search, node: int, packed: int, q: Floats) -> None:
     """Write the configuration of a milestone after turns."""
-    for k in range(s.desk[DIM]):
+    for k in range(s.header[DIM]):
         q[k] = s.milestones[node, k]
         if s.rules[LIFTS, k] > 0.0:
             q[k] += TURN * _turn(packed, k)
 
 
 @quick
-def is_at(s: Search, end: int, node: int) -> bool:
-    """Return whether an end is a milestone after its turns: a distance of 0 in single precision does not say so."""
-    write(s, node, s.turns[end, node], s.asked[0])
+def is_at(s: Search, terminal: int, node: int) -> bool:
+    """Return whether a terminal is a milestone after its turns: a distance of 0 in single precision does not say so."""
+    write(s, node, s.turns[terminal, node], s.motion[0])
     same = True
-    for k in range(s.desk[DIM]):
-        same &= s.asked[0, k] == s.ends[end, k]
+    for k in range(s.header[DIM]):
+        same &= s.motion[0, k] == s.terminals[terminal, k]
     return same
 
 
 @quick
 def length_of_edge(s: Search, a: int, b: int, turns: int) -> float:
     """Return how long the motion between two milestones is that leads past the second by packed turns."""
-    write(s, a, 0, s.asked[0])
-    write(s, b, turns, s.asked[1])
-    return distance(s, s.asked[0], s.asked[1])
+    write(s, a, 0, s.motion[0])
+    write(s, b, turns, s.motion[1])
+    return distance(s, s.motion[0], s.motion[1])
 
 
 @quick
 def distance(s: Search, a: Floats, b: Floats) -> float:
     """Return how far two configurations are apart in the metric of the space."""
     squared = 0.0
-    for k in range(s.desk[DIM]):
+    for k in range(s.header[DIM]):
         squared += apart_in(s, k, b[k] - a[k]) ** 2
     return np.sqrt(squared)
 

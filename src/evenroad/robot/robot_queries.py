@@ -1,4 +1,4 @@
-"""What a robot is asked by itself, without a scene: the functions behind its methods."""
+"""Queries of a robot by itself, without a scene: the functions behind its methods."""
 
 from __future__ import annotations
 

@@ -6,8 +6,8 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet
 from evenroad.points.measures import MEASURES, separation
-from evenroad_studies.training import anneal as module
-from evenroad_studies.training.anneal import first_rate, learning_rate, noise_over_rate
+from evenroad_studies import anneal as module
+from evenroad_studies.anneal import first_rate, learning_rate, noise_over_rate
 from evenroad_studies.training.objective import parse_objective
 
 

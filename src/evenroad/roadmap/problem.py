@@ -8,6 +8,7 @@ from typing import Protocol, runtime_checkable
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.connector import Connector
 from evenroad.roadmap.query import AsksApart
 from evenroad.roadmap.result import PlanResult
 from evenroad.world import World
@@ -32,6 +33,8 @@ class Problem:
     apart : callable, optional
         Asked in place of the world what keeps the start from the goals, where they are not all that would do: it is
         given start, goals and whether to be quick, and returns an :class:`evenroad.world.Apart` or None.
+    connector : Connector, optional
+        What joins a start to a goal in this kind of world, and smooths paths, in compiled code.
     """
 
     world: World
@@ -42,6 +45,7 @@ class Problem:
     smooth: bool = True
     rng: RngLike = 0
     apart: AsksApart | None = None
+    connector: Connector | None = None
 
 
 @runtime_checkable

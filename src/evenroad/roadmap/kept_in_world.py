@@ -1,0 +1,198 @@
+"""A roadmap of points in one world: what is known of its milestones and edges, and queries."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._shared import OwnLock
+from evenroad.roadmap.answer import answer, connected, refusal, shown_apart
+from evenroad.roadmap.attempt import Attempt
+from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.connector import Connector
+from evenroad.roadmap.kept import PointRoadmap, Prices, WorldRoadmap
+from evenroad.roadmap.neighbours import nearest_of
+from evenroad.roadmap.problem import Problem
+from evenroad.roadmap.query import BOUND, LINKS, EdgeCost, Query, edge_costs, read_places
+from evenroad.roadmap.result import PlanResult
+from evenroad.roadmap.search import BLOCKED, FREE, UNKNOWN, EdgeStates, FixedPoint, Known, SearchProblem
+from evenroad.world import World
+
+
+class PointWorldRoadmap(WorldRoadmap):
+    """A roadmap of points with what is known of it in one world; made by :meth:`PointRoadmap.within`.
+
+    A query's answer depends on the roadmap, the world and the query alone, not on what was asked before: earlier
+    queries only save checks.  Threads may share it; their queries are answered one after the other.
+
+    `roadmap` has the milestones and candidate edges, `world` is asked about them, and with `lazy_milestones` about
+    milestones only where they could lie on a path.
+    """
+
+    roadmap: PointRoadmap
+
+    def __init__(
+        self, roadmap: PointRoadmap, world: World, *, lazy_milestones: bool, edge_cost: EdgeCost | None
+    ) -> None:
+        self.roadmap, self.world, self.lazy_milestones = roadmap, world, lazy_milestones
+        self._edge_cost = edge_cost
+        self._lock = OwnLock()
+        # Of milestones and edges first; behind them there is room for the start, the goals and their links.
+        self._configurations, self._edges = roadmap.milestones, roadmap.edges
+        self._weights: Ints | None = None
+        self._known = Known.nothing(len(self._configurations), len(self._edges))
+        if edge_cost is not None:
+            # Now, so that a cost that cannot be one is refused here.
+            self._costs = edge_costs(world.space, self._configurations, self._edges, edge_cost)
+        if not lazy_milestones:
+            states = EdgeStates(world, self._configurations, self._edges, known=self._known)
+            states.ask_nodes(np.arange(len(self._configurations)))
+
+    @property
+    def known(self) -> dict[str, int]:
+        """How many milestones and edges are known to be free or blocked so far."""
+        with self._lock:
+            nodes = self._known.nodes[: len(self.roadmap.milestones)].copy()
+            edges = self._known.edges[: len(self.roadmap.edges)].copy()
+        return {
+            f"{what}_{state}": int(np.count_nonzero(states == value))
+            for what, states in (("milestones", nodes), ("edges", edges))
+            for state, value in (("free", FREE), ("blocked", BLOCKED))
+        }
+
+    def plan(
+        self,
+        start: npt.ArrayLike,
+        goal: npt.ArrayLike,
+        *,
+        budget: Budget | None = None,
+        shorten: bool = True,
+        search: str = "lazy",
+        links: int | None = LINKS,
+        connector: Connector | None = None,
+    ) -> PlanResult:
+        """Find a short free path from start to goal; what is known is never checked again.
+
+        Both are joined to one another, to milestones as the rule's :class:`Reach` says, and to as many as `links` says.
+        Counts of checks are those of this query; `planner` says who found the path: ``prm lazy``, or ``prm lazy, then
+        trees``.
+
+        Parameters
+        ----------
+        start, goal, search, shorten, links, budget
+            As in :func:`plan`, whose errors these are; by default lazily.
+        connector : Connector, optional
+            Smooths the path, and looks for one where the roadmap has none; not with an `edge_cost`.
+        """
+        query = Query(
+            *read_places(start, goal, self.world.space),
+            search=search,
+            shorten=shorten,
+            edge_cost=self._edge_cost,
+            links=links,
+            budget=budget or Budget(),
+            connector=connector,
+        )
+        roadmap = self.roadmap
+        rule, planner = f"{roadmap.rule} of all points", query.planner(self.lazy_milestones)
+        with self._lock:
+            attempt = Attempt(self.world, query, roadmap.points.origin, rule, planner)
+            if (refused := refusal(attempt)) is not None:
+                return refused
+            with attempt.watch("neighbours"):
+                states, problem = self._link(attempt)
+            searched = attempt.search(query.find, states, problem)
+            if connector is not None and searched.cost is None and not attempt.spent:
+                joined = self._connect(attempt, states, connector)
+                if joined is not None:
+                    return joined
+            return answer(attempt, searched, roadmap.points.n, keep_graph=False)
+
+    def solve(self, problem: Problem) -> PlanResult:
+        """Plan along the roadmap, in its world, as planners of :func:`evenroad.plan` do."""
+        start, goals, how = problem.start, problem.goals, dict(budget=problem.budget, shorten=problem.smooth)
+        return self.plan(start, goals, connector=problem.connector, **how)  # type: ignore[arg-type]
+
+    def _connect(self, attempt: Attempt, states: EdgeStates, connector: Connector) -> PlanResult | None:
+        """Return the result of a connector, or None where it finds nothing."""
+        if self._edge_cost is not None or shown_apart(attempt):
+            return None
+        attempt.motions_checked += states.motions_checked
+        connection = attempt.connect(connector)
+        if connection.goal < 0:
+            attempt.spent = True
+            return None
+        attempt.planner = f"{attempt.planner}, then {connector.planner}"
+        result = connected(attempt, connection)
+        return replace(result, counts=result.counts | {"edges_checked": attempt.motions_checked})
+
+    def _link(self, attempt: Attempt) -> tuple[EdgeStates, SearchProblem]:
+        """Put start and goals behind the milestones, and their links behind the edges."""
+        roadmap, ends, space = self.roadmap, attempt.start_and_goals, self.world.space
+        distances = [roadmap.surroundings.distances(end) for end in ends]
+        links = self._links(distances, attempt.query)
+        n, m = len(roadmap.milestones), len(roadmap.edges)
+        nodes, edges = n + len(ends), m + len(links)
+        known = self._known = Known(
+            _with_room(self._known.nodes, n, len(ends)),
+            _with_room(self._known.edges, m, len(links)),
+            _with_room(self._known.confirmed, m, len(links)),
+        )
+        self._configurations = _with_room(self._configurations, n, len(ends))
+        self._edges = _with_room(self._edges, m, len(links))
+        self._configurations[n:nodes], self._edges[m:edges] = ends, links
+        known.nodes[n:nodes], known.edges[m:edges], known.confirmed[m:edges] = FREE, UNKNOWN, False
+        q = self._configurations[:nodes]
+        weights, unit = self._weigh(edge_costs(space, q, links, self._edge_cost), nodes)
+        between = [space.distance(ends, np.broadcast_to(goal, ends.shape)) for goal in ends[1:]]
+        to_goal = np.min([np.append(*both) for both in zip(distances[1:], between, strict=True)], axis=0)
+        bounds = unit.bounds(to_goal if self._edge_cost is None else BOUND * to_goal)
+        graph = roadmap.graph.with_links(nodes, links, m)
+        known = Known(known.nodes[:nodes], known.edges[:edges], known.confirmed[:edges])
+        states = attempt.states(q, self._edges[:edges], known=known)
+        return states, SearchProblem(n, np.arange(n + 1, nodes), graph, weights, bounds)
+
+    def _links(self, distances: list[Floats], query: Query) -> Ints32:
+        """Return the links of the start and the goals, at such distances from the milestones, (l, 2)."""
+        n = len(self.roadmap.milestones)
+        reach = self.roadmap.rule.reach(n, self.world.space)
+        usable = np.ones(n, dtype=np.bool_) if self.lazy_milestones else self._known.nodes[:n] == FREE
+        links, most = [], query.links_among(n)
+        for node, away in enumerate(distances, start=n):
+            near = nearest_of(away, usable, reach.k, reach.radius)
+            if most:
+                near = np.union1d(near, nearest_of(away, usable, most))
+            links.append(np.stack([near, np.full(len(near), node)], axis=1))
+        goals = np.arange(n + 1, n + len(distances))
+        links.append(np.stack([np.full(len(goals), n), goals], axis=1))
+        return np.concatenate(links).astype(np.int32)
+
+    def _weigh(self, links: Floats, nodes: int) -> tuple[Ints, FixedPoint]:
+        """Return the costs of the edges and then of these links, (l,), as integers, and their unit."""
+        prices, m = self._prices, len(self.roadmap.edges)
+        unit = FixedPoint.of(max(prices.longest, float(links.max())), nodes)
+        if unit != prices.unit:
+            costs = self.roadmap.lengths if self._edge_cost is None else self._costs
+            return unit.weights(np.concatenate([costs, links])), unit
+        self._weights = _with_room(prices.weights if self._weights is None else self._weights, m, len(links))
+        self._weights[m : m + len(links)] = unit.weights(links)
+        return self._weights[: m + len(links)], unit
+
+    @cached_property
+    def _prices(self) -> Prices:
+        return self.roadmap.prices if self._edge_cost is None else self.roadmap.priced(self._costs)
+
+
+def _with_room(array: npt.NDArray[Any], kept: int, more: int) -> npt.NDArray[Any]:
+    """Return an array with room for so many rows behind those that are kept: itself, or a longer copy."""
+    if len(array) >= kept + more:
+        return array
+    # Twice as many, so that few queries have to copy.
+    longer = np.zeros((kept + 2 * more, *array.shape[1:]), dtype=array.dtype)
+    longer[:kept] = array[:kept]
+    return longer

@@ -1,0 +1,119 @@
+"""ArmRoadmap: milestones and motions that touch neither the arm itself nor its static scene, for many scenes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._npz import Path
+from evenroad.roadmap.kept import Roadmap
+from evenroad.robot import ArmWorld, Robot, Scene
+from evenroad.robot.known_robots import prepared
+from evenroad.robot_roadmap.scene_graph import SceneGraph
+from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
+
+if TYPE_CHECKING:
+    from evenroad.robot_roadmap.query import Checks
+    from evenroad.robot_roadmap.world_roadmap import ArmWorldRoadmap
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ArmRoadmap(Roadmap):
+    """A roadmap of an arm, proved free of the arm itself and of its static scene; made by ``er.build_roadmap``.
+
+    Attributes
+    ----------
+    robot : Robot
+        Whose roadmap it is; its hands are empty.
+    scene : Scene
+        The static scene: what never moves around it.
+    milestones : ndarray, shape (n, dim)
+        Free configurations, of which every beginning is well spread [rad or m]; read-only.
+    edges : ndarray of int32, shape (m, 2)
+        Motions that are proved free, smaller row first, ascending; read-only.
+    turns : ndarray of int8, shape (m, dim)
+        By how many turns each edge leads past its second milestone; read-only.
+    weights : ndarray, shape (dim,)
+        What a unit of each joint counts in the roadmap's metric.
+    resolution, clearance : float
+        Of the world that it was built in [rad, m].
+    """
+
+    robot: Robot
+    scene: Scene
+    milestones: Floats
+    edges: Ints32
+    turns: Ints
+    weights: Floats
+    resolution: float
+    clearance: float = 0.0
+
+    def _of(self) -> str:
+        return f"{self.robot.name!r} in {self.scene.name!r}"
+
+    @cached_property
+    def world(self) -> ArmWorld:
+        """The robot in its static scene alone."""
+        return ArmWorld(self.robot, self.scene, resolution=self.resolution, clearance=self.clearance)
+
+    @cached_property
+    def bare(self) -> Robot:
+        """The robot without the pairs of its own that are tested: what the roadmap knows."""
+        return replace(self.robot, pairs=())
+
+    @cached_property
+    def one_turn(self) -> OneTurn:
+        """The ranges that the milestones are in."""
+        # Of the robot alone: for the world something has to be compiled.
+        return one_turn(prepared(self.robot)[0], whole_turns(self.robot))
+
+    @cached_property
+    def graph(self) -> SceneGraph:
+        """The roadmap by node, for the compiled search."""
+        return SceneGraph(self.milestones, self.edges, self.turns, self.one_turn)
+
+    def within(self, world: Checks) -> ArmWorldRoadmap:
+        """Return a planner in a world of this arm, which keeps what it has checked.
+
+        Parameters
+        ----------
+        world : ArmWorld
+            The robot in a scene of other obstacles; also one that asks other bodies, such as ``OwnShapesWorld``, whose
+            ``capsules`` is an ArmWorld.  Limits may be narrower, and the robot may hold something.
+
+        Raises
+        ------
+        InvalidValue
+            If the robot is another one, something of the static scene stands elsewhere, or the world's clearance is
+            more than the roadmap's; the text says what differs.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> roadmap = er.build_roadmap(er.ArmWorld("ur5"), er.draw("even", 32, 6))
+        >>> roadmap.within(er.ArmWorld("ur5", "box-reach")).plan("home", "inside").solved
+        True
+        """
+        from evenroad.robot_roadmap.world_roadmap import ArmWorldRoadmap
+
+        return ArmWorldRoadmap(self, world)
+
+    def save(self, file: Path) -> None:
+        """Write it with its robot and static scene, atomically; ``er.load_roadmap`` reads it.
+
+        Raises BrokenFile if the file cannot be written; whatever was there is then untouched.
+        """
+        from evenroad.robot_roadmap.file import save_arm_roadmap
+
+        save_arm_roadmap(file, self)
+
+
+def read_only(roadmap: ArmRoadmap) -> ArmRoadmap:
+    """Return a roadmap whose arrays nobody writes to any more."""
+    for array in (roadmap.milestones, roadmap.edges, roadmap.turns, roadmap.weights):
+        np.asarray(array).setflags(write=False)
+    return roadmap

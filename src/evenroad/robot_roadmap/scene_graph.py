@@ -1,0 +1,295 @@
+"""SceneGraph: a roadmap in one scene with what was found out there, in memory that compiled code works in."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Floats, Ints, Ints32
+from evenroad.robot.kernel.addresses import address, matrix_at
+from evenroad.robot.kernel.layout import program, quick
+from evenroad.robot_roadmap import memory as at
+from evenroad.robot_roadmap.memory import (
+    BLOCKED,
+    FREE,
+    PROVED,
+    UNKNOWN,
+    Search,
+    kept_in_order,
+    search_at,
+)
+from evenroad.robot_roadmap.metric import BITS, length_of_edge, measure
+from evenroad.robot_roadmap.turns import MOST_TURNS, TURN, OneTurn
+
+JOINED = 8
+"""Nearest milestones that an inserted one may be joined to; these edges are evaluated when a search comes by."""
+
+AT_ONCE = 2 ** (BITS - 1) + 1 - MOST_TURNS
+"""An inserted motion of more turns would lead from turns that are followed over all that the packed form knows."""
+
+ROOM = 256
+"""Milestones that room is made for when it is used up."""
+
+GREED = 3.0
+"""What the bound of the search is multiplied by: a third of the checks of a shortest path, and once they are shortened
+its paths are no longer."""
+
+EXPENSIVE = 5.0
+"""What a unit of length counts of an edge that is not evaluated yet where evaluations are expensive."""
+
+OF_ROADMAP = ("milestones", "columns", "first", "halves", "leads", "lengths")
+"""Arrays that scenes share until the first milestone is inserted in one of them."""
+
+OF_SCENE = ("nodes", "edges", "rules")
+"""Arrays that each scene has of its own."""
+
+OF_QUERY = ("links", "straight")
+"""Arrays of what is known of a query's own motions."""
+
+
+class Query(NamedTuple):
+    """A start, (dim,), and goals, (g, dim), each to be linked to so many milestones at most; GREED and PRICE."""
+
+    start: Floats
+    goals: Floats
+    links: int
+    greed: float = GREED
+    price: float = 1.0
+
+
+class SceneGraph:
+    """Milestones and edges of a roadmap, what is known of them in a scene, and those inserted there; of one thread.
+
+    Parameters
+    ----------
+    milestones, edges, turns : arrays, (n, dim), (m, 2), (m, dim)
+        Of the roadmap.
+    one : OneTurn
+        The ranges of its joints.
+    """
+
+    def __init__(self, milestones: Floats, edges: Ints32, turns: Ints, one: OneTurn) -> None:
+        (n, dim), m = milestones.shape, len(edges)
+        own = np.concatenate([edges[:, 0], edges[:, 1]])
+        order = np.argsort(own, kind="stable")
+        own = own[order]
+        self.header = np.zeros(at.HEADER, dtype=np.int64)
+        self.header[[at.DIM, at.LIFTING]] = dim, one.lifts.any()
+        self.header[[at.NODES, at.HALVES_MADE, at.EDGES_MADE, at.BASE]] = n, 2 * m, m, m
+        self.header[[at.CAPACITY, at.HALVES, at.EDGES]] = n, 2 * m, m
+        rules = np.empty((at.RULE_ROWS, dim))
+        rules[[at.LOW, at.HIGH]] = one.limits
+        rules[at.LIFTS], rules[at.ENDLESS] = one.lifts, one.wraps & ~one.lifts
+        rules[at.MIDDLE] = 0.5 * (one.low + one.high)
+        turned = np.where(one.lifts, turns, 0) @ (2**BITS) ** np.arange(dim)
+        first, halves = np.full(n, -1), np.empty((2 * m, at.HALF), dtype=np.int32)
+        halves[:, at.OTHER] = np.concatenate([edges[:, 1], edges[:, 0]])[order]
+        halves[:, at.NUMBER] = np.tile(np.arange(m), 2)[order]
+        halves[:, at.NEXT] = np.arange(1, 2 * m + 1)
+        halves[np.flatnonzero(np.append(own[1:] != own[:-1], True)[: 2 * m]), at.NEXT] = -1
+        first[own[::-1]] = np.arange(2 * m)[::-1]
+        motions = milestones[edges[:, 1]] + TURN * turns - milestones[edges[:, 0]]
+        self.arrays: dict[str, npt.NDArray[Any]] = {}
+        self._shape = (0, 0)
+        self._place(
+            milestones=np.ascontiguousarray(milestones),
+            columns=milestones.T.astype(np.float32, order="C"),
+            nodes=np.zeros(n, dtype=np.uint8),
+            first=first,
+            halves=halves,
+            leads=np.concatenate([turned, -turned])[order],
+            lengths=np.tile(np.linalg.norm(motions, axis=1), 2)[order].astype(np.float32),
+            edges=np.zeros(m, dtype=np.uint8),
+            rules=rules,
+        )
+
+    def within(self, low: Floats, high: Floats) -> SceneGraph:
+        """Return a graph of which nothing is known, for narrower ranges, (dim,)."""
+        fresh, q, rules = object.__new__(SceneGraph), self.arrays["milestones"], self.arrays["rules"].copy()
+        fresh.header, fresh._shape = self.header.copy(), (0, 0)
+        fresh.arrays = {name: self.arrays[name] for name in OF_ROADMAP}
+        rules[at.LOW], rules[at.HIGH] = np.maximum(rules[at.LOW], low), np.minimum(rules[at.HIGH], high)
+        outside = ((rules[at.LIFTS] == 0.0) & ((q < low) | (q > high))).any(axis=1)
+        nodes = np.where(outside, BLOCKED, UNKNOWN).astype(np.uint8)
+        fresh._place(nodes=nodes, edges=np.zeros_like(self.arrays["edges"]), rules=rules)
+        return fresh
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy is made of, here or in another process: it finds out for itself where its arrays are."""
+        return {"header": self.header, "arrays": {n: self.arrays[n] for n in (*OF_ROADMAP, *OF_SCENE)}}
+
+    def __setstate__(self, kept: dict[str, Any]) -> None:
+        """Make a copy, in which no query is written yet."""
+        self.header, self.arrays, self._shape = kept["header"], {}, (0, 0)
+        self._place(**kept["arrays"])
+
+    def _place(self, **arrays: npt.NDArray[Any]) -> None:
+        """Take these arrays, and write where they are."""
+        self.arrays |= arrays
+        for name, array in arrays.items():
+            self.header[at.PLACES[name]] = address(array)
+
+    def _grow(self) -> None:
+        """Take more memory for milestones and edges, and copy what there is."""
+        header, more = self.header, ROOM * (JOINED + 2)
+        room = np.array([ROOM, 2 * more, more])
+        header[[at.CAPACITY, at.HALVES, at.EDGES]] += room
+        nodes, halves, edges = room.tolist()
+        extra = {"edges": edges, "halves": halves, "leads": halves, "lengths": halves}
+        extra |= dict.fromkeys(("milestones", "nodes", "first"), nodes)
+        longer = {}
+        for name, count in extra.items():
+            array = self.arrays[name]
+            longer[name] = np.concatenate([array, np.zeros((count, *array.shape[1:]), array.dtype)])
+        longer["columns"] = longer["milestones"].T.astype(np.float32, order="C")
+        self._place(**longer)
+        # What there is of a query has another shape now.
+        self._shape = (0, 0)
+
+    def prepare(self, query: Query, room: int = 1) -> None:
+        """Write a query; `room` multiplies the usual memory: where it is more than 1, the same query goes on."""
+        header, rules, count = self.header, self.arrays["rules"], 1 + len(query.goals)
+        rules[at.GREED], rules[at.PRICE] = query.greed, query.price
+        known = [self.arrays[name] for name in OF_QUERY] if room > 1 else []
+        if self._shape != (count, room):
+            self._take_room(count, room)
+        header[at.LINKS] = min(query.links, int(header[at.NODES]))
+        terminals = self.arrays["terminals"]
+        terminals[0], terminals[1:count] = query.start, query.goals
+        if not known:
+            header[[at.CONFIGURATIONS, at.MOTIONS, at.BATCHES]] = 0
+            for name in OF_QUERY:
+                self.arrays[name].fill(UNKNOWN)
+        for name, before in zip(OF_QUERY, known, strict=False):
+            self.arrays[name][:] = before
+
+    def _take_room(self, terminals: int, room: int) -> None:
+        """Take memory for a query of so many start and goals, in which nothing is written yet."""
+        header, dim, capacity = self.header, int(self.header[at.DIM]), int(self.header[at.CAPACITY])
+        self._shape = terminals, room
+        # The last row is a configuration to be inserted.
+        rows, states = terminals + 1, 2 * room * (capacity + ROOM)
+        entries = room * (int(header[at.HALVES]) + (16 + terminals) * (capacity + ROOM))
+        header[at.TERMINALS], header[at.STATES], header[at.ENTRIES], header[at.SIZE] = (
+            terminals,
+            states,
+            entries,
+            0,
+        )
+        self._place(
+            terminals=np.zeros((rows, dim)),
+            motion=np.zeros((2, dim)),
+            turns=np.zeros((rows, capacity), dtype=np.int64),
+            near=np.zeros((rows, capacity), dtype=np.int64),
+            away=np.zeros((rows + 1) * capacity, dtype=np.float32),
+            links=np.zeros((rows, capacity), dtype=np.uint8),
+            straight=np.zeros(rows, dtype=np.uint8),
+            radius=np.zeros(rows),
+            heads=np.full(capacity, -1),
+            states=np.empty((states, 4), dtype=np.int64),
+            bounds=np.empty((states, 2)),
+            entries=np.empty((entries, 3), dtype=np.int32),
+            costs=np.empty(entries),
+            keys=np.empty(entries),
+            items=np.empty(entries, dtype=np.int64),
+            path=np.empty((states + 2, dim)),
+        )
+
+    @property
+    def size(self) -> int:
+        """How many milestones there are, those that were inserted among them."""
+        return int(self.header[at.NODES])
+
+    def insert(self, path: Floats) -> None:
+        """Take the waypoints of a path, (p, dim), for milestones; its motions are proved free in the scene.
+
+        Nothing is inserted where joints turn so far that packed turns would be read as others.
+        """
+        path, rules = np.ascontiguousarray(path), self.arrays["rules"]
+        turns = np.rint((path - rules[at.MIDDLE]) / TURN)[:, rules[at.LIFTS] > 0.0]
+        steps = np.abs(np.diff(turns, axis=0))
+        if np.abs(turns).max(initial=0.0) > MOST_TURNS or steps.max(initial=0.0) > AT_ONCE:
+            return
+        while True:
+            if self._shape == (0, 0):
+                # Room that is worked in.
+                self._take_room(2, 1)
+            if _insert(address(self.header), address(path), len(path)):
+                return
+            self._grow()
+
+
+@program
+def _insert(header: int, path: int, rows: int) -> bool:
+    """Add the waypoints of a path; return whether there was room."""
+    s = search_at(header)
+    h, waypoints, edges = s.header, matrix_at(path, (rows, s.header[at.DIM])), rows * (JOINED + 1)
+    if rows > 0 and (
+        h[at.NODES] + rows > h[at.CAPACITY]
+        or h[at.EDGES_MADE] + edges > h[at.EDGES]
+        or h[at.HALVES_MADE] + 2 * edges > h[at.HALVES]
+    ):
+        return False
+    before, turned = -1, 0
+    for row in range(rows):
+        node, packed = _add_milestone(s, waypoints[row])
+        if before >= 0 and before != node:
+            _add_edge(s, before, node, packed - turned, PROVED)
+        before, turned = node, packed
+    return True
+
+
+@quick
+def _add_milestone(s: Search, q: Floats) -> tuple[int, int]:
+    """Return the milestone at a free configuration, a new one where there is none, and after which turns it is there.
+
+    A new one may be joined to its nearest ones by edges that are not evaluated yet.
+    """
+    h, dim, packed, count = s.header, s.header[at.DIM], 0, 0
+    new, guest = h[at.NODES], h[at.TERMINALS]
+    for k in range(dim):
+        turn = np.rint((q[k] - s.rules[at.MIDDLE, k]) / TURN) if s.rules[at.LIFTS, k] > 0.0 else 0.0
+        s.terminals[guest, k], s.milestones[new, k] = q[k], q[k] - TURN * turn
+        s.columns[k * h[at.CAPACITY] + new] = s.milestones[new, k]
+        packed += int(turn) << (BITS * k)
+    measure(s, guest)
+    for i in range(new):
+        away = s.away[guest * h[at.CAPACITY] + i]
+        if (count == JOINED and away >= s.keys[JOINED - 1]) or s.nodes[i] == BLOCKED:
+            continue
+        if away == 0.0 and _same(s, i, new):
+            s.nodes[i] = FREE
+            return i, packed
+        count = kept_in_order(s.keys, s.items, count, JOINED, away, i)
+    s.nodes[new], s.first[new] = FREE, -1
+    h[at.NODES] = new + 1
+    for rank in range(count):
+        i = s.items[rank]
+        _add_edge(s, new, i, s.turns[guest, i] - packed, UNKNOWN)
+    return new, packed
+
+
+@quick
+def _same(s: Search, a: int, b: int) -> bool:
+    """Return whether two milestones are one configuration."""
+    same = True
+    for k in range(s.header[at.DIM]):
+        same &= s.milestones[a, k] == s.milestones[b, k]
+    return same
+
+
+@quick
+def _add_edge(s: Search, a: int, b: int, turns: int, known: int) -> None:
+    """Join two milestones by a motion that leads past the second by packed turns."""
+    h, edge, length = s.header, s.header[at.EDGES_MADE], length_of_edge(s, a, b, turns)
+    h[at.EDGES_MADE] += 1
+    s.edges[edge] = known
+    for side in range(2):
+        half, here = h[at.HALVES_MADE], a if side == 0 else b
+        h[at.HALVES_MADE] += 1
+        s.halves[half, at.OTHER], s.halves[half, at.NUMBER] = a + b - here, edge
+        s.leads[half] = turns if side == 0 else -turns
+        s.halves[half, at.NEXT], s.first[here] = s.first[here], half
+        s.lengths[half] = length
