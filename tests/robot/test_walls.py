@@ -133,6 +133,11 @@ def test_a_joint_that_turns_on_needs_walls_on_both_sides(robot):
         if world.valid(np.array([near, far])).all():
             assert world.may_connect(near, UP) != world.may_connect(far, UP)
     assert not world.may_connect(UP, OVER)
+    for turn in (-math.pi, -1.0, 1.0, math.pi):
+        ((k, piece),) = pieces_between_walls(between, UP + np.array([turn, 0.0, 0.0]))
+        assert k == 1
+        assert piece.holds(UP)
+        assert not piece.holds(OVER)
 
 
 def boxes(*links):
