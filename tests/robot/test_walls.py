@@ -9,7 +9,7 @@ import trimesh
 from scipy.optimize import linprog
 
 import evenroad as er
-from evenroad.geometry import Box, Capsule, Mesh, Pose, TriangleMesh
+from evenroad.geometry import Box, Capsule, Cylinder, Mesh, Pose, TriangleMesh
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.hulls import piece_of
 from evenroad.geometry.inner import inner_of
@@ -17,6 +17,7 @@ from evenroad.geometry.mesh import convex_hull
 from evenroad.robot import ArmWorld, PoseGoal, Robot, Scene, load_robot, with_limits
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.kinematics import link_poses
+from evenroad.robot.separated import apart
 from evenroad.robot.walls import pieces_between_walls, walls_of
 from tests.robot.kernel_arms import STRAIGHT, Z, random_tree
 from tests.robot.urdf_texts import joint, link, urdf, write
@@ -103,6 +104,10 @@ def test_a_pose_is_out_of_reach_only_where_all_of_its_postures_are(robot):
     results = [er.plan(Scene(), np.zeros(3), behind, robot=each, seconds=2.0) for each in (either, narrow)]
     assert [result.status for result in results] == ["solved", "not_connected"]
     assert "joint lift alone" in results[1].message
+    # Also where nobody found the posture that can be reached.
+    found = np.array([[0.0, math.pi, 0.0]])
+    shown = [apart(ArmWorld(each), np.zeros(3), found, [behind]) for each in (either, narrow)]
+    assert [each.proved for each in shown] == [False, True]
 
 
 def test_a_joint_that_turns_on_needs_walls_on_both_sides(robot):
@@ -128,6 +133,11 @@ def test_a_joint_that_turns_on_needs_walls_on_both_sides(robot):
         if world.valid(np.array([near, far])).all():
             assert world.may_connect(near, UP) != world.may_connect(far, UP)
     assert not world.may_connect(UP, OVER)
+    for turn in (-math.pi, -1.0, 1.0, math.pi):
+        ((k, piece),) = pieces_between_walls(between, UP + np.array([turn, 0.0, 0.0]))
+        assert k == 1
+        assert piece.holds(UP)
+        assert not piece.holds(OVER)
 
 
 def boxes(*links):
@@ -141,12 +151,12 @@ def boxes(*links):
     }
 
 
-def crossing(other, block, body):
+def crossing(other, block, body, place=(0.0, 0.0, 0.0)):
     """A body that slides past a block, on a joint of another kind: both boxes."""
     kind, axis, end = other
     joints = (
         Joint("other", kind, "block", "carriage", (0.0, 0.0, 0.0), STRAIGHT, axis, -end, end),
-        Joint("past", "prismatic", "carriage", "body", (0.0, 0.0, 0.0), STRAIGHT, Z, -1.0, 1.0),
+        Joint("past", "prismatic", "carriage", "body", place, STRAIGHT, Z, -1.0, 1.0),
     )
     links = ("block", "carriage", "body")
     pairs = (("block", "body"),)
@@ -167,10 +177,10 @@ def sliding():
 
 def turning(radius=5.0, end=0.8):
     """The body is flush with the block where the other joint is at its limit."""
-    body = Pose.from_rpy((radius, 0.0, 0.0), (0.0, 0.0, -end))
+    flush = Pose.from_rpy((0.0, 0.0, 0.0), (0.0, 0.0, -end))
     top = radius * math.sin(end) - 0.1 - SLIT
     block = (10.0, 20.0, 0.2), Pose((4.0, top - 10.0, 0.0))
-    return crossing(("revolute", Z, end), block, ((0.2, 0.2, 0.2), body))
+    return crossing(("revolute", Z, end), block, ((0.2, 0.2, 0.2), flush), (radius, 0.0, 0.0))
 
 
 @pytest.mark.parametrize("make", [sliding, turning])
@@ -187,7 +197,7 @@ def test_a_slit_at_the_end_of_the_other_joint_is_seen(make):
     assert not ArmWorld(narrower).may_connect(*(ends - (0.1 * limit, 0.0)))
 
 
-@pytest.mark.parametrize(("overlap", "shown"), [(1e-3, True), (1.5e-4, False), (-1e-5, False)])
+@pytest.mark.parametrize(("overlap", "shown"), [(1e-3, True), (2.5e-4, False), (-1e-5, False)])
 def test_bodies_that_hardly_overlap_show_nothing(overlap, shown):
     slide = Joint("slide", "prismatic", "block", "body", (0.0, 0.0, 0.0), STRAIGHT, Z, -1.0, 1.0)
     bodies = boxes(
@@ -198,14 +208,23 @@ def test_bodies_that_hardly_overlap_show_nothing(overlap, shown):
     assert bool(walls_of(robot)[0]) == shown
 
 
-def test_a_follower_with_an_axis_of_its_own_is_not_taken_for_its_leader():
+def test_a_bar_that_is_in_a_plate_for_most_angles_alone_shows_nothing():
+    """Each of their points is in the other for a few cells alone, and in the last cells none is."""
+    plate = (0.01, 1.5, 0.2), Pose((0.4, -0.25, 0.0))
+    robot = crossing(("revolute", Z, 1.0), plate, ((1.0, 0.01, 0.1), Pose((0.5, 0.0, 0.0))))
+    ends = np.array([[1.0, -0.7], [1.0, 0.7]])
+    assert ArmWorld(robot).motion_valid(*ends[:, np.newaxis])[0]
+    assert walls_of(robot) == [[], []]
+
+
+def test_a_follower_that_turns_farther_than_its_leader_shows_nothing():
     robot = turning()
-    leader = replace(robot.joints[0], name="leader", child="aside", axis=(1.0, 0.0, 0.0))
-    follower = replace(robot.joints[0], mimic=Mimic("leader"))
+    leader, past = robot.joints
+    leader = replace(leader, name="leader", child="aside", lower=leader.lower / 3.0, upper=leader.upper / 3.0)
     linked = replace(
         robot,
         links=("block", "aside", "carriage", "body"),
-        joints=(leader, follower, robot.joints[1]),
+        joints=(leader, replace(robot.joints[0], mimic=Mimic("leader", 3.0)), past),
         group=("leader", "past"),
     )
     assert walls_of(linked) == [[], []]
@@ -287,6 +306,8 @@ def test_a_hull_is_solid_where_the_mesh_fills_it():
     needle = drum.vertices.copy(), np.array(drum.faces)
     assert piece_of(Mesh(TriangleMesh(*needle))).hull.solid
     assert piece_of(Box((0.1, 0.2, 0.3))).hull.solid
+    # A prism around it is more than it is.
+    assert not piece_of(Cylinder(0.1, 0.3)).hull.solid
     # A corner of the lid's middle pushed in: hardly any volume, but as deep as a finger.
     thin = trimesh.creation.box((1.0, 1.0, 1.0)).subdivide().subdivide().subdivide().subdivide()
     inmost = int(np.argmin(np.linalg.norm(thin.vertices - (0.03, 0.03, 0.5), axis=1)))
