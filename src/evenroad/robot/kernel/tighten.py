@@ -169,7 +169,7 @@ def tighten_points(
         size, first, after = _left_behind(points, size, goal, way, checks)
     if size > 0:
         buffer = Buffer(matrix_at(begin + 8 * dim * first, (rows - first, dim)), places, ends, way)
-        size = first + _drawn_tight(buffer, size - first, pairs, slides, most_batches, checks)
+        size = first + _smoothed(buffer, size - first, pairs, slides, most_batches, checks)
         if after:
             move_to(goal, points[size])
             size += 1
@@ -182,7 +182,7 @@ def tighten_points(
 
 
 @quick
-def _drawn_tight(
+def _smoothed(
     buffer: Buffer, size: int, pairs: Floats, slides: Slides, most_batches: int, checks: Checks
 ) -> int:
     """Let waypoints slide, and join places of the path, while that gains anything; return its new size."""
