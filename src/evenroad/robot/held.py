@@ -89,3 +89,15 @@ def same_bodies(robot: KinematicTree, held: HeldObject) -> bool:
     joint = next(joint for joint in robot.joints if joint.child == held.name)
     capsules = tuple(capsule for capsule in robot.capsules if capsule.link == held.name)
     return (joint.parent, joint.origin, capsules) == (held.link, pose, fit_capsules(body))
+
+
+def inner_of_both(
+    ours: tuple[Capsule, ...] | None,
+    capsules: tuple[Capsule, ...],
+    theirs: tuple[Capsule, ...] | None,
+    their_capsules: tuple[Capsule, ...],
+) -> tuple[Capsule, ...] | None:
+    """Return what lies within the shapes of a robot and of what is fixed to it, see `Robot.inner`."""
+    if ours is None and theirs is None:
+        return None
+    return (*(capsules if ours is None else ours), *(their_capsules if theirs is None else theirs))

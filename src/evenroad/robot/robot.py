@@ -17,7 +17,7 @@ from evenroad.geometry.hulls import Hull, Piece, piece_of
 from evenroad.geometry.inner import inner_of
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
-from evenroad.robot.held import HeldObject, held_parts, same_bodies
+from evenroad.robot.held import HeldObject, held_parts, inner_of_both, same_bodies
 from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.pairs import self_pairs
@@ -33,16 +33,10 @@ class Robot(RobotMethods):
 
     Parameters
     ----------
-    name : str
-        What it is called.
-    links : tuple of str
-        The root first, every parent before its children.
-    joints : tuple of Joint
-        ``joints[i]`` is the joint whose child is ``links[i + 1]``.
-    capsules : tuple of Capsule
-        The bodies.
-    pairs : tuple of (str, str)
-        Links that are tested against each other.
+    name, links, joints : str, tuple of str, tuple of Joint
+        Of the links the root is first, every parent before its children; ``joints[i]`` leads to ``links[i + 1]``.
+    capsules, pairs : tuple of Capsule, tuple of (str, str)
+        The bodies, and the links that are tested against each other.
     group : tuple of str
         Joints that are planned for, in the order of a configuration, none of them fixed or a mimic.
     held : mapping of str to float
@@ -50,16 +44,11 @@ class Robot(RobotMethods):
     states : mapping of str to mapping
         Named configurations: joint -> value, also of joints outside of the group.
     hulls : tuple of Hull
-        Convex pieces that contain the links' shapes more tightly than capsules: where capsules of a pair touch, these
-        decide; links without any are their capsules.
-    pairs_given : bool
-        Whether somebody gave the pairs, as an SRDF does.
-    resting : tuple of (str, str)
-        Where nobody did: pairs left out, as they touch whatever the group does while the others are held.
-    holds : tuple of str
-        Links that are bodies which the robot carries for a while, see :meth:`holding`.
-    planes : tuple of Plane
-        Half spaces that its file has around it, obstacles of every scene.
+        Convex pieces that hold the links' shapes more tightly than capsules: where capsules touch, these decide.
+    pairs_given, resting : bool, tuple of (str, str)
+        Whether somebody gave the pairs, as an SRDF does; where not, those left out that always touch.
+    holds, planes : tuple of str, tuple of Plane
+        Links that the robot carries for a while, see :meth:`holding`; half spaces that are in every scene.
     inner : tuple of Capsule or None
         Capsules within the links' true shapes: proofs that there is no path are about them.  None: `capsules` are
         the true shapes.
@@ -110,10 +99,8 @@ class Robot(RobotMethods):
         ----------
         tool : Robot, Shape or sequence of Shape
             A robot of its own, or shapes in the frame of a new link ``tool``, to which capsules are fitted.
-        at : str
-            The link that carries it.
-        pose : Pose
-            Of the tool's root link in the frame of that link.
+        at, pose : str, Pose
+            The link that carries it, and where the tool's root link is in its frame.
         prefix : str
             Is put before the names of all of the tool's links and joints.
 
@@ -139,9 +126,7 @@ class Robot(RobotMethods):
         tool = (tool,) if isinstance(tool, Shape) else tool
         if not isinstance(tool, Robot):
             if not isinstance(tool, list | tuple) or not all(isinstance(each, Shape) for each in tool):
-                raise InvalidValue(
-                    f"a tool must be a Robot, as load_robot(file) gives it, or shapes, got {shown(tool)}"
-                )
+                raise InvalidValue(f"tool must be a Robot, as of load_robot, or shapes, got {shown(tool)}")
             shapes = [replace(shape, link="tool") for shape in tool]
             capsules = tuple(capsule for shape in shapes for capsule in fit_capsules(shape))
             hulls = tuple(piece_of(shape).hull for shape in shapes)
@@ -169,7 +154,7 @@ class Robot(RobotMethods):
             held={**self.held, **tool.held},
             hulls=(*self.hulls, *tool.hulls),
             resting=(*self.resting, *tool.resting),
-            inner=_both(self.inner, self.capsules, tool.inner, tool.capsules),
+            inner=inner_of_both(self.inner, self.capsules, tool.inner, tool.capsules),
         )
         between = tuple(
             pair
@@ -226,7 +211,7 @@ class Robot(RobotMethods):
             pairs=(*self.pairs, *parts.pairs),
             hulls=(*self.hulls, *hulls),
             holds=(*self.holds, held.name),
-            inner=_both(self.inner, self.capsules, parts.inner, parts.capsules),
+            inner=inner_of_both(self.inner, self.capsules, parts.inner, parts.capsules),
         )
 
     def empty_handed(self) -> Robot:
@@ -278,18 +263,6 @@ def _renamed(robot: Robot, prefix: str) -> Robot:
         resting=tuple((prefix + first, prefix + second) for first, second in robot.resting),
         inner=robot.inner and tuple(replace(each, link=prefix + each.link) for each in robot.inner),
     )
-
-
-def _both(
-    ours: tuple[Capsule, ...] | None,
-    capsules: tuple[Capsule, ...],
-    theirs: tuple[Capsule, ...] | None,
-    their_capsules: tuple[Capsule, ...],
-) -> tuple[Capsule, ...] | None:
-    """Return what lies within the shapes of a robot and of what is fixed to it, see `Robot.inner`."""
-    if ours is None and theirs is None:
-        return None
-    return (*(capsules if ours is None else ours), *(their_capsules if theirs is None else theirs))
 
 
 def require_robot(robot: object) -> None:

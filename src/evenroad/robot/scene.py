@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from itertools import count
@@ -168,8 +167,8 @@ class Scene:
     attached : tuple of HeldObject
         What the robot holds, no two of one name; :func:`evenroad.robot.in_scene` takes over both.
     near_ends : frozenset of (str, str, float)
-        Contacts, (link, cloud, distance), that are not tested with points within the distance [m] of where the link's
-        body is at the start or a goal; :func:`evenroad.robot.allowed_near_ends` makes allowed contacts of them.
+        Contacts, (link, cloud, distance), not tested with points within the distance [m] of the link's body at the
+        start or a goal; see :func:`evenroad.robot.allowed_near_ends`.
 
     Raises
     ------
@@ -206,13 +205,8 @@ class Scene:
     ) -> None:
         if not isinstance(name, str):
             raise InvalidValue(f"the name of a scene must be a text, got {shown(name)}")
-        values: dict[str, Any] = {
-            "allowed": allowed,
-            "states": {} if states is None else states,
-            "limits": {} if limits is None else limits,
-            "attached": attached,
-            "near_ends": near_ends,
-        }
+        values: dict[str, Any] = dict(allowed=allowed, attached=attached, near_ends=near_ends)
+        values |= {"states": {} if states is None else states, "limits": {} if limits is None else limits}
         if isinstance(obstacles, Mapping):
             if more := sorted(key for key in values if values[key]):
                 raise InvalidValue(
@@ -251,9 +245,8 @@ class Scene:
         rows = set()
         for each in self.obstacles:
             numbers = (*each.size, *each.xyz, *each.rotation)
-            # Zeros of both signs are one number.
             content = (fingerprint_of(each.body),) if each.shape not in PRIMITIVES else ()
-            rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))
+            rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))  # -0.0 is 0.0
         return fingerprint_of(rows, self.allowed, *sorted(self.near_ends))
 
     def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
@@ -325,13 +318,11 @@ def _as_obstacles(bodies: object, others: Sequence[Obstacle], scene: str) -> tup
     """Return shapes and obstacles as obstacles; a shape without a name gets one that neither they nor `others` have."""
     if isinstance(bodies, Shape | Obstacle):
         bodies = [bodies]
-    if isinstance(bodies, str | os.PathLike):
+    if isinstance(bodies, str) or not isinstance(bodies, Iterable):
+        hint = "a scene is read from its file by load_scene, and its name is name=..."
         raise InvalidValue(
-            f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}; a scene is read from its file"
-            " by load_scene, and its name is name=..."
+            f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}; {hint}"
         )
-    if not isinstance(bodies, Iterable):
-        raise InvalidValue(f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}")
     listed = tuple(bodies)
     for each in listed:
         if not isinstance(each, Shape | Obstacle):
