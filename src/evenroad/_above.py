@@ -1,4 +1,4 @@
-"""Functions that lie above the values whose methods call them.
+"""Functions above the values whose methods call them, loaded when a method is called.
 
 A method such as ``robot.ik(pose)`` stands where one looks for it, on the value.  The function that does the work needs
 much more than the value does, and imports it.  So the method knows it by name alone, and loads it when it is called.

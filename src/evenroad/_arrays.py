@@ -1,4 +1,4 @@
-"""Arrays by what they hold, their shapes said where they are used; and the fields of frozen values."""
+"""Names of array types, and conversion of the fields of frozen values."""
 
 from __future__ import annotations
 

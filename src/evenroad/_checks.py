@@ -1,4 +1,4 @@
-"""Checks of plain arguments, and of what is installed, with errors that name it."""
+"""Checks of plain arguments and of installed packages; the errors name what is wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The clock of budgets and phases: it stands still while code is compiled, which happens once on a machine.
+"""The clock of budgets and phases. It stands still while code is compiled, once per machine.
 
 For all threads: those that need what is compiled wait for it, and a clock that is set back would end nobody's time.
 """

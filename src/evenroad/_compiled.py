@@ -1,4 +1,4 @@
-"""Where compiled code is kept between runs, and what happens where it cannot be kept."""
+"""The cache of compiled code between runs, and the fallback where no folder can be written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writing files so that a reader only ever sees the old content or the whole new content; and telling files apart."""
+"""Atomic writes, so that a reader sees the old content or the whole new one; and recognition of file types."""
 
 from __future__ import annotations
 

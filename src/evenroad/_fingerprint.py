@@ -1,4 +1,4 @@
-"""Fingerprints: one text for all equal values, by which a file knows what it was made for."""
+"""Fingerprints: one text for all equal values, by which a file identifies its robot, scene or world."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""numba's decorators for evenroad, whose compiled code is kept under names that say what it was made of and for.
+"""numba's decorators for evenroad: cached code has a digest of its sources and its processor in its name.
 
 Numba names what it keeps after the function, and sees changes in the function's own file only.  Here the name has a
 digest of this file and all that it imports of evenroad, and one of numba and the processor: what is stale, or another

@@ -1,4 +1,4 @@
-"""Files of arrays (.npz): written atomically, and read so that whatever is wrong with one is a BrokenFile."""
+"""Files of arrays (.npz): written atomically; every damage raises BrokenFile on reading."""
 
 from __future__ import annotations
 

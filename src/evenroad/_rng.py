@@ -1,4 +1,4 @@
-"""Seeds and generators, the same way everywhere: ``rng`` is an int, a SeedSequence or a Generator."""
+"""Seeds and generators: everywhere ``rng`` is an int, a SeedSequence or a Generator."""
 
 from __future__ import annotations
 

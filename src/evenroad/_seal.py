@@ -1,4 +1,4 @@
-"""A seal on what is kept: a digest before the content, by which damage is seen before anything is made of it."""
+"""Seals of cached files: a digest before the content, by which damage is detected before use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What several threads share: values that are made once, and what one thread uses at a time."""
+"""State that threads share: values made once, and locks for what one thread uses at a time."""
 
 from __future__ import annotations
 

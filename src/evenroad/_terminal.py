@@ -1,4 +1,4 @@
-"""The terminal: tables within its width, and the progress of long work.  Rich is loaded when it is to draw."""
+"""The terminal: tables within its width, and progress of long work. Rich is loaded when it draws."""
 
 from __future__ import annotations
 

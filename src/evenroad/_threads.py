@@ -1,4 +1,4 @@
-"""Threads of this process, for compiled code, which lets others run meanwhile."""
+"""Threads of this process for compiled code, which releases the interpreter's lock."""
 
 from __future__ import annotations
 

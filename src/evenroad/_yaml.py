@@ -1,4 +1,4 @@
-"""Reading YAML files, whose keys must differ, with errors that say what is wrong, and where."""
+"""Reading YAML files. Keys must differ, and errors name what is wrong, and where."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Adapters: other people's planners on our worlds and points, ours on their worlds; each needs its extra."""
+"""Adapters: other libraries' planners on our worlds and points, ours on their worlds; each needs its extra."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command line: one verb a module, each a frozen dataclass of its options and a function that runs it."""
+"""The command line: one module per verb, a frozen dataclass of its options and a function that runs it."""
 
 from __future__ import annotations
 

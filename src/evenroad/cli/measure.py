@@ -1,4 +1,4 @@
-"""``evenroad measure``: how even a set is."""
+"""``evenroad measure``: the measures of a point set."""
 
 from __future__ import annotations
 

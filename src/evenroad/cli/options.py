@@ -1,4 +1,4 @@
-"""A verb's options, which tyro reads from the words of a command line; what it complains of becomes one line.
+"""A verb's options, read by tyro from a command line; its complaints become one line.
 
 A verb is a frozen dataclass.  Its fields are its options, and the text below a field is that option's help.
 """

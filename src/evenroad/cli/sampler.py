@@ -1,4 +1,4 @@
-"""Points by the name of a sampler: the options that say which, for every verb that draws some, and the drawing."""
+"""The options that name a point set, for every verb that draws one, and the drawing."""
 
 from __future__ import annotations
 

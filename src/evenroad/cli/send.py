@@ -1,4 +1,4 @@
-"""``evenroad send``: a trajectory to the controller of a UR arm; without --go it is only checked that it could be."""
+"""``evenroad send``: a trajectory to the controller of a UR arm; without --go a dry run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs the verb that a command line asks for, and turns our errors into one line and exit code 2."""
+"""Running the verb of a command line; our errors become one line and exit code 2."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much of one body lies inside of another: bodies of makers who let one go into the other."""
+"""The share of one body inside another, for robots drawn with one link inside the other."""
 
 from __future__ import annotations
 

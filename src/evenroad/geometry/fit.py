@@ -1,4 +1,4 @@
-"""From shapes to capsules that contain them."""
+"""Capsules that contain a shape."""
 
 from __future__ import annotations
 

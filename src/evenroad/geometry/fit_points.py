@@ -1,4 +1,4 @@
-"""A small capsule around points, and the volume of capsules."""
+"""Small capsules around points, and the volume of capsules."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From shapes to capsules inside of them: what surely touches where one of these does."""
+"""Capsules inside of a shape: if one of them touches something, the shape does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a file of a mesh would become, before a reader makes it: some say it in a few bytes, and mean gigabytes."""
+"""Bounds on the memory of a mesh file before it is read: a few bytes can declare gigabytes."""
 
 from __future__ import annotations
 

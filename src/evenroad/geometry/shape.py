@@ -1,4 +1,4 @@
-"""Shape: the base of all shapes, with the pose that each has, the link that it is fixed to, and its name."""
+"""Shape: the base of all shapes, with a pose, the link it is fixed to, and a name."""
 
 from __future__ import annotations
 

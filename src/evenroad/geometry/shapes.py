@@ -1,4 +1,4 @@
-"""Shapes: what links, obstacles and rigid bodies are made of.
+"""Shapes of links, obstacles and rigid bodies.
 
 A shape is a frozen value with its dimensions, the pose that it has, and the link that it is fixed to (or the
 world).  A new one is a class here, with its distance (``distance.py``) and its capsules (``fit.py``).

@@ -1,4 +1,4 @@
-"""Point sets of the unit cube: what they are, how to draw them, how to measure them. Knows nothing of robots."""
+"""Point sets of the unit cube: values, samplers, measures. Knows nothing of robots."""
 
 from evenroad.points.npz import load_points as load_points
 from evenroad.points.npz import save_points as save_points

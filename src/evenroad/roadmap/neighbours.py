@@ -1,4 +1,4 @@
-"""Neighbours in a space, by kd-tree where its metric is flat, else by all distances; and those of one newcomer."""
+"""Neighbours in a space, by kd-tree if its metric is flat, else by all distances."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where joints stand that are not planned for, so that the bodies they carry do not touch each other."""
+"""Values of the joints outside of the group, at which the bodies they carry do not touch."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Robots kept between runs: fitting capsules to meshes and sampling contacts takes seconds.
+"""A cache of robots between runs: fitting capsules to meshes and sampling contacts takes seconds.
 
 What is kept is sealed by a digest, as a flipped bit is as likely in a radius as in a bracket.
 """

@@ -1,4 +1,4 @@
-"""Certified motions: proved free everywhere, not only at the states that were looked at.
+"""Certified motions: proved free everywhere, not only at the checked states.
 
 A joint that turns by dq moves a point of the robot by at most |dq| times the point's distance from its axis,
 one that slides by |dq|.  Let ``arm_cj`` bound that distance, over all configurations, for the segment inside

@@ -1,4 +1,4 @@
-"""What a plan is to reach: configurations, and poses of links, for which all stand that reach them."""
+"""Goals of a plan: configurations, and poses of links with all postures that reach them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Groups of joints: which are planned for, by whose names, and the chains that a robot consists of."""
+"""Groups of joints that are planned for, by name, and the chains of a robot."""
 
 from __future__ import annotations
 

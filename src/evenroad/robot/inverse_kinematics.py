@@ -1,4 +1,4 @@
-"""Inverse kinematics: the configurations that bring a link where a goal wants it, all that are known of."""
+"""Inverse kinematics: all configurations found that bring a link to a goal pose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is a robot's in every scene: the space of its group, and its tables; made once a robot."""
+"""The space and the tables of a robot, the same in every scene; made once per robot."""
 
 from __future__ import annotations
 

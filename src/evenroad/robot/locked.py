@@ -1,4 +1,4 @@
-"""Proofs that an arm cannot get from one place to another: its first joints alone cannot.
+"""Infeasibility proofs for arms: the first joints alone cannot pass from start to goal.
 
 The first joints move the first links, whatever the others do.  Their ranges are cut into cells.  A cell is blocked
 throughout where its middle is, with bodies thinner by what half a cell can move them, and by how much the spheres of

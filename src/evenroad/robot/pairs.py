@@ -1,4 +1,4 @@
-"""Which links are tested against each other, and the hulls that decide it where capsules are too fat."""
+"""Pairs of links that are tested against each other, and hulls that decide where capsules are too thick."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""PoseGoal: where a link is to be, in place of a configuration; and poses as people write them."""
+"""PoseGoal: the pose of a link as a goal; and poses as people write them."""
 
 from __future__ import annotations
 

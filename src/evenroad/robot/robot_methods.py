@@ -1,4 +1,4 @@
-"""What one asks a robot by itself, without a scene: joints, limits, forward and inverse kinematics, samples."""
+"""Methods of a robot without a scene: joints, limits, forward and inverse kinematics, samples."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scans: clouds of points in which the robot has seen itself, and parts of them that may be touched."""
+"""Scans: point clouds that contain the robot itself, and parts of them that may be touched."""
 
 from __future__ import annotations
 

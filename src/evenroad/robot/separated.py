@@ -1,4 +1,4 @@
-"""What an arm cannot reach, in words: of which bodies, of which joints, and whether of all that was asked for."""
+"""Texts of infeasibility proofs: about which bodies, which joints, and whether about the whole query."""
 
 from __future__ import annotations
 

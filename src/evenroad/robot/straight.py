@@ -1,4 +1,4 @@
-"""Straight lines of a link: how a tip comes to its goal, and how it leaves its start."""
+"""Cartesian lines: the tip approaches its goal, and leaves its start, in straight lines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The XML of a URDF, checked element by element before anything is made of it.
+"""The XML of a URDF, checked element by element before use.
 
 Readers of URDF take a missing number for a default and repair broken XML in silence; a planner that then finds a
 robot free of collisions has not been given its bodies.  What is read otherwise than it stands is said in notes.

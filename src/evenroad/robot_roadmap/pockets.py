@@ -1,4 +1,4 @@
-"""Ends that are hard to reach, in pockets at random; and which configurations they can be joined to.
+"""Hard queries in random narrow passages, and the configurations that can be joined to them.
 
 Where a roadmap fails, a start or goal sees none of its milestones.  So milestones learn from ends that no task has
 shown: the tip of the robot in boxes of five walls, anywhere that it gets to.

@@ -1,4 +1,4 @@
-"""Reading what callers give: batches of configurations and rows of parameters; InvalidValue names what is wrong."""
+"""Reading arguments: batches of configurations and rows of parameters; InvalidValue names what is wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trajectories: a path with a time for every place on it, within what the joints can do."""
+"""Trajectories: a path with a time for every position on it, within the limits of the joints."""
 
 from evenroad.trajectory.arm import arm_trajectory, controller_joints
 from evenroad.trajectory.files import format_of, load_trajectory, save_trajectory

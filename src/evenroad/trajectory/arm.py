@@ -1,4 +1,4 @@
-"""The trajectory of an arm along a path that was planned for it: limits, joints and tip are those of its robot."""
+"""The trajectory of an arm along its path, with the limits, joints and tip of its robot."""
 
 from __future__ import annotations
 

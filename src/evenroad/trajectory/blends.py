@@ -1,4 +1,4 @@
-"""A path whose corners are rounded by arcs of circles, with its direction and its bend at every length."""
+"""A path with corners rounded by arcs of circles, and its direction and curvature at every length."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The ways that a tip was told to take, kept by what is driven, too: a corner that is rounded off may leave them."""
+"""Constraints of the tip, checked again on the trajectory: a rounded corner may violate them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Limits: how fast joints may move, speed up and jerk; read from a robot and from MoveIt's joint_limits.yaml."""
+"""Limits: velocities, accelerations and jerks of joints, from a robot or MoveIt's joint_limits.yaml."""
 
 from __future__ import annotations
 

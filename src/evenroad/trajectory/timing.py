@@ -1,4 +1,4 @@
-"""The fastest way along a rounded path within limits of speed and acceleration, and where it is at a time."""
+"""The fastest times along a rounded path within limits of speed and acceleration."""
 
 from __future__ import annotations
 

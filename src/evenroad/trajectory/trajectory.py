@@ -1,4 +1,4 @@
-"""Trajectory: where every joint is at every moment; made of a path, within limits, and checked again as it is."""
+"""Trajectory: the state of every joint at every time, made from a path within limits, and checked again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A plan of an arm in its scene: three views, with the arm at places along its path."""
+"""A picture of an arm's plan in its scene: three views, with the arm at configurations along its path."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Outlines of bodies as they are seen along a coordinate axis."""
+"""Outlines of bodies seen along a coordinate axis."""
 
 from __future__ import annotations
 

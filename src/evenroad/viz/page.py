@@ -1,4 +1,4 @@
-"""A page in the browser: an arm in its scene, its path under a slider, start and goal to be dragged by hand (viser)."""
+"""A page in the browser: an arm in its scene, its path under a slider, handles for start and goal (viser)."""
 
 from __future__ import annotations
 

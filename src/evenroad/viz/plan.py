@@ -1,4 +1,4 @@
-"""A plan on its map: obstacles, roadmap, path, start and goal at a glance."""
+"""A picture of a plan on its map: obstacles, roadmap, path, start and goal."""
 
 from __future__ import annotations
 

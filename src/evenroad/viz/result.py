@@ -1,4 +1,4 @@
-"""Pictures of plans, whatever they were planned for, and of maps."""
+"""Pictures of plans in any world, and of maps."""
 
 from __future__ import annotations
 

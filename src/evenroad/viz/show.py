@@ -1,4 +1,4 @@
-"""Showing a plan or a map to somebody who sits in front of a screen: in the browser, or below a notebook's cell."""
+"""Showing a plan or a map: in the browser, or below a notebook's cell."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""In which order the states of motions are looked at: halves, quarters, eighths, all motions together.
+"""The order in which states of motions are checked: halves, quarters, eighths, all motions together.
 
 A motion of n segments has the states 1 .. n - 1 between its ends.  Level l holds the multiples of n / 2^l,
 rounded down, that no level before it held: van der Corput's order, taken level by level.  A motion that is

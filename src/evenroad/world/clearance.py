@@ -1,4 +1,4 @@
-"""The least clearance of a path: how near it comes to an obstacle."""
+"""The least clearance of a path from obstacles."""
 
 from __future__ import annotations
 

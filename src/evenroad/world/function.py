@@ -1,4 +1,4 @@
-"""FunctionWorld: a world out of a user's own function."""
+"""FunctionWorld: a world made from a user's function."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks that take one configuration or many, with one answer or as many."""
+"""Checks that take one configuration or many."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""World: what a planner asks of a robot among its obstacles."""
+"""World: the checks that a planner needs of a robot among its obstacles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading the bank: one folder a family, one float32 array (sets, n, d) a cell, one index for all.
+"""Reading the bank: one folder per family, one float32 array (sets, n, d) per cell, one index for all.
 
 ::
 

@@ -1,4 +1,4 @@
-"""How even a set of points is: discrepancies, dispersion, separation and energy.
+"""Measures of a point set: discrepancies, dispersion, separation and energy.
 
 ``MEASURES`` holds the L2 discrepancies by name: ``MEASURES["hickernell"].rooted(points)``.
 """

@@ -1,4 +1,4 @@
-"""A bound that the dispersion surely does not exceed, in any dimension, over any box: by branch and bound.
+"""An upper bound of the dispersion, in any dimension, over any box, by branch and bound.
 
 A cell of the box, with centre c and half sides h, is within sqrt(sum_k (|c_k - x_k| + h_k)^2) of a point x, that of its
 corner farthest from x; the least of these over all x bounds the distance of every place of the cell from its nearest

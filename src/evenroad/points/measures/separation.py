@@ -1,4 +1,4 @@
-"""How far apart points are: the separation, and the Riesz energy, which close pairs raise."""
+"""Separation of points, and the Riesz energy, which close pairs raise."""
 
 from __future__ import annotations
 

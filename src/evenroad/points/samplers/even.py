@@ -1,4 +1,4 @@
-"""Our default: a Korobov lattice, in many dimensions scrambled Sobol points, drawn in for roadmaps of few edges."""
+"""The default: a Korobov lattice, in many dimensions scrambled Sobol points, contracted for sparse roadmaps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every other sampler is compared with: independent points, a grid, Halton's and Sobol's sequences."""
+"""Baseline samplers: independent points, a grid, Halton's and Sobol's sequences."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a connection rule is, and those by a number of neighbours or a distance that the user gives.
+"""The protocol of connection rules, and rules by a number of neighbours or a distance.
 
 The rule is part of every result: the same points give 15 % or 62 % success under two different rules.  Candidates are
 all configurations but itself; ties go to the lower index, and start and goals come last, except for `KEarlier`, where

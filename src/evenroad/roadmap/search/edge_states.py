@@ -1,4 +1,4 @@
-"""What is known of a graph's nodes and edges in a world, and how much was asked to know it."""
+"""The states of a graph's nodes and edges in a world, and the number of checks made."""
 
 from __future__ import annotations
 

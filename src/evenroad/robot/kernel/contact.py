@@ -1,4 +1,4 @@
-"""Which of sixteen placed configurations touch an obstacle or themselves: bit w of a mask stands for lane w.
+"""Contact of sixteen configurations with obstacles or themselves, as a mask: bit w stands for lane w.
 
 Lanes that are known to be blocked are not looked at again; a test is left out only where no lane needs it,
 and every test that may be left out is a little wider than the one that it saves.  So the answer for a lane

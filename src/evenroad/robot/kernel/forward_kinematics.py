@@ -1,4 +1,4 @@
-"""Where sixteen configurations put a robot's frames, bodies and capsules."""
+"""Frames, bodies and capsules of a robot at sixteen configurations."""
 
 from __future__ import annotations
 

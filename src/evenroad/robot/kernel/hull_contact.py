@@ -1,4 +1,4 @@
-"""Whether two bodies made of convex hulls come near each other: a tree of balls over the hulls of each, and GJK below.
+"""Contact of two bodies of convex hulls: a tree of balls over the hulls of each, and GJK below.
 
 Apart is only what a plane separates: its gap is computed from all corners, so no rounding, and no search that ends too
 soon, calls bodies free that touch.  The search is that of E. Gilbert, D. Johnson and S. Keerthi (1988).

@@ -1,4 +1,4 @@
-"""Which of sixteen placed configurations have two bodies of convex hulls in touch.
+"""Contact of two bodies of convex hulls at sixteen configurations.
 
 Boxes and planes in single precision rule out nearly all pairs of hulls, for all lanes at once and by more than rounding
 can be; of what is left `hull_contact` decides, lane by lane in double precision.  So the answer for a lane does not

@@ -1,4 +1,4 @@
-"""Configurations and motions as the kernels take them: within bounds, wrapped, with ends in a fixed order."""
+"""Configurations and motions as the kernels take them: within bounds, wrapped, endpoints in a fixed order."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Proofs of a whole path in compiled code: a motion that is free at its states, but not between them, is bent.
+"""Proofs of a whole path in compiled code: a motion that is free only at its states is bent.
 
 What was drawn tight lies so near to obstacles that between two states a motion may touch one.  A small bend mends that
 where else all of the path would be lost.

@@ -1,4 +1,4 @@
-"""Damped least squares in compiled code: configurations that bring a tip where it is wanted."""
+"""Damped least squares in compiled code: configurations that bring a tip to a pose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""RobotTables: what compiled code knows of a robot whatever stands around it, made once a robot."""
+"""RobotTables: the tables of a robot for compiled code, the same in every scene; made once per robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One configuration at a time in double precision: the fallback of the lanes, and what explains and certifies.
+"""Checks of one configuration in double precision: the fallback of the lanes, and the reasons and proofs.
 
 Every test is whether two bodies come nearer than a margin, so that one function serves all: margin 0 tells
 contact, and a margin as large as what a stretch of motion can move proves the whole stretch free.

@@ -1,4 +1,4 @@
-"""ArmTables: a robot's tables with the rows of a scene's obstacles behind them; compiled, since scenes change often."""
+"""ArmTables: a robot's tables followed by the rows of a scene's obstacles; compiled, since scenes change often."""
 
 from __future__ import annotations
 

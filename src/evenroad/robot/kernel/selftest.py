@@ -1,4 +1,4 @@
-"""Whether the lanes work on this machine: once a process, on a small robot whose verdicts are known."""
+"""A self-test of the lanes, once per process, on a small robot with known results."""
 
 from __future__ import annotations
 

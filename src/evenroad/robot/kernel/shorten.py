@@ -1,4 +1,4 @@
-"""Shortening of paths in compiled code; a motion is only put in where it is proved free."""
+"""Shortcutting of paths in compiled code, with motions that are proved free."""
 
 from __future__ import annotations
 

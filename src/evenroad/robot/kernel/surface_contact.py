@@ -1,4 +1,4 @@
-"""Which of sixteen placed configurations touch points or meshes; a capsule is here what it is, not spheres over it.
+"""Contact of sixteen configurations with points or meshes; capsules count as capsules, not as covering spheres.
 
 A byte of a grid tells for most capsules, sixteen configurations at once, that nothing is near.  What is left is tested
 one configuration after the other, against sixteen nodes, points or triangles of the tree at once.  Compiled when a

@@ -1,4 +1,4 @@
-"""Grids over a surface: which cells it is in, how far every cell is from those, and where the inside is."""
+"""Grids over a surface: occupied cells, distances to them, and the inside."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which capsule comes near a surface first, one configuration at a time: the fallback of the lanes, and what explains.
+"""Contact of one configuration with surfaces: the fallback of the lanes, and the reasons.
 
 Rarely asked, so what is simple will do: leaves one after the other, and a line through all of a mesh for its inside.
 """

@@ -1,4 +1,4 @@
-"""Paths drawn tight in compiled code: waypoints slide along what they touch, and what is left is proved free.
+"""Smoothing of paths in compiled code: waypoints slide along what they touch, and the result is proved free.
 
 Straight shortcuts leave a waypoint where it first touched something.  Here it moves on to the sides of its contact, and
 every motion is judged at its states alone, with bodies a little larger: only those of the last path are proved.

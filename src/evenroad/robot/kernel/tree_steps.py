@@ -1,4 +1,4 @@
-"""Where a tree may go next: an extension towards the next sample, or ball steps that passed the sieve."""
+"""Steps of a tree: an extension towards the next sample, or ball steps that passed the sieve."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Slow worlds of surfaces, checked by other people's engines: to compare with, and to test a final path again."""
+"""Slow worlds of surfaces, checked by other engines: for comparison, and for the last check of a path."""

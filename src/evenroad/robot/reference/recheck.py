@@ -1,4 +1,4 @@
-"""A path that was found among capsules, checked again with the shapes that the capsules stand for."""
+"""The last check of a path, with the shapes that the capsules stand for."""
 
 from __future__ import annotations
 

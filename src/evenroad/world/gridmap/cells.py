@@ -1,4 +1,4 @@
-"""Per-cell knowledge about a disk on a grid of occupied cells: most checks end with one look at it.
+"""The state of each cell for a disk on a grid: free, blocked or undecided; it decides most checks.
 
 The grid is *padded*: one ring of occupied cells around the map stands for the outside.  Lengths are in pixels.
 """

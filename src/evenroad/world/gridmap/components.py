@@ -1,4 +1,4 @@
-"""Which places of a disk on a grid hang together for certain not: components of cells, and gates between them.
+"""Proofs that positions of a disk on a grid are not connected: components of cells, and gates between them.
 
 The grid is the padded one (see `cells`), whose ring is blocked.
 """

@@ -1,4 +1,4 @@
-"""The compiled exact tests of a disk on a grid, points and motions, and the obstacle or free place nearest to a point.
+"""Compiled exact tests of a disk on a grid, of points and motions, and the nearest obstacle or free position.
 
 All is in the pixel plane of the *padded* grid (see `cells`), whose coordinates are one larger than the map's.  Seen
 from a point of cell (row, col), only one or two squares of each column can be the nearest: the one in the same row if

@@ -1,4 +1,4 @@
-"""The compiled planner of a disk on a grid: a path over a lattice of points, and straightening it.
+"""The compiled planner of a disk on a grid: a path over a lattice of points, and its smoothing.
 
 Paths are made of map points, so that what is tested is what is returned.  They lead over the *half lattice*, the points
 ``(column / 2, row / 2)`` of the padded pixel plane (see `cells`): over the centres of surely free cells, and over all
