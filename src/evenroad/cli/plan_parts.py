@@ -50,7 +50,7 @@ def chosen_planner(plan: PlanOptions, request: Request, **of_prm: Any) -> Planne
     """Return the planner that was asked for: a roadmap of points, else what plans in this kind of world."""
     if not wants_points(plan):
         return default_planner(request.world, improve=plan.improve)
-    points = draw_points(plan, _n(plan), request.world.space.cube_dim)[0]
+    points = draw_points(plan, _n(plan), request.world.space.cube_dim)
     return PRM(points, rule=chosen_rule(plan), **of_prm)
 
 

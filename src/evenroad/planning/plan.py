@@ -19,6 +19,7 @@ from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import require_certified
 from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.kept import WorldRoadmap
 from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.result import PlanResult, Status
 from evenroad.robot import ArmWorld
@@ -126,6 +127,10 @@ def plan(
             f" {shown(planner)}"
         )
     request = read_request(world, start, goal, Reading(degrees, tip, frame), planner, **of_world)
+    if isinstance(planner, WorldRoadmap) and planner.world is not request.world:
+        raise InvalidValue(
+            f"a roadmap plans in its own world: give er.plan its .world, got {request.world!r}"
+        )
     budget = budget_of(planner, seconds, limits)
     wishes = Wishes(budget, smooth, rng, certified, straight, upright)
     return finished(request, solve(request, planner, wishes), certified=certified)[0]

@@ -6,10 +6,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from evenroad._above import above
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._npz import Path
 from evenroad.errors import InvalidValue
@@ -17,15 +18,13 @@ from evenroad.points.pointset import PointSet
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.neighbours import Surroundings
 from evenroad.roadmap.points_of import as_points
+from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.query import EdgeCost, edge_costs
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import KNearest, Rule
 from evenroad.roadmap.search import FixedPoint, Graph
 from evenroad.space import Space
 from evenroad.world import World
-
-if TYPE_CHECKING:
-    from evenroad.roadmap.kept_in_world import PointWorldRoadmap
 
 
 class Prices(NamedTuple):
@@ -77,6 +76,10 @@ class WorldRoadmap(ABC):
         self, start: Any, goal: Any, *, budget: Budget | None = None, shorten: bool = True
     ) -> PlanResult:
         """Find a path from a start to a goal, or one of several; what is known is never checked again."""
+
+    @abstractmethod
+    def solve(self, problem: Problem) -> PlanResult:
+        """Plan along the roadmap, in its world, as planners of :func:`evenroad.plan` do."""
 
     def __repr__(self) -> str:
         return f"{self.roadmap!r}.within({self.world!r})"
@@ -147,7 +150,7 @@ class PointRoadmap(Roadmap):
 
     def within(
         self, world: World, *, lazy_milestones: bool = False, edge_cost: EdgeCost | None = None
-    ) -> PointWorldRoadmap:
+    ) -> WorldRoadmap:
         """Return this roadmap in a world, to be asked many queries.
 
         Nothing is checked for edges until a query needs them.  With `lazy_milestones` these are not checked now but
@@ -158,10 +161,11 @@ class PointRoadmap(Roadmap):
         """
         if not self._fits(world.space):
             raise InvalidValue(f"the roadmap was built for another space than {world.space!r}")
-        from evenroad.roadmap.kept_in_world import PointWorldRoadmap
-
         roadmap = replace(self, space=world.space) if self.space is None else self
-        return PointWorldRoadmap(roadmap, world, lazy_milestones=lazy_milestones, edge_cost=edge_cost)
+        planner: WorldRoadmap = above("PointRoadmap.within")(
+            roadmap, world, lazy_milestones=lazy_milestones, edge_cost=edge_cost
+        )
+        return planner
 
     def _fits(self, space: Space) -> bool:
         if space is self.space or space == self.space:
@@ -174,9 +178,7 @@ class PointRoadmap(Roadmap):
 
     def save(self, file: Path) -> None:
         """Write its points, rule, milestones and edges; see :meth:`Roadmap.save`."""
-        from evenroad.roadmap.npz import save_point_roadmap
-
-        save_point_roadmap(file, self)
+        above("PointRoadmap.save")(file, self)
 
 
 def roadmap_of_points(space: Space, points: PointSet | int, rule: Rule | None = None) -> PointRoadmap:

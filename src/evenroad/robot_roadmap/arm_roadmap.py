@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
+from evenroad._above import above
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._npz import Path
-from evenroad.roadmap.kept import Roadmap
+from evenroad.roadmap.kept import Roadmap, WorldRoadmap
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.known_robots import prepared
 from evenroad.robot_roadmap.scene_graph import SceneGraph
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
-
-if TYPE_CHECKING:
-    from evenroad.robot_roadmap.query import Checks
-    from evenroad.robot_roadmap.world_roadmap import ArmWorldRoadmap
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,7 +73,7 @@ class ArmRoadmap(Roadmap):
         """The roadmap by node, for the compiled search."""
         return SceneGraph(self.milestones, self.edges, self.turns, self.one_turn)
 
-    def within(self, world: Checks) -> ArmWorldRoadmap:
+    def within(self, world: Any) -> WorldRoadmap:
         """Return a planner in a world of this arm, which keeps what it has checked.
 
         Parameters
@@ -98,18 +95,15 @@ class ArmRoadmap(Roadmap):
         >>> roadmap.within(er.ArmWorld("ur5", "box-reach")).plan("home", "inside").solved
         True
         """
-        from evenroad.robot_roadmap.world_roadmap import ArmWorldRoadmap
-
-        return ArmWorldRoadmap(self, world)
+        planner: WorldRoadmap = above("ArmRoadmap.within")(self, world)
+        return planner
 
     def save(self, file: Path) -> None:
         """Write it with its robot and static scene, atomically; ``er.load_roadmap`` reads it.
 
         Raises BrokenFile if the file cannot be written; whatever was there is then untouched.
         """
-        from evenroad.robot_roadmap.file import save_arm_roadmap
-
-        save_arm_roadmap(file, self)
+        above("ArmRoadmap.save")(file, self)
 
 
 def read_only(roadmap: ArmRoadmap) -> ArmRoadmap:

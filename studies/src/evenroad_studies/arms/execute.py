@@ -11,6 +11,7 @@ from evenroad.errors import InvalidValue
 from evenroad.planning.arm_trees import connect
 from evenroad.roadmap.connector import Connection
 from evenroad.robot import ArmWorld
+from evenroad.robot_roadmap.world_roadmap import ArmWorldRoadmap
 from evenroad_studies.arms.problems import draw_problem, robot_and_generator, stream_of
 from evenroad_studies.arms.roadmaps import roadmap_of
 from evenroad_studies.bench.task import Outcome, Problem, Task
@@ -65,7 +66,7 @@ def _asked(task: Task, robot: str, problem: Problem) -> tuple[Connection, str, f
     k, links = map(int, parts.groups())
     roadmap, set_id = roadmap_of(robot, task.sampler, task.n, k, task.run, task.seed)
     began = time.thread_time()
-    known = roadmap.within(ArmWorld(problem.world.robot, problem.world.scene))
+    known = ArmWorldRoadmap(roadmap, ArmWorld(problem.world.robot, problem.world.scene))
     return known.connect(problem.start, goals, links=links), set_id, time.thread_time() - began
 
 

@@ -16,6 +16,7 @@ from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
+from evenroad.robot_roadmap.world_roadmap import ArmWorldRoadmap
 from evenroad_studies.arms.roadmaps import box_roadmap, cell_of
 from evenroad_studies.arms.robots import arm_named, tool_of
 from evenroad_studies.arms.scenes import GENERATORS, Region, places_of
@@ -110,7 +111,10 @@ def joins(roadmap: ArmRoadmap, problem: Problem, links: int) -> bool:
     """Say whether a roadmap leads from start to goal."""
     world = problem.world
     assert isinstance(world, ArmWorld)
-    return roadmap.within(world).connect(problem.start, problem.goal[np.newaxis], links=links).goal >= 0
+    return (
+        ArmWorldRoadmap(roadmap, world).connect(problem.start, problem.goal[np.newaxis], links=links).goal
+        >= 0
+    )
 
 
 @lru_cache(maxsize=2)
