@@ -148,7 +148,7 @@ def draw_ends() -> None:
     for links in (None, 100):
         sets = (er.draw("even", 256, 2, rng=run) for run in range(RUNS))
         solved = [
-            er.plan(world, maze.start, maze.goal, each, rule=rule, links=links, shorten=False).solved
+            er.plan(world, maze.start, maze.goal, er.PRM(each, rule=rule, links=links), smooth=False).solved
             for each in sets
         ]
         print(f"maze 3, 256 even points, links={links}: {share(sum(solved))} solved")
