@@ -1,17 +1,32 @@
-"""Planning on points, with what is told of planner and search side by side: for tests that try many of both."""
+"""Planning on points, with what is told of planner and search side by side: for tests that try many of both.
+
+Planners solve problems here: ``er.plan`` would ask the world why there is no path, which some tests count.
+"""
 
 from functools import partial
 
 import numpy as np
 
-from evenroad.planning import FMT, PRM, GrowingPRM, plan
+from evenroad.planning import FMT, PRM, GrowingPRM, Problem
+from evenroad.planning.connectors import connector_of
+from evenroad.planning.trees import default_planner
+from evenroad.roadmap import Budget
+from evenroad.roadmap.query import read_places
+
+
+def solve(planner, world, start, goal, *, rng=0, shorten=True, budget=None):
+    """Let a planner find a path."""
+    first, goals = read_places(start, goal, world.space)
+    budget = Budget(seconds=planner.seconds) if budget is None else budget
+    how = dict(budget=budget, smooth=shorten, rng=rng, connector=connector_of(world))
+    return planner.solve(Problem(world, first, goals, **how))
 
 
 def plan_on(world, start, goal, points, *, by=PRM, shorten=True, budget=None, **options):
     """Plan with all edges checked, unless told otherwise."""
     if by is PRM:
         options = {"search": "full"} | options
-    return plan(world, start, goal, by(points, **options), smooth=shorten, limits=budget)
+    return solve(by(points, **options), world, start, goal, shorten=shorten, budget=budget)
 
 
 fmt_on = partial(plan_on, by=FMT)
@@ -19,13 +34,12 @@ fmt_on = partial(plan_on, by=FMT)
 
 def plan_growing(world, start, goal, sampler=None, *, rng=0, shorten=True, budget=None, **options):
     """Plan with more and more points."""
-    grown = GrowingPRM(sampler, **options)
-    return plan(world, start, goal, grown, rng=rng, smooth=shorten, limits=budget)
+    return solve(GrowingPRM(sampler, **options), world, start, goal, rng=rng, shorten=shorten, budget=budget)
 
 
 def find_path(world, start, goal, *, budget=None, shorten=True):
     """Plan without a number of points."""
-    return plan(world, start, goal, smooth=shorten, limits=budget)
+    return solve(default_planner(world), world, start, goal, shorten=shorten, budget=budget)
 
 
 def may_connect(world, a, b):

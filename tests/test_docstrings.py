@@ -17,7 +17,7 @@ MODULES = ("qmc", "spaces", "io", "testing")
 
 OF_PLANNERS = {
     *("apart", "connect", "connect_anew", "may_connect", "shorten", "explain_start", "with_bodies"),
-    *("recheck", "motion_certified", "path_clearance", "fingerprint"),
+    *("solve", "recheck", "motion_certified", "path_clearance", "fingerprint"),
 }
 """Methods by which planners and files ask a world; users have `result` and `er.plan` for them."""
 

@@ -133,11 +133,11 @@ def test_joint_values_within_five_decimals_of_a_limit_stay_what_they_are():
         arm_request("ur5", "box-reach", f"{float(high[0]) + 2e-5},0,0,0,0,0", "home")
 
 
-def test_what_speaks_of_points_is_refused_without_them():
-    with pytest.raises(er.errors.InvalidValue, match="rule says how points are joined"):
-        er.plan("box-reach", "home", "inside", robot="ur5")
-    with pytest.raises(er.errors.InvalidValue, match="improve goes without points"):
-        er.plan("box-reach", "home", "inside", er.PRM(64), robot="ur5")
+def test_what_is_of_no_world_is_named():
+    with pytest.raises(er.errors.InvalidValue, match="resolutoin: .* did you mean resolution?"):
+        er.plan("box-reach", "home", "inside", robot="ur5", resolutoin=0.1)
+    with pytest.raises(er.errors.InvalidValue, match="needs radius=, of a disk on this map, or robot="):
+        er.plan("box-reach", "home", "inside")
 
 
 def test_a_goal_that_an_arm_cannot_leave_is_explained():
@@ -152,10 +152,8 @@ def test_a_goal_that_an_arm_cannot_leave_is_explained():
         )
     ]
     start = [0.0, -1.0, *home[2:]]
-    for points in (None, 64):
-        result = er.plan(
-            er.Scene(tuple(posts), name="balls"), start, goal, er.PRM(points), robot="ur5", seconds=0.2
-        )
+    for planner in (None, er.PRM(64)):
+        result = er.plan(er.Scene(tuple(posts), name="balls"), start, goal, planner, robot="ur5", seconds=0.2)
         assert not result.solved
         assert "The goal can" in result.message
         assert "leave its place: " in result.message

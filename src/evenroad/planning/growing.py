@@ -12,7 +12,6 @@ from evenroad._checks import require_count, require_known
 from evenroad._clock import now
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import connector_of
-from evenroad.planning.hemmed_in import with_reasons
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import Sampler, make_sampler
 from evenroad.roadmap.answer import answer, refusal
@@ -52,8 +51,7 @@ class GrowingPRM:
     rule, edge_cost, links
         As in :class:`evenroad.PRM`.
 
-    Without a path the status is ``budget_spent``, and the message says where start or goal can hardly leave their
-    places; ``stages`` tells how it went.  Counts are those of the last stage,
+    Without a path the status is ``budget_spent``; ``stages`` tells how it went.  Counts are those of the last stage,
     checks those of all.  Raises as :class:`evenroad.PRM`, and InvalidValue if the sampler's sets do not begin with the
     smaller ones.
     """
@@ -96,7 +94,7 @@ class GrowingPRM:
         growth = _Growth(attempt, rule)
         while growth.take(points) and not growth.is_done(self.until) and points.n < budget.samples:
             points = _draw(sampler, min(2 * points.n, budget.samples), problem, points)
-        return with_reasons(world, growth.result(points.n))
+        return growth.result(points.n)
 
 
 class _Growth:

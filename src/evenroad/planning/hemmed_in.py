@@ -30,6 +30,8 @@ def with_reasons(world: World, result: PlanResult) -> PlanResult:
     """
     if result.path is not None or result.status not in (Status.NOT_CONNECTED, Status.BUDGET_SPENT):
         return result
+    if result.message.startswith("proved"):
+        return result
     several = len(result.goals) > 1
     places = [("the start", result.start)] + [
         (f"goal {i}" if several else "the goal", goal)

@@ -11,6 +11,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.arm_request import mesh_check
 from evenroad.planning.connectors import connector_of
+from evenroad.planning.hemmed_in import with_reasons
 from evenroad.planning.prm import PRM
 from evenroad.planning.read_request import read_request
 from evenroad.planning.request import Goal, Place, Reading, Request
@@ -164,7 +165,7 @@ def solve(request: Request, planner: Planner | None, wishes: Wishes) -> PlanResu
         budget, connector = wishes.budget, connector_of(world)
         how = dict(budget=budget, smooth=smooth, rng=wishes.rng, apart=apart, connector=connector)
         problem = Problem(world, start, goals, **how)  # type: ignore[arg-type]
-        return (default_planner(world) if planner is None else planner).solve(problem)
+        return with_reasons(world, (default_planner(world) if planner is None else planner).solve(problem))
 
     if straight is None and upright is None:
         return plan_once(request.world, request.start, request.goals, wishes.smooth)
@@ -184,7 +185,7 @@ def finished(
     given, world = request.given, request.world
     if given is not None and given.poses and not given.unreached:
         result = replace(result, timings={"goals": given.seconds, **result.timings})
-    if result.status is Status.NOT_CONNECTED and "points" in result.counts:
+    if not result.solved and "points" in result.counts:
         result = _with_proof(request, result)
     name = (
         "" if result.goal_index is None or not request.goal_names else request.goal_names[result.goal_index]
@@ -214,14 +215,14 @@ def finished(
 
 
 def _with_proof(request: Request, result: PlanResult) -> PlanResult:
-    """Return the result of a roadmap that did not lead to the goal, with the proof that no number of points would."""
+    """Return the result of points that did not lead to the goal, with the proof that no number of them would."""
     world: Any = request.world
-    start, goals = request.start, request.goals
-    if not isinstance(request.world, ShowsApart):
+    if result.status is not Status.NOT_CONNECTED or not isinstance(request.world, ShowsApart):
         return result
-    found = (
-        world.apart(start, goals)
-        if request.given is None
-        else request.given.apart(world)(start, goals, False)
-    )
-    return replace(result, message=found.message) if found is not None and found.proved else result
+    if request.given is None:
+        found = world.apart(request.start, request.goals)
+    else:
+        found = request.given.apart(world)(request.start, request.goals, False)
+    if found is None or not found.proved:
+        return result
+    return replace(result, message=f"{found.message}; {result.message.partition(': try')[0]}")

@@ -105,7 +105,12 @@ class FMT:
     Each milestone is joined to the tree over the neighbour that would be best if nothing were in the way, and only that
     motion is checked.  So the tree is nearly the shortest one, for about one check a milestone.  It can miss a path
     that :class:`PRM` finds with the same points.  Without a path, the count ``start_component`` is the size of the
-    tree.  Parameters and errors are those of :class:`PRM`.
+    tree.  Errors are those of :class:`PRM`.
+
+    Parameters
+    ----------
+    points, k, rule, edge_cost, links
+        As in :class:`PRM`.
 
     Examples
     --------

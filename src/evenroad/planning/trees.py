@@ -16,7 +16,6 @@ from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import CELLS, connector_of, trees_for
 from evenroad.planning.growing import GrowingPRM
-from evenroad.planning.hemmed_in import with_reasons
 from evenroad.roadmap.answer import connected, gave_up, refusal, shown_apart
 from evenroad.roadmap.attempt import NO_LIMIT, Attempt
 from evenroad.roadmap.budget import Budget
@@ -133,7 +132,7 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
         result = connected(attempt, connection)
         return _improved(attempt, connector, result, variant) if improve else result
     if (left := attempt.left()) is None:
-        return with_reasons(world, gave_up(attempt, connection))
+        return gave_up(attempt, connection)
     return _growing(improve).solve(_rest(attempt, left))
 
 

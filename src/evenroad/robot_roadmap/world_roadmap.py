@@ -15,7 +15,6 @@ from evenroad._clock import now
 from evenroad._shared import OwnLock, one_at_a_time
 from evenroad.planning.arm_trees import tighten
 from evenroad.planning.connectors import ArmTrees
-from evenroad.planning.hemmed_in import with_reasons
 from evenroad.planning.trees import RRTConnect
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
@@ -248,7 +247,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         if not follow and found.ended == NONE:
             text = f"the roadmap of {counted(self._size, 'milestone')} does not lead from start to goal"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
-        return with_reasons(self._worlds[0], failed)
+        return failed
 
     def _by_trees(self, attempt: Attempt, found: SearchResult) -> Connection:
         """Return what trees find, and insert it into the roadmap."""
