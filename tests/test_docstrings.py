@@ -22,9 +22,7 @@ OF_PLANNERS = {
 """Methods by which planners and files ask a world; users have `result` and `er.plan` for them."""
 
 NOT_YET = {
-    *("Budget", "KNearest", "Radius", "Roadmap", "Status", "Straight", "Upright"),
-    *("load_roadmap", "save_roadmap"),
-    *("load_robot_roadmap", "save_robot_roadmap", "make_roadmap"),
+    *("Roadmap", "Status", "Straight", "Upright", "load_roadmap"),
 }
 """Names of the root that are about to move or to go."""
 

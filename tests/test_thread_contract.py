@@ -14,7 +14,7 @@ from evenroad.planning import GrowingPRM
 from evenroad.planning.connectors import ARM_TREES
 from evenroad.planning.trees import default_planner
 from evenroad.points.measures import MEASURES
-from evenroad.roadmap import Status
+from evenroad.roadmap import Budget, KNearest, Status
 from evenroad.roadmap.kept import roadmap_of_points
 from evenroad.robot import ArmWorld, Obstacle, link_poses
 from evenroad.robot.certified import CertifiedWorld
@@ -113,7 +113,7 @@ def an_upright_arm():
 
 def trees():
     world = er.ArmWorld(robot(), box_scene())
-    budget = er.Budget(seconds=60.0, rounds=2)
+    budget = Budget(seconds=60.0, rounds=2)
     asks = [lambda a=a, b=b: er.plan(world, a, b) for a, b in ends()]
     return [*asks, lambda: er.plan(world, *ends()[0], default_planner(world, improve=True), limits=budget)]
 
@@ -135,9 +135,9 @@ def points_and_rules():
     a, b = ends()[3]
     return [
         lambda: er.plan(world, a, b, er.PRM(100)),
-        lambda: er.plan(world, a, b, er.PRM(100, search="lazy", rule=er.KNearest(12))),
+        lambda: er.plan(world, a, b, er.PRM(100, search="lazy", rule=KNearest(12))),
         lambda: er.plan(world, a, b, er.FMT(100)),
-        lambda: er.plan(world, a, b, GrowingPRM(), limits=er.Budget(samples=256)),
+        lambda: er.plan(world, a, b, GrowingPRM(), limits=Budget(samples=256)),
     ]
 
 

@@ -18,10 +18,7 @@ from evenroad.planning import plan as plan
 from evenroad.points import PointSet as PointSet
 from evenroad.points import draw as draw
 from evenroad.points import load_points as load_points
-from evenroad.roadmap import Budget as Budget
-from evenroad.roadmap import KNearest as KNearest
 from evenroad.roadmap import PlanResult as PlanResult
-from evenroad.roadmap import Radius as Radius
 from evenroad.roadmap import Roadmap as Roadmap
 from evenroad.roadmap import Status as Status
 from evenroad.robot import ArmWorld as ArmWorld

@@ -8,6 +8,7 @@ import pytest
 import evenroad as er
 from evenroad.cli import main
 from evenroad.planning.arm_request import arm_request
+from evenroad.roadmap import Budget
 from evenroad.robot import Obstacle, link_poses
 from evenroad.robot.reference.recheck import MeshCheck
 from tests.robot.mesh_arms import write_fork_arm
@@ -94,7 +95,7 @@ def test_of_several_goals_one_is_reached_and_named():
 
 def test_more_rounds_never_give_a_longer_path_and_the_same_rounds_the_same():
     def after(rounds):
-        budget = er.Budget(seconds=None, rounds=rounds)
+        budget = Budget(seconds=None, rounds=rounds)
         return er.plan("box-reach", "home", "inside", er.RRTConnect(improve=True), robot="ur5", limits=budget)
 
     first = er.plan("box-reach", "home", "inside", robot="ur5")
@@ -183,7 +184,7 @@ def test_of_poses_and_configurations_the_path_ends_at_one_and_the_cheapest_where
         [*poses, "inside"],
         er.RRTConnect(improve=True),
         robot="ur5",
-        limits=er.Budget(rounds=30),
+        limits={"rounds": 30},
     )
     assert first.solved
     assert best.cost <= first.cost

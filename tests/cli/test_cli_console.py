@@ -88,7 +88,7 @@ def test_the_times_of_a_plan_for_an_arm_fit_one_line_of_80_columns(capsys, monke
         "shortcut": 0.0021,
     }
     world = GridMap(np.zeros((9, 9), dtype=bool)).world(1.0)
-    result = replace(plan(world, (2, 2), (7, 7), PRM(16)), seconds=seconds)
+    result = replace(plan(world, (2, 2), (7, 7), PRM(16)), timings=seconds)
     print_plan(result, ["a.json"], [("checked by", "lanes")])
     out = capsys.readouterr().out
     assert "time [ms]   validity 12, neighbours 1457, search 556, motions 1000, shortcut 2.1" in out

@@ -70,7 +70,7 @@ def test_the_default_set_of_the_plane_is_even_for_any_n_and_the_output_says_so(r
 
 @pytest.mark.parametrize("d", [3, 4, 6])
 def test_the_default_set_of_every_dimension_is_even(d):
-    assert draw_points(SamplerOptions(seed=4), 500, d)[0] == draw("even", 500, d, rng=4)
+    assert draw_points(SamplerOptions(seed=4), 500, d) == draw("even", 500, d, rng=4)
 
 
 def test_the_same_command_gives_the_same_path_and_another_seed_another(run, tmp_path):
@@ -331,12 +331,10 @@ def test_out_may_not_overwrite_the_map(run, room):
 
 
 def test_an_interrupt_exits_with_130_and_leaves_no_half_file(run, tmp_path, monkeypatch):
-    import evenroad.roadmap
-
     def interrupted(*_args, **_kwargs):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(evenroad.roadmap, "plan", interrupted)
+    monkeypatch.setattr("evenroad.cli.plan_disk.solve", interrupted)
     code, _, err = run(*plan_arguments(out="a", n=64))
     assert code == 130
     assert "interrupted" in err
@@ -394,12 +392,10 @@ def test_a_reader_that_goes_away_is_no_error(tmp_path):
 
 
 def test_too_little_memory_is_one_line(run, monkeypatch):
-    import evenroad.roadmap
-
     def too_large(*_args, **_kwargs):
         raise MemoryError("Unable to allocate 3 EiB")
 
-    monkeypatch.setattr(evenroad.roadmap, "plan", too_large)
+    monkeypatch.setattr("evenroad.cli.plan_disk.solve", too_large)
     code, _, err = run(*plan_arguments(out="a", n=64))
     assert code == 2
     assert err == "evenroad: error: not enough memory: Unable to allocate 3 EiB\n"

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
-import evenroad as er
+from evenroad.roadmap import Budget
 from evenroad.robot import ArmWorld
 from evenroad.robot_roadmap.build import arm_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
@@ -129,7 +129,7 @@ def test_several_goals_and_a_budget_of_one_motion(roadmap):
 def test_a_proof_is_said_of_what_the_capsules_prove_alone(roadmap):
     known, proofs = expensive(roadmap), set()
     for start, goal in queries(known, 20):
-        result = known.plan(start, goal, budget=er.Budget(seconds=5.0))
+        result = known.plan(start, goal, budget=Budget(seconds=5.0))
         if result.solved:
             proofs.add(result.proof)
             assert result.proof == (

@@ -8,7 +8,7 @@ import pytest
 import evenroad as er
 from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
 from evenroad.geometry.shapes import Box, Capsule
-from evenroad.roadmap import Status
+from evenroad.roadmap import Budget, KNearest, Radius, Status
 from evenroad.robot import ArmWorld, Joint, Mimic, Obstacle, Scene, link_poses, with_group, with_limits
 from evenroad.robot_roadmap import freedom
 from evenroad.robot_roadmap.build import arm_roadmap, build_roadmap
@@ -355,7 +355,7 @@ def test_a_spent_budget_is_not_a_roadmap_that_leads_nowhere(roadmap):
     for start, goal in zip(roadmap.milestones[:12], roadmap.milestones[12:24], strict=True):
         fresh = within(roadmap, known.world.scene)
         if known.plan(start, goal, trees=False).solved:
-            statuses.append(fresh.plan(start, goal, trees=False, budget=er.Budget(motions=1)).status)
+            statuses.append(fresh.plan(start, goal, trees=False, budget=Budget(motions=1)).status)
     assert Status.BUDGET_SPENT in statuses
     assert Status.NOT_CONNECTED not in statuses
 
@@ -363,7 +363,7 @@ def test_a_spent_budget_is_not_a_roadmap_that_leads_nowhere(roadmap):
 def test_points_that_are_given_are_the_milestones_where_they_are_free(tmp_path):
     world = ArmWorld(ur5(joints=3), TABLE)
     points = er.draw("even", 64, 3)
-    made = build_roadmap(world, points, rule=er.KNearest(4))
+    made = build_roadmap(world, points, rule=KNearest(4))
     # Joints of two turns have their milestones within the one in the middle.
     low, high = made.one_turn.low, made.one_turn.high
     q = low + points.points * (high - low)
@@ -373,7 +373,7 @@ def test_points_that_are_given_are_the_milestones_where_they_are_free(tmp_path):
     start, goal = made.milestones[known.world.valid(made.milestones)][:2]
     assert known.world.recheck(known.plan(start, goal).path).all()
     with pytest.raises(er.errors.InvalidValue, match="KNearest"):
-        build_roadmap(world, points, rule=er.Radius(0.5))
+        build_roadmap(world, points, rule=Radius(0.5))
 
 
 def test_a_world_may_keep_as_far_away_as_the_roadmap_does_but_no_farther():
