@@ -168,7 +168,7 @@ def test_a_robots_roadmap_leads_to_poses_with_full_hands_and_straight(run, tmp_p
     code, _, err = run(*words, "--straight", "0.05")
     assert (code, err) == (0, "")
     record = json.loads((tmp_path / "pick.json").read_text())
-    assert record["planner"] == "robot roadmap"
+    assert record["planner"] == "roadmap"
     assert record["query"]["holds"] == ["rod"]
     assert record["deviation"]["line_m"] < 1e-3
     code, _, err = run(*words, "--upright", "5")

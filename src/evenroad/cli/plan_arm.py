@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from evenroad._compiled import say_if_compiling
 from evenroad.cli.plan import PlanArm
@@ -25,7 +26,8 @@ from evenroad.io import plan_record
 from evenroad.planning.arm_request import arm_request
 from evenroad.planning.arm_trees import prepare
 from evenroad.planning.plan import Wishes, finished, solve
-from evenroad.planning.request import Goal, Reading
+from evenroad.planning.request import Goal, Reading, Request
+from evenroad.roadmap import PlanResult
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
@@ -75,10 +77,28 @@ def plan_arm(plan: PlanArm) -> int:
     by = None if not wants_points(plan) and kept is None and upright is not None else planner
     result, meshes = finished(request, solve(request, by, wishes), certified=plan.certified)
     more_rows, trajectory = trajectory_rows(plan, request, result, ways)
-    robot, model, given = world.robot, request.model, request.given
-    assert given is not None
-    made = plan.options()
-    asked = {
+    record = plan_record(result, _asked(plan, request, result) | common_query(plan)) | {
+        "no_body": [] if request.model is None else list(request.model.bodiless),
+        "drawn_only": [] if request.model is None else list(request.model.drawn_only),
+        "checked_with": world.checked_with,
+        "trajectory": trajectory,
+        "meshes": None if meshes is None else asdict(meshes),
+    }
+    rows = [*_rows(request), *([] if meshes is None else [("meshes", str(meshes))]), *more_rows]
+
+    def draw(file: Path) -> None:
+        from evenroad.viz.arm import save_arm_picture
+
+        save_arm_picture(file, result, world)
+
+    return finish(files, result, record, world.robot.group, draw, rows)
+
+
+def _asked(plan: PlanArm, request: Request, result: PlanResult) -> dict[str, Any]:
+    """Return what was asked for, as the record keeps it."""
+    world, robot, made = request.world, request.world.robot, plan.options()
+    assert request.given is not None
+    return {
         "scene": str(plan.world),
         "robot": plan.robot,
         "roadmap": None if plan.roadmap is None else str(plan.roadmap),
@@ -89,37 +109,24 @@ def plan_arm(plan: PlanArm) -> int:
         "goal_names": list(request.goal_names),
         "held": held_values(robot),
         "holds": list(robot.holds),
-        "goal_poses": given.records(world, None if result.path is None else result.path[-1]),
+        "goal_poses": request.given.records(world, None if result.path is None else result.path[-1]),
         "resolution": world.resolution,
         "clearance": world.clearance,
     }
-    record = plan_record(result, asked | common_query(plan)) | {
-        "no_body": [] if model is None else list(model.bodiless),
-        "drawn_only": [] if model is None else list(model.drawn_only),
-        "checked_with": world.checked_with,
-        "trajectory": trajectory,
-        "meshes": None if meshes is None else asdict(meshes),
-    }
+
+
+def _rows(request: Request) -> list[tuple[str, str]]:
+    """Return rows for the table: the joints, what is held, goal poses, links without a body, and who checked."""
+    robot, given = request.world.robot, request.given
+    assert given is not None
     held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
     rows = [("joints", ", ".join(robot.group)), *([("held", held)] if held else [])]
     rows += [("holds", ", ".join(robot.holds))] if robot.holds else []
-    rows += [
-        (
-            "goal pose",
-            f"{goal}: {reached.branches} postures, {reached.blocked} in collision ({reached.solver})",
-        )
-        for goal, reached in given.poses
-    ]
-    rows += [] if model is None else bodiless_rows(model)
-    rows += [("checked by", world.checked_with), *([] if meshes is None else [("meshes", str(meshes))])]
-    rows += more_rows
-
-    def draw(file: Path) -> None:
-        from evenroad.viz.arm import save_arm_picture
-
-        save_arm_picture(file, result, world)
-
-    return finish(files, result, record, robot.group, draw, rows)
+    for goal, reached in given.poses:
+        postures = f"{reached.branches} postures, {reached.blocked} in collision ({reached.solver})"
+        rows.append(("goal pose", f"{goal}: {postures}"))
+    rows += [] if request.model is None else bodiless_rows(request.model)
+    return [*rows, ("checked by", request.world.checked_with)]
 
 
 def _goals(plan: PlanArm) -> list[Goal]:

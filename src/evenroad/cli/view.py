@@ -114,7 +114,7 @@ class View(RobotOptions):
             scene = joined_scenes(roadmap.scene, scene)
             robot, options = (roadmap.robot, {}) if robot is None else (robot, options)
         request = arm_request(
-            robot, scene, result.start, list(result.goals), Reading(), held=asked["held"], **options
+            robot, scene, result.start, list(result.goals), Reading(held=asked["held"]), **options
         )
         if self.n is not None:
             result = self._planned(request)

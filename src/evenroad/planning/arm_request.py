@@ -44,12 +44,11 @@ def arm_request(
     *,
     resolution: float = RESOLUTION,
     clearance: float = 0.0,
-    held: Mapping[str, float] | None = None,
     **options: Unpack[RobotOptions],
 ) -> Request:
     """Read robot, scene and configurations, and put them together; parameters and errors as :func:`evenroad.plan`.
 
-    Joints outside of the group are held at `held`, else where the named states of start and goal have them.
+    Joints outside of the group are held at `reading.held`, else where the named states of start and goal have them.
     """
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     source, model = None, None
@@ -62,8 +61,8 @@ def arm_request(
     goals = _places(goal)
     texts = [place for place in (start, *goals) if isinstance(place, str)]
     robot = at_states(in_scene(robot, scene), texts, scene)
-    if held:
-        robot = with_group(robot, robot.group, {**robot.held, **held})
+    if reading.held:
+        robot = with_group(robot, robot.group, {**robot.held, **reading.held})
     scene = scene_seen_by(robot, scene)
     first = _configuration(robot, scene, "start", start, reading)
     _refuse_what_is_none(robot, scene, goals, reading)

@@ -35,11 +35,14 @@ class Reading:
         Angles in texts are degrees.
     tip, frame : str
         Of which link goal poses are, and in the frame of which.  Default: the last link, and the root.
+    held : mapping, optional
+        Values of joints that are not planned for, joint -> value [rad or m].
     """
 
     degrees: bool = False
     tip: str = ""
     frame: str = ""
+    held: Mapping[str, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
