@@ -79,7 +79,7 @@ def test_joints_that_were_held_are_where_the_plan_held_them(run, tmp_path):
         *("--goal", "0.2,0.1,-1.5"),
     )
     assert code == 0, err
-    query, _ = View(world=tmp_path / "box-reach.json")._query()
+    query, _ = View(world=tmp_path / "box-reach.json")._request()
     held = held_values(query.world.robot)
     assert held["shoulder_lift_joint"] == pytest.approx(-np.pi / 2)
 
@@ -98,7 +98,7 @@ def test_a_plan_knows_where_the_packages_of_its_robot_are(run, tmp_path):
     made = ("--robot", "pole.urdf", "--package", f"ours_desc={folder.parent}", "--use-visuals")
     code, _, err = run("plan", "nothing.yaml", *made, "--start", "-0.5", "--goal", "0.5", "--no-picture")
     assert code == 0, err
-    query, _ = View(world=tmp_path / "nothing.json")._query()
+    query, _ = View(world=tmp_path / "nothing.json")._request()
     assert "pole" in {capsule.link for capsule in query.world.robot.capsules}
 
 
@@ -111,6 +111,6 @@ def test_a_plan_along_a_roadmap_is_shown_with_its_arm_and_its_cell(run, tmp_path
     ends = ("--start", "0,-1.5,0,-1.5,0,0", "--goal", "0.3,-1.5,0,-1.5,0,0")
     code, _, err = run("plan", "day.yaml", "--roadmap", "a.roadmap", *ends, "--no-picture")
     assert code == 0, err
-    query, result = View(world=tmp_path / "day.json")._query()
+    query, result = View(world=tmp_path / "day.json")._request()
     assert {each.name for each in query.world.scene.obstacles} == {"fence", "ball"}
     assert result.solved
