@@ -6,6 +6,7 @@ import pytest
 import evenroad as er
 from evenroad.geometry import Pose
 from evenroad.geometry.rotation import rotation_from_z
+from evenroad.planning.arm_trees import connect
 from evenroad.robot import ArmWorld, HeldObject, Obstacle, PoseGoal, Scene, Straight, load_robot
 from evenroad.robot.chain import chain_of, default_tip
 from evenroad.robot.inverse_kinematics import task_of
@@ -61,7 +62,7 @@ def place_of(robot, q):
 @pytest.mark.parametrize("witness", WITNESSES)
 def test_a_place_is_not_out_of_reach_because_the_postures_found_are(barred, witness):
     goal = PoseGoal(place_of(barred.robot, witness), position_only=True)
-    assert barred.connect(START, np.array([witness])).goal == 0
+    assert connect(barred, START, np.array([witness])).goal == 0
     result = er.plan(barred.scene, START, goal, robot=barred.robot, seconds=3.0)
     assert result.status in ("solved", "budget_spent")
     if not result.solved:

@@ -19,6 +19,7 @@ from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.separated import apart
 from evenroad.robot.walls import pieces_between_walls, walls_of
+from tests.plan_on import may_connect
 from tests.robot.kernel_arms import STRAIGHT, Z, random_tree
 from tests.robot.urdf_texts import joint, link, urdf, write
 
@@ -85,7 +86,7 @@ def test_a_robot_from_the_cache_knows_its_walls(robot, tmp_path):
 def test_a_pair_that_is_not_tested_blocks_nothing(robot):
     for pairs in ((), tuple(pair for pair in robot.pairs if pair != ("foot", "arm"))):
         allowed = replace(robot, pairs=pairs)
-        assert ArmWorld(allowed).may_connect(UP, OVER)
+        assert may_connect(ArmWorld(allowed), UP, OVER)
         assert er.plan(Scene(), UP, OVER, robot=allowed, seconds=2.0).status == "solved"
 
 
@@ -93,7 +94,7 @@ def test_what_is_no_solid_blocks_nothing(tmp_path):
     """A foot without its lid: nobody knows where its inside is."""
     open_foot = trimesh.creation.cylinder(radius=0.15, height=0.2, sections=12).apply_translation((0, 0, 0.1))
     open_foot.update_faces(np.arange(len(open_foot.faces)) > 0)
-    assert ArmWorld(turret(tmp_path, foot=open_foot)).may_connect(UP, OVER)
+    assert may_connect(ArmWorld(turret(tmp_path, foot=open_foot)), UP, OVER)
 
 
 def test_a_pose_is_out_of_reach_only_where_all_of_its_postures_are(robot):
@@ -116,7 +117,7 @@ def test_a_joint_that_turns_on_needs_walls_on_both_sides(robot):
         for each in robot.joints
     ]
     endless = replace(robot, joints=tuple(joints))
-    assert ArmWorld(endless).may_connect(UP, OVER)
+    assert may_connect(ArmWorld(endless), UP, OVER)
     lid = Mesh(
         convex_hull(np.array([[x, y, z] for x in (-0.2, 0.2) for y in (-0.2, 0.2) for z in (0.5, 0.7)])),
         link="foot",
@@ -131,8 +132,8 @@ def test_a_joint_that_turns_on_needs_walls_on_both_sides(robot):
     for turn in (-4.0, -2.0, 0.0, 1.0):
         near, far = (np.array([0.3, math.remainder(lift + turn, math.tau), 0.0]) for lift in (0.0, math.pi))
         if world.valid(np.array([near, far])).all():
-            assert world.may_connect(near, UP) != world.may_connect(far, UP)
-    assert not world.may_connect(UP, OVER)
+            assert may_connect(world, near, UP) != may_connect(world, far, UP)
+    assert not may_connect(world, UP, OVER)
     for turn in (-math.pi, -1.0, 1.0, math.pi):
         ((k, piece),) = pieces_between_walls(between, UP + np.array([turn, 0.0, 0.0]))
         assert k == 1
@@ -192,9 +193,9 @@ def test_a_slit_at_the_end_of_the_other_joint_is_seen(make):
     ends = np.array([[limit, -0.7], [limit, 0.7]])
     assert world.motion_valid(*ends[:, np.newaxis])[0]
     assert not world.motion_valid(*(ends - (0.01 * limit, 0.0))[:, np.newaxis])[0]
-    assert world.may_connect(*ends)
+    assert may_connect(world, *ends)
     narrower = with_limits(robot, {"other": (-limit, 0.98 * limit)})
-    assert not ArmWorld(narrower).may_connect(*(ends - (0.1 * limit, 0.0)))
+    assert not may_connect(ArmWorld(narrower), *(ends - (0.1 * limit, 0.0)))
 
 
 @pytest.mark.parametrize(("overlap", "shown"), [(1e-3, True), (2.5e-4, False), (-1e-5, False)])
