@@ -111,14 +111,14 @@ def test_verdicts_are_those_of_boxes_in_the_plane(arm):
 
 
 def test_our_planner_on_their_robot(arm):
-    result = er.find_path(arm, (0.9, 0.0), (-0.9, 0.3))
+    result = er.plan(arm, (0.9, 0.0), (-0.9, 0.3))
     assert result.solved
     assert result.proof == "resolution"
     fine = np.linspace(0.0, 1.0, 400)
     for a, b in zip(result.path[:-1], result.path[1:], strict=True):
         states = arm.space.interpolate(np.tile(a, (400, 1)), np.tile(b, (400, 1)), fine)
         assert (_apart(states) > -1e-9).all()
-    blocked = er.find_path(arm, (0.0, 0.0), (-0.9, 0.3))
+    blocked = er.plan(arm, (0.0, 0.0), (-0.9, 0.3))
     assert "does not call it free" in blocked.message
 
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
-from evenroad.arms import plan_arm
 
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry import Box, Pose
 from evenroad.geometry.shapes import Capsule, Mesh
+from evenroad.planning import plan
 from evenroad.robot import ArmWorld, Obstacle, Scene, joint_values, link_poses, load_model, load_robot
 from evenroad.robot.mjcf import read_mjcf
 from evenroad.robot.urdf_xml import RobotFile
@@ -141,7 +141,7 @@ def test_an_arm_of_an_mjcf_is_planned_for(tmp_path):
         "<body name='hand' pos='.6 0 0'><joint name='bend' axis='0 0 1' range='-170 170'/>"
         "<geom type='capsule' fromto='.1 0 0 .4 0 0' size='.04'/></body></body>"
     )
-    result = plan_arm(write(tmp_path, arm), Scene(name="empty"), "0,0", "2,1")
+    result = plan(Scene(name="empty"), "0,0", "2,1", robot=write(tmp_path, arm))
     assert result.solved
 
 

@@ -5,10 +5,9 @@ import time
 
 import numpy as np
 import pytest
-from evenroad.arms import arm_query
 
+from evenroad.planning.arm_request import arm_request
 from evenroad.planning.plan import plan as find_path
-from evenroad.roadmap import Budget
 from evenroad.robot.kinematics import link_poses
 
 viser = pytest.importorskip("viser")
@@ -23,10 +22,10 @@ FLAGS += ["--disable-background-networking", "--no-first-run"]
 def page():
     from evenroad.viz.page import ArmPage
 
-    query = arm_query("ur5", "box-reach", "home", "inside")
+    query = arm_request("ur5", "box-reach", "home", "inside")
 
     def plan(start, goal):
-        return find_path(query.world, start, goal[np.newaxis], budget=Budget(seconds=0.5))
+        return find_path(query.world, start, goal[np.newaxis], seconds=0.5)
 
     page = ArmPage(query.world, plan(query.start, query.goals[0]), plan, port=0)
     threading.Thread(target=page.serve, daemon=True).start()

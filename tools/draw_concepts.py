@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 
 import evenroad as er
 from evenroad.points.measures import dispersion_bounds
+from evenroad.roadmap import KNearest
 from evenroad.viz import style
 from evenroad.world.gridmap.shipped import Maze, load_maze
 from evenroad_studies.statistics.rates import wilson
@@ -77,7 +78,7 @@ def draw_roadmaps() -> None:
     """Draw how a roadmap comes to be: points, milestones, free motions, and the path."""
     maze = load_maze(2)
     world, points = maze.world(), er.draw("even", 256, 2)
-    result = er.plan(world, maze.start, maze.goal, points, rule=er.KNearest(10))
+    result = er.plan(world, maze.start, maze.goal, er.PRM(points, search="full", k=10))
     assert result.roadmap is not None, result.message
     assert result.path is not None, result.message
     places = world.space.from_cube(points.points)
@@ -144,7 +145,7 @@ def draw_ends() -> None:
                 f"{name}: one of the {links} nearest is seen {share(sum(each[:links].any() for each in seen))}"
             )
     maze = load_maze(3)
-    world, rule = maze.world(), er.KNearest(10)
+    world, rule = maze.world(), KNearest(10)
     for links in (None, 100):
         sets = (er.draw("even", 256, 2, rng=run) for run in range(RUNS))
         solved = [
