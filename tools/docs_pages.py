@@ -34,7 +34,7 @@ STUDIES = ROOT / "studies" / "docs"
 """Pages of the studies, which become a section of the site."""
 
 REFERENCE = {
-    "planning": ("Planning", ("evenroad.roadmap", "evenroad.io")),
+    "planning": ("Planning", ("evenroad.planning", "evenroad.roadmap", "evenroad.io")),
     "points": (
         "Point sets",
         (
@@ -47,7 +47,7 @@ REFERENCE = {
     ),
     "qmc": ("Engines for SciPy", ("evenroad.qmc",)),
     "worlds": ("Spaces and worlds", ("evenroad.space", "evenroad.world", "evenroad.testing")),
-    "arms": ("Arms", ("evenroad.arms", "evenroad.robot")),
+    "arms": ("Arms", ("evenroad.robot",)),
     "geometry": ("Geometry", ("evenroad.geometry",)),
     "robot_roadmaps": (
         "Robots' roadmaps",
@@ -75,18 +75,7 @@ MODULES = {
 }
 """Page -> modules of the root that it holds."""
 
-FOR_THE_COMMAND = {
-    "evenroad.arms": {
-        "Ends",
-        "RESOLUTION",
-        "SEARCH",
-        "find_cheapest",
-        "finished",
-        "mesh_check",
-        "plan_on_points",
-    }
-    | {"plan_ways", "unreached"}
-}
+FOR_THE_COMMAND: dict[str, set[str]] = {}
 """Module -> names that it offers to evenroad's own command and benchmarks, not to users."""
 
 NOT_NEEDED = ["ompl", "klampt"]
