@@ -6,7 +6,7 @@ from evenroad.world.gridmap.shipped import load_maze
 
 maze = load_maze(3)
 world = maze.world()
-result = er.plan(world, maze.start, maze.goal, er.draw("even", n=1024, d=2))
+result = er.plan(world, maze.start, maze.goal, er.PRM(1024))
 print(result.status, result.message)
 save_json("maze.json", plan_record(result, {"map": maze.path.name}))
 result.plot("maze-plan.png")

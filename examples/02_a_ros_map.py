@@ -18,6 +18,6 @@ Path("office.yaml").write_text(
 
 world = er.load_map("office.yaml").world(radius=0.25, clearance=0.05)
 start, goal = world.space.from_cube(np.array([[0.5, 0.1], [0.1, 0.9]]))
-result = er.plan(world, start, goal, er.draw("even", n=256, d=2))
+result = er.plan(world, start, goal, er.PRM(256))
 print(result.status, f"{result.cost:.2f} m")
 result.plot("office-plan.png")

@@ -8,7 +8,7 @@ world = maze.world()
 for sampler in ("uniform", "halton", "sobol", "lattice", "hickernell", "even"):
     runs = 50
     solved = sum(
-        er.plan(world, maze.start, maze.goal, er.draw(sampler, 128, 2, rng=run), shorten=False).solved
+        er.plan(world, maze.start, maze.goal, er.PRM(er.draw(sampler, 128, 2, rng=run)), smooth=False).solved
         for run in range(runs)
     )
     print(f"{sampler:12} {100 * solved / runs:.0f} %")

@@ -25,7 +25,8 @@ def theirs_on_ours() -> None:
 
     points = er.draw("even", 128, 2)
     path = plan_on_points(information, maze.start, maze.goal, points)
-    ours = er.plan(world, maze.start, maze.goal, points, rule=KEarlier(10), links=None, shorten=False)
+    planner = er.PRM(points, rule=KEarlier(10), links=None)
+    ours = er.plan(world, maze.start, maze.goal, planner, smooth=False)
     length = 0.0 if path is None else float(world.space.distance(path[:-1], path[1:]).sum())
     print(f"OMPL's PRM on 128 even points: {length:.3f}; our roadmap by its rule: {ours.cost:.3f}")
 
@@ -37,7 +38,9 @@ def ours_on_theirs() -> None:
         lambda state: (state.getX() - 0.5) ** 2 + (state.getY() - 0.5) ** 2 > 0.09
     )
     information.setStateValidityCheckingResolution(0.005)
-    result = er.plan(OmplWorld(information), (0.1, 0.1, 0.0), (0.9, 0.9, 3.0), er.draw("even", 256, 3))
+    result = er.plan(
+        OmplWorld(information), (0.1, 0.1, 0.0), (0.9, 0.9, 3.0), er.PRM(er.draw("even", 256, 3))
+    )
     print("our roadmap, OMPL's checker:", result.message, "proof:", result.proof)
 
 

@@ -35,42 +35,32 @@ FIELD = {
 """Words that are out -> what the field says."""
 
 STILL_THERE = {
-    "ask": 7,
+    "ask": 5,
     "asks": 1,
     "asking": 2,
-    "hear": 1,
     "tell": 1,
     "told": 3,
-    "question": 4,
-    "questions": 2,
-    "day": 7,
     "today": 1,
-    "dear": 6,
-    "dearly": 2,
     "desk": 3,
-    "doubt": 1,
     "doubtful": 1,
-    "learn": 4,
-    "learned": 1,
+    "learn": 1,
     "lifted": 4,
     "places": 8,
     "pocket": 2,
     "pockets": 4,
-    "price": 2,
+    "price": 3,
     "prices": 3,
     "recheck": 2,
     "rechecks": 1,
-    "room": 11,
-    "separates": 1,
-    "sight": 1,
+    "room": 7,
     "stretch": 1,
     "stretches": 1,
     "tight": 1,
     "tighten": 4,
-    "verdict": 4,
-    "verdicts": 4,
-    "way": 11,
-    "ways": 9,
+    "verdict": 3,
+    "verdicts": 2,
+    "way": 7,
+    "ways": 4,
 }
 """Word that is out -> number of identifiers of the package that still have it; it must not grow."""
 
@@ -122,7 +112,7 @@ def prose(path):
 @pytest.mark.parametrize("path", GUIDES, ids=lambda path: path.name)
 def test_guides_are_short_and_have_one_table(path):
     lines = path.read_text().splitlines()
-    assert len(lines) <= (225 if path.name == "design.md" else 150)
+    assert len(lines) <= 150
     tables = [line for line in lines if re.fullmatch(r"\|[ :|-]*--[ :|-]*\|", line)]
     assert len(tables) <= 1
 

@@ -34,7 +34,7 @@ STUDIES = ROOT / "studies" / "docs"
 """Pages of the studies, which become a section of the site."""
 
 REFERENCE = {
-    "planning": ("Planning", ("evenroad.roadmap", "evenroad.io")),
+    "planning": ("Planning", ("evenroad.planning", "evenroad.roadmap", "evenroad.io")),
     "points": (
         "Point sets",
         (
@@ -47,7 +47,6 @@ REFERENCE = {
     ),
     "qmc": ("Engines for SciPy", ("evenroad.qmc",)),
     "worlds": ("Spaces and worlds", ("evenroad.space", "evenroad.world", "evenroad.testing")),
-    "planners": ("Planners", ("evenroad.planning",)),
     "arms": ("Arms", ("evenroad.robot",)),
     "geometry": ("Geometry", ("evenroad.geometry",)),
     "robot_roadmaps": (
