@@ -19,6 +19,7 @@ FUNCTIONS = {
     "ArmRoadmap.within": "evenroad.robot_roadmap.world_roadmap:ArmWorldRoadmap",
     "ArmRoadmap.save": "evenroad.robot_roadmap.file:save_arm_roadmap",
     "PlanResult.plot": "evenroad.viz.result:plot_result",
+    "plan.planner": "evenroad.robot_roadmap.file:load_roadmap",
     "PlanResult.save": "evenroad.io:save_result",
     "PlanResult.trajectory": "evenroad.trajectory.of_plan:trajectory_of",
     "PointSet.discrepancy": "scipy.stats.qmc:discrepancy",

@@ -292,3 +292,15 @@ def test_a_budget_of_a_query_is_kept_to_and_what_was_asked_is_kept():
     assert result.message.startswith("no path within 10 motions, 60 s; start reaches")
     known.plan(*CORNERS[::3], search="full", links=None)
     assert world.asked_motions <= 10 + len(known.roadmap.edges) + 13
+
+
+def test_a_roadmap_its_file_and_its_planner_in_a_world_give_the_same_path(tmp_path):
+    world = GridMap(np.eye(20, dtype=bool)).world(0.5)
+    roadmap = roadmap_of_points(world.space, draw("sobol", 64, 2), KNearest(8))
+    roadmap.save(tmp_path / "map.roadmap")
+    within = roadmap.within(world)
+    planners = (roadmap, tmp_path / "map.roadmap", str(tmp_path / "map.roadmap"), within)
+    paths = [plan(world, (5, 15), (5, 18), each).path.tolist() for each in planners]
+    assert paths == [paths[0]] * 4
+    with pytest.raises(InvalidValue, match="a roadmap plans in its own world"):
+        plan(GridMap(np.eye(20, dtype=bool)).world(0.6), (5, 15), (5, 18), within)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, cast
 
+from evenroad._above import above
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
@@ -20,7 +22,7 @@ from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import require_certified
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.kept import WorldRoadmap
+from evenroad.roadmap.kept import Roadmap, WorldRoadmap
 from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.result import PlanResult, Status
 from evenroad.robot import ArmWorld
@@ -47,7 +49,7 @@ def plan(
     world: Any,
     start: Place,
     goal: Goal | Sequence[Goal],
-    planner: Planner | PointSet | None = None,
+    planner: Planner | Roadmap | PointSet | str | os.PathLike[str] | None = None,
     *,
     seconds: float | None = None,
     limits: Budget | Mapping[str, int] | None = None,
@@ -75,9 +77,10 @@ def plan(
     goal : as `start`, Pose, PoseGoal, or a sequence of such
         Of several, also of all configurations known to bring an arm's tip to a pose, the path ends at the nearest,
         where that is soon reached; along a roadmap, or with ``improve``, at the cheapest.
-    planner : Planner or PointSet, optional
+    planner : Planner, Roadmap, PointSet, str or path-like, optional
         Such as ``er.RRTConnect()``, ``er.PRM(512)`` or ``er.FMT(1024)``.  Default: trees for an arm, a search of cells
-        for a disk on a map, points that grow for any other world.  A PointSet stands for ``er.PRM(points)``.
+        for a disk on a map, points that grow for any other world.  A PointSet stands for ``er.PRM(points)``,
+        a Roadmap, or its file, for that roadmap within the world.
     seconds : float, optional
         Wall time to plan at most, > 0.  Default: 5; for planners on points that are drawn beforehand 60.
     limits : mapping or Budget, optional
@@ -120,15 +123,20 @@ def plan(
     >>> er.plan("box-reach", "home", "inside", robot="ur5").status
     <Status.SOLVED: 'solved'>
     """
+    if isinstance(planner, str | os.PathLike):
+        planner = cast(Roadmap, above("plan.planner")(planner))
     if isinstance(planner, PointSet):
         planner = PRM(planner)
-    if planner is not None and not isinstance(planner, Planner):
+    if planner is not None and not isinstance(planner, Planner | Roadmap):
         raise InvalidValue(
-            "planner must be a planner, such as er.RRTConnect(), er.PRM(512) or a roadmap within a world, got"
+            "planner must be a planner, such as er.RRTConnect(), er.PRM(512) or a roadmap, got"
             f" {shown(planner)}"
         )
-    request = read_request(world, start, goal, Reading(degrees, tip, frame), planner, **of_world)
-    if isinstance(planner, WorldRoadmap) and planner.world is not request.world:
+    reading = Reading(degrees, tip, frame)
+    request = read_request(world, start, goal, reading, planner, **of_world)
+    if isinstance(planner, Roadmap):
+        planner = planner.within(request.world)
+    elif isinstance(planner, WorldRoadmap) and planner.world is not request.world:
         raise InvalidValue(
             f"a roadmap plans in its own world: give er.plan its .world, got {request.world!r}"
         )

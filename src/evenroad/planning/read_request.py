@@ -13,6 +13,7 @@ from evenroad.planning import arm_trees
 from evenroad.planning.arm_request import arm_request, request_in
 from evenroad.planning.request import Goal, Place, Reading, Request
 from evenroad.planning.trees import RRTConnect
+from evenroad.roadmap.kept import Roadmap
 from evenroad.roadmap.problem import Planner
 from evenroad.roadmap.query import read_places
 from evenroad.robot import ArmWorld, Scene
@@ -28,7 +29,7 @@ def read_request(
     start: Place,
     goal: Goal | Sequence[Goal],
     reading: Reading,
-    planner: Planner | None = None,
+    planner: Planner | Roadmap | None = None,
     **of_world: Any,
 ) -> Request:
     """Return world, start and goals, as far as they can be read; parameters and errors as :func:`evenroad.plan`."""
