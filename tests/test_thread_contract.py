@@ -125,7 +125,7 @@ def one_call():
     return [
         lambda: er.plan("box-reach", "home", "inside", robot="ur5", certified=True),
         lambda: er.plan(box_scene(), ends()[0, 0], pose, robot=arm),
-        lambda: er.plan(box_scene(), *ends()[2], 200, robot=arm),
+        lambda: er.plan(box_scene(), *ends()[2], er.PRM(200), robot=arm),
         lambda: er.load_robot("ur5").configuration("home", er.load_scene("box-reach")),
     ]
 
@@ -164,7 +164,7 @@ def a_function():
         er.spaces.SE2((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1 * q[:, 1], 0.02
     )
     q = ends(world)
-    return [*verdicts(world, q[:2]), lambda: er.plan(world, *q[0], 40, search="lazy")]
+    return [*verdicts(world, q[:2]), lambda: er.plan(world, *q[0], er.PRM(40))]
 
 
 @cache

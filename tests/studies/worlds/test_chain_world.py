@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from evenroad import _njit
+from evenroad import _njit, _sources
 from evenroad.errors import InvalidValue
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
@@ -160,6 +160,6 @@ def test_threads_give_the_verdicts_of_one():
 
 
 def test_edits_of_what_the_studies_import_of_themselves_are_noticed():
-    assert _njit._files_of("evenroad_studies.worlds.chain") == (chain.__file__,)
-    assert _njit._files_of("evenroad._njit") == (_njit.__file__,)
-    assert _njit._files_of("evenroad_studies.no_such_module") == ()
+    assert _sources._files_of("evenroad_studies.worlds.chain") == (chain.__file__,)
+    assert _sources._files_of("evenroad._njit") == (_njit.__file__,)
+    assert _sources._files_of("evenroad_studies.no_such_module") == ()
