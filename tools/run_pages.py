@@ -32,7 +32,6 @@ Path("office.yaml").write_text(
 SQUARE = """
 import numpy as np
 import evenroad, evenroad as er
-from evenroad import KNearest
 world = er.FunctionWorld(evenroad.space.BoxSpace((0, 0), (1, 1)), lambda q: abs(q[:, 0] - 0.5) > 0.1, 0.01)
 start, goal, points = (0.1, 0.1), (0.3, 0.9), er.draw("cover", 512, 2)
 """
