@@ -26,10 +26,10 @@ import numpy.typing as npt
 from studies.benchmarks.arm_problems import KINDS, Pool, Problem, arm_named, problems
 from studies.benchmarks.clouds import points_on, triangles_of
 
-from evenroad import Budget, draw
+from evenroad import draw
 from evenroad.geometry import Mesh, PointCloud
 from evenroad.planning import FMT, PRM, GrowingPRM, plan
-from evenroad.roadmap import KNearest, PlanResult
+from evenroad.roadmap import Budget, KNearest, PlanResult
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot_roadmap.build import build_roadmap
@@ -168,7 +168,7 @@ def arm_plans() -> Lines:
         lines.append(line_of(f"trees {name}", plan(world, *ends, limits=trees)))
         lines.append(line_of(f"trees back {name}", plan(world, *ends[::-1], limits=trees)))
         points = draw("even", 256, world.space.dim)
-        lines.append(line_of(f"prm {name}", plan(world, *ends, points, search="lazy", budget=roadmap)))
+        lines.append(line_of(f"prm {name}", plan(world, *ends, PRM(points), limits=roadmap)))
     for goal in ("inside", "0.2,-1.0,1.2,-1.5,-1.5,0.0"):
         for scene in ("box-reach", "box-reach-narrow"):
             result = plan(scene, "home", goal, robot="ur5", limits=trees)
