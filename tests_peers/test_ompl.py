@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from evenroad.planning import PRM, plan
 from evenroad.points import draw
-from evenroad.roadmap import KEarlier, plan
+from evenroad.roadmap import KEarlier
 from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld
 from evenroad_studies.worlds import Corridor
@@ -34,7 +35,7 @@ def test_success_agrees_on_random_worlds(seed):
     points = draw("uniform", 40, d, rng=seed)
     share = 0.01
     world = FunctionWorld(BoxSpace(np.zeros(d), np.ones(d)), free, share * np.sqrt(d))
-    ours = plan(world, start, goal, points, rule=KEarlier(10), links=None, shorten=False)
+    ours = plan(world, start, goal, PRM(points, rule=KEarlier(10), links=None), smooth=False)
     if str(ours.status).endswith("invalid"):
         start_and_goal_free = free(np.stack([start, goal]))
         assert not start_and_goal_free.all()
@@ -50,7 +51,11 @@ def test_random_worlds_are_both_solved_and_not():
         world = FunctionWorld(BoxSpace(np.zeros(d), np.ones(d)), free, 0.01 * np.sqrt(d))
         points = draw("uniform", 40, d, rng=seed)
         result = plan(
-            world, np.full(d, 0.02), np.full(d, 0.98), points, rule=KEarlier(10), links=None, shorten=False
+            world,
+            np.full(d, 0.02),
+            np.full(d, 0.98),
+            PRM(points, rule=KEarlier(10), links=None),
+            smooth=False,
         )
         outcomes.add(str(result.status))
     assert {"solved", "not_connected"} <= outcomes
@@ -66,6 +71,6 @@ def test_success_agrees_in_corridors(d, lam, n):
     for seed in range(4):
         points = draw("uniform", n, d, rng=seed)
         ours = plan(
-            world, world.start, world.goal, points, rule=KEarlier(10), links=None, shorten=False
+            world, world.start, world.goal, PRM(points, rule=KEarlier(10), links=None), smooth=False
         ).solved
         assert ours == ompl_prm(free, points.points, world.start, world.goal, 0.001)[0]

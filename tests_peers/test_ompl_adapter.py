@@ -126,7 +126,7 @@ def test_our_planner_on_their_world_finds_what_it_finds_on_ours():
     ours = FunctionWorld(BoxSpace((0.0, 0.0), (1.0, 1.0)), _ball, 0.01)
     theirs = TestTheirWorld().world
     points = er.draw("even", 128, 2)
-    one, other = (er.plan(world, (0.1, 0.1), (0.9, 0.9), points) for world in (ours, theirs))
+    one, other = (er.plan(world, (0.1, 0.1), (0.9, 0.9), er.PRM(points)) for world in (ours, theirs))
     assert one.solved
     assert other.solved
     assert other.proof == "resolution"
@@ -187,7 +187,9 @@ def test_prm_on_our_points_solves_what_our_roadmap_does(level, n):
     world = maze.world()
     for seed in range(4):
         points = er.draw("halton", n, 2, rng=seed)
-        ours = er.plan(world, maze.start, maze.goal, points, rule=KEarlier(10), links=None, shorten=False)
+        ours = er.plan(
+            world, maze.start, maze.goal, er.PRM(points, rule=KEarlier(10), links=None), smooth=False
+        )
         theirs = plan_on_points(space_information(world), maze.start, maze.goal, points)
         assert ours.solved == (theirs is not None)
         if theirs is not None:
@@ -225,6 +227,6 @@ def test_rigid_bodies_plan_both_ways(seed):
     information = ob.SpaceInformation(ompl_space(space))
     information.setStateValidityChecker(lambda s: bool(free(np.array([[s.getX(), s.getY(), s.getYaw()]]))[0]))
     information.setStateValidityCheckingResolution(0.005)
-    result = er.plan(OmplWorld(information), start, goal, er.draw("even", 256, 3))
+    result = er.plan(OmplWorld(information), start, goal, er.PRM(er.draw("even", 256, 3)))
     assert result.solved
     assert free(result.path).all()

@@ -13,10 +13,10 @@ from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 
 from evenroad.errors import EvenroadError
 from evenroad.robot import Robot, Scene, link_poses, load_robot
+from evenroad.robot.groups import choose_group
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.load import find_robot
 from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
-from evenroad.robot.srdf import choose_group
 from evenroad.robot.urdf import read_urdf
 from tests_peers.engines.pinocchio_world import PinocchioWorld, placements
 
