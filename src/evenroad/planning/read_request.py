@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from difflib import get_close_matches
-from pathlib import Path
 from typing import Any
 
 from evenroad.errors import InvalidValue, shown
@@ -41,14 +40,12 @@ def read_request(
             raise InvalidValue(
                 f"{os.fspath(world)!r} needs radius=, of a disk on this map, or robot=, the arm in this scene"
             )
-        else:
-            world = Path(world) if isinstance(world, os.PathLike) else world
     if isinstance(world, GridMap):
         _require_known(of_world, OF_MAP, "a map")
         if "radius" not in of_world:
             raise InvalidValue("a map goes with radius=, that of the disk that moves on it, in map units")
         world = world.world(of_world.pop("radius"), clearance=of_world.pop("clearance", 0.0))
-    if isinstance(world, Scene | str | Path):
+    if isinstance(world, Scene | str | os.PathLike):
         _require_known(of_world, OF_SCENE, "a scene")
         if "robot" not in of_world:
             raise InvalidValue(
@@ -75,4 +72,4 @@ def _require_known(given: dict[str, Any], known: Sequence[str], what: str) -> No
         if name not in known:
             near = get_close_matches(name, known, 1)
             hint = f"; did you mean {near[0]}?" if near else ""
-            raise InvalidValue(f"{name}: unknown argument of plan in {what}{hint} Known: {', '.join(known)}")
+            raise InvalidValue(f"{name}: unknown argument of plan in {what}{hint}; known: {', '.join(known)}")
