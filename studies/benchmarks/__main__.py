@@ -11,6 +11,7 @@ HELPERS = {
     "arm_problems",
     "mjcf_truth",
     "robot_truth",
+    "rows",
 }
 ASKED = {"arm_tables"}
 """They want to be told what to do, or what to read; the pages say how."""

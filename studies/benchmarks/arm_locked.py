@@ -7,10 +7,9 @@ What a plan itself proves in a tenth of a second (`evenroad.robot.separated`), w
 
 from __future__ import annotations
 
-import argparse
-
 import numpy as np
 from studies.benchmarks.arm_problems import REPORTING, Pool, Problem, arm_named, problems
+from studies.benchmarks.rows import parser_of
 
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.separated import THOROUGH, outer_bodies, shown_by
@@ -35,9 +34,7 @@ def main() -> None:
 
     from evenroad.planning.arm_trees import connect
 
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of(__doc__)
     parser.add_argument("--count", type=int, default=30, help="cages for each arm, at most 100")
     parser.add_argument("--arms", nargs="*", default=["ur5", "arm7"])
     options = parser.parse_args()

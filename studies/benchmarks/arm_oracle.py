@@ -8,9 +8,8 @@ are free although the oracle says contact, at any distance.
 
 from __future__ import annotations
 
-import argparse
-
 import numpy as np
+from studies.benchmarks.rows import parser_of
 from tests.robot.kernel_arms import as_balls, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
 
@@ -50,9 +49,7 @@ def compare(name: str, robots: list[tuple[Robot, Scene]], count: int) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of(__doc__)
     parser.add_argument("--count", type=int, default=100_000, help="configurations of each kind")
     options = parser.parse_args()
     compare("UR5 among every shape", [(ur5(), random_scene(5))], options.count)

@@ -11,7 +11,6 @@ left out of the figures and named.
 
 from __future__ import annotations
 
-import argparse
 import ctypes
 import os
 import subprocess
@@ -28,6 +27,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 from studies.benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm_named, problems
+from studies.benchmarks.rows import parser_of
 
 from evenroad.planning.arm_trees import connect, shorten
 from evenroad.roadmap.connector import Connection
@@ -228,9 +228,7 @@ def measure_compilation() -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of(__doc__)
     parser.add_argument("--count", type=int, default=100, help="problems of each kind, at most 100")
     parser.add_argument("--arms", nargs="*", default=["ur5", "arm7"])
     parser.add_argument("--tuning", action="store_true", help="the problems that constants are chosen on")

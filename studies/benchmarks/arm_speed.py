@@ -9,9 +9,6 @@ random free configurations, blocked ones included, at 0.05 rad.
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
-import tempfile
 import time
 from collections.abc import Callable
 from functools import partial
@@ -29,16 +26,6 @@ from evenroad.robot.scene_file import load_scene
 from evenroad.world import World
 
 REPEATS = 11
-FIRST_CHECK = """
-import time
-begin = time.perf_counter()
-from studies.benchmarks.arm_speed import ur5_world
-world = ur5_world("box-reach")
-world.valid([[0.0] * 5])
-print(time.perf_counter() - begin)
-world.motion_valid([[0.0] * 5], [[0.1] * 5])
-print(time.perf_counter() - begin)
-"""
 
 
 def ur5_world(scene_name: str) -> ArmWorld:
@@ -113,24 +100,8 @@ def measure_certified(world: ArmWorld) -> None:
     )
 
 
-def measure_first_check() -> None:
-    """Print the time from starting to import until the first answers, with an empty cache and with a full one."""
-    with tempfile.TemporaryDirectory() as folder:
-        for state in ("empty", "full"):
-            run = subprocess.run(
-                [sys.executable, "-c", FIRST_CHECK],
-                env={**os.environ, "NUMBA_CACHE_DIR": folder},
-                capture_output=True,
-                text=True,
-                check=True,
-            )
-            configuration, motion = map(float, run.stdout.split())
-            print(f"{state} cache: load + first check {configuration:.2f} s, with a motion {motion:.2f} s")
-
-
 def main() -> None:
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
-    measure_first_check()
     wide, narrow = ur5_world("box-reach"), ur5_world("box-reach-narrow")
     print(
         f"{wide.backend}, {wide.spheres} spheres that exceed their capsules by {1e3 * wide.excess:.1f} mm at most"

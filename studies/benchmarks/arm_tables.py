@@ -10,13 +10,13 @@ which draw solved which problem, so that a sampler that is run later is paired w
 
 from __future__ import annotations
 
-import argparse
 import re
 import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+from studies.benchmarks.rows import parser_of
 
 from evenroad._arrays import Floats
 from evenroad_studies.arms.execute import KEPT
@@ -83,9 +83,7 @@ def _wrapped(line: str) -> str:
 
 def main() -> None:
     """Write them."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of(__doc__)
     parser.add_argument("stores", type=Path, nargs="*")
     parser.add_argument("--docs", type=Path, default=Path("studies/docs"))
     options = parser.parse_args()

@@ -8,10 +8,10 @@ for each body, among obstacles that lock some of them.
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import replace
 
 import numpy as np
+from studies.benchmarks.rows import parser_of
 from tests.robot.kernel_arms import random_scene, random_tree
 from tests.robot.test_locked import walk
 
@@ -52,9 +52,7 @@ def refuted(world: ArmWorld, places: Floats) -> tuple[int, int]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of(__doc__)
     parser.add_argument("--pairs", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1_000)
     options = parser.parse_args()

@@ -18,7 +18,6 @@ cells cannot tell whether a path of clearance beta exists.
 from __future__ import annotations
 
 import argparse
-import csv
 import math
 import time
 from collections.abc import Iterator
@@ -27,6 +26,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from studies.benchmarks.rows import write_rows
 from tests.clear_paths import DiscWorld, Plane
 
 from evenroad._arrays import Floats
@@ -69,11 +69,7 @@ def main() -> None:
             for kind in ("field", "wall"):
                 rows += claims(d, world, kind, rules)
         summarise(d, [row for row in rows if row["d"] == d])
-        if options.csv:
-            with open(options.csv, "w", newline="") as file:
-                writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
-                writer.writeheader()
-                writer.writerows({name: _short(row[name]) for name in FIELDS} for row in rows)
+        write_rows(options.csv, FIELDS, [{name: _short(row[name]) for name in FIELDS} for row in rows])
     false = sum(row["verdict"] == "false" for row in rows)
     print(f"{len(rows)} claims, {false} false; {time.process_time() - began:.0f} s of processor time")
 

@@ -11,7 +11,6 @@ processor only: the kept file names the one it was made on.
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import platform
 import sys
@@ -25,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 from studies.benchmarks.arm_problems import KINDS, Pool, Problem, arm_named, problems
 from studies.benchmarks.clouds import points_on, triangles_of
+from studies.benchmarks.rows import parser_of
 
 from evenroad import draw
 from evenroad.geometry import Mesh, PointCloud
@@ -256,9 +256,7 @@ def processor() -> str:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of(__doc__)
     parser.add_argument("--only", default="", help="parts whose names have this in them")
     parser.add_argument("--write", action="store_true", help="keep today's answers")
     options = parser.parse_args()

@@ -10,14 +10,13 @@ uniform configuration.
 
 from __future__ import annotations
 
-import csv
-import sys
 import time
 from pathlib import Path
 
 import mujoco
 import numpy as np
 from studies.benchmarks.robot_truth import at_contact, path_states
+from studies.benchmarks.rows import row_per_robot
 
 from evenroad.robot import ArmWorld, Robot, Scene, joint_values, load_model
 from evenroad.robot.pairs import rigid_links
@@ -111,26 +110,12 @@ def measured(file: Path, rng: np.random.Generator) -> dict[str, object]:
 
 def main() -> None:
     """Write a row for each robot as soon as it is there."""
-    out, given = Path(sys.argv[1]), list(map(Path, sys.argv[2:]))
-    files = [
-        file for path in given for file in (sorted(path.rglob("robot.xml")) if path.is_dir() else [path])
-    ]
-    with out.open("a", newline="") as stream:
-        writer = csv.DictWriter(stream, FIELDS)
-        if out.stat().st_size == 0:
-            writer.writeheader()
-        for file in files:
-            try:
-                row = measured(file, np.random.default_rng(0))
-            # One robot that fails says why in its row; the others are measured.
-            except Exception as error:
-                row = {
-                    "robot": f"{file.parent.name}/{file.stem}",
-                    "note": f"{type(error).__name__}: {error}"[:200],
-                }
-            writer.writerow(row)
-            stream.flush()
-            print(row, flush=True)
+    row_per_robot(
+        FIELDS,
+        "robot.xml",
+        lambda file: measured(file, np.random.default_rng(0)),
+        lambda file: f"{file.parent.name}/{file.stem}",
+    )
 
 
 if __name__ == "__main__":

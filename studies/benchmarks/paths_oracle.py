@@ -10,7 +10,6 @@ rigid bodies state by state, as a user's function is: their paths are looked at 
 
 from __future__ import annotations
 
-import argparse
 import csv
 import time
 from collections.abc import Iterator
@@ -19,6 +18,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from studies.benchmarks.rows import parser_of
 from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm, ur5
 from tests.studies.free_paths import (
     PLANNERS,
@@ -130,9 +130,7 @@ def compare(kind: str, wanted: int, most_seconds: float) -> list[list[object]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of(__doc__)
     parser.add_argument("--count", type=int, default=1_100, help="shortened paths of each kind of arm")
     parser.add_argument("--only", nargs="*", default=list(KINDS), help="kinds of worlds")
     parser.add_argument("--seconds", type=float, default=3_600.0, help="at most, for each kind")

@@ -12,13 +12,12 @@ goals, whole turns added.  With ``--numeric`` EAIK is left out where it is insta
 
 from __future__ import annotations
 
-import argparse
-import csv
 import time
 import warnings
 from pathlib import Path
 
 import numpy as np
+from studies.benchmarks.rows import parser_of, write_rows
 
 from evenroad.geometry import Pose
 from evenroad.robot import ArmWorld, PoseGoal, Scene, closed_form, link_poses, load_robot
@@ -80,9 +79,7 @@ def row(source: str, count: int, seed: int) -> dict[str, object]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of(__doc__)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--foreign", nargs="*", default=[])
@@ -95,11 +92,7 @@ def main() -> None:
     for source in ("ur5", "arm7", *options.foreign):
         rows.append(row(source, options.count, options.seed))
         print(", ".join(f"{name} {rows[-1][name]}" for name in COLUMNS), flush=True)
-    if options.out is not None:
-        with options.out.open("w", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows)
+    write_rows(options.out, COLUMNS, rows)
 
 
 if __name__ == "__main__":

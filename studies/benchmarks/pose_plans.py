@@ -14,8 +14,6 @@ interval.
 
 from __future__ import annotations
 
-import argparse
-import csv
 import math
 import time
 from collections.abc import Iterator
@@ -24,6 +22,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+from studies.benchmarks.rows import parser_of, write_rows
 
 from evenroad import PoseGoal, Straight, Upright
 from evenroad.geometry import Pose
@@ -122,9 +121,7 @@ def rows(name: str, count: int, seed: int, largest: float, seconds: float) -> It
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of(__doc__)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--tilt", type=float, default=0.1, help="radians")
@@ -136,11 +133,7 @@ def main() -> None:
         for row in rows(name, options.count, options.seed, options.tilt, options.seconds):
             every.append(row)
             print(", ".join(f"{column} {row[column]}" for column in COLUMNS), flush=True)
-    if options.out is not None:
-        with options.out.open("w", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(every)
+    write_rows(options.out, COLUMNS, every)
 
 
 if __name__ == "__main__":

@@ -10,8 +10,6 @@ configuration, nor are among those that the loader names because one goes into t
 
 from __future__ import annotations
 
-import csv
-import sys
 import time
 import xml.etree.ElementTree as ET
 from itertools import combinations
@@ -20,6 +18,7 @@ from pathlib import Path
 import coal
 import numpy as np
 import pinocchio
+from studies.benchmarks.rows import row_per_robot
 
 from evenroad.planning.arm_trees import connect, shorten
 from evenroad.robot import ArmWorld, Scene, load_model
@@ -213,21 +212,9 @@ def path_states(world: ArmWorld, free: np.ndarray) -> np.ndarray:
 
 def main() -> None:
     """Write a row for each robot as soon as it is there."""
-    out, given = Path(sys.argv[1]), list(map(Path, sys.argv[2:]))
-    files = [file for path in given for file in (sorted(path.rglob("*.urdf")) if path.is_dir() else [path])]
-    with out.open("a", newline="") as stream:
-        writer = csv.DictWriter(stream, FIELDS)
-        if out.stat().st_size == 0:
-            writer.writeheader()
-        for file in files:
-            try:
-                row = measured(file, np.random.default_rng(0))
-            # One robot that fails says why in its row; the others are measured.
-            except Exception as error:
-                row = {"robot": file.stem, "note": f"{type(error).__name__}: {error}"[:200]}
-            writer.writerow(row)
-            stream.flush()
-            print(row, flush=True)
+    row_per_robot(
+        FIELDS, "*.urdf", lambda file: measured(file, np.random.default_rng(0)), lambda file: file.stem
+    )
 
 
 if __name__ == "__main__":

@@ -26,6 +26,8 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from studies.benchmarks.rows import parser_of, write_rows
+
 from evenroad.planning import plan
 
 COLUMNS = ("robot", "state", "answer", "joints", "free_percent", "seconds", "reason")
@@ -125,9 +127,7 @@ def in_its_process(path: Path, limit: float) -> dict[str, object]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of(__doc__)
     parser.add_argument("folders", type=Path, nargs="*")
     parser.add_argument("--state", default="after")
     parser.add_argument("--out", type=Path, default=Path("out/robots.csv"))
@@ -152,10 +152,7 @@ def main() -> None:
             row["reason"] = " ".join(str(row.get("reason", "")).split())[:200]
             rows[name, options.state] = {"robot": name, "state": options.state, **row}
             print(f"{name:60} {row['answer']:16} {row.get('seconds')} s  {row['reason']}", flush=True)
-            with open(options.out, "w", newline="") as file:
-                writer = csv.DictWriter(file, COLUMNS, restval="", lineterminator="\n")
-                writer.writeheader()
-                writer.writerows(rows[key] for key in sorted(rows))
+            write_rows(options.out, COLUMNS, [rows[key] for key in sorted(rows)])
     for state in sorted({state for _, state in rows}):
         counts = Counter(row["answer"] for (_, of), row in rows.items() if of == state)
         print(f"{state}: " + ", ".join(f"{count} {answer}" for answer, count in counts.most_common()))
