@@ -215,7 +215,7 @@ def test_a_bar_that_is_in_a_plate_for_most_angles_alone_shows_nothing():
     robot = crossing(("revolute", Z, 1.0), plate, ((1.0, 0.01, 0.1), Pose((0.5, 0.0, 0.0))))
     ends = np.array([[1.0, -0.7], [1.0, 0.7]])
     assert ArmWorld(robot).motion_valid(*ends[:, np.newaxis])[0]
-    assert walls_of(robot) == [[], []]
+    assert walls_of(robot) == ((), ())
 
 
 def test_a_follower_that_turns_farther_than_its_leader_shows_nothing():
@@ -228,7 +228,7 @@ def test_a_follower_that_turns_farther_than_its_leader_shows_nothing():
         joints=(leader, replace(robot.joints[0], mimic=Mimic("leader", 3.0)), past),
         group=("leader", "past"),
     )
-    assert walls_of(linked) == [[], []]
+    assert walls_of(linked) == ((), ())
 
 
 def solid_tree(seed):

@@ -53,7 +53,7 @@ def pieces_between_walls(robot: Robot, place: Floats) -> Iterator[tuple[int, Pie
         )
 
 
-def walls_of(robot: Robot) -> list[list[float]]:
+def walls_of(robot: Robot) -> tuple[tuple[float, ...], ...]:
     """Return the walls of each coordinate, in order [rad or m]; kept.
 
     They are looked for in pairs that are tested, of links that have solid hulls, and which two joints move on each
@@ -71,7 +71,7 @@ def _walls_of(
     group: tuple[str, ...],
     hulls: tuple[Hull, ...],
     held: tuple[tuple[str, float], ...],
-) -> list[list[float]]:
+) -> tuple[tuple[float, ...], ...]:
     robot = Robot("", links, joints, (), pairs, group, dict(held), hulls=hulls)
     solid: dict[str, list[Hull]] = {}
     for hull in hulls:
@@ -87,7 +87,7 @@ def _walls_of(
             if len(others) < 2 and not any(joint.mimic for joint, _ in others):
                 pair = _Pair(robot, (first, second), (solid[first], solid[second]), trees, k, *others)
                 walls[k] += pair.walls()
-    return [sorted(set(each)) for each in walls]
+    return tuple(tuple(sorted(set(each))) for each in walls)
 
 
 def _between(robot: Robot, first: str, second: str) -> list[tuple[Joint, int]]:
