@@ -3,13 +3,17 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constraints.txt
+# A compiler of your own: `CXX=clang++ make test`; without, clang comes as a wheel.
+CLANG  := $(if $(filter default undefined,$(origin CXX)),ziglang)
+KERNEL := $(shell find src/evenroad/_native/cpp -name '*.?pp') src/evenroad/_native/CMakeLists.txt tools/build_backend.py
 
-.PHONY: help demo test test-peers lint docs bench bank mazes release-check clean
+.PHONY: help demo test test-peers lint native docs bench bank mazes release-check clean
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
 	@echo "make test-peers  tests against OMPL, coal, pinocchio, Klamp't and Planner Arena (installs their wheels)"
-	@echo "make lint   ruff and mypy"
+	@echo "make lint   ruff, mypy and clang-format"
+	@echo "make native  the native kernel alone, into src/evenroad/_native"
 	@echo "make docs   the pages as a site -> out/docs/index.html"
 	@echo "make bench  the slow tables and timings -> out/bench/"
 	@echo "make bank   rebuild (or finish) the shipped point sets"
@@ -18,21 +22,32 @@ help:
 	@echo "make clean  remove the environment and out/"
 
 # A stamp a file that pip finished: a stopped install is taken up again, a finished one costs nothing.
-$(VENV)/.core: pyproject.toml studies/pyproject.toml constraints.txt
+$(VENV)/.tools: constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "evenroad needs Python >= 3.11; set PYTHON=")'
 	$(PYTHON) -m venv $(VENV)
-	$(PIP) -e . -e ./studies
+	$(PIP) scikit-build-core nanobind cmake ninja hatchling editables $(CLANG)
+	@touch $@
+
+# The kernel lies beside the Python files that use it; an edit of its sources compiles what changed.
+$(VENV)/.native: $(KERNEL) | $(VENV)/.tools
+	$(BIN)/python tools/build_backend.py
+	@touch $@
+
+$(VENV)/.core: pyproject.toml studies/pyproject.toml constraints.txt | $(VENV)/.native
+	$(PIP) --no-build-isolation -e . -e ./studies
 	@touch $@
 
 $(VENV)/.dev: $(VENV)/.core
-	$(PIP) -e '.[dev]' -e './studies[dask]'
+	$(PIP) --no-build-isolation -e '.[dev]' -e './studies[dask]'
 	@touch $@
 
 $(VENV)/.peers: $(VENV)/.dev
-	$(PIP) -e '.[dev,peers]' -e './studies[dask]'
+	$(PIP) --no-build-isolation -e '.[dev,peers]' -e './studies[dask]'
 	@touch $@
 
-demo: $(VENV)/.core
+native: $(VENV)/.native
+
+demo: $(VENV)/.core $(VENV)/.native
 	@mkdir -p out
 	$(BIN)/evenroad demo --out out/demo
 
@@ -40,18 +55,19 @@ lint: $(VENV)/.dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/clang-format --dry-run -Werror src/evenroad/_native/cpp/*/*.?pp
 
-test: lint
+test: lint $(VENV)/.native
 	$(BIN)/pytest -n 2
 
-test-peers: $(VENV)/.peers
+test-peers: $(VENV)/.peers $(VENV)/.native
 	$(BIN)/pytest tests_peers
 
-docs: $(VENV)/.dev
+docs: $(VENV)/.dev $(VENV)/.native
 	$(BIN)/python -m sphinx -q -W --keep-going -d out/doctrees docs out/docs
 	@echo "out/docs/index.html"
 
-bench: $(VENV)/.peers
+bench: $(VENV)/.peers $(VENV)/.native
 	@mkdir -p out/bench
 	$(BIN)/python -m studies.benchmarks --out out/bench
 	$(BIN)/evenroad bench paper --runs 400 --store out/bench/paper.db
@@ -59,14 +75,14 @@ bench: $(VENV)/.peers
 	$(BIN)/evenroad report out/bench/paper.db -o out/bench/paper
 	$(BIN)/evenroad report out/bench/fair.db -o out/bench/fair
 
-bank: $(VENV)/.dev
+bank: $(VENV)/.dev $(VENV)/.native
 	$(BIN)/python -m evenroad_studies.training.bank
 
-mazes: $(VENV)/.dev
+mazes: $(VENV)/.dev $(VENV)/.native
 	$(BIN)/python studies/tools/draw_mazes.py
 
-release-check: $(VENV)/.core
+release-check: $(VENV)/.core $(VENV)/.native
 	$(BIN)/python tools/release_check.py
 
 clean:
-	rm -rf $(VENV) out
+	rm -rf $(VENV) out build src/evenroad/_native/*.so

@@ -21,6 +21,7 @@ BASE = {
         "_terminal",
         "_compiled",
         "_fingerprint",
+        "_native",
         "_njit",
         "_sources",
         "_shared",

@@ -22,6 +22,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 LARGEST_WHEEL = 5e6
+BUILD_TOOLS = "build hatchling scikit-build-core nanobind ziglang cmake ninja"
 
 URDF = """<robot name="my_arm">
   <link name="base"/>
@@ -115,7 +116,7 @@ def build(steps: Steps, dist: Path, work: Path) -> None:
     """Build source distribution and wheels, by a tool in an environment of its own."""
     tool = work / "build"
     steps.run("(an environment for the build)", f"{sys.executable} -m venv {tool}")
-    steps.run("(its tools)", f"{tool}/bin/python -m pip install -q build hatchling")
+    steps.run("(its tools)", f"{tool}/bin/python -m pip install -q {BUILD_TOOLS}")
     steps.run("build: sdist", f"{tool}/bin/python -m build --no-isolation -s -o {dist} {ROOT}")
     steps.run("build: wheel", f"{tool}/bin/python -m build --no-isolation -w -o {dist} {ROOT}")
     steps.run(

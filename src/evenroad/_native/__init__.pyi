@@ -1,0 +1,4 @@
+from types import ModuleType
+
+VARIANT: str
+kernel: ModuleType

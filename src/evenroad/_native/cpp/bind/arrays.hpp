@@ -1,0 +1,120 @@
+// Arrays at the boundary: what Python gives is checked and seen as spans, what it gets is an array that owns its
+// memory.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "bind/parts.hpp"
+#include "common/matrix.hpp"
+
+namespace evenroad::bind {
+
+namespace nb = nanobind;
+
+/// Return what NumPy calls a type.
+template <class T>
+constexpr const char* type_name() {
+  using Plain = std::remove_const_t<T>;
+  if constexpr (std::is_same_v<Plain, double>) return "float64";
+  if constexpr (std::is_same_v<Plain, float>) return "float32";
+  if constexpr (std::is_same_v<Plain, bool>) return "bool";
+  if constexpr (std::is_same_v<Plain, std::int64_t>) return "int64";
+  if constexpr (std::is_same_v<Plain, std::int32_t>) return "int32";
+  if constexpr (std::is_same_v<Plain, std::uint8_t>) return "uint8";
+  if constexpr (std::is_same_v<Plain, std::uint64_t>) return "uint64";
+  return "another type";
+}
+
+/// Refuse an array: `wanted` in words, and what was given instead.
+[[noreturn]] void refuse(const char* name, const std::string& wanted, nb::handle given);
+
+/// Throw InvalidValue with this text unless the condition holds.
+inline void require(bool holds, const std::string& text) {
+  if (!holds) throw InvalidValue(text);
+}
+
+/// A C-contiguous array of T with `Axes` axes, kept alive as long as this is.
+///
+/// T is const where the array is only read: one that is written to must be writable.
+template <class T, int Axes>
+class Array {
+ public:
+  /// Check an argument; `name` is what the error calls it.
+  Array(nb::handle given, const char* name) : name_(name) {
+    if (!nb::try_cast(given, array_, false)) {
+      const std::string writable = std::is_const_v<T> ? "" : "writable, ";
+      refuse(name,
+             writable + "C-contiguous array of " + type_name<T>() + " with " + std::to_string(Axes) +
+                 (Axes == 1 ? " axis" : " axes"),
+             given);
+    }
+  }
+
+  std::size_t size() const { return array_.size(); }
+  std::size_t shape(int axis) const { return array_.shape(axis); }
+  T* data() const { return array_.data(); }
+
+  /// Refuse the array unless its shape is this one.
+  const Array& of_shape(std::initializer_list<std::size_t> wanted) const {
+    int axis = 0;
+    for (std::size_t length : wanted) {
+      if (shape(axis++) != length) refuse_shape(wanted);
+    }
+    return *this;
+  }
+
+  /// All entries, row after row.
+  std::span<T> span() const { return {array_.data(), array_.size()}; }
+
+  Matrix<T> matrix() const
+    requires(Axes == 2)
+  {
+    return {array_.data(), shape(0), shape(1)};
+  }
+
+ private:
+  template <class Lengths>
+  static std::string in_words(const Lengths& lengths) {
+    std::string text = "(";
+    for (std::size_t length : lengths) text += (text.size() > 1 ? ", " : "") + std::to_string(length);
+    return text + (lengths.size() == 1 ? ",)" : ")");
+  }
+
+  [[noreturn]] void refuse_shape(std::initializer_list<std::size_t> wanted) const {
+    std::vector<std::size_t> given;
+    for (int axis = 0; axis < Axes; axis++) given.push_back(shape(axis));
+    throw InvalidValue(std::string(name_) + " must have shape " + in_words(wanted) + ", got " + in_words(given));
+  }
+
+  nb::ndarray<T, nb::ndim<Axes>, nb::c_contig, nb::device::cpu> array_;
+  const char* name_;
+};
+
+/// Give memory to Python as a NumPy array of this shape.
+template <class T>
+nb::object as_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {
+  auto kept = std::make_unique<std::vector<T>>(std::move(values));
+  T* data = kept->data();
+  nb::capsule owner(kept.get(), [](void* vector) noexcept { delete static_cast<std::vector<T>*>(vector); });
+  kept.release();
+  return nb::cast(nb::ndarray<nb::numpy, T>(data, shape, owner));
+}
+
+/// Call a function while other threads of Python run.
+template <class Function>
+auto without_gil(Function&& function) {
+  nb::gil_scoped_release released;
+  return function();
+}
+
+}  // namespace evenroad::bind

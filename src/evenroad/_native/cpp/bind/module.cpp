@@ -1,0 +1,27 @@
+// One extension module: the bindings, which are compiled once, with the kernels of one instruction set.
+#include <exception>
+
+#include "bind/parts.hpp"
+
+namespace nb = nanobind;
+
+namespace {
+
+/// Raise evenroad.errors.InvalidValue for what the bindings refuse.
+void translate(const std::exception_ptr& thrown, void*) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const evenroad::bind::InvalidValue& error) {
+    nb::object kind = nb::module_::import_("evenroad.errors").attr("InvalidValue");
+    PyErr_SetString(kind.ptr(), error.what());
+  }
+}
+
+}  // namespace
+
+NB_MODULE(EVENROAD_MODULE, module) {
+  nb::set_leak_warnings(false);
+  nb::register_exception_translator(translate);
+  module.attr("VARIANT") = EVENROAD_VARIANT;
+  evenroad::bind::add_points(module);
+}

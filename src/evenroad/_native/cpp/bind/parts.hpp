@@ -1,0 +1,17 @@
+// What the module is made of: a submodule for each part of the package, each in a file of its own.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <stdexcept>
+
+namespace evenroad::bind {
+
+/// An argument of a wrong type, shape or value; Python sees evenroad.errors.InvalidValue.
+struct InvalidValue : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+void add_points(nanobind::module_& module);
+
+}  // namespace evenroad::bind

@@ -1,0 +1,45 @@
+// evenroad._native.points: measures of point sets.
+#include "bind/arrays.hpp"
+#include "points/pair_sums.hpp"
+
+namespace evenroad::bind {
+
+using namespace nb::literals;
+
+namespace {
+
+nb::tuple as_tuple(points::PairSums&& result) {
+  const std::size_t d = result.gradient.rows, n = result.gradient.columns;
+  return nb::make_tuple(as_numpy(std::move(result.sums), {n}), as_numpy(std::move(result.gradient.values), {d, n}));
+}
+
+nb::tuple maximum_pair_sums(nb::handle columns, nb::handle ceiling, nb::handle slope, bool want_gradient) {
+  const Array<const double, 2> at(columns, "columns");
+  const Array<const double, 1> top(ceiling, "ceiling"), fall(slope, "slope");
+  top.of_shape({at.shape(0)}), fall.of_shape({at.shape(0)});
+  return as_tuple(without_gil(
+      [&] { return points::pair_sums(at.matrix(), points::MaximumPairs{top.span(), fall.span()}, want_gradient); }));
+}
+
+nb::tuple distance_pair_sums(nb::handle columns, nb::tuple pairs, bool want_gradient) {
+  require(pairs.size() == 5, "pairs must be (level, slope, curvature, own, own_slope)");
+  const Array<const double, 2> at(columns, "columns"), own(pairs[3], "own"), own_slope(pairs[4], "own_slope");
+  const Array<const double, 1> level(pairs[0], "level"), slope(pairs[1], "slope"), curvature(pairs[2], "curvature");
+  const std::size_t d = at.shape(0), n = at.shape(1);
+  level.of_shape({d}), slope.of_shape({d}), curvature.of_shape({d});
+  own.of_shape({d, n}), own_slope.of_shape({d, n});
+  const points::DistancePairs of{level.span(), slope.span(), curvature.span(), own.matrix(), own_slope.matrix()};
+  return as_tuple(without_gil([&] { return points::pair_sums(at.matrix(), of, want_gradient); }));
+}
+
+}  // namespace
+
+void add_points(nb::module_& module) {
+  nb::module_ part = module.def_submodule("points", "Measures of point sets.");
+  // None is a wrong argument like others, which the functions name; nanobind would refuse it in words of its own.
+  part.def("maximum_pair_sums", &maximum_pair_sums, "columns"_a.none(), "ceiling"_a.none(), "slope"_a.none(),
+           "want_gradient"_a);
+  part.def("distance_pair_sums", &distance_pair_sums, "columns"_a.none(), "pairs"_a, "want_gradient"_a);
+}
+
+}  // namespace evenroad::bind

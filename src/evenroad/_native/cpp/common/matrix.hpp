@@ -1,0 +1,40 @@
+// A table of rows, one after the other in memory that somebody else keeps.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace evenroad {
+
+/// Rows of equal length; T is const where they are only read.
+template <class T>
+struct Matrix {
+  T* data = nullptr;
+  std::size_t rows = 0, columns = 0;
+
+  std::span<T> operator[](std::size_t row) const { return {data + row * columns, columns}; }
+  T& operator()(std::size_t row, std::size_t column) const { return data[row * columns + column]; }
+
+  operator Matrix<const T>() const
+    requires(!std::is_const_v<T>)
+  {
+    return {data, rows, columns};
+  }
+};
+
+/// The same with memory of its own, zero at first.
+template <class T>
+struct OwnMatrix {
+  std::size_t rows, columns;
+  std::vector<T> values;
+
+  OwnMatrix(std::size_t rows, std::size_t columns) : rows(rows), columns(columns), values(rows * columns) {}
+
+  std::span<T> operator[](std::size_t row) { return {values.data() + row * columns, columns}; }
+  T& operator()(std::size_t row, std::size_t column) { return values[row * columns + column]; }
+  operator Matrix<T>() { return {values.data(), rows, columns}; }
+};
+
+}  // namespace evenroad

@@ -1,0 +1,39 @@
+"""The builds of the native kernel: which of them are here, which this processor runs, and which one is loaded."""
+
+from __future__ import annotations
+
+import os
+from importlib import import_module
+from importlib.util import find_spec
+from types import ModuleType
+
+from evenroad.errors import NotAvailable, UnknownName
+
+ENVIRONMENT = "EVENROAD_ARCH"
+"""Environment variable that names the build to load; without it, the newest that the processor runs."""
+
+
+def module_name(variant: str) -> str:
+    """Return the module of a build, e.g. ``evenroad._native._x86_64_v3`` of x86-64-v3."""
+    return f"evenroad._native._{variant.replace('-', '_')}"
+
+
+def usable() -> tuple[str, ...]:
+    """Return the builds that are here and that this processor runs, the newest instruction set last."""
+    try:
+        cpu = import_module("evenroad._native._cpu")
+    except ImportError as error:
+        raise NotAvailable(
+            "the native kernel is not built for this Python: run `make native` in a clone, or `pip install .`"
+            f" ({error})"
+        ) from error
+    return tuple(each for each in cpu.runnable() if find_spec(module_name(each)) is not None)
+
+
+def load() -> ModuleType:
+    """Load the build that EVENROAD_ARCH names, or else the newest, and return its module."""
+    names = usable()
+    wanted = os.environ.get(ENVIRONMENT) or names[-1]
+    if wanted not in names:
+        raise UnknownName.among(f"instruction set in {ENVIRONMENT}", wanted, names)
+    return import_module(module_name(wanted))

@@ -1,0 +1,57 @@
+"""The builds of the native kernel: which one is loaded, and that all give the same answers."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from evenroad import _native
+from evenroad._native import variants
+from evenroad.errors import NotAvailable, UnknownName
+
+USABLE = variants.usable()
+
+
+def test_the_newest_build_that_the_processor_runs_is_loaded(monkeypatch):
+    monkeypatch.delenv(variants.ENVIRONMENT, raising=False)
+    assert USABLE[-1] == variants.load().VARIANT
+    assert os.environ.get(variants.ENVIRONMENT, _native.VARIANT) == _native.VARIANT
+
+
+@pytest.mark.parametrize("variant", USABLE)
+def test_the_environment_chooses_the_build(variant):
+    code = "from evenroad import _native; print(_native.VARIANT)"
+    environment = {**os.environ, variants.ENVIRONMENT: variant}
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+    )
+    assert loaded.stdout.strip() == variant
+
+
+def test_an_unknown_build_is_refused_with_those_that_are_there(monkeypatch):
+    monkeypatch.setenv(variants.ENVIRONMENT, "x86-64-v9")
+    with pytest.raises(UnknownName, match=f"EVENROAD_ARCH 'x86-64-v9'; known: {', '.join(USABLE)}"):
+        variants.load()
+
+
+def test_a_clone_without_the_kernel_says_how_to_build_it(monkeypatch):
+    monkeypatch.setattr(variants, "import_module", lambda name: __import__("evenroad._native.not_there"))
+    with pytest.raises(NotAvailable, match="make native"):
+        variants.usable()
+
+
+@pytest.mark.parametrize("variant", USABLE)
+def test_sums_of_pairs_are_the_same_bits_in_every_build(variant, monkeypatch):
+    monkeypatch.setenv(variants.ENVIRONMENT, variant)
+    points = variants.load().points
+    columns, ones = np.random.default_rng(1).random((5, 301)), np.ones(5)
+    first = _native.points.maximum_pair_sums(columns, 2 * ones, ones, True)
+    for one, other in zip(first, points.maximum_pair_sums(columns, 2 * ones, ones, True), strict=True):
+        np.testing.assert_array_equal(one, other)
+    still = np.zeros_like(columns)
+    pairs = (2 * ones, ones, 0.5 * ones, 0.1 * columns, still)
+    first = _native.points.distance_pair_sums(columns, pairs, True)
+    for one, other in zip(first, points.distance_pair_sums(columns, pairs, True), strict=True):
+        np.testing.assert_array_equal(one, other)

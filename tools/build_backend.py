@@ -1,0 +1,183 @@
+"""What builds evenroad: scikit-build-core, with a compiler that comes as a wheel, and editable installs built in place.
+
+    python tools/build_backend.py            # build the native kernel into src/evenroad/_native; or: make native
+
+A compiler of your own is taken where the environment variable CXX names one: `CXX=clang++ pip install .`.  Otherwise
+clang of the wheel `ziglang` compiles: nothing but Python needs to be installed.  (scikit-build-core alone would take
+the compiler that Python was built with, whether or not it exists.)
+
+An editable install is a path to `src`, and the kernel lies beside its Python files, so `PYTHONPATH=src` works as well.
+"""
+
+from __future__ import annotations
+
+import base64
+import csv
+import hashlib
+import io
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import time
+import zipfile
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCES = ROOT / "src" / "evenroad" / "_native"
+ZIG = "ziglang>=0.17,<0.18"
+GLIBC = "2.28"
+"""The oldest C library that a wheel built by `ziglang` runs with."""
+
+Settings = dict[str, Any] | None
+
+
+def get_requires_for_build_sdist(config_settings: Settings = None) -> list[str]:
+    """Return nothing more: a source distribution compiles nothing."""
+    return []
+
+
+def get_requires_for_build_wheel(config_settings: Settings = None) -> list[str]:
+    """Return cmake and ninja where they are missing, and clang's wheel unless CXX names a compiler."""
+    from scikit_build_core import build
+
+    return [*build.get_requires_for_build_wheel(config_settings), *([] if os.environ.get("CXX") else [ZIG])]
+
+
+get_requires_for_build_editable = get_requires_for_build_wheel
+
+
+def prepare_metadata_for_build_wheel(metadata_directory: str, config_settings: Settings = None) -> str:
+    """Write the metadata alone."""
+    from scikit_build_core import build
+
+    return build.prepare_metadata_for_build_wheel(metadata_directory, config_settings)
+
+
+def prepare_metadata_for_build_editable(metadata_directory: str, config_settings: Settings = None) -> str:
+    """Write the metadata alone."""
+    from scikit_build_core import build
+
+    return build.prepare_metadata_for_build_editable(metadata_directory, {"wheel.cmake": "false"})
+
+
+def build_sdist(sdist_directory: str, config_settings: Settings = None) -> str:
+    """Build the source distribution."""
+    from scikit_build_core import build
+
+    return build.build_sdist(sdist_directory, config_settings)
+
+
+def build_wheel(
+    wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None
+) -> str:
+    """Build a wheel."""
+    from scikit_build_core import build
+
+    announce()
+    defined = {f"cmake.define.{name}": value for name, value in definitions().items()}
+    return build.build_wheel(wheel_directory, {**defined, **(config_settings or {})}, metadata_directory)
+
+
+def build_editable(
+    wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None
+) -> str:
+    """Build the kernel in place, and a wheel that holds nothing but a path to `src`."""
+    build_in_place()
+    with tempfile.TemporaryDirectory() as folder:
+        info = prepare_metadata_for_build_editable(folder)
+        name = info.removesuffix(".dist-info")
+        files = {
+            str(path.relative_to(folder)): path.read_bytes()
+            for path in sorted(Path(folder, info).rglob("*"))
+            if path.is_file() and path.name not in ("WHEEL", "RECORD")
+        }
+    files["__editable__.evenroad.pth"] = f"{ROOT / 'src'}\n".encode()
+    files[f"{info}/WHEEL"] = (
+        b"Wheel-Version: 1.0\nGenerator: evenroad\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
+    )
+    wheel = f"{name}-py3-none-any.whl"
+    with zipfile.ZipFile(Path(wheel_directory, wheel), "w", zipfile.ZIP_DEFLATED) as archive:
+        for path, content in files.items():
+            archive.writestr(path, content)
+        archive.writestr(f"{info}/RECORD", record(files, f"{info}/RECORD"))
+    return wheel
+
+
+def record(files: dict[str, bytes], itself: str) -> str:
+    """Return the list of a wheel's files with their digests."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    for path, content in files.items():
+        digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+        rows.writerow((path, f"sha256={digest}", len(content)))
+    rows.writerow((itself, "", ""))
+    return text.getvalue()
+
+
+def definitions() -> dict[str, str]:
+    """Return what CMakeLists.txt is told: the compiler, and where nanobind is."""
+    import nanobind
+
+    defined = {"NANOBIND_DIR": str(Path(nanobind.__file__).parent)}
+    own = os.environ.get("CXX")
+    if own:
+        return {**defined, "CMAKE_CXX_COMPILER": ";".join(shlex.split(own))}
+    import ziglang
+
+    zig = Path(ziglang.__file__).parent / ("zig.exe" if os.name == "nt" else "zig")
+    defined |= {"CMAKE_CXX_COMPILER": f"{zig};c++", "EVENROAD_ZIG": "ON"}
+    if sys.platform == "linux":
+        musl = "musl" in (sysconfig.get_config_var("MULTIARCH") or sysconfig.get_config_var("HOST_GNU_TYPE"))
+        target = f"{platform.machine()}-linux-" + ("musl" if musl else f"gnu.{GLIBC}")
+        defined["CMAKE_CXX_FLAGS"] = f"-target {target}"
+    return defined
+
+
+def announce() -> None:
+    """Say what is going on."""
+    own = os.environ.get("CXX")
+    how = f"with {own}: half a minute" if own else "with clang of the wheel ziglang: one to two minutes"
+    print(f"building the native kernel {how}, once", file=sys.stderr, flush=True)
+
+
+def build_in_place(*more: str) -> None:
+    """Build the kernel into `src/evenroad/_native`, anew only what changed."""
+    began = time.perf_counter()
+    folder = ROOT / "build" / f"native-{sysconfig.get_config_var('SOABI') or sys.implementation.cache_tag}"
+    defined = {**definitions(), "Python_EXECUTABLE": sys.executable, "CMAKE_BUILD_TYPE": "Release"}
+    arguments = [*(f"-D{name}={value}" for name, value in sorted(defined.items())), *more]
+    told = folder / "arguments.txt"
+    if not told.exists() or told.read_text() != "\n".join(arguments):
+        # Another compiler, or one in another folder: CMake would not take it in the same build.
+        announce()
+        shutil.rmtree(folder, ignore_errors=True)
+        run("cmake", "-S", str(SOURCES), "-B", str(folder), "-G", "Ninja", *arguments)
+        told.write_text("\n".join(arguments))
+    run("cmake", "--build", str(folder))
+    run("cmake", "--install", str(folder), "--prefix", str(ROOT / "src"))
+    print(f"the native kernel is built ({time.perf_counter() - began:.0f} s)", file=sys.stderr, flush=True)
+
+
+def run(tool: str, *arguments: str) -> None:
+    """Run a tool of the PATH or beside this Python; show what it says if it fails."""
+    beside = Path(sys.executable).parent
+    path = os.pathsep.join((os.environ.get("PATH", ""), str(beside)))
+    done = subprocess.run(
+        [shutil.which(tool, path=path) or tool, *arguments],
+        env={**os.environ, "PATH": path},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    if done.returncode:
+        raise SystemExit(f"{tool} {shlex.join(arguments)}\n{done.stdout[-8000:]}")
+
+
+if __name__ == "__main__":
+    build_in_place(*sys.argv[1:])
