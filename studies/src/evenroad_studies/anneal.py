@@ -71,8 +71,7 @@ def anneal(
 
     Adam (0.9, 0.999) with a learning rate that falls 2000-fold along a half cosine, plus Gaussian noise in
     proportion to the rate: the noise is what finds a good basin.  The best points seen are kept.  The bits are those of
-    one kind of processor and one version of numpy and numba: sums run as vectors, whose width, and so the order of
-    additions, is the processor's.  Arguments out of range are an InvalidValue.
+    one version of numpy and of this package.  Arguments out of range are an InvalidValue.
 
     Parameters
     ----------

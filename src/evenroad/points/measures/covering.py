@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from evenroad._checks import require_positive
-from evenroad._njit import njit
+from evenroad._native.points import bound_dispersion
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import as_unit_points
 
@@ -73,66 +73,9 @@ def dispersion_bounds(
     period = np.where(wraps, lengths, np.inf)
     lower, upper = 0.0, float(np.linalg.norm(np.where(wraps, 0.5 * lengths, lengths)))
     for share in SHARES:
-        lower, bound, used = _branch_and_bound(scaled, period, lengths, lower, share, left)
+        lower, bound, used = bound_dispersion(scaled, period, lengths, lower, share, left)
         upper, left = min(upper, bound), left - used
         if left <= 0.0 or upper == 0.0:
             break
     extent = float(np.linalg.norm(lengths))
     return DispersionBounds(max(lower - ROUNDING * extent, 0.0), upper * (1.0 + ROUNDING) + ROUNDING * extent)
-
-
-@njit(cache=True, nogil=True)
-def _branch_and_bound(points, period, sides, lower, share, most):  # type: ignore[no-untyped-def]
-    """Return a lower and an upper bound of the dispersion, the latter at most 1 + share times the former, and the work.
-
-    Once more than `most` coordinates were looked at, cells are taken as they are.  A cell keeps the points that can be
-    nearest to one of its places; the lists of all waiting cells, deepest first, are one stack.
-    """
-    n, d = points.shape
-    centres, halves = np.empty((64, d)), np.empty((64, d))
-    first, last = np.zeros(64, np.int64), np.zeros(64, np.int64)
-    near = np.arange(4 * n)
-    away = np.empty(n)
-    centres[0], halves[0], last[0] = 0.5 * sides, 0.5 * sides, n
-    waiting, upper, work = 1, 0.0, 0.0
-    while waiting > 0:
-        waiting -= 1
-        centre, half = centres[waiting].copy(), halves[waiting].copy()
-        begin, end = first[waiting], last[waiting]
-        closest, bound = np.inf, np.inf
-        for entry in range(begin, end):
-            x = points[near[entry]]
-            to_centre, to_corner, to_cell = 0.0, 0.0, 0.0
-            for k in range(d):
-                gap = abs(x[k] - centre[k])
-                gap = min(gap, period[k] - gap)
-                to_centre += gap * gap
-                to_corner += (gap + half[k]) * (gap + half[k])
-                outside = max(gap - half[k], 0.0)
-                to_cell += outside * outside
-            closest, bound = min(closest, to_centre), min(bound, to_corner)
-            away[entry - begin] = to_cell
-        work += (end - begin) * d
-        lower = max(lower, np.sqrt(closest))
-        reach = np.sqrt(bound)
-        if reach <= lower * (1.0 + share) or work > most:
-            upper = max(upper, reach)
-            continue
-        kept = end
-        if len(near) < end + (end - begin):
-            near = np.concatenate((near, np.empty(len(near), near.dtype)))
-        for entry in range(begin, end):
-            if away[entry - begin] <= bound * (1.0 + 1e-9):
-                near[kept] = near[entry]
-                kept += 1
-        axis = np.argmax(half)
-        half[axis] *= 0.5
-        if waiting + 2 > len(centres):
-            centres, halves = np.concatenate((centres, centres)), np.concatenate((halves, halves))
-            first, last = np.concatenate((first, first)), np.concatenate((last, last))
-        for side in (-1.0, 1.0):
-            centres[waiting], halves[waiting] = centre, half
-            centres[waiting, axis] += side * half[axis]
-            first[waiting], last[waiting] = end, kept
-            waiting += 1
-    return lower, upper, work

@@ -8,7 +8,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_count
-from evenroad._njit import njit
+from evenroad._native.points import riesz_rows
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import as_unit_points
 
@@ -51,10 +51,10 @@ def log_riesz_of_columns(
 
     Every power is taken relative to the largest of its row, and rows are joined in the log: nothing
     overflows, whatever d.  The distance of coincident points counts as 10^-100, and they do not push each other:
-    there is no direction.  Sums run as vectors, so another kind of processor gives last digits of its own (2e-16).
+    there is no direction.
     """
     d, n = columns.shape
-    nearest, rows, pushes = _row_energies(columns, s, periodic, want_gradient)
+    nearest, rows, pushes = riesz_rows(columns, s, periodic, want_gradient)
     row_logs = np.log(rows) - (0.5 * s) * np.log(nearest)
     largest = row_logs.max()
     total_log = largest + math.log(np.exp(row_logs - largest).sum())
@@ -70,66 +70,3 @@ def _checked(points: object, what: str) -> Floats:
     if len(coordinates) < 2:
         raise InvalidValue(f"{what} needs at least 2 points, got {len(coordinates)}")
     return coordinates
-
-
-SMALLEST_SQUARED = 1e-200
-"""Squared distance that coincident points count as: far below any real one, and its ratio to itself is 1."""
-
-
-@njit(cache=True, fastmath=True)
-def _row_energies(columns, s, periodic, want_gradient):  # type: ignore[no-untyped-def]
-    """Row sums of (nearest / distance^2)^(s/2), the nearest squared distances, and the rows' gradients."""
-    d, n = columns.shape
-    nearest, rows, pushes = np.empty(n), np.empty(n), np.zeros((d, n))
-    squared, inverse, power, base = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    wrap = 1.0 if periodic else 0.0
-    for i in range(n):
-        squared[:] = 0.0
-        for k in range(d):
-            at, others = columns[k, i], columns[k]
-            for j in range(n):
-                gap = abs(at - others[j])
-                gap = min(gap, abs(wrap - gap)) if periodic else gap
-                squared[j] += gap * gap
-        squared[i] = 1e300
-        smallest = 1e300
-        for j in range(n):
-            squared[j] = max(squared[j], SMALLEST_SQUARED)
-            smallest = min(smallest, squared[j])
-        for j in range(n):
-            inverse[j] = 1.0 / squared[j]
-            base[j] = smallest * inverse[j]
-            power[j] = 1.0
-        # Powers by repeated squaring of whole rows: a few multiplications, no exp or log in the pair loop.
-        if s % 2 == 1:
-            for j in range(n):
-                power[j] = math.sqrt(base[j])
-        half = s // 2
-        while half > 0:
-            odd = half % 2
-            half //= 2
-            if odd == 1:
-                for j in range(n):
-                    power[j] *= base[j]
-            if half > 0:
-                for j in range(n):
-                    base[j] *= base[j]
-        power[i] = 0.0
-        row = 0.0
-        for j in range(n):
-            row += power[j]
-        rows[i] = row
-        nearest[i] = smallest
-        if want_gradient:
-            for j in range(n):
-                power[j] *= inverse[j]
-            for k in range(d):
-                at, others = columns[k, i], columns[k]
-                push = 0.0
-                for j in range(n):
-                    step = at - others[j]
-                    if periodic:
-                        step -= math.copysign(1.0, step) if abs(step) > 0.5 else 0.0
-                    push += power[j] * step
-                pushes[k, i] = push
-    return nearest, rows, pushes

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from evenroad._checks import require_positive
-from evenroad._njit import njit
+from evenroad._native.points import star_discrepancy as largest_deviation
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points.pointset import as_unit_points
 
@@ -38,48 +38,4 @@ def star_discrepancy(points: object, budget: float = STAR_BUDGET) -> float:
             f" steps, the budget is {limit:.0e}: use fewer points, a larger budget, or the L2 star discrepancy"
         )
     by_last = np.argsort(coordinates[:, -1], kind="stable")
-    columns = np.ascontiguousarray(coordinates[by_last].T)
-    return float(_largest_deviation(columns, np.arange(n), np.ones(n, np.bool_), 0, 1.0, 0.0))
-
-
-@njit(cache=True)
-def _largest_deviation(columns, inside, strictly, level, volume, best):  # type: ignore[no-untyped-def]
-    """Return the largest deviation, at least `best`, of the boxes whose first `level` sides are fixed.
-
-    `inside` are the points inside or on those sides, in the order of the last coordinate; `strictly` says which are not
-    on them; `volume` is that of the sides.
-    """
-    d, n = columns.shape
-    if d == 1:
-        return _sweep_last(columns[0], inside, strictly, volume, best)
-    places = columns[level][inside]
-    inner, below = np.empty_like(inside), np.empty_like(strictly)
-    for side in np.unique(np.append(places, 1.0))[::-1]:
-        count = 0
-        for position in range(len(places)):
-            if places[position] <= side:
-                inner[count] = inside[position]
-                below[count] = strictly[position] and places[position] < side
-                count += 1
-        if max(volume * side, count / n) <= best:
-            # Sides come in falling order and both bounds fall with the side: the rest is no better.
-            break
-        if level == d - 2:
-            best = _sweep_last(columns[d - 1], inner[:count], below[:count], volume * side, best)
-        else:
-            best = _largest_deviation(columns, inner[:count], below[:count], level + 1, volume * side, best)
-    return best
-
-
-@njit(cache=True)
-def _sweep_last(last, inside, strictly, volume, best):  # type: ignore[no-untyped-def]
-    """Return the largest deviation, at least `best`, over the sides of the last coordinate."""
-    n, strictly_below, position = last.size, 0, 0
-    while position < inside.size:
-        side = last[inside[position]]
-        best = max(best, volume * side - strictly_below / n)
-        while position < inside.size and last[inside[position]] == side:
-            strictly_below += 1 if strictly[position] else 0
-            position += 1
-        best = max(best, position / n - volume * side)
-    return max(best, volume - strictly_below / n)
+    return largest_deviation(np.ascontiguousarray(coordinates[by_last].T))

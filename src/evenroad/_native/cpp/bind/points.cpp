@@ -1,6 +1,11 @@
 // evenroad._native.points: measures of point sets.
+#include <algorithm>
+
 #include "bind/arrays.hpp"
+#include "points/dispersion.hpp"
 #include "points/pair_sums.hpp"
+#include "points/riesz_rows.hpp"
+#include "points/star_discrepancy.hpp"
 
 namespace evenroad::bind {
 
@@ -32,6 +37,33 @@ nb::tuple distance_pair_sums(nb::handle columns, nb::tuple pairs, bool want_grad
   return as_tuple(without_gil([&] { return points::pair_sums(at.matrix(), of, want_gradient); }));
 }
 
+nb::tuple riesz_rows(nb::handle columns, unsigned s, bool periodic, bool want_gradient) {
+  const Array<const double, 2> at(columns, "columns");
+  points::RieszRows rows = without_gil([&] { return points::riesz_rows(at.matrix(), s, periodic, want_gradient); });
+  const std::size_t d = at.shape(0), n = at.shape(1);
+  return nb::make_tuple(as_numpy(std::move(rows.nearest), {n}), as_numpy(std::move(rows.sums), {n}),
+                        as_numpy(std::move(rows.pushes.values), {d, n}));
+}
+
+double star_discrepancy(nb::handle columns) {
+  const Array<const double, 2> at(columns, "columns");
+  require(at.size() > 0, "columns must hold at least one point and one coordinate");
+  const std::span<const double> last = at.matrix()[at.shape(0) - 1];
+  require(std::is_sorted(last.begin(), last.end()), "columns must come in the order of their last row");
+  return without_gil([&] { return points::star_discrepancy(at.matrix()); });
+}
+
+nb::tuple bound_dispersion(nb::handle coordinates, nb::handle periods, nb::handle lengths, double lower, double share,
+                           double most) {
+  const Array<const double, 2> at(coordinates, "points");
+  const Array<const double, 1> period(periods, "period"), sides(lengths, "sides");
+  period.of_shape({at.shape(1)}), sides.of_shape({at.shape(1)});
+  require(at.size() > 0, "points must hold at least one point and one coordinate");
+  const points::Dispersion found = without_gil(
+      [&] { return points::bound_dispersion(at.matrix(), period.span(), sides.span(), lower, share, most); });
+  return nb::make_tuple(found.lower, found.upper, found.work);
+}
+
 }  // namespace
 
 void add_points(nb::module_& module) {
@@ -39,6 +71,10 @@ void add_points(nb::module_& module) {
   // None is a wrong argument like others, which the functions name; nanobind would refuse it in words of its own.
   part.def("maximum_pair_sums", &maximum_pair_sums, "columns"_a.none(), "ceiling"_a.none(), "slope"_a.none(),
            "want_gradient"_a);
+  part.def("riesz_rows", &riesz_rows, "columns"_a.none(), "s"_a, "periodic"_a, "want_gradient"_a);
+  part.def("star_discrepancy", &star_discrepancy, "columns"_a.none());
+  part.def("bound_dispersion", &bound_dispersion, "points"_a.none(), "period"_a.none(), "sides"_a.none(), "lower"_a,
+           "share"_a, "most"_a);
   part.def("distance_pair_sums", &distance_pair_sums, "columns"_a.none(), "pairs"_a, "want_gradient"_a);
 }
 

@@ -63,6 +63,27 @@ EVENROAD_INLINE V abs(V a) {
   return (V)((Bits)a & ~(Bits{} + 1 << SIGN));
 }
 
+template <class V>
+EVENROAD_INLINE V sqrt(V a) {
+#if defined(__clang__)
+  return __builtin_elementwise_sqrt(a);
+#else
+  for (unsigned lane = 0; lane < sizeof(V) / sizeof(a[0]); lane++) a[lane] = __builtin_sqrt(a[lane]);
+  return a;
+#endif
+}
+
+/// Return the least of all lanes.
+template <class T, int N>
+EVENROAD_INLINE T least(const Lanes<T, N>& lanes) {
+  T part[N];
+  __builtin_memcpy(part, &lanes, sizeof part);
+  for (int half = N / 2; half > 0; half /= 2) {
+    for (int i = 0; i < half; i++) part[i] = part[i + half] < part[i] ? part[i + half] : part[i];
+  }
+  return part[0];
+}
+
 /// Return the sum of all lanes, in one order whatever the processor: halves are added to each other.
 template <class T, int N>
 EVENROAD_INLINE T sum(const Lanes<T, N>& lanes) {

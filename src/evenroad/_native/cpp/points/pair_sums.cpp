@@ -1,41 +1,9 @@
 // Each point meets the others in blocks of 32: all factors of a block's pairs stay in registers.
 #include "points/pair_sums.hpp"
 
-#include "common/lanes.hpp"
+#include "points/blocks.hpp"
 
 namespace evenroad::points {
-
-namespace {
-
-constexpr std::size_t WIDTH = 32;
-using Block = Lanes<double, WIDTH>;
-
-/// Rows in blocks, the last one filled up with zeros.
-class Blocks {
- public:
-  explicit Blocks(Matrix<const double> rows)
-      : count_((rows.columns + WIDTH - 1) / WIDTH), blocks_(rows.rows * count_, Block{}) {
-    for (std::size_t k = 0; k < rows.rows; k++) {
-      for (std::size_t j = 0; j < rows.columns; j++) blocks_[k * count_ + j / WIDTH][j % WIDTH] = rows(k, j);
-    }
-  }
-
-  std::size_t count() const { return count_; }
-  const Block& operator()(std::size_t row, std::size_t block) const { return blocks_[row * count_ + block]; }
-
- private:
-  std::size_t count_;
-  std::vector<Block> blocks_;
-};
-
-/// Return 1 in the lanes of points and 0 in those that fill the last block up.
-Block filled(std::size_t n) {
-  Block ones = Block{} + 1.0;
-  for (std::size_t lane = n % WIDTH; n % WIDTH != 0 && lane < WIDTH; lane++) ones[lane] = 0.0;
-  return ones;
-}
-
-}  // namespace
 
 PairSums pair_sums(Matrix<const double> points, const MaximumPairs& pairs, bool want_gradient) {
   const std::size_t d = points.rows, n = points.columns;
