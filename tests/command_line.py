@@ -1,10 +1,38 @@
 """Fixtures of tests that type commands."""
 
+import shutil
 import signal
 
 import pytest
 
 from evenroad.cli import main
+
+CELL = """\
+obstacles:
+  table: {shape: box, size: [1, 1.2, 0.05], xyz: [0.25, 0, -0.025], cell: true}
+allowed:
+  table: [base_link, shoulder_link]
+"""
+
+
+@pytest.fixture(scope="session")
+def built_roadmap(tmp_path_factory):
+    """A roadmap of the UR5 on a table, 64 milestones, as the command writes it; built once."""
+    folder = tmp_path_factory.mktemp("roadmap")
+    (folder / "cell.yaml").write_text(CELL)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        # What is known of the robot comes along.
+        patch.setenv("EVENROAD_CACHE", str(folder / ".cache"))
+        assert main(["roadmap", "ur5", "--cell", "cell.yaml", "-n", "64", "-o", "my.roadmap"]) == 0
+    return folder
+
+
+@pytest.fixture
+def made(built_roadmap, in_an_empty_folder, tmp_path):
+    """The test's folder with `cell.yaml` and `my.roadmap` in it."""
+    shutil.copytree(built_roadmap, tmp_path, dirs_exist_ok=True)
+    return tmp_path
 
 
 @pytest.fixture

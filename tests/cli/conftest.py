@@ -1,3 +1,5 @@
+from tests.command_line import built_roadmap as built_roadmap
 from tests.command_line import ctrl_c_interrupts as ctrl_c_interrupts
 from tests.command_line import in_an_empty_folder as in_an_empty_folder
+from tests.command_line import made as made
 from tests.command_line import run as run

@@ -157,17 +157,16 @@ def test_what_is_wrong_with_a_way_is_said_in_one_line(run, tmp_path, options, sa
     assert said in err
 
 
-def test_a_robots_roadmap_leads_to_poses_with_full_hands_and_straight(run, tmp_path):
-    assert run("roadmap", "ur5", "-n", "64", "-o", "ur5.roadmap")[0] == 0
-    (tmp_path / "pick.yaml").write_text(
+def test_a_robots_roadmap_leads_to_poses_with_full_hands_and_straight(run, made):
+    (made / "pick.yaml").write_text(
         "obstacles:\n  post: {shape: box, size: [0.1, 0.1, 0.5], xyz: [0.5, 0.5, 0.25]}\n"
         "attach:\n  rod: {shape: cylinder, radius: 0.02, length: 0.2, link: tool0, xyz: [0, 0, 0.1],"
         " touches: [wrist_2_link]}\n"
     )
-    words = ["plan", "pick.yaml", "--roadmap", "ur5.roadmap", "--no-picture", *DOWN]
+    words = ["plan", "pick.yaml", "--roadmap", "my.roadmap", "--no-picture", *DOWN]
     code, _, err = run(*words, "--straight", "0.05")
     assert (code, err) == (0, "")
-    record = json.loads((tmp_path / "pick.json").read_text())
+    record = json.loads((made / "pick.json").read_text())
     assert record["planner"] == "roadmap"
     assert record["query"]["holds"] == ["rod"]
     assert record["deviation"]["line_m"] < 1e-3

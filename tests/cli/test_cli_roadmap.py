@@ -12,28 +12,9 @@ import evenroad as er
 from evenroad._npz import digest
 from evenroad.cli import main
 from evenroad.robot_roadmap.static_scene import joined_scenes
+from tests.command_line import CELL
 
-CELL = """\
-obstacles:
-  table: {shape: box, size: [1, 1.2, 0.05], xyz: [0.25, 0, -0.025], cell: true}
-allowed:
-  table: [base_link, shoulder_link]
-"""
 ENDS = ["--start", "home", "--goal", "inside", "--no-picture"]
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "cell.yaml").write_text(CELL)
-    return tmp_path
-
-
-@pytest.fixture
-def made(folder):
-    line = ["roadmap", "ur5", "--cell", "cell.yaml", "-n", "64", "-o", "my.roadmap"]
-    assert main(line) == 0
-    return folder
 
 
 def test_it_makes_the_roadmap_that_python_makes(made):
@@ -90,7 +71,9 @@ def test_a_plan_along_it_is_that_of_python_and_proved(made):
         (["plan", "box-reach.yaml", "--roadmap", "x", "--robot-radius", "1", *ENDS], "not both"),
     ],
 )
-def test_bad_input_gets_one_line_and_nothing_is_written(folder, capsys, words, said):
+def test_bad_input_gets_one_line_and_nothing_is_written(tmp_path, capsys, words, said):
+    folder = tmp_path
+    (folder / "cell.yaml").write_text(CELL)
     (folder / "limits.yaml").write_text("obstacles: {}\nlimits: {knee: [0, 1]}\n")
     assert main(words) == 2
     error = error_of(capsys)
@@ -189,8 +172,3 @@ def test_what_contradicts_the_roadmap_gets_one_line(made, capsys):
         error = error_of(capsys)
         assert error.count("\n") == 1
         assert said in error
-
-
-def test_one_milestone_is_said_to_be_one(folder, capsys):
-    assert main(["roadmap", "ur5", "-n", "1", "-o", "one.roadmap"]) == 0
-    assert "1 milestone and 0 motions, free" in " ".join(capsys.readouterr().out.split())
