@@ -5,7 +5,7 @@ import numpy as np
 import evenroad as er
 from evenroad.geometry import PointCloud
 from evenroad.planning.arm_request import arm_request
-from evenroad.robot import Obstacle, Scene, Seen, capsule_ends, load_robot
+from evenroad.robot import Obstacle, Scene, Seen, capsule_endpoints, load_robot
 
 robot, home = load_robot("ur5"), "0,-1.57,0,-1.57,0,0"
 BOXES = [
@@ -21,7 +21,7 @@ def distance(p):
         apart = np.minimum(apart, np.linalg.norm(np.maximum(np.abs(p - centre) - half, 0.0), axis=1))
     apart = np.minimum(apart, np.linalg.norm(p - (0.35, 0.35, 0.08), axis=1) - 0.08)
     q = np.array(home.split(","), dtype=float)
-    for (a, b), capsule in zip(capsule_ends(robot, [q])[0], robot.capsules, strict=True):
+    for (a, b), capsule in zip(capsule_endpoints(robot, [q])[0], robot.capsules, strict=True):
         share = np.clip((p - a) @ (b - a) / max((b - a) @ (b - a), 1e-12), 0.0, 1.0)
         apart = np.minimum(apart, np.linalg.norm(p - a - share[:, None] * (b - a), axis=1) - capsule.radius)
     return apart

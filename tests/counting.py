@@ -21,7 +21,7 @@ class Counting:
 
     def __post_init__(self) -> None:
         # Attributes, and only where the world has them, so that its optional protocols hold of both or of neither.
-        for name in ("explain", "proof", "recheck", "fingerprint"):
+        for name in ("explain", "proof", "validate", "fingerprint"):
             if hasattr(self.world, name):
                 setattr(self, name, getattr(self.world, name))
 

@@ -11,12 +11,12 @@ from evenroad.planning import FMT, PRM, GrowingPRM, Problem
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.trees import default_planner
 from evenroad.roadmap import Budget
-from evenroad.roadmap.query import read_places
+from evenroad.roadmap.query import as_start_and_goals
 
 
 def solve(planner, world, start, goal, *, rng=0, shorten=True, budget=None):
     """Let a planner find a path."""
-    first, goals = read_places(start, goal, world.space)
+    first, goals = as_start_and_goals(start, goal, world.space)
     budget = Budget(seconds=planner.seconds) if budget is None else budget
     how = dict(budget=budget, smooth=shorten, rng=rng, connector=connector_of(world))
     return planner.solve(Problem(world, first, goals, **how))

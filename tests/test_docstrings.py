@@ -17,12 +17,12 @@ MODULES = ("qmc", "spaces", "io", "testing")
 
 OF_PLANNERS = {
     *("apart", "connect", "connect_anew", "may_connect", "shorten", "explain_start", "with_bodies"),
-    *("solve", "recheck", "motion_certified", "path_clearance", "fingerprint"),
+    *("solve", "validate", "motion_certified", "path_clearance", "fingerprint"),
 }
 """Methods by which planners and files ask a world; users have `result` and `er.plan` for them."""
 
 NOT_YET = {
-    *("Roadmap", "Status", "Straight", "Upright", "load_roadmap"),
+    *("Roadmap", "Status", "CartesianLine", "OrientationConstraint", "load_roadmap"),
 }
 """Names of the root that are about to move or to go."""
 

@@ -15,11 +15,11 @@ from evenroad.planning.connectors import ARM_TREES
 from evenroad.planning.trees import default_planner
 from evenroad.points.measures import MEASURES
 from evenroad.roadmap import Budget, KNearest, Status
-from evenroad.roadmap.kept import roadmap_of_points
+from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.robot import ArmWorld, Obstacle, link_poses
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.chain import chain_of
-from evenroad.robot.upright import upright_world
+from evenroad.robot.orientation_constraint import orientation_world
 from evenroad.robot_roadmap.build import arm_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.space.path import subdivide
@@ -74,8 +74,8 @@ def verdicts(world, q):
             lambda a=a, b=b: world.motion_valid(np.array([a, b]), np.array([b, a])),
             lambda a=a, b=b: explained(world, np.linspace(a, b, 33)),
         ]
-        if hasattr(world, "recheck"):
-            asks.append(lambda a=a, b=b: world.recheck(np.linspace(a, b, 5)))
+        if hasattr(world, "validate"):
+            asks.append(lambda a=a, b=b: world.validate(np.linspace(a, b, 5)))
     return asks
 
 
@@ -107,7 +107,7 @@ def an_arm_among_clouds_and_meshes():
 def an_upright_arm():
     world = er.ArmWorld(robot(), box_scene())
     tip = chain_of(world.robot, "wrist3")
-    upright = upright_world(world, tip, er.Upright(0.5), ends()[0, 0])
+    upright = orientation_world(world, tip, er.OrientationConstraint(0.5), ends()[0, 0])
     return [lambda a=a: upright.tilts(a) for a in ends()[:6]] + verdicts(upright, ends())
 
 

@@ -177,7 +177,7 @@ def test_their_planners_take_our_arm_and_end_with_the_points():
     world = er.ArmWorld(load_robot("ur5"), Scene((), name="nothing"))
     start, goal = [0.0, -1.9, 1.6, -1.3, -1.57, 0.0], [1.0, -1.5, 1.2, -1.3, -1.57, 0.5]
     path = plan_on_points(world, start, goal, er.draw("even", 32, 6))
-    assert world.recheck(path).all()
+    assert world.validate(path).all()
     space = cspace_of(world, er.draw("even", 4, 6))
     plan = cspace.MotionPlan(space, "prm*", knn=5)
     plan.setEndpoints(start, goal)

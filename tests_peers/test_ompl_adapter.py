@@ -150,7 +150,7 @@ def test_their_planner_on_our_arm_makes_a_path_that_is_proved_free():
     start, goal = (robot.configuration(name, scene) for name in ("home", "inside"))
     path = solve(og.RRTConnect(space_information(world)), start, goal, seconds=30.0)
     assert path is not None
-    assert world.recheck(path).all()
+    assert world.validate(path).all()
 
 
 def test_no_path_is_none_within_the_time():

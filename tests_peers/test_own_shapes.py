@@ -8,7 +8,7 @@ import pytest
 
 from evenroad.geometry import Mesh, PointCloud
 from evenroad.geometry.shapes import along_z
-from evenroad.robot import ArmWorld, Obstacle, Scene, capsule_ends, load_robot
+from evenroad.robot import ArmWorld, Obstacle, Scene, capsule_endpoints, load_robot
 from evenroad.robot_roadmap.build import arm_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
 from tests_peers.engines.surface import shape_surface
@@ -41,7 +41,7 @@ def _thin(robot, share=0.7):
 def _beside(robot, q, radius=0.02):
     """A ball that touches the forearm's capsules at a configuration, but not what is in them."""
     at = next(i for i, capsule in enumerate(robot.capsules) if capsule.link == "forearm_link")
-    middle = capsule_ends(robot, q[np.newaxis])[0, at].mean(axis=0)
+    middle = capsule_endpoints(robot, q[np.newaxis])[0, at].mean(axis=0)
     for place in middle + np.random.default_rng(0).uniform(-0.15, 0.15, (1000, 3)):
         ball = Obstacle.of("ball", "sphere", (radius,), tuple(place.tolist()))
         scene = Scene((ball,), name="ball")

@@ -244,7 +244,7 @@ def test_the_arm_planner_answers_with_a_trajectory_that_is_free(store, make):
         name="by hand",
         allowed=frozenset({("base_link", "table")}),
     )
-    assert ArmWorld(robot, scene).recheck(q[::4]).all()
+    assert ArmWorld(robot, scene).validate(q[::4]).all()
 
 
 def test_no_path_is_an_answer(store, make):

@@ -22,11 +22,11 @@ from evenroad.roadmap import PlanResult as PlanResult
 from evenroad.roadmap import Roadmap as Roadmap
 from evenroad.roadmap import Status as Status
 from evenroad.robot import ArmWorld as ArmWorld
+from evenroad.robot import CartesianLine as CartesianLine
+from evenroad.robot import OrientationConstraint as OrientationConstraint
 from evenroad.robot import PoseGoal as PoseGoal
 from evenroad.robot import Robot as Robot
 from evenroad.robot import Scene as Scene
-from evenroad.robot import Straight as Straight
-from evenroad.robot import Upright as Upright
 from evenroad.robot import load_robot as load_robot
 from evenroad.robot import load_scene as load_scene
 from evenroad.robot_roadmap.build import build_roadmap as build_roadmap

@@ -14,7 +14,7 @@ FUNCTIONS = {
     "ArmWorld.robot": "evenroad.robot.load:load_robot",
     "ArmWorld.scene": "evenroad.robot.scene_file:load_scene",
     "GridMap.plot": "evenroad.viz.result:plot_map",
-    "PointRoadmap.within": "evenroad.roadmap.kept_in_world:PointWorldRoadmap",
+    "PointRoadmap.within": "evenroad.roadmap.point_world_roadmap:PointWorldRoadmap",
     "PointRoadmap.save": "evenroad.roadmap.npz:save_point_roadmap",
     "ArmRoadmap.within": "evenroad.robot_roadmap.world_roadmap:ArmWorldRoadmap",
     "ArmRoadmap.save": "evenroad.robot_roadmap.file:save_arm_roadmap",

@@ -20,7 +20,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-_asking = threading.Lock()
+_umask_lock = threading.Lock()
 _PREFIX, _SUFFIX = ".evenroad-", ".part"
 """Of the names of temporary files."""
 _BEGINNINGS = {
@@ -168,7 +168,7 @@ def _cannot_write(target: Path, error: OSError) -> BrokenFile:
 
 def _umask() -> int:
     # Of two threads at once the second would read what the first has set, and set that for good.
-    with _asking:
+    with _umask_lock:
         mask = os.umask(0)
         os.umask(mask)
     return mask

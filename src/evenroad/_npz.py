@@ -20,7 +20,7 @@ from evenroad.errors import BrokenFile, shown
 
 Path = str | os.PathLike[str]
 Arrays = dict[str, npt.NDArray[Any]]
-_ROOM, _MOST_TIMES = 1 << 22, 50
+_ALWAYS_ALLOWED, _MOST_TIMES = 1 << 22, 50
 """Most bytes that an archive may unpack to: so many, or so many times its own; of ours it is 1 to 10 times."""
 
 
@@ -110,7 +110,7 @@ _HEADERS = {
 def require_unpackable(path: Path, archive: zipfile.ZipFile) -> None:
     """Raise BrokenFile if an archive would unpack to far more than its own size; nothing is unpacked to find out."""
     packed, unpacked = os.path.getsize(path), sum(info.file_size for info in archive.infolist())
-    if unpacked > max(_ROOM, _MOST_TIMES * packed):
+    if unpacked > max(_ALWAYS_ALLOWED, _MOST_TIMES * packed):
         raise BrokenFile(f"{path} has {packed} bytes and would unpack to {unpacked}: it is not read")
 
 

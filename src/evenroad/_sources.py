@@ -66,5 +66,5 @@ def _files_of(name: str) -> tuple[str, ...]:
         if top == "evenroad"
         else os.path.dirname(getattr(sys.modules.get(top), "__file__", None) or ROOT)
     )
-    place = os.path.join(root, *inside)
-    return tuple(file for file in (f"{place}.py", os.path.join(place, "__init__.py")) if os.path.isfile(file))
+    base = os.path.join(root, *inside)
+    return tuple(file for file in (f"{base}.py", os.path.join(base, "__init__.py")) if os.path.isfile(file))

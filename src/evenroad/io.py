@@ -45,7 +45,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
     >>> er.io.plan_record(result, {"radius": 2.0})["status"]
     'solved'
     """
-    places = {name: getattr(result, name).tolist() for name in ("start", "goal", "goals")}
+    terminals = {name: getattr(result, name).tolist() for name in ("start", "goal", "goals")}
     paths = {name: getattr(result, name) for name in ("path", "milestone_path")}
     same = (
         "cost",
@@ -63,7 +63,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
     return {
         "status": str(result.status),
         "message": result.message,
-        "query": places | query,
+        "query": terminals | query,
         **{name: None if path is None else path.tolist() for name, path in paths.items()},
         **{name: getattr(result, name) for name in same},
         "seconds": round(result.seconds, 6),
@@ -150,10 +150,14 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
     try:
         query = dict(record["query"])
         start, goals = (np.array(query[name], dtype=np.float64) for name in ("start", "goals"))
-        way = None if record["path"] is None else np.array(record["path"], dtype=np.float64)
-        if goals.shape != (len(goals), *start.shape) or (way is not None and way.shape[1:] != start.shape):
+        waypoints = None if record["path"] is None else np.array(record["path"], dtype=np.float64)
+        if goals.shape != (len(goals), *start.shape) or (
+            waypoints is not None and waypoints.shape[1:] != start.shape
+        ):
             raise ValueError("start, goals and path must have the same joints")
-        if not all(np.isfinite(each).all() for each in (start, goals, *([] if way is None else [way]))):
+        if not all(
+            np.isfinite(each).all() for each in (start, goals, *([] if waypoints is None else [waypoints]))
+        ):
             raise ValueError("configurations must be finite")
         index = record["goal_index"]
         if index is not None and (type(index) is not int or not 0 <= index < len(goals)):
@@ -164,7 +168,7 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
             goals,
             Status(record["status"]),
             str(record["message"]),
-            path=way,
+            path=waypoints,
             origin=Origin(family="none", method="read from a file"),
             rule=str(record["rule"]),
             goal_index=index,

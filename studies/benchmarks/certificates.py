@@ -132,7 +132,9 @@ def claims(d: int, number: int, kind: str, rules: dict[str, list[Rule]]) -> Iter
             assert certificate is not None
             assert certificate.dispersion == beta
             row = dict(d=d, world=number, kind=kind, sampler=sampler, n=points.n, rule=str(rule), beta=beta)
-            row |= dict(at_least=certificate.at_least, between=certificate.between, ends=certificate.ends)
+            row |= dict(
+                at_least=certificate.at_least, between=certificate.between, ends=certificate.to_terminals
+            )
             row |= dict(optimum=None, exact=None, cost=result.milestone_cost, bound=None, tightness=None)
             if certificate.complete and exists:
                 yield row | dict(claim="leads", delta=beta, verdict=_verdict(result.solved))

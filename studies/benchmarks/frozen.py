@@ -62,8 +62,8 @@ def verdicts(world: World, states: int, motions: int, *, seed: int = 0) -> Bools
     near = world.space.interpolate(a, b, 0.5)
     short = world.space.interpolate(q[:motions], q[motions : 2 * motions], 0.2)
     found = [free, world.valid(near), world.motion_valid(q[:motions], short)]
-    if hasattr(world, "recheck"):
-        found.append(world.recheck(np.stack([q[:motions], short], axis=1).reshape(-1, world.space.dim)))
+    if hasattr(world, "validate"):
+        found.append(world.validate(np.stack([q[:motions], short], axis=1).reshape(-1, world.space.dim)))
     return np.concatenate(found)
 
 

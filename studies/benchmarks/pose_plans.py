@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 from studies.benchmarks.rows import parser_of, write_rows
 
-from evenroad import PoseGoal, Straight, Upright
+from evenroad import CartesianLine, OrientationConstraint, PoseGoal
 from evenroad.geometry import Pose
 from evenroad.planning import plan
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, link_poses, load_robot
@@ -85,7 +85,10 @@ def off_line(tips: np.ndarray) -> float:
 def rows(name: str, count: int, seed: int, largest: float, seconds: float) -> Iterator[dict[str, object]]:
     """Yield the rows of one robot."""
     robot, tip = load_robot(name), TIPS[name]
-    ways = {"upright": dict(upright=Upright(largest)), "straight": dict(straight=Straight(LINE, away="up"))}
+    ways = {
+        "upright": dict(upright=OrientationConstraint(largest)),
+        "straight": dict(straight=CartesianLine(LINE, away="up")),
+    }
     taken: dict[str, list[tuple[bool, float, float, float]]] = {row: [] for row in ("all", "nearest", *ways)}
     for scene, start, goal in problems(robot, tip, count, seed):
         for row, got in taken.items():

@@ -10,7 +10,7 @@ from evenroad.cli import main
 from evenroad.planning.arm_request import arm_request
 from evenroad.roadmap import Budget
 from evenroad.robot import Obstacle, link_poses
-from evenroad.robot.reference.recheck import MeshCheck
+from evenroad.robot.reference.validate import MeshCheck
 from tests.robot.mesh_arms import write_fork_arm
 
 
@@ -60,7 +60,7 @@ def test_meshes_have_the_last_word(tmp_path, monkeypatch):
         "obstacles: {}\nstates:\n  home: {turn: 0, bend: 0, slide: 0}\n  away: {turn: 0.5, bend: 0.2, slide: 0.1}\n"
     )
     monkeypatch.setattr(
-        "evenroad.planning.arm_request.recheck", lambda *_: MeshCheck("in collision", 7, "at (0, 0, 0)")
+        "evenroad.planning.arm_request.validate", lambda *_: MeshCheck("in collision", 7, "at (0, 0, 0)")
     )
     result = er.plan(tmp_path / "desk.yaml", "home", "away", er.PRM(64), robot=tmp_path / "arm.urdf")
     assert result.status == "mesh_collision"
@@ -74,7 +74,7 @@ def test_without_points_trees_plan_and_the_path_is_proved():
     assert result.solved
     assert result.planner == "trees"
     assert result.proof == "certified"
-    assert query.world.recheck(result.path).all()
+    assert query.world.validate(result.path).all()
     assert result.counts["nodes"] > 2
 
 
@@ -105,12 +105,12 @@ def test_more_rounds_never_give_a_longer_path_and_the_same_rounds_the_same():
     assert costs[-1] < 0.97 * first.cost
     assert np.array_equal(results[2].path, results[3].path)
     world = arm_request("ur5", "box-reach", "home", "inside").world
-    assert world.recheck(results[3].path).all()
+    assert world.validate(results[3].path).all()
 
 
 def test_a_motion_that_cannot_be_proved_is_named(monkeypatch):
     doubt = np.array([True, False, True, True, True])
-    monkeypatch.setattr(er.ArmWorld, "recheck", lambda self, path: doubt[: len(path) - 1])
+    monkeypatch.setattr(er.ArmWorld, "validate", lambda self, path: doubt[: len(path) - 1])
     result = er.plan("box-reach", "home", "inside", robot="ur5", certified=True)
     assert result.status == "not_certified"
     assert "motion 2 of 5 is not proved free, from (" in result.message

@@ -110,7 +110,7 @@ def test_a_certified_path_is_proved_by_a_check_of_its_own(run, tmp_path, options
 def test_a_path_with_a_motion_that_is_not_proved_is_none_where_a_proof_was_asked_for(
     run, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(ArmWorld, "recheck", lambda self, path: np.arange(len(path) - 1) != 1)
+    monkeypatch.setattr(ArmWorld, "validate", lambda self, path: np.arange(len(path) - 1) != 1)
     code, out, _ = run(*arm_arguments(out="a"), "--certified", "--no-picture")
     assert code == 1
     assert "not_certified: motion 2 of" in out

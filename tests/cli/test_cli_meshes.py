@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from evenroad.robot import load_robot
-from evenroad.robot.reference import recheck
+from evenroad.robot.reference import validate
 from tests.robot.mesh_arms import write_fork_arm
 
 SCENE = "obstacles:\n  ball: {shape: sphere, radius: 0.05, xyz: [0.0, 0.3, 0.3]}\n"
@@ -50,7 +50,7 @@ def test_a_robot_without_meshes_pays_nothing_for_those_of_others(run, tmp_path, 
         raise AssertionError("nothing is to be read again")
 
     for name in ("CoalWorld", "original_shapes"):
-        monkeypatch.setattr(recheck, name, refuse)
+        monkeypatch.setattr(validate, name, refuse)
     zeros = ", ".join(f"{joint}: 0.0" for joint in load_robot(robot).group)
     away = zeros.replace("0.0", "0.2")
     (tmp_path / "desk.yaml").write_text(

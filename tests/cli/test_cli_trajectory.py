@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from evenroad.planning.arm_request import arm_request
-from evenroad.robot.reference.recheck import MeshCheck
+from evenroad.robot.reference.validate import MeshCheck
 from evenroad.trajectory import limits_of, load_trajectory
 
 REACH = ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture")

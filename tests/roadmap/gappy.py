@@ -34,7 +34,7 @@ class GappyWorld:
         t = np.linspace(0.0, 1.0, n + 1)[:, np.newaxis]
         return bool(self.valid((1 - t) * a + t * b).all())
 
-    def recheck(self, path):
+    def validate(self, path):
         self.rechecked += len(path) - 1
         return self.truly_free(path[:-1], path[1:])
 

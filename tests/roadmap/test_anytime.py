@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.planning.growing import KnownPairs
+from evenroad.planning.growing import PairCache
 from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.lattice import Lattice
 from evenroad.roadmap import Budget, KEarlier, KNearest, Radius, Status
@@ -149,8 +149,8 @@ def test_ends_in_collision_and_bad_arguments():
 
 
 def test_memory_knows_pairs_in_either_order_and_nothing_else():
-    memory = KnownPairs()
+    memory = PairCache()
     assert memory.recall(np.array([[1, 2]])).tolist() == [0]
-    memory.learn(np.array([[1, 2], [7, 3], [4, 5]]), np.array([1, 2, 0], dtype=np.int8))
-    memory.learn(np.array([[5, 4], [2, 1]]), np.array([2, 1], dtype=np.int8))
+    memory.store(np.array([[1, 2], [7, 3], [4, 5]]), np.array([1, 2, 0], dtype=np.int8))
+    memory.store(np.array([[5, 4], [2, 1]]), np.array([2, 1], dtype=np.int8))
     assert memory.recall(np.array([[2, 1], [3, 7], [4, 5], [1, 3], [9, 9]])).tolist() == [1, 2, 2, 0, 0]

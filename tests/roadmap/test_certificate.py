@@ -20,7 +20,7 @@ from evenroad.roadmap import (
     certify,
     certify_roadmap,
 )
-from evenroad.roadmap.kept import roadmap_of_points
+from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.space import SO3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
 from tests.clear_paths import DiscWorld, Plane, shortest_around
@@ -125,7 +125,8 @@ def test_no_claim_is_false_in_random_worlds(d, n, k, sampler):
                 continue
             # Of one query at least as much is known as of all.
             assert result.certificate.between >= promised.between
-            assert result.certificate.ends >= promised.ends * (1 - 1e-9) or promised.ends <= beta
+            least = promised.to_terminals
+            assert result.certificate.to_terminals >= least * (1 - 1e-9) or least <= beta
             exists = math.isfinite(world.optimum(start, goal, beta))
             if promised.complete and not result.solved:
                 assert not exists
@@ -149,13 +150,13 @@ def test_neighbours_among_any_valid_milestones_reach_as_far_as_promised(sampler)
     for _ in range(20):
         kept = points.points[rng.random(144) < rng.uniform(0.3, 1.0)]
         q = np.concatenate([kept, rng.random((2, 2))])
-        edges = {tuple(edge) for edge in KNearest(k).edges(q, SQUARE, ends=2)}
+        edges = {tuple(edge) for edge in KNearest(k).edges(q, SQUARE, terminals=2)}
         for i in range(len(kept)):
             for j in range(i):
                 if np.linalg.norm(q[i] - q[j]) < promised.between:
                     assert (j, i) in edges
             for end in (len(kept), len(kept) + 1):
-                if np.linalg.norm(q[i] - q[end]) < promised.ends:
+                if np.linalg.norm(q[i] - q[end]) < promised.to_terminals:
                     assert (i, end) in edges
 
 
@@ -178,7 +179,7 @@ def test_an_end_that_is_not_joined_to_its_nearest_milestone_voids_the_certificat
     world = DiscWorld(2, (Plane((0, 1), np.array([[9.0, 9.0]]), np.array([0.1])),))
     middle = points.points.mean(0)
     result = plan_on(world, middle, [0.98, 0.97], points, rule=KMutual(3), links=None, certify=True)
-    assert result.certificate.between == 0.0 or result.certificate.ends > 0.0
+    assert result.certificate.between == 0.0 or result.certificate.to_terminals > 0.0
     assert result.certificate.factor(0.5) == math.inf
 
 
@@ -192,14 +193,14 @@ def test_a_kept_roadmap_is_certified_by_its_edges():
     assert certificate.between == pytest.approx(min(gaps))
     assert certificate.between < min(gaps)
     assert certificate.complete
-    assert certificate.ends > certificate.dispersion
+    assert certificate.to_terminals > certificate.dispersion
     rng = np.random.default_rng(3)
     ends = rng.random((200, 2))
     away = np.sort(np.linalg.norm(ends[:, None] - q[None], axis=2), axis=1)
     # Ends are linked to their hundred nearest.
-    assert certificate.ends < away[:, 99].min()
-    assert certify_roadmap(roadmap_of_points(SQUARE, points, Radius(0.3)), links=None).ends == 0.3
-    assert certify_roadmap(roadmap_of_points(SQUARE, points, Complete())).ends == math.inf
+    assert certificate.to_terminals < away[:, 99].min()
+    assert certify_roadmap(roadmap_of_points(SQUARE, points, Radius(0.3)), links=None).to_terminals == 0.3
+    assert certify_roadmap(roadmap_of_points(SQUARE, points, Complete())).to_terminals == math.inf
 
 
 def test_lengths_are_those_of_the_spaces_metric():

@@ -6,7 +6,7 @@ import pytest
 from evenroad.planning.connectors import CELLS, Cells
 from evenroad.points import draw
 from evenroad.roadmap import KNearest
-from evenroad.roadmap.kept import roadmap_of_points
+from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.world import GridMap
 
 
@@ -41,11 +41,11 @@ def test_trees_join_what_the_roadmap_does_not():
 def test_what_the_search_learned_stays():
     roadmap = known(walled(gap=5))
     first = roadmap.plan(START, GOAL, connector=CELLS)
-    before = roadmap.known
+    before = roadmap.evaluated
     again = roadmap.plan(START, GOAL, connector=CELLS)
     assert np.array_equal(first.path, again.path)
     assert again.counts["edges_checked"] < first.counts["edges_checked"]
-    assert roadmap.known == before
+    assert roadmap.evaluated == before
 
 
 def test_a_path_along_the_roadmap_needs_no_trees():

@@ -15,8 +15,8 @@ from evenroad.planning.tip_motion import plan_tip_motion
 from evenroad.planning.trees import solve_by
 from evenroad.roadmap import Budget
 from evenroad.roadmap.connector import Connection
-from evenroad.roadmap.result import NEAR, NO_POINTS, PlanResult, Status, require_ends
-from evenroad.robot import ArmWorld, Joint, Robot, Scene, Straight
+from evenroad.roadmap.result import NEAR, NO_POINTS, PlanResult, Status, require_start_and_goal
+from evenroad.robot import ArmWorld, CartesianLine, Joint, Robot, Scene
 from evenroad.robot_roadmap.build import arm_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.space import SE3, BoxSpace, JointSpace
@@ -60,25 +60,25 @@ def test_a_path_that_leads_elsewhere_is_a_fault_and_no_error_of_the_input(wrong,
     with pytest.raises(
         AssertionError, match=f"does not {where} where it was asked to, but .* away"
     ) as raised:
-        require_ends(PLANE, wrong)
+        require_start_and_goal(PLANE, wrong)
     assert not isinstance(raised.value, EvenroadError)
 
 
 def test_one_that_leads_there_but_for_rounding_is_handed_out():
     for path in ([A, C, B], [A + 0.5 * NEAR, B - 0.5 * NEAR]):
-        assert require_ends(PLANE, result(path)).path.tolist() == np.array(path).tolist()
+        assert require_start_and_goal(PLANE, result(path)).path.tolist() == np.array(path).tolist()
     nothing = PlanResult(
         status=Status.NOT_CONNECTED, message="", start=A, goals=B[np.newaxis], origin=NO_POINTS, rule="none"
     )
-    assert require_ends(PLANE, nothing) is nothing
+    assert require_start_and_goal(PLANE, nothing) is nothing
 
 
 def test_whole_turns_count_where_a_joint_wraps_and_nowhere_else():
     space = JointSpace((-math.pi, -9.0), (math.pi, 9.0), (True, False))
     asked = [A, B + np.array([5 * math.tau, 0.0])]
-    require_ends(space, result([A, B], start=asked[0], goals=asked[1:]))
+    require_start_and_goal(space, result([A, B], start=asked[0], goals=asked[1:]))
     with pytest.raises(AssertionError, match="end"):
-        require_ends(space, result([A, B], start=A, goals=[B + np.array([0.0, math.tau])]))
+        require_start_and_goal(space, result([A, B], start=A, goals=[B + np.array([0.0, math.tau])]))
 
 
 def test_both_signs_of_a_quaternion_are_one_place():
@@ -86,9 +86,9 @@ def test_both_signs_of_a_quaternion_are_one_place():
     pose = np.array([0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5])
     other = np.array([0.5, 0.5, 0.5, 1.0, 0.0, 0.0, 0.0])
     opposite = pose * [1, 1, 1, -1, -1, -1, -1]
-    require_ends(space, result([opposite, other], start=pose, goals=[other]))
+    require_start_and_goal(space, result([opposite, other], start=pose, goals=[other]))
     with pytest.raises(AssertionError, match="start"):
-        require_ends(space, result([other, other], start=pose, goals=[other]))
+        require_start_and_goal(space, result([other, other], start=pose, goals=[other]))
 
 
 class Astray(PlainTrees):
@@ -135,10 +135,10 @@ def test_what_lies_between_straight_lines_is_looked_at():
     ends = Request(world, np.array(start), np.array([goal]))
     for astray in (False, True):
         if not astray:
-            assert plan_tip_motion(ends, Straight(approach=0.03), None, plan).solved
+            assert plan_tip_motion(ends, CartesianLine(approach=0.03), None, plan).solved
             continue
         with pytest.raises(AssertionError, match="does not start"):
-            plan_tip_motion(ends, Straight(approach=0.03), None, plan)
+            plan_tip_motion(ends, CartesianLine(approach=0.03), None, plan)
 
 
 def test_ends_of_joints_that_turn_for_ever_may_be_asked_for_after_any_turns():

@@ -69,7 +69,7 @@ def test_the_full_path_is_the_cheapest_one_and_follows_the_lowest_nodes_back(que
     options |= dict(links=None)
     result = plan_on(world, START, GOAL, points, **options)
     nodes = np.concatenate([points.points[world.valid(points.points)], [START], [GOAL]])
-    edges = options["rule"].edges(nodes, world.space, ends=2)
+    edges = options["rule"].edges(nodes, world.space, terminals=2)
     a, b = nodes[edges[:, 0]], nodes[edges[:, 1]]
     free = world.motion_valid(a, b)
     lengths = (options["edge_cost"] or world.space.distance)(a, b)

@@ -29,7 +29,7 @@ def test_a_near_goal_is_chosen_where_trees_that_are_led_to_all_meet_a_far_one():
         chosen = plan(world, start, goals, limits=budget)
         assert chosen.solved
         assert chosen.path[-1].tolist() == goals[chosen.goal_index].tolist()
-        assert world.recheck(chosen.path).all()
+        assert world.validate(chosen.path).all()
         at_once = connect(world, start, goals, most_motions=3000, seconds=20)
         longer.append(path_length(shorten(world, at_once.path)[0], world.space) / chosen.cost)
         alone = [plan(world, start, goal, limits=budget) for goal in goals]

@@ -5,10 +5,10 @@ import pytest
 
 from evenroad.points import draw
 from evenroad.points.samplers import Sobol
-from evenroad.points.samplers.even import drawn_in
+from evenroad.points.samplers.even import contracted
 from evenroad.points.samplers.poses import Sliced
 from evenroad.roadmap import KEarlier, KNearest, Radius
-from evenroad.roadmap.kept import roadmap_of_points
+from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.roadmap.points_of import even_points
 from evenroad.space import SE2, SE3, SO3, BoxSpace, JointSpace, Product
 from evenroad.world import FunctionWorld
@@ -120,7 +120,7 @@ def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
 def test_in_a_box_of_many_dimensions_points_of_a_sparse_roadmap_are_drawn_in(d, rule, near):
     points = draw("even", 30, d, rng=3)
     box = BoxSpace([0.0] * d, [2.0] * d)
-    assert even_points(30, box, rule, rng=3) == (drawn_in(points) if near else points)
+    assert even_points(30, box, rule, rng=3) == (contracted(points) if near else points)
 
 
 def test_joints_are_not_drawn_in():

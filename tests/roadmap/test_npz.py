@@ -9,7 +9,7 @@ from evenroad import _npz, load_roadmap
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points import draw
 from evenroad.roadmap import KNearest
-from evenroad.roadmap.kept import roadmap_of_points
+from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.world import GridMap
 
 GAP = np.zeros((20, 20), dtype=bool)

@@ -5,7 +5,7 @@ import pytest
 
 from evenroad.points import draw
 from evenroad.roadmap import Budget, KNearest, Status
-from evenroad.roadmap.kept import roadmap_of_points
+from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.roadmap.search import confirmed
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space.path import path_length
@@ -60,7 +60,7 @@ def test_every_motion_of_a_path_passed_the_strict_check(name, shorten):
 
 def test_the_weak_check_alone_would_have_handed_out_a_path_through_a_wall():
     class Careless(GappyWorld):
-        recheck = None
+        validate = None
 
     result = plan_on(Careless(SLALOM), START, GOAL, draw("sobol", 512, 2, rng=0))
     assert result.solved
@@ -94,7 +94,7 @@ def test_only_doubtful_motions_are_asked_about_and_runs_of_them_together():
     class Strict:
         proof = "certified"
 
-        def recheck(self, path):
+        def validate(self, path):
             calls.append(path[:, 0].tolist())
             return path[1:, 0] != 4.0
 

@@ -17,8 +17,8 @@ from evenroad.roadmap import (
     Radius,
     Status,
 )
-from evenroad.roadmap.kept import WorldRoadmap, roadmap_of_points
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
+from evenroad.roadmap.point_roadmap import WorldRoadmap, roadmap_of_points
 from evenroad.space import Rectangle, Space
 from evenroad.world import GridMap
 from evenroad.world.gridmap.shipped import load_maze
@@ -111,7 +111,7 @@ def test_no_edge_of_the_roadmap_is_asked_about_twice():
     again = known.plan(CORNERS[0], CORNERS[3], shorten=False)
     assert world.asked_motions - asked == again.counts["edges_checked"] <= 13
     assert again.counts["configurations_checked"] == 2
-    states = known.known
+    states = known.evaluated
     assert states["milestones_free"] + states["milestones_blocked"] == 64
     assert states["edges_free"] + states["edges_blocked"] <= len(roadmap.edges)
 

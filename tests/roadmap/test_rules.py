@@ -63,24 +63,24 @@ def test_mutual_edges_join_i_and_j_when_each_is_near_the_other(points, k):
 
 
 @settings(max_examples=100, deadline=None)
-@given(points=clouds(), k=st.integers(1, 6), ends=st.integers(0, 2))
-def test_earlier_edges_join_each_to_the_nearest_before_it_and_the_ends_were_there_first(points, k, ends):
+@given(points=clouds(), k=st.integers(1, 6), terminals=st.integers(0, 2))
+def test_earlier_edges_join_each_to_the_nearest_before_it_and_the_ends_were_there_first(points, k, terminals):
     n = len(points)
-    ends = min(ends, n)
-    order = [*range(n - ends, n), *range(n - ends)]
+    terminals = min(terminals, n)
+    order = [*range(n - terminals, n), *range(n - terminals)]
     expected = set()
     for place, i in enumerate(order):
         before = sorted(
             (((points[i] - points[j]) ** 2).sum(), rank, j) for rank, j in enumerate(order[:place])
         )
         expected |= {(min(i, j), max(i, j)) for _, _, j in before[:k]}
-    assert _as_set(KEarlier(k).edges(points, ends=ends)) == expected
+    assert _as_set(KEarlier(k).edges(points, terminals=terminals)) == expected
 
 
 def test_the_two_ends_are_neighbours_of_one_another_under_earlier():
     milestones = draw("sobol", 64, 2).points
-    ends = np.array([[0.0, 0.0], [1.0, 1.0]])
-    edges = _as_set(KEarlier(5).edges(np.concatenate([milestones, ends]), ends=2))
+    terminals = np.array([[0.0, 0.0], [1.0, 1.0]])
+    edges = _as_set(KEarlier(5).edges(np.concatenate([milestones, terminals]), terminals=2))
     assert (64, 65) in edges
     assert {(0, 64), (0, 65)} <= edges
 
@@ -130,7 +130,7 @@ def test_an_unknown_name_lists_the_forms():
 
 @pytest.mark.parametrize("rule", RULES, ids=str)
 def test_edges_are_sorted_unique_and_smaller_index_first(rule):
-    edges = rule.edges(draw("sukharev", 64, 2).points, SQUARE, ends=2)
+    edges = rule.edges(draw("sukharev", 64, 2).points, SQUARE, terminals=2)
     assert len(edges) > 60
     assert edges.dtype == np.int32
     assert (edges[:, 0] < edges[:, 1]).all()
@@ -140,7 +140,7 @@ def test_edges_are_sorted_unique_and_smaller_index_first(rule):
 @pytest.mark.parametrize("count", [0, 1, 2])
 @pytest.mark.parametrize("rule", [*RULES, Radius(2.0)], ids=str)
 def test_tiny_sets_have_the_edges_that_they_can_have(rule, count):
-    edges = rule.edges(np.linspace(0, 0.1, 2 * count).reshape(count, 2), SQUARE, ends=min(count, 2))
+    edges = rule.edges(np.linspace(0, 0.1, 2 * count).reshape(count, 2), SQUARE, terminals=min(count, 2))
     assert edges.shape == (1 if count == 2 else 0, 2)
     assert edges.dtype == np.int32
 

@@ -109,7 +109,7 @@ def clearance(robot, scene, q, samples=None):
     for capsule, (a, b) in ends.items():
         length = float(np.linalg.norm(np.array(capsule.b) - np.array(capsule.a)))
         cover = cover_capsule(length / 2, capsule.radius)
-        places, radius = np.array(cover.places), cover.radius
+        places, radius = np.array(cover.positions), cover.radius
         if samples is not None:
             places, radius = np.linspace(-1.0, 1.0, samples), capsule.radius
         for obstacle in scene.obstacles:

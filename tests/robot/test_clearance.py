@@ -15,7 +15,7 @@ from evenroad.planning import plan
 from evenroad.planning.arm_trees import connect, shorten
 from evenroad.robot import configuration, load_robot, load_scene
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kinematics import capsule_ends
+from evenroad.robot.kinematics import capsule_endpoints
 from evenroad.robot.scene import Obstacle, Scene
 from tests.robot.kernel_arms import box_scene, edge, random_scene, random_tree, ur5
 from tests.robot.oracle import clearance
@@ -60,17 +60,17 @@ def test_every_state_of_a_path_keeps_the_clearance():
     short, _ = shorten(world, found.path)
     near = clearance(alone, scene, dense_states(world, short)).min()
     assert kept <= near < 2.0 * kept
-    assert world.recheck(short).all()
+    assert world.validate(short).all()
     # Without, the way is cut as far as it goes.
     plain = ArmWorld(robot, scene)
     tight, _ = shorten(plain, connect(plain, START, [GOAL]).path)
     assert clearance(alone, scene, dense_states(plain, tight)).min() < kept
-    assert not world.recheck(tight).all()
+    assert not world.validate(tight).all()
 
 
 def distances_from(robot, q, points):
     """Distances of points (n, 3) from the robot's capsules, the least of each configuration."""
-    ends = capsule_ends(robot, q)
+    ends = capsule_endpoints(robot, q)
     a, way = ends[:, :, 0], ends[:, :, 1] - ends[:, :, 0]
     squares = np.maximum((way**2).sum(axis=-1), 1e-300)
     share = np.einsum("nkc,nkpc->nkp", way, points - a[:, :, None]) / squares[..., None]
@@ -148,7 +148,7 @@ def test_a_plan_keeps_the_clearance_it_is_asked_for():
     assert result.solved
     assert plan("box-reach", "home", "inside", robot="ur5").solved
     world = ArmWorld(load_robot("ur5"), load_scene("box-reach"), clearance=0.005)
-    assert world.recheck(result.path).all()
+    assert world.validate(result.path).all()
 
 
 def test_a_path_tells_a_clearance_that_it_keeps_and_hardly_more():

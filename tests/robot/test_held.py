@@ -194,7 +194,7 @@ def test_a_robots_roadmap_serves_a_robot_with_its_hands_full():
         result = known.plan(start, goal, trees=False)
         if result.solved:
             solved += 1
-            assert CertifiedWorld(known.world).recheck(result.path).all()
+            assert CertifiedWorld(known.world).validate(result.path).all()
     assert solved >= 3
 
 

@@ -44,7 +44,7 @@ class TestATreeWithJointsThatWrap(WorldContract):
         assert np.isfinite(self.world.bounds[2]).any()
 
     def test_full_turns_change_nothing(self):
-        q = self.places()
+        q = self.configurations()
         turned = q + np.where(np.isfinite(self.world.bounds[2]), 4.0 * math.pi, 0.0)
         assert np.mean(self.world.valid(turned) == self.world.valid(q)) > 0.99
 
@@ -207,7 +207,7 @@ def test_the_small_robot_of_the_self_test_has_its_verdicts_in_double_precision()
     free = scalar.configurations_free(
         selftest.small_batch(), selftest.small_bounds(), tables.ints, tables.floats
     )
-    np.testing.assert_array_equal(free, selftest.expected_verdicts())
+    np.testing.assert_array_equal(free, selftest.expected_results())
     assert selftest.lanes_failure() is None
     assert five_joints().checked_with == "lanes"
     assert five_joints(backend="scalar").checked_with == "scalar"
@@ -244,7 +244,7 @@ def test_a_world_can_be_sent_to_another_process():
     for sent in (pickle.loads(pickle.dumps(world)), copy.deepcopy(world)):
         # Compiled code is given addresses: those of the world that was sent are not good for what arrives.
         assert address(sent.lanes.tables) != address(world.lanes.tables)
-        assert sent.lanes.places[1:3] == (address(sent.lanes.tables), address(sent.lanes.by_joint))
+        assert sent.lanes.addresses[1:3] == (address(sent.lanes.tables), address(sent.lanes.by_joint))
         np.testing.assert_array_equal(sent.valid(q), expected)
 
 

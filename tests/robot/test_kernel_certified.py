@@ -64,7 +64,7 @@ def test_paths_are_shortened_by_compiled_code_and_stay_proved():
         [path_length(path, world.space) for path in (each, ARM_TREES.smooth(world.world, each)[0])]
         for each in paths
     ]
-    assert all(world.recheck(ARM_TREES.smooth(world.world, each)[0]).all() for each in paths)
+    assert all(world.validate(ARM_TREES.smooth(world.world, each)[0]).all() for each in paths)
     before, after = np.transpose(lengths)
     assert (after <= before * (1 + 1e-12)).all()
     assert after.sum() < 0.95 * before.sum()

@@ -10,10 +10,10 @@ from evenroad.robot.kernel.layout import program
 from evenroad.robot.kernel.motion_checks import checks_of
 from evenroad.robot.kernel.motion_states import COUNTS
 from evenroad.robot.kernel.path_proof import MOST_BENT, proved_or_bent
-from evenroad.robot.kernel.tighten import CLEARANCE
+from evenroad.robot.kernel.smoothing import CLEARANCE
 from evenroad.robot.tree_sequences import sphere_points
 from tests.robot.oracle import clearance
-from tests.robot.test_tighten import proved
+from tests.robot.test_kernel_smoothing import proved
 from tests.robot.test_trees import box_world
 
 
@@ -32,7 +32,7 @@ def prove(
     memory: int,
     room: int,
 ) -> int:
-    """Call `proved_or_bent` as `tighten_points` does."""
+    """Call `proved_or_bent` as `smooth_points` does."""
     checks = checks_of(check, resolution, tables, by_joint, memory, room)
     own = room + 8 * COUNTS
     there, way = doubles_at(own, (dim,)), doubles_at(own + 8 * dim, (dim,))

@@ -10,7 +10,7 @@ from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.robot import (
     Joint,
     Robot,
-    capsule_ends,
+    capsule_endpoints,
     joint_values,
     link_poses,
     load_robot,
@@ -118,7 +118,7 @@ def test_what_is_not_in_the_group_is_held_within_its_limits(tmp_path):
 def test_capsules_move_with_their_links():
     robot = load_robot("ur5")
     q = np.random.default_rng(1).uniform(-3, 3, (3, 6))
-    ends, poses = capsule_ends(robot, q), link_poses(robot, q)
+    ends, poses = capsule_endpoints(robot, q), link_poses(robot, q)
     for i, capsule in enumerate(robot.capsules):
         for j in range(3):
             frame = poses[j, robot.links.index(capsule.link)]

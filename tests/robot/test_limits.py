@@ -108,7 +108,7 @@ def test_a_value_beyond_a_limit_by_less_than_five_decimals_is_within_it(backend)
             q[2] = sign * (WRITTEN + beyond)
             assert world.valid(q[np.newaxis])[0] == within
             assert world.motion_valid(q[np.newaxis], FREE[np.newaxis])[0] == within
-            assert world.recheck(np.stack([FREE, q]))[0] == within
+            assert world.validate(np.stack([FREE, q]))[0] == within
             assert world.space.contains(q[np.newaxis])[0] == within
             assert ("outside" in world.explain(q)) != within
 
@@ -120,7 +120,7 @@ def test_a_path_ends_where_it_was_asked_to_to_the_last_bit(plan):
         result = plan(world, start, goal)
         assert result.solved, result.message
         assert (result.path[0].tolist(), result.path[-1].tolist()) == (start.tolist(), goal.tolist())
-        assert world.recheck(result.path).all()
+        assert world.validate(result.path).all()
         # Between its ends it keeps to what the robot's maker says.
         assert (np.abs(result.path[1:-1, 2]) <= WRITTEN).all()
 
@@ -138,7 +138,7 @@ def test_trees_around_obstacles_end_there_as_well():
         result = plan(world, start, goal)
         assert result.solved, result.message
         assert (result.path[0].tolist(), result.path[-1].tolist()) == (start.tolist(), goal.tolist())
-        assert world.recheck(result.path).all()
+        assert world.validate(result.path).all()
 
 
 def test_no_proof_of_absence_comes_from_an_end_that_exceeds_a_limit_by_rounding():

@@ -16,7 +16,7 @@ from evenroad.robot import (
     Obstacle,
     Scene,
     Seen,
-    capsule_ends,
+    capsule_endpoints,
     load_robot,
     load_scene,
     scene_seen_by,
@@ -38,7 +38,7 @@ def table(count=30_000, seed=0):
 def skin(robot, q, seed=1):
     """Points on the robot's bodies, (n, 3)."""
     rng, points = np.random.default_rng(seed), []
-    for (a, b), capsule in zip(capsule_ends(robot, np.array(q)[None])[0], robot.capsules, strict=True):
+    for (a, b), capsule in zip(capsule_endpoints(robot, np.array(q)[None])[0], robot.capsules, strict=True):
         way = rng.normal(size=(300, 3))
         way *= capsule.radius / np.linalg.norm(way, axis=1)[:, None]
         points.append(a + rng.random((300, 1)) * (b - a) + way)
@@ -189,7 +189,7 @@ def test_a_roadmap_of_a_robot_serves_in_a_scan(ur5):
     scene = scene_seen_by(ur5, Scene((Obstacle("scan", cloud, seen=Seen(UPRIGHT)),), name="s"))
     result = roadmap.within(ArmWorld(ur5, scene)).plan(home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
     assert result.solved
-    assert ArmWorld(ur5, scene).recheck(result.path).all()
+    assert ArmWorld(ur5, scene).validate(result.path).all()
 
 
 def test_a_cell_that_was_scanned_is_made_without_the_robot_in_it(ur5):
@@ -202,7 +202,7 @@ def test_a_cell_that_was_scanned_is_made_without_the_robot_in_it(ur5):
     assert all_clearance(ur5, without, roadmap.milestones).min() > 0.0
     result = roadmap.within(ArmWorld(ur5, without)).plan(home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
     assert result.solved
-    assert ArmWorld(ur5, without).recheck(result.path).all()
+    assert ArmWorld(ur5, without).validate(result.path).all()
 
 
 def test_clouds_tell_scenes_apart(ur5):

@@ -7,7 +7,7 @@ import evenroad as er
 from evenroad.geometry import Pose
 from evenroad.geometry.rotation import rotation_from_z
 from evenroad.planning.arm_trees import connect
-from evenroad.robot import ArmWorld, HeldObject, Obstacle, PoseGoal, Scene, Straight, load_robot
+from evenroad.robot import ArmWorld, CartesianLine, HeldObject, Obstacle, PoseGoal, Scene, load_robot
 from evenroad.robot.chain import chain_of, default_tip
 from evenroad.robot.inverse_kinematics import task_of
 from evenroad.robot.kinematics import link_poses
@@ -56,7 +56,7 @@ def bodies(world):
 
 
 def place_of(robot, q):
-    return Pose(tuple(chain_of(robot, default_tip(robot)).places(np.array([q]))[0, 9:]))
+    return Pose(tuple(chain_of(robot, default_tip(robot)).tip_poses(np.array([q]))[0, 9:]))
 
 
 @pytest.mark.parametrize("witness", WITNESSES)
@@ -93,7 +93,7 @@ def test_a_place_beyond_what_the_bars_leave_is_proved_for_all_postures(barred):
 
 def test_straight_ways_are_planned_to_some_postures_alone(barred):
     goal = PoseGoal(Pose((-0.75, 0.0, 0.5)), position_only=True)
-    result = er.plan(barred.scene, START, goal, robot=barred.robot, seconds=3.0, straight=Straight(0.02))
+    result = er.plan(barred.scene, START, goal, robot=barred.robot, seconds=3.0, straight=CartesianLine(0.02))
     assert not result.solved
     assert "proved" not in result.message
 
@@ -110,7 +110,7 @@ def test_no_pose_is_beyond_a_piece_that_holds_a_posture_of_it(seed):
         except er.errors.InvalidValue:
             continue
         for q in world.space.from_cube(rng.random((20, world.space.dim))):
-            place = chain.places(q[np.newaxis])[0]
+            place = chain.tip_poses(q[np.newaxis])[0]
             pose = Pose(tuple(place[9:]), tuple(place[:9]))
             known = int(rng.integers(1, min(world.space.dim, 3) + 1))
             half = rng.uniform(1e-4, 0.3)

@@ -178,7 +178,7 @@ def test_without_lanes_no_trees_grow_and_points_find_the_way():
     near = START + np.array([0.6, 0.3, 0.0, 0.0, 0.0])
     result = plan(world, START, near, seconds=60)
     assert result.solved
-    assert world.recheck(result.path).all()
+    assert world.validate(result.path).all()
 
 
 def test_start_and_goal_may_be_one(world):

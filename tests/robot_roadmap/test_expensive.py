@@ -87,7 +87,7 @@ def test_it_finds_a_path_where_the_cheap_search_does_and_each_motion_is_proved(r
         if few.goal == 0:
             found += len(few.path) > 2
             np.testing.assert_array_equal(few.path[[0, -1]], [start, goal])
-            assert lazy.world.recheck(few.path).all()
+            assert lazy.world.validate(few.path).all()
     assert found > 5
 
 
@@ -133,9 +133,9 @@ def test_a_proof_is_said_of_what_the_capsules_prove_alone(roadmap):
         if result.solved:
             proofs.add(result.proof)
             assert result.proof == (
-                "certified" if known.capsules.recheck(result.path).all() else "resolution"
+                "certified" if known.capsules.validate(result.path).all() else "resolution"
             )
-            assert known.world.judge.recheck(result.path).all()
+            assert known.world.judge.validate(result.path).all()
     assert "certified" in proofs
 
 

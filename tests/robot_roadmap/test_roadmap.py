@@ -10,7 +10,7 @@ from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
 from evenroad.geometry.shapes import Box, Capsule
 from evenroad.roadmap import Budget, KNearest, Radius, Status
 from evenroad.robot import ArmWorld, Joint, Mimic, Obstacle, Scene, link_poses, with_group, with_limits
-from evenroad.robot_roadmap import freedom
+from evenroad.robot_roadmap import free_probability
 from evenroad.robot_roadmap.build import arm_roadmap, build_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
@@ -64,7 +64,7 @@ def test_clouds_and_meshes_of_a_cell_are_kept_in_its_file(tmp_path):
         result = known.plan(start, goal)
         if result.solved:
             solved += 1
-            assert known.world.recheck(result.path).all()
+            assert known.world.validate(result.path).all()
     assert solved >= 4
     moved = cell.without("wedge").with_(Obstacle("wedge", Mesh(wedge), cell=True))
     with pytest.raises(er.errors.InvalidValue, match="'wedge' of scene 'cell' is a mesh"):
@@ -90,10 +90,10 @@ def test_each_milestone_is_the_farthest_from_those_before():
 
 
 def test_random_scenes_leave_more_room_to_an_arm_that_is_folded(monkeypatch):
-    monkeypatch.setattr(freedom, "SEEN", 100)
+    monkeypatch.setattr(free_probability, "SEEN", 100)
     straight, folded = [0.0, -0.3, 0.0], [0.0, -1.57, 2.6]
     q = np.concatenate([np.random.default_rng(0).uniform(-3, 3, (98, 3)), [straight, folded]])
-    shares = freedom.chance_of_freedom(ur5(joints=3), q, 200, np.random.default_rng(1))
+    shares = free_probability.free_probability(ur5(joints=3), q, 200, np.random.default_rng(1))
     assert 0.3 < shares[-2] < shares[-1] <= 1.0
 
 
@@ -244,7 +244,7 @@ def test_a_joint_that_turns_on_may_have_limits_in_the_cell_but_none_of_a_day(roa
     post = Scene((Obstacle.of("post", "box", (0.1, 0.1, 1.0), (0.5, 0.0, 0.0)),), name="post")
     result = within(endless, post).plan([-0.5], [0.5])
     assert result.solved
-    assert within(endless, post).world.recheck(result.path).all()
+    assert within(endless, post).world.validate(result.path).all()
     assert len(result.path) > 2
     with pytest.raises(er.errors.InvalidValue, match="'turn' had kind continuous, now revolute"):
         within(endless, limited)
@@ -371,7 +371,7 @@ def test_points_that_are_given_are_the_milestones_where_they_are_free(tmp_path):
     made.save(tmp_path / "given.roadmap")
     known = within(er.load_roadmap(tmp_path / "given.roadmap"), box_scene())
     start, goal = made.milestones[known.world.valid(made.milestones)][:2]
-    assert known.world.recheck(known.plan(start, goal).path).all()
+    assert known.world.validate(known.plan(start, goal).path).all()
     with pytest.raises(er.errors.InvalidValue, match="KNearest"):
         build_roadmap(world, points, rule=Radius(0.5))
 

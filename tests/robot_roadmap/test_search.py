@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from evenroad.robot import ArmWorld, Scene, with_limits
-from evenroad.robot.arm_world import RECHECK_TOLERANCE
+from evenroad.robot.arm_world import VALIDATION_TOLERANCE
 from evenroad.robot_roadmap.build import arm_roadmap
 from evenroad.robot_roadmap.metric import BITS
 from evenroad.robot_roadmap.recipe import Recipe
-from evenroad.robot_roadmap.turns import MOST_LIFTED, MOST_TURNS, one_turn
+from evenroad.robot_roadmap.turns import MOST_MULTI_TURN, MOST_TURNS, one_turn
 from evenroad.space import JointSpace
 from tests.robot.kernel_arms import box_scene, ur5
 
@@ -25,11 +25,11 @@ def shortest(known, start, goals):
     """Return the length of the shortest free way from start to a goal over (milestone, turns), or inf."""
     roadmap, world = known.roadmap, known.world
     low, high = np.array(world.space.low), np.array(world.space.high)
-    lifts = roadmap.one_turn.lifts
+    multi_turn = roadmap.one_turn.multi_turn
     q = roadmap.milestones
 
     def free(a, b):
-        return bool(world.motion_certified(a[np.newaxis], b[np.newaxis], RECHECK_TOLERANCE)[0])
+        return bool(world.motion_certified(a[np.newaxis], b[np.newaxis], VALIDATION_TOLERANCE)[0])
 
     def length(a, b):
         return float(np.linalg.norm(b - a))
@@ -37,7 +37,7 @@ def shortest(known, start, goals):
     def nearest_lift(i, place):
         best = [
             turns
-            for turns in itertools.product(*[range(-2, 3) if lift else (0,) for lift in lifts])
+            for turns in itertools.product(*[range(-2, 3) if lift else (0,) for lift in multi_turn])
             if np.all(q[i] + TURN * np.array(turns) >= low) and np.all(q[i] + TURN * np.array(turns) <= high)
         ]
         return min(best, key=lambda turns: length(q[i] + TURN * np.array(turns), place), default=None)
@@ -118,8 +118,8 @@ def test_the_path_is_as_long_as_that_of_a_slow_search_and_proved_again(roadmap):
             # Links are measured in single precision.
             assert length_of(path) == pytest.approx(expected, rel=1e-6)
             assert length_of(greedy.path) >= expected * (1.0 - 1e-6)
-            assert known.world.recheck(greedy.path).all()
-            assert known.world.recheck(path).all()
+            assert known.world.validate(greedy.path).all()
+            assert known.world.validate(path).all()
             np.testing.assert_array_equal(path[0], start)
             np.testing.assert_array_equal(path[-1], there[connection.goal])
     assert found > 10
@@ -159,7 +159,7 @@ def test_a_goal_more_than_a_turn_away_is_reached_and_no_limit_left(roadmap):
     assert len(path) > 2
     assert np.all(path >= known.world.space.low)
     assert np.all(path <= known.world.space.high)
-    assert known.world.recheck(path).all()
+    assert known.world.validate(path).all()
 
 
 def test_todays_narrower_limits_hold(roadmap):
@@ -175,7 +175,7 @@ def test_todays_narrower_limits_hold(roadmap):
 def test_joints_of_very_many_turns_are_followed_over_some_of_them():
     space = JointSpace([-200.0, -1.0], [200.0, 1.0])
     one = one_turn(space, np.array([True, True]))
-    assert one.lifts.tolist() == [True, False]
+    assert one.multi_turn.tolist() == [True, False]
     assert one.limits[:, 0].tolist() == pytest.approx([-(MOST_TURNS + 0.5) * TURN, (MOST_TURNS + 0.5) * TURN])
     robot = with_limits(ur5(joints=2), {"shoulder_pan_joint": (-200.0, 200.0)})
     world = ArmWorld(robot, Scene())
@@ -184,19 +184,21 @@ def test_joints_of_very_many_turns_are_followed_over_some_of_them():
     for turned in (-20.0, 39.0, 70.0):
         result = known.plan(start, [turned, -1.5], shorten=False)
         assert result.solved
-        assert known.world.recheck(result.path).all()
+        assert known.world.validate(result.path).all()
         assert np.abs(np.diff(result.path[:, 0])).sum() >= turned - start[0] - 1e-9
 
 
 def test_of_very_many_joints_only_those_turn_on_that_the_search_can_follow():
     wide = JointSpace([-TURN] * 20, [TURN] * 20, [False] * 20, [1.0] * 20)
     one = one_turn(wide, np.ones(20, dtype=np.bool_))
-    assert one.lifts.tolist() == [True] * MOST_LIFTED + [False] * (20 - MOST_LIFTED)
+    assert one.multi_turn.tolist() == [True] * MOST_MULTI_TURN + [False] * (20 - MOST_MULTI_TURN)
     # The others are planned in all of their range, and lead over no end of it.
-    assert (one.high - one.low)[~one.lifts].tolist() == pytest.approx([2.0 * TURN] * (20 - MOST_LIFTED))
-    assert not one.wraps[~one.lifts].any()
+    assert (one.high - one.low)[~one.multi_turn].tolist() == pytest.approx(
+        [2.0 * TURN] * (20 - MOST_MULTI_TURN)
+    )
+    assert not one.wraps[~one.multi_turn].any()
     # Each has four bits of a whole number, of which none is the sign.
-    assert 2 ** (BITS * MOST_LIFTED) < 2**62
+    assert 2 ** (BITS * MOST_MULTI_TURN) < 2**62
 
 
 def test_checks_run_out_and_come_back(roadmap):
@@ -222,13 +224,13 @@ def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_kept(ro
     start, goal = far_apart(known)
     first = known.plan(start, goal[0], shorten=False)
     assert first.planner == "roadmap, then trees"
-    assert known.world.recheck(first.path).all()
+    assert known.world.validate(first.path).all()
     monkeypatch.undo()
     # Both are milestones now, and the way between them is proved; in another scene they are not.
     second = known.plan(start, goal[0], shorten=False)
     assert second.planner == "roadmap"
     assert second.counts["edges_checked"] < 10
-    assert known.world.recheck(second.path).all()
+    assert known.world.validate(second.path).all()
     other = within(roadmap).plan(start, goal[0], shorten=False, trees=False)
     assert not other.solved or other.counts["edges_checked"] > second.counts["edges_checked"]
 
@@ -245,7 +247,7 @@ def test_a_copy_of_a_kept_scene_answers_alike_from_memory_of_its_own(roadmap, co
 
 
 def test_there_is_room_for_more_milestones_than_the_roadmap_has(roadmap, monkeypatch):
-    monkeypatch.setattr("evenroad.robot_roadmap.scene_graph.ROOM", 2)
+    monkeypatch.setattr("evenroad.robot_roadmap.scene_graph.GROWTH", 2)
     monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.TRIED_MOTIONS", 1)
     known = within(roadmap)
     some = list(itertools.islice(hard(known), 6))
@@ -255,7 +257,7 @@ def test_there_is_room_for_more_milestones_than_the_roadmap_has(roadmap, monkeyp
         again = known.connect(start, goal, greed=1.0)
         assert again.goal == 0
         assert length_of(again.path) <= length_of(result.path) * (1.0 + 1e-6)
-        assert known.world.recheck(again.path).all()
+        assert known.world.validate(again.path).all()
 
 
 def test_motions_of_many_turns_are_not_kept_but_planned():
@@ -267,7 +269,7 @@ def test_motions_of_many_turns_are_not_kept_but_planned():
         for _ in range(2):
             result = known.plan(start, goal)
             assert result.solved
-            assert known.world.recheck(result.path).all()
+            assert known.world.validate(result.path).all()
 
 
 def test_a_goal_that_is_not_free_is_left_out(roadmap):

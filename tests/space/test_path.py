@@ -3,7 +3,7 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.space import SE2, BoxSpace
-from evenroad.space.path import motion_lengths, path_length, place_at, resample, subdivide
+from evenroad.space.path import configuration_at, motion_lengths, path_length, resample, subdivide
 
 SQUARE = BoxSpace((0.0, 0.0), (4.0, 4.0))
 PATH = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 0.0], [3.0, 1.0]])
@@ -36,10 +36,10 @@ def test_waypoints_beyond_a_turn_stay_as_they_are():
 
 
 def test_a_place_on_a_path_is_where_a_share_of_its_length_leads():
-    places = place_at(PATH, SQUARE, [0.0, 0.375, 0.75, 0.875, 1.0])
+    places = configuration_at(PATH, SQUARE, [0.0, 0.375, 0.75, 0.875, 1.0])
     np.testing.assert_allclose(places, [[0, 0], [1.5, 0], [3, 0], [3, 0.5], [3, 1]])
-    np.testing.assert_array_equal(place_at(PATH[:1], SQUARE, 0.3), PATH[:1])
-    np.testing.assert_array_equal(place_at(PATH[1:3], SQUARE, [0.0, 1.0]), PATH[1:3])
+    np.testing.assert_array_equal(configuration_at(PATH[:1], SQUARE, 0.3), PATH[:1])
+    np.testing.assert_array_equal(configuration_at(PATH[1:3], SQUARE, [0.0, 1.0]), PATH[1:3])
 
 
 def test_what_is_no_step_and_no_share_is_refused():
@@ -48,4 +48,4 @@ def test_what_is_no_step_and_no_share_is_refused():
             resample(PATH, SQUARE, step)
     for share in (-0.1, 1.1, np.nan):
         with pytest.raises(InvalidValue, match=r"t must lie in \[0, 1\]"):
-            place_at(PATH, SQUARE, share)
+            configuration_at(PATH, SQUARE, share)

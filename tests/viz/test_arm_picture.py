@@ -13,7 +13,7 @@ from evenroad.robot import (
     ArmWorld,
     Obstacle,
     Scene,
-    capsule_ends,
+    capsule_endpoints,
     configuration,
     in_scene,
     load_robot,
@@ -97,7 +97,7 @@ def test_the_arm_is_drawn_where_its_capsules_are(reach):
     result = plan(reach, *[configuration(reach.robot, "home", reach.scene)] * 2, draw("korobov", 8, 6))
     bare = ArmWorld(reach.robot, Scene((), name="bare"))
     shown, place = _view(bare, result, (0, 2))
-    ends = capsule_ends(reach.robot, result.goal[np.newaxis])[0][:, :, [0, 2]]
+    ends = capsule_endpoints(reach.robot, result.goal[np.newaxis])[0][:, :, [0, 2]]
     radii = np.array([each.radius for each in reach.robot.capsules])
     points = np.random.default_rng(0).uniform(-1.2, 1.2, (4000, 2))
     a, along = ends[:, 0], ends[:, 1] - ends[:, 0]

@@ -14,8 +14,8 @@ from evenroad.errors import InvalidValue
 from evenroad.space import SE2, SE3, BoxSpace, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import Explains, FunctionWorld
-from evenroad.world.bisection import between_ends
-from evenroad.world.protocol import Rechecks
+from evenroad.world.bisection import between_endpoints
+from evenroad.world.protocol import ValidatesPaths
 
 SQUARE = BoxSpace([0.0, 0.0], [1.0, 1.0])
 
@@ -65,7 +65,7 @@ class Asked:
 
 
 def levels(n):
-    return [state.tolist() for _, state in between_ends(np.array([n]), np.array([True]))]
+    return [state.tolist() for _, state in between_endpoints(np.array([n]), np.array([True]))]
 
 
 def test_states_come_in_halves_then_quarters_then_eighths():
@@ -85,7 +85,7 @@ def test_each_state_between_the_ends_comes_once_and_every_level_halves_the_gaps(
 
 
 def test_a_motion_too_long_for_one_batch_is_handed_out_in_parts():
-    batches = list(between_ends(np.array([300_000, 300_000]), np.array([True, True])))
+    batches = list(between_endpoints(np.array([300_000, 300_000]), np.array([True, True])))
     for motion in (0, 1):
         states = np.concatenate([state[owner == motion] for owner, state in batches])
         np.testing.assert_array_equal(np.sort(states), np.arange(1, 300_000))
@@ -287,7 +287,7 @@ def test_the_strict_check_of_a_path_asks_for_states_twenty_times_as_dense():
     path = np.array([[0.0], [3.0], [3.0], [5.0]])
     assert world.motion_valid(path[:-1], path[1:]).all()
     asked.batches.clear()
-    assert world.recheck(path).all()
+    assert world.validate(path).all()
     states = np.unique(np.round(np.concatenate(asked.batches), 9))
     np.testing.assert_allclose(np.diff(states), 0.05)
     assert (states[0], states[-1]) == (0.0, 5.0)
@@ -297,9 +297,9 @@ def test_a_wall_between_two_states_is_found_by_the_strict_check_alone():
     world = FunctionWorld(SQUARE, lambda q: np.abs(q[:, 0] - 0.55) > 0.02, 0.1)
     path = np.array([[0.0, 0.5], [1.0, 0.5], [1.0, 0.1], [1.5, 0.1]])
     assert world.motion_valid(path[:-1], path[1:]).tolist() == [True, True, False]
-    assert world.recheck(path).tolist() == [False, True, False]
-    assert world.recheck(path[:1]).shape == (0,)
-    assert (world.proof, isinstance(world, Rechecks)) == ("resolution", True)
+    assert world.validate(path).tolist() == [False, True, False]
+    assert world.validate(path[:1]).shape == (0,)
+    assert (world.proof, isinstance(world, ValidatesPaths)) == ("resolution", True)
 
 
 ONE_AT_A_TIME = {

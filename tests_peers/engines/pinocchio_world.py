@@ -14,10 +14,10 @@ from evenroad.geometry.shapes import Shape
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.reference.coal_world import (
     EngineWorld,
-    asking_for_contacts,
     coal_shape,
     require_coal,
     tests_of,
+    with_contacts,
 )
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
@@ -45,7 +45,7 @@ class PinocchioWorld(EngineWorld):
         bodies = _bodies(pinocchio, model, self.robot, self.scene, self._shapes)
         pool = pinocchio.BroadPhaseManagerPool_DynamicAABBTreeCollisionManager(model, bodies, 1)
         for request in pool.getBroadPhaseManager(0).getGeometryData().collisionRequests:
-            asking_for_contacts(request)
+            with_contacts(request)
         for name, value in (("_pinocchio", pinocchio), ("_model", model), ("_pool", pool)):
             object.__setattr__(self, name, value)
 

@@ -103,9 +103,9 @@ class KlamptWorld(TestedAtStates):
         """What a verdict on a motion shows: states close together."""
         return self._states.proof
 
-    def recheck(self, path: Floats) -> Bools:
+    def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are free at states much closer together: (p - 1,)."""
-        return self._states.recheck(path)
+        return self._states.validate(path)
 
     def _free(self, q: Floats) -> Bools:
         robot, before = self._robot, self._robot.getConfig()
@@ -135,17 +135,17 @@ def plan_on_points(
     """
     if isinstance(points, PointSet):
         points = world.space.from_cube(points.points)
-    places = as_batch("points", points, world.space.dim)
-    space = cspace_of(world, places)
+    configurations = as_batch("points", points, world.space.dim)
+    space = cspace_of(world, configurations)
     plan = _cspace.MotionPlan(
         space, "prm", knn=require_count("knn", knn), connectionThreshold=1e9, shortcut=0
     )
     try:
-        ends = as_batch("start and goal", [start, goal], world.space.dim).tolist()
-        if not world.valid(np.array(ends)).all():
+        endpoints = as_batch("start and goal", [start, goal], world.space.dim).tolist()
+        if not world.valid(np.array(endpoints)).all():
             return None
-        plan.setEndpoints(*ends)
-        plan.planMore(len(places))
+        plan.setEndpoints(*endpoints)
+        plan.planMore(len(configurations))
         path = plan.getPath()
         return np.array(path) if path else None
     finally:
@@ -200,8 +200,8 @@ class _OurSpace(_cspace.CSpace):  # type: ignore[name-defined]
         super().__init__()
         space = world.space
         given = space.from_cube(points.points) if isinstance(points, PointSet) else points
-        places = as_batch("points", given, space.dim)
-        self.world, self._rest = world, iter(places.tolist())
+        configurations = as_batch("points", given, space.dim)
+        self.world, self._rest = world, iter(configurations.tolist())
         # Klamp't takes the number of dimensions from the bounds.
         self.bound = [(0.0, 1.0)] * space.dim
 
@@ -219,8 +219,8 @@ class _OurSpace(_cspace.CSpace):  # type: ignore[name-defined]
         return row
 
     def sample(self) -> list[float]:
-        for place in self._rest:
-            return place
+        for configuration in self._rest:
+            return configuration
         raise Exhausted("Klamp't's planner asks for more points than it was given")
 
 

@@ -57,10 +57,10 @@ def give_points(information: Any, points: PointSet | npt.ArrayLike) -> GivenStat
     """
     world = information.world if isinstance(information, _Information) else OmplWorld(information)
     if isinstance(points, PointSet):
-        places = world.space.from_cube(points.points)
+        configurations = world.space.from_cube(points.points)
     else:
-        places = as_batch("points", points, world.space.dim)
-    sampler = GivenStates(information, places[world.valid(places)])
+        configurations = as_batch("points", points, world.space.dim)
+    sampler = GivenStates(information, configurations[world.valid(configurations)])
     information.setValidStateSamplerAllocator(lambda _: sampler)
     # OMPL takes that for unfinished.
     information.setup()
@@ -84,10 +84,10 @@ def solve(planner: Any, start: npt.ArrayLike, goals: npt.ArrayLike, seconds: flo
     write = format_of(information.getStateSpace()).write
     dim = space_of(information.getStateSpace()).dim
     problem = ob.ProblemDefinition(information)
-    [first, *last] = [information.allocState() for _ in range(1 + len(_ends(goals, dim)))]
+    [first, *last] = [information.allocState() for _ in range(1 + len(_as_goals(goals, dim)))]
     targets = ob.GoalStates(information)
     write(first, as_batch("start", np.reshape(start, (1, -1)), dim)[0].tolist())
-    for state, goal in zip(last, _ends(goals, dim).tolist(), strict=True):
+    for state, goal in zip(last, _as_goals(goals, dim).tolist(), strict=True):
         write(state, goal)
         targets.addState(state)
     problem.addStartState(first)
@@ -120,9 +120,9 @@ def plan_on_points(
     """
     space = space_of(information.getStateSpace())
     own = information.world.space if isinstance(information, _Information) else space
-    ends = np.vstack([np.reshape(start, (1, -1)), _ends(goals, space.dim)])
+    terminals = np.vstack([np.reshape(start, (1, -1)), _as_goals(goals, space.dim)])
     rest = own.from_cube(points.points) if isinstance(points, PointSet) else points
-    sampler = give_points(information, np.vstack([ends, as_batch("points", rest, space.dim)]))
+    sampler = give_points(information, np.vstack([terminals, as_batch("points", rest, space.dim)]))
     planner = og.PRM(information) if planner is None else planner
     # OMPL's PRM wants a problem before it is set up, and asks nothing of it while it grows.
     planner.setProblemDefinition(ob.ProblemDefinition(information))
@@ -130,7 +130,7 @@ def plan_on_points(
     planner.growRoadmapPtc(ob.PlannerTerminationCondition(lambda: sampler.used_up))
     data = ob.PlannerData(information)
     planner.getPlannerData(data)
-    return _shortest(space, data, format_of(information.getStateSpace()), ends)
+    return _shortest(space, data, format_of(information.getStateSpace()), terminals)
 
 
 def ompl_path(information: Any, path: npt.ArrayLike) -> Any:
@@ -199,21 +199,21 @@ class OmplWorld:
 class GivenStates(ob.ValidStateSampler):  # type: ignore[name-defined]
     """Hands out free configurations, (n, dim), in their order, and then nothing; `used_up` says so."""
 
-    def __init__(self, information: Any, places: Floats) -> None:
+    def __init__(self, information: Any, configurations: Floats) -> None:
         super().__init__(information)
-        self._places, self._next = places.tolist(), 0
+        self._configurations, self._next = configurations.tolist(), 0
         self._write = format_of(information.getStateSpace()).write
 
     @property
     def used_up(self) -> bool:
         """Whether all have been handed out."""
-        return self._next >= len(self._places)
+        return self._next >= len(self._configurations)
 
     def sample(self, state: Any) -> bool:
         """Write the next one into a state of OMPL's, or return False."""
         if self.used_up:
             return False
-        self._write(state, self._places[self._next])
+        self._write(state, self._configurations[self._next])
         self._next += 1
         return True
 
@@ -243,11 +243,11 @@ class _Motions(ob.MotionValidator):  # type: ignore[name-defined]
         self._world, self._read = world, read
 
     def checkMotion(self, a: Any, b: Any, *_: Any) -> bool:
-        ends = np.array([self._read(a), self._read(b)])
-        return bool(self._world.motion_valid(ends[:1], ends[1:])[0])
+        endpoints = np.array([self._read(a), self._read(b)])
+        return bool(self._world.motion_valid(endpoints[:1], endpoints[1:])[0])
 
 
-def _ends(goals: npt.ArrayLike, dim: int) -> Floats:
+def _as_goals(goals: npt.ArrayLike, dim: int) -> Floats:
     """Return one goal or several as (g, dim)."""
     rows = np.atleast_2d(np.asarray(goals, dtype=np.float64))
     if len(rows) == 0:
@@ -255,30 +255,30 @@ def _ends(goals: npt.ArrayLike, dim: int) -> Floats:
     return as_batch("goals", rows, dim)
 
 
-def _shortest(space: Space, data: Any, states: StateFormat, ends: Floats) -> Floats | None:
+def _shortest(space: Space, data: Any, states: StateFormat, terminals: Floats) -> Floats | None:
     """Return the shortest path over OMPL's roadmap from the first of the ends to any other, or None.
 
     OMPL's data leave milestones without edges out.
     """
-    places = [tuple(states.read(data.getVertex(v).getState())) for v in range(data.numVertices())]
+    configurations = [tuple(states.read(data.getVertex(v).getState())) for v in range(data.numVertices())]
     scratch = data.getSpaceInformation().allocState()
     numbers = []
-    for row in ends.tolist():
+    for row in terminals.tolist():
         states.write(scratch, row)
-        place = tuple(states.read(scratch))
-        numbers.append(places.index(place) if place in places else -1)
+        configuration = tuple(states.read(scratch))
+        numbers.append(configurations.index(configuration) if configuration in configurations else -1)
     if numbers[0] < 0 or max(numbers[1:]) < 0:
         return None
-    edges = np.array([(v, w) for v in range(len(places)) for w in data.getEdges(v)]).reshape(-1, 2)
-    where = np.array(places)
+    edges = np.array([(v, w) for v in range(len(configurations)) for w in data.getEdges(v)]).reshape(-1, 2)
+    where = np.array(configurations)
     # A length of 0 would be no edge to SciPy.
     lengths = np.maximum(space.distance(where[edges[:, 0]], where[edges[:, 1]]), 1e-300)
-    graph = coo_matrix((lengths, edges.T), shape=(len(places),) * 2).tocsr()
+    graph = coo_matrix((lengths, edges.T), shape=(len(configurations),) * 2).tocsr()
     cost, before = dijkstra(graph, directed=False, indices=numbers[0], return_predecessors=True)
     goal = min((number for number in numbers[1:] if number >= 0), key=lambda number: cost[number])
     if not math.isfinite(cost[goal]):
         return None
-    way = [goal]
-    while way[-1] != numbers[0]:
-        way.append(int(before[way[-1]]))
-    return where[way[::-1]]
+    route = [goal]
+    while route[-1] != numbers[0]:
+        route.append(int(before[route[-1]]))
+    return where[route[::-1]]

@@ -103,7 +103,7 @@ def guarantees(certificate: Certificate) -> dict[str, Any]:
         "dispersion": certificate.dispersion,
         "dispersion_at_least": certificate.at_least,
         "between": _finite(certificate.between),
-        "ends": _finite(certificate.ends),
+        "ends": _finite(certificate.to_terminals),
         "complete": certificate.complete,
         "complete_from_clearance": _finite(least),
         "clearance_for_factor": {f"{factor:g}": _finite(value) for factor, value in clearances.items()},
@@ -117,11 +117,11 @@ def guarantee_rows(certificate: Certificate) -> list[tuple[str, str]]:
     path = f"nothing is guaranteed: {needed}; take a larger k or radius, or more points"
     if (least := said["complete_from_clearance"]) is not None:
         path = f"if one of clearance {least:.6g} does; if none is found, none does"
-    between, ends = (
+    between, to_terminals = (
         f"up to {most:.6g}" if math.isfinite(most) else "of any length"
-        for most in (certificate.between, certificate.ends)
+        for most in (certificate.between, certificate.to_terminals)
     )
-    tried = f"all free ones {between}, from start and goal {ends}"
+    tried = f"all free ones {between}, from start and goal {to_terminals}"
     return [
         ("largest hole", f"{certificate.dispersion:.6g} at most, {certificate.at_least:.6g} at least"),
         ("motions tried", tried),

@@ -49,7 +49,7 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     SystemExit after its help, where the words ask for that.
     """
     known, program = option_names(kind), f"evenroad {verb}"
-    words = [today(word, known) for word in words]
+    words = [current_option(word, known) for word in words]
     for name in sorted(given_options(words) - known - HELP):
         raise UnknownName.among(f"option of {program}:", name, known)
     texts = [" ".join(text.split()) for text in (kind.__doc__ or "").split("\n\n")]
@@ -82,7 +82,7 @@ def given_options(words: Sequence[str]) -> set[str]:
     return {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
 
 
-def today(word: str, known: set[str]) -> str:
+def current_option(word: str, known: set[str]) -> str:
     """Return a word with the name that an option has today, if it once had another."""
     name, equals, value = word.partition("=")
     new = EARLIER.get(name, name)
@@ -124,8 +124,8 @@ def _verb(info: StructTypeInfo) -> StructConstructorSpec | None:
         _INSIDE.pop()
     assert isinstance(made, StructConstructorSpec)
     # From the verb's class up to those that it inherits from.
-    places = [name for each in info.type.__mro__ for name in get_annotations(each)]
-    listed = sorted(made.fields, key=lambda field: places.index(field.name))
+    declared = [name for each in info.type.__mro__ for name in get_annotations(each)]
+    listed = sorted(made.fields, key=lambda field: declared.index(field.name))
     return replace(made, fields=tuple(map(_worded, listed)))
 
 

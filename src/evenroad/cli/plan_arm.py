@@ -25,14 +25,14 @@ from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.planning.arm_request import arm_request
 from evenroad.planning.arm_trees import prepare
-from evenroad.planning.plan import Wishes, finished, solve
+from evenroad.planning.plan import Options, finished, solve
 from evenroad.planning.request import Goal, Reading, Request
 from evenroad.roadmap import PlanResult
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
+from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.kernel.selftest import lanes_failure
+from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
-from evenroad.robot.straight import Straight
-from evenroad.robot.upright import Upright
 from evenroad.robot_roadmap.query import prepare as prepare_roadmap
 from evenroad.robot_roadmap.static_scene import joined_scenes
 
@@ -44,7 +44,7 @@ def plan_arm(plan: PlanArm) -> int:
     """
     # All that can be refused at once is, before anything is compiled.
     budget, asked_goals, scene = chosen_budget(plan), _goals(plan), load_scene(plan.world)
-    ways = _ways(plan)
+    constraints = _constraints(plan)
     of_robot = () if plan.robot is None else find_robot(plan.robot)
     inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
@@ -71,12 +71,12 @@ def plan_arm(plan: PlanArm) -> int:
     planner = chosen_planner(plan, request) if kept is None else kept.within(world)
     load_compiled_code(request, planner)
 
-    straight, upright = ways
-    wishes = Wishes(budget, not plan.raw, plan.seed, plan.certified, straight, upright)
+    straight, upright = constraints
+    options = Options(budget, not plan.raw, plan.seed, plan.certified, straight, upright)
     # Where the tip is told its way, worlds of other kinds are planned in: each has its own planner.
     by = None if not wants_points(plan) and kept is None and upright is not None else planner
-    result, meshes = finished(request, solve(request, by, wishes), certified=plan.certified)
-    more_rows, trajectory = trajectory_rows(plan, request, result, ways)
+    result, meshes = finished(request, solve(request, by, options), certified=plan.certified)
+    more_rows, trajectory = trajectory_rows(plan, request, result, constraints)
     record = plan_record(result, _asked(plan, request, result) | common_query(plan)) | {
         "no_body": [] if request.model is None else list(request.model.bodiless),
         "drawn_only": [] if request.model is None else list(request.model.drawn_only),
@@ -155,18 +155,18 @@ def _goals(plan: PlanArm) -> list[Goal]:
     return goals
 
 
-def _ways(plan: PlanArm) -> tuple[Straight | None, Upright | None]:
+def _constraints(plan: PlanArm) -> tuple[CartesianLine | None, OrientationConstraint | None]:
     """Return what is said of the tip's way."""
     straight, upright = None, None
     if plan.straight is not None:
         approach, retreat, *_ = (*as_numbers("--straight", plan.straight, (1, 2)), 0.0)
-        straight = Straight(approach, retreat, plan.away or "-z", plan.tip)
+        straight = CartesianLine(approach, retreat, plan.away or "-z", plan.tip)
     elif plan.away is not None:
         raise InvalidValue("--away goes with --straight")
     if plan.upright is not None:
         if plan.roadmap is not None:
             raise InvalidValue("--upright goes without --roadmap: the roadmap's motions are not upright")
-        upright = Upright(
+        upright = OrientationConstraint(
             math.radians(plan.upright) if plan.deg else plan.upright, plan.upright_axis, plan.tip
         )
     elif plan.upright_axis is not None:

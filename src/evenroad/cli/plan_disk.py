@@ -22,7 +22,7 @@ from evenroad.cli.plan_parts import (
 )
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
-from evenroad.planning.plan import Wishes, finished, solve
+from evenroad.planning.plan import Options, finished, solve
 from evenroad.planning.read_request import read_request
 from evenroad.planning.request import Reading
 from evenroad.world import GridMap, load_map
@@ -57,8 +57,8 @@ def plan_disk(plan: PlanDisk) -> int:
     of_roadmap = dict(search="full", certify=plan.guarantees) if wants_points(plan) else {}
     planner = chosen_planner(plan, request, **of_roadmap)
     load_compiled_code(request, planner)
-    wishes = Wishes(budget, smooth=not plan.raw, certified=plan.certified)
-    result, _ = finished(request, solve(request, planner, wishes), certified=plan.certified)
+    options = Options(budget, smooth=not plan.raw, certified=plan.certified)
+    result, _ = finished(request, solve(request, planner, options), certified=plan.certified)
     query = {
         "map": str(plan.world),
         "robot_radius": plan.robot_radius,

@@ -16,14 +16,14 @@ from evenroad.cli.sampler import chosen_sampler, draw_points, require_seed, spea
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
 from evenroad.planning.connectors import connector_of
-from evenroad.planning.plan import Wishes, solve
+from evenroad.planning.plan import Options, solve
 from evenroad.planning.prm import PRM, rule_of
 from evenroad.planning.request import Request
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points import PointSet
 from evenroad.roadmap import Budget, KNearest, PlanResult, Radius, Rule
 from evenroad.roadmap.problem import Planner
-from evenroad.world import Rechecks
+from evenroad.world import ValidatesPaths
 
 DEFAULT_N = 512
 
@@ -81,16 +81,16 @@ def load_compiled_code(request: Request, planner: Planner) -> None:
     world = request.world
     if not isinstance(planner, PRM):
         stay = Request(world, request.start, request.start[np.newaxis])
-        solve(stay, None, Wishes(Budget(samples=1)))
+        solve(stay, None, Options(Budget(samples=1)))
         return
     assert isinstance(planner.points, PointSet)
     few = PRM(
         PointSet(planner.points.points[:_FEW]), rule=rule_of(planner, world.space), search=planner.search
     )
-    solve(Request(world, request.start, request.goals), few, Wishes(Budget()))
+    solve(Request(world, request.start, request.goals), few, Options(Budget()))
     still = np.stack([request.start, request.start])
-    if isinstance(world, Rechecks):
-        world.recheck(still)
+    if isinstance(world, ValidatesPaths):
+        world.validate(still)
         if (connector := connector_of(world)) is not None:
             connector.smooth(world, still)
 

@@ -74,7 +74,11 @@ class MakeRoadmap(RobotOptions):
         roadmap.save(out)
         n, m = len(roadmap.milestones), len(roadmap.edges)
         robot = roadmap.robot
-        wraps = [name for name, lifts in zip(robot.group, roadmap.one_turn.lifts, strict=True) if lifts]
+        wraps = [
+            name
+            for name, multi_turn in zip(robot.group, roadmap.one_turn.multi_turn, strict=True)
+            if multi_turn
+        ]
         size = f"{counted(n, 'milestone')} and {counted(m, 'motion')}"
         rows = [
             ("roadmap", f"{size}, free of {robot.name!r} and its cell {cell.name!r}"),

@@ -16,8 +16,8 @@ from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.planning.arm_request import mesh_check
 from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult
-from evenroad.robot.straight import Straight
-from evenroad.robot.upright import Upright
+from evenroad.robot.cartesian_line import CartesianLine
+from evenroad.robot.orientation_constraint import OrientationConstraint
 
 _MOVEJ = ".movej.script"
 
@@ -56,7 +56,10 @@ def _remove_earlier(plan: PlanArm) -> None:
 
 
 def trajectory_rows(
-    plan: PlanArm, request: Request, result: PlanResult, ways: tuple[Straight | None, Upright | None]
+    plan: PlanArm,
+    request: Request,
+    result: PlanResult,
+    constraints: tuple[CartesianLine | None, OrientationConstraint | None],
 ) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:
     """Write the trajectory of a solved plan; return rows for the table, and what the record says of it."""
     if not plan.trajectory:
@@ -69,7 +72,7 @@ def trajectory_rows(
     from evenroad.trajectory.files import save_trajectories
 
     world, tip = request.world, request.tip
-    straight, upright = (None if way is None else replace(way, tip=way.tip or tip) for way in ways)
+    straight, upright = (None if each is None else replace(each, tip=each.tip or tip) for each in constraints)
     joints = plan.controller_joints
     order = None if joints is None else [*map(str.strip, joints.split(","))]
     limits = limits_of(world.robot, plan.limits)
@@ -82,7 +85,7 @@ def trajectory_rows(
             deviation=plan.deviation,
             step=plan.step,
             rounded_by_controller=any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory),
-            ways=(straight, upright),  # type: ignore[arg-type]
+            constraints=(straight, upright),  # type: ignore[arg-type]
         )
         meshes = mesh_check(request, trajectory.positions)
         if meshes is not None and meshes.verdict == "in collision":

@@ -17,7 +17,7 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import load_plan
 from evenroad.planning import PRM
 from evenroad.planning.arm_request import arm_request
-from evenroad.planning.plan import Wishes, solve
+from evenroad.planning.plan import Options, solve
 from evenroad.planning.request import Reading, Request
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.robot import find_robot, load_scene
@@ -122,7 +122,7 @@ class View(RobotOptions):
 
     def _planned(self, request: Request) -> PlanResult:
         planner = None if self.n is None else PRM(self.n)
-        return solve(request, planner, Wishes(Budget(seconds=SECONDS)))
+        return solve(request, planner, Options(Budget(seconds=SECONDS)))
 
 
 def _require_sound(file: Path, asked: dict[str, Any]) -> None:

@@ -137,16 +137,16 @@ def _count(what: str, word: str) -> int:
 
 def _header(content: bytes, last: bytes) -> tuple[list[list[str]], bytes]:
     """Return the words of a file's header, line by line up to that which begins with `last`, and what follows."""
-    lines, place = [], 0
-    while place < min(len(content), _LONGEST_HEADER):
-        end = content.find(b"\n", place)
-        line = content[place : end if end >= 0 else None]
-        place = len(content) if end < 0 else end + 1
+    lines, offset = [], 0
+    while offset < min(len(content), _LONGEST_HEADER):
+        end = content.find(b"\n", offset)
+        line = content[offset : end if end >= 0 else None]
+        offset = len(content) if end < 0 else end + 1
         words = line.decode("ascii").split()
         if words and words[0] not in ("comment", "obj_info") and not words[0].startswith("#"):
             lines.append(words)
         if line.startswith(last):
-            return lines, content[place:]
+            return lines, content[offset:]
     raise ValueError(f"its header has no {last.decode()!r}")
 
 

@@ -126,7 +126,7 @@ def capsules_around_mesh(vertices: Floats, triangles: Ints) -> list[Fitted]:
             halves = tuple(map(_splittable, halves))
         parts = [*parts[:best], *halves, *parts[best + 1 :]]
         found.append(parts)
-    chosen = min(map(_merged, found), key=_price)
+    chosen = min(map(_merged, found), key=_cost)
     return [capsule_around(part.corners.reshape(-1, 3)) for part in chosen]
 
 
@@ -135,12 +135,12 @@ def _merged(parts: list[_Part]) -> list[_Part]:
     for i, j in itertools.combinations(range(len(parts)), 2):
         corners = np.concatenate([parts[i].corners, parts[j].corners])
         fewer = [part for k, part in enumerate(parts) if k not in (i, j)] + [_Part(corners, _rough(corners))]
-        if _price(fewer) < _price(parts):
+        if _cost(fewer) < _cost(parts):
             return _merged(fewer)
     return parts
 
 
-def _price(parts: list[_Part]) -> float:
+def _cost(parts: list[_Part]) -> float:
     """Return the sum of volumes, dearer for each capsule."""
     return sum(volume(part.capsule) for part in parts) / WORTHWHILE ** len(parts)
 

@@ -63,12 +63,12 @@ def _starts(points: Floats) -> tuple[Floats, list[Floats]]:
     return centre, [_frame(axis) for axis in (*np.eye(3), *axes)]
 
 
-def _capsule_on(points: Floats, place: Floats, frame: Floats) -> Fitted:
-    """Return the smallest of six capsules around the points on the line through `place` along ``frame[0]``.
+def _capsule_on(points: Floats, origin: Floats, frame: Floats) -> Fitted:
+    """Return the smallest of six capsules around the points on the line through `origin` along ``frame[0]``.
 
     The radius is the least that the line allows, or more where the shorter caps save volume.
     """
-    relative = points - place
+    relative = points - origin
     along = relative @ frame[0]
     squared = np.maximum(np.einsum("ni,ni->n", relative, relative) - along**2, 0.0)
     least = math.sqrt(float(squared.max()))
@@ -81,8 +81,8 @@ def _capsule_on(points: Floats, place: Floats, frame: Floats) -> Fitted:
         low, high = float((along + reach).min()), float((along - reach).max())
         if low > high:
             low = high = 0.5 * (low + high)
-        ends = (place + low * frame[0], place + high * frame[0])
-        candidates.append((*ends, max(radius, _LEAST_RADIUS)))
+        endpoints = (origin + low * frame[0], origin + high * frame[0])
+        candidates.append((*endpoints, max(radius, _LEAST_RADIUS)))
     return min(candidates, key=volume)
 
 

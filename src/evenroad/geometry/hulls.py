@@ -145,8 +145,8 @@ def piece_of(shape: Shape) -> Piece:
     elif isinstance(shape, Cylinder):
         turn, outward = np.arange(SIDES) * 2.0 * np.pi / SIDES, 1.0 / np.cos(np.pi / SIDES)
         ring = shape.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        ends = (-0.5, 0.5) * np.array(shape.length)
-        points = np.concatenate([np.c_[ring, np.full(SIDES, end)] for end in ends])
+        caps = (-0.5, 0.5) * np.array(shape.length)
+        points = np.concatenate([np.c_[ring, np.full(SIDES, end)] for end in caps])
     elif isinstance(shape, Mesh):
         mesh = shape.triangles
         piece = _piece_around(shape.pose.apply(mesh.vertices)[mesh.triangles], shape.link)

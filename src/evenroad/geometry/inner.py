@@ -80,7 +80,9 @@ def _in_box(size: Floats) -> list[Fitted]:
     aside, along = 0.5 * size[middle] - radius, (0.5 * size[long] - radius) * axes[long]
     # So near that their axes are no farther apart than they are thick, where there are enough of them.
     count = min(1 + math.ceil(aside / radius - 1e-9), MOST_SIDE_BY_SIDE)
-    centres = [place * axes[middle] for place in (np.linspace(-aside, aside, count) if count > 1 else [0.0])]
+    centres = [
+        offset * axes[middle] for offset in (np.linspace(-aside, aside, count) if count > 1 else [0.0])
+    ]
     return [(centre - along, centre + along, float(radius)) for centre in centres]
 
 
@@ -89,8 +91,8 @@ def _in_cylinder(radius: float, half: float) -> list[Fitted]:
         end = np.array([0.0, 0.0, half - radius])
         return [(-end, end, radius)]
     turns = np.arange(MOST_SIDE_BY_SIDE) * np.pi / MOST_SIDE_BY_SIDE
-    ends = (radius - half) * np.stack([np.cos(turns), np.sin(turns), np.zeros_like(turns)], axis=1)
-    return [(-end, end, half) for end in ends]
+    endpoints = (radius - half) * np.stack([np.cos(turns), np.sin(turns), np.zeros_like(turns)], axis=1)
+    return [(-end, end, half) for end in endpoints]
 
 
 def _proper(corners: Floats) -> Floats:
@@ -102,7 +104,7 @@ def _in_mesh(corners: Floats) -> list[Fitted]:
     """Return balls inside of closed surfaces, triangles (t, 3, 3), whose sides tell inside from outside."""
     from scipy.spatial import cKDTree
 
-    middles = _places_inside(corners)
+    middles = _points_inside(corners)
     if not len(middles):
         return []
     surface = divided(corners, _FINE)
@@ -142,7 +144,7 @@ def is_inside(corners: Floats, point: Floats) -> bool:
     return abs(abs(times) - 1.0) < 1e-3
 
 
-def _places_inside(corners: Floats) -> Floats:
+def _points_inside(corners: Floats) -> Floats:
     """Return places, (n, 3), on a grid, that closed surfaces seem to go around: looked at along z, line by line."""
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     if not (high > low).all():
@@ -157,14 +159,14 @@ def _places_inside(corners: Floats) -> Floats:
     # All lines of a triangle's own rectangle, triangle after triangle.
     count = wide * deep
     row = np.repeat(np.arange(len(corners)), count)
-    place = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
-    i, j = first[0][row] + place // np.maximum(deep[row], 1), first[1][row] + place % np.maximum(deep[row], 1)
+    rank = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    i, j = first[0][row] + rank // np.maximum(deep[row], 1), first[1][row] + rank % np.maximum(deep[row], 1)
     hit, height, sign = _crossed(corners[row], x[i], y[j])
     np.add.at(turns, (i[hit], j[hit], np.searchsorted(z, height[hit])), sign[hit])
     # What lies above a crossing is on its other side.
     around = np.cumsum(turns, axis=2)
-    ends = np.abs(around[:, :, -1:]) < 0.5
-    inside = (np.abs(np.abs(around[:, :, :-1]) - 1.0) < 0.5) & ends
+    at_cap = np.abs(around[:, :, -1:]) < 0.5
+    inside = (np.abs(np.abs(around[:, :, :-1]) - 1.0) < 0.5) & at_cap
     at = np.nonzero(inside)
     return np.stack([x[at[0]], y[at[1]], z[at[2]]], axis=1)
 

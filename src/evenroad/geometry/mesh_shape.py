@@ -69,7 +69,7 @@ class Mesh(Shape):
         if 0.0 in row:
             raise InvalidValue(f"the scale of mesh {source.name} must not be 0, got {row}: it would be flat")
         set_fields(self, scale=row, source=source)
-        self._place(placed)
+        self._set_pose(placed)
 
     @property
     def triangles(self) -> TriangleMesh:
@@ -154,7 +154,7 @@ class PointCloud(Shape):
             )
         radius = require_positive("the radius of a cloud", radius, at_most=FARTHEST)
         set_fields(self, points=points, radius=radius)
-        self._place(placed)
+        self._set_pose(placed)
 
     @property
     def volume(self) -> float:

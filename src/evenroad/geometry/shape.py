@@ -72,7 +72,7 @@ class Shape:
         """Return the dimensions as one writes them."""
         return ", ".join(f"{key}={getattr(self, key)!r}" for key, _ in self.dimensions)
 
-    def _place(self, placed: Placed) -> None:
+    def _set_pose(self, placed: Placed) -> None:
         """Keep where it is, and what it is called; InvalidValue for any other keyword, or two places."""
         if strange := sorted(set(placed) - Placed.__annotations__.keys()):
             raise UnknownName.among(f"keyword of a {self.kind}:", strange[0], Placed.__annotations__)

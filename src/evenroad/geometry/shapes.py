@@ -63,7 +63,7 @@ class Box(Shape):
         set_fields(self, size=as_row("the size of a box", size, 3))
         for extent in self.size:
             require_positive("the size of a box", extent, at_most=FARTHEST)
-        self._place(placed)
+        self._set_pose(placed)
 
     @property
     def volume(self) -> float:
@@ -108,7 +108,7 @@ class Sphere(Shape):
 
     def __init__(self, radius: float, **placed: Unpack[Placed]) -> None:
         self._lengths(radius=radius)
-        self._place(placed)
+        self._set_pose(placed)
 
     @property
     def volume(self) -> float:
@@ -151,7 +151,7 @@ class Cylinder(Shape):
 
     def __init__(self, radius: float, length: float, **placed: Unpack[Placed]) -> None:
         self._lengths(radius=radius, length=length)
-        self._place(placed)
+        self._set_pose(placed)
 
     @property
     def volume(self) -> float:
@@ -223,7 +223,7 @@ class Capsule(Shape):
             end = as_row(f"the end {name} of a capsule", values[name], 3, within=FARTHEST)
             set_fields(self, **{name: end})
         self._lengths(radius=values["radius"])
-        self._place(named)  # type: ignore[arg-type]
+        self._set_pose(named)  # type: ignore[arg-type]
 
     @property
     def length(self) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
-from evenroad.planning.request import Goal, PathLike, Place, Reading, Request
+from evenroad.planning.request import ConfigurationLike, Goal, PathLike, Reading, Request
 from evenroad.robot import (
     ArmWorld,
     Robot,
@@ -26,7 +26,7 @@ from evenroad.robot import (
 from evenroad.robot.goals import Goals, goals_of, require_tips
 from evenroad.robot.load import RobotOptions
 from evenroad.robot.pose_goal import PoseGoal
-from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
+from evenroad.robot.reference.validate import MeshCheck, has_meshes, unseen_pairs, validate
 from evenroad.robot.robot import with_group
 from evenroad.robot.scan import allowed_near_ends, open_everywhere
 from evenroad.robot.states import as_configuration
@@ -38,7 +38,7 @@ RESOLUTION = 0.05
 def arm_request(
     robot: PathLike | Robot,
     scene: PathLike | Scene,
-    start: Place,
+    start: ConfigurationLike,
     goal: Goal | Sequence[Goal],
     reading: Reading = Reading(),
     *,
@@ -58,8 +58,8 @@ def arm_request(
     else:
         model = load_model(robot, **options)
         source, robot = model.file, model.robot
-    goals = _places(goal)
-    texts = [place for place in (start, *goals) if isinstance(place, str)]
+    goals = _goal_list(goal)
+    texts = [target for target in (start, *goals) if isinstance(target, str)]
     robot = at_states(in_scene(robot, scene), texts, scene)
     if reading.held:
         robot = with_group(robot, robot.group, {**robot.held, **reading.held})
@@ -70,15 +70,17 @@ def arm_request(
     world = ArmWorld(robot, open_everywhere(scene), resolution=resolution, clearance=clearance)
     given = _goals_in(world, first, goals, reading)
     if scene.near_ends and not given.unreached:
-        ends = np.concatenate([first[np.newaxis], given.configurations])
-        world = replace(world, scene=allowed_near_ends(robot, scene, ends))
+        start_and_goals = np.concatenate([first[np.newaxis], given.configurations])
+        world = replace(world, scene=allowed_near_ends(robot, scene, start_and_goals))
         given = replace(given, whole=not given.poses)
     return Request(world, first, given.configurations, given, source, model)
 
 
-def request_in(world: ArmWorld, start: Place, goal: Goal | Sequence[Goal], reading: Reading) -> Request:
+def request_in(
+    world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[Goal], reading: Reading
+) -> Request:
     """Read start and goals of an arm whose world is there; parameters and errors as :func:`evenroad.plan`."""
-    goals = _places(goal)
+    goals = _goal_list(goal)
     first = _configuration(world.robot, world.scene, "start", start, reading)
     _refuse_what_is_none(world.robot, world.scene, goals, reading)
     given = _goals_in(world, first, goals, reading)
@@ -93,25 +95,25 @@ def mesh_check(request: Request, path: Floats) -> MeshCheck | None:
     unseen = unseen_pairs(model)
     if not (has_meshes(model) or unseen):
         return None
-    return recheck(source, world.robot, world.scene, path, world.resolution, unseen)
+    return validate(source, world.robot, world.scene, path, world.resolution, unseen)
 
 
 def _goals_in(world: ArmWorld, start: Floats, goals: list[Goal], reading: Reading) -> Goals:
-    def read(place: Place) -> Floats:
-        return _configuration(world.robot, world.scene, "goal", place, reading)
+    def read(target: ConfigurationLike) -> Floats:
+        return _configuration(world.robot, world.scene, "goal", target, reading)
 
     return goals_of(world, start, goals, read, reading.tip, reading.frame)
 
 
 def _refuse_what_is_none(robot: Robot, scene: Scene, goals: list[Goal], reading: Reading) -> None:
     """Refuse what is no configuration, and no pose of a link, before a world is compiled."""
-    for place in goals:
-        if not isinstance(place, Pose | PoseGoal):
-            _configuration(robot, scene, "goal", place, reading)
+    for target in goals:
+        if not isinstance(target, Pose | PoseGoal):
+            _configuration(robot, scene, "goal", target, reading)
     require_tips(robot, goals, reading.tip, reading.frame)
 
 
-def _places(goal: Goal | Sequence[Goal]) -> list[Goal]:
+def _goal_list(goal: Goal | Sequence[Goal]) -> list[Goal]:
     """Return one goal or several as a list."""
     if isinstance(goal, str | Mapping | Pose | PoseGoal):
         return [goal]
@@ -123,8 +125,10 @@ def _places(goal: Goal | Sequence[Goal]) -> list[Goal]:
     return list(goal) if several else [goal]  # type: ignore[arg-type, list-item]
 
 
-def _configuration(robot: Robot, scene: Scene, name: str, place: Place, reading: Reading) -> Floats:
+def _configuration(
+    robot: Robot, scene: Scene, name: str, target: ConfigurationLike, reading: Reading
+) -> Floats:
     """Return a configuration, (dim,), from a text, joint values or numbers; `name` says what it is in an error."""
-    if isinstance(place, str):
-        return configuration(robot, place, scene, degrees=reading.degrees)
-    return as_configuration(robot, place, scene, name=name)
+    if isinstance(target, str):
+        return configuration(robot, target, scene, degrees=reading.degrees)
+    return as_configuration(robot, target, scene, name=name)

@@ -20,7 +20,7 @@ from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
-from evenroad.space.path import motion_lengths, place_at
+from evenroad.space.path import configuration_at, motion_lengths
 
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
@@ -87,7 +87,7 @@ def connect(
     dim = world.space.dim
     limit = require_positive("seconds", seconds)
     most = require_count("most_motions", most_motions)
-    first, others = _ends(start, goals, dim)
+    first, others = _start_and_goals(start, goals, dim)
     samples = None if sequence is None else _as_sequence(sequence, dim)
     if world.fixed_contact is not None or world.backend == "scalar":
         _require_finite(first, others)
@@ -103,19 +103,19 @@ def grown_trees(
     Raises as :func:`connect`; without lanes there are none.
     """
     dim = world.space.dim
-    first, others = _ends(start, goals, dim)
+    first, others = _start_and_goals(start, goals, dim)
     if world.fixed_contact is not None or world.backend == "scalar":
         _require_finite(first, others)
         return np.empty((0, dim)), np.empty((0, 2), dtype=np.int64)
     _, memory, sizes = _grown(world, first, others, None, MOST_MOTIONS, require_positive("seconds", seconds))
-    places, links, _ = _trees(*memory)
+    vertices, links, _ = _trees(*memory)
     edges, before = [], 0
     for tree, size in enumerate(sizes):
         # A root has no parent: a negative number.
         child = np.flatnonzero(links[0, tree, :size] >= 0)
         edges.append(before + np.column_stack([child, links[0, tree, child]]))
         before += size
-    nodes = [places[tree, :size] for tree, size in enumerate(sizes)]
+    nodes = [vertices[tree, :size] for tree, size in enumerate(sizes)]
     return np.concatenate(nodes), np.concatenate(edges)
 
 
@@ -124,26 +124,26 @@ def shorten(
     path: npt.ArrayLike,
     *,
     pairs: int = 1 << 30,
-    cuts: int = 64,
+    shortcuts: int = 64,
 ) -> tuple[Floats, int]:
     """Return a path, (p, dim), that is not longer, and how many motions were looked at.
 
     A motion is put in only where it is proved free throughout.  Motions of the path as it was given, which are free in
     the world, stay where nothing shorter was found, proved or not: :meth:`CertifiedWorld.motion_valid` tells.  So many
-    motions between `pairs` of places along the path are tried at most, and by the lanes so many `cuts` of corners.
+    motions between `pairs` of places along the path are tried at most, and by the lanes so many `shortcuts` of corners.
     InvalidValue if `path` is no such array.
     """
     path, dim = _as_path(world, path), world.space.dim
     if world.backend == "scalar":
         return _shortened(world, as_batch("path", path, dim))
-    places, count = _place(share_pairs)
-    short, motions = _shorten_path()(world.lanes, path, (places, min(pairs, count)), cuts)
+    pointer, count = _pointer_to(share_pairs)
+    short, motions = _shorten_path()(world.lanes, path, (pointer, min(pairs, count)), shortcuts)
     if not len(short):
         as_batch("path", path, dim)
     return short, motions
 
 
-def tighten(
+def smooth(
     world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: bool = True
 ) -> tuple[Floats, int]:
     """Return a path drawn tight, and how many motions were looked at: shorter than `shorten`'s for the same checks.
@@ -160,11 +160,11 @@ def tighten(
     path = _as_path(world, path)
     if world.backend == "scalar":
         return shorten(world, path)
-    driven_by = _place(share_pairs), _place(sphere_points, world.space.dim)
-    tight, motions = _tighten_path()(world.lanes, path, *driven_by, batches, proved)
-    if not len(tight):
+    driven_by = _pointer_to(share_pairs), _pointer_to(sphere_points, world.space.dim)
+    smoothed, motions = _smooth_path()(world.lanes, path, *driven_by, batches, proved)
+    if not len(smoothed):
         as_batch("path", path, world.space.dim)
-    return tight, motions
+    return smoothed, motions
 
 
 def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:
@@ -201,10 +201,10 @@ def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
         along = np.concatenate([[0.0], np.cumsum(motion_lengths(path, space))])
         shares = np.array([low, high]) * along[-1]
         first, last = np.clip(np.searchsorted(along, shares, side="right") - 1, 0, len(path) - 2)
-        ends = place_at(path, space, [low, high])
-        gain = shares[1] - shares[0] - space.distance(ends[:1], ends[1:])[0]
-        if first < last and gain >= _WORTH_WHILE * along[-1] and is_shortcut(*ends):
-            path = np.concatenate([path[: first + 1], ends, path[last + 1 :]])
+        endpoints = configuration_at(path, space, [low, high])
+        gain = shares[1] - shares[0] - space.distance(endpoints[:1], endpoints[1:])[0]
+        if first < last and gain >= _WORTH_WHILE * along[-1] and is_shortcut(*endpoints):
+            path = np.concatenate([path[: first + 1], endpoints, path[last + 1 :]])
     return path, motions
 
 
@@ -222,21 +222,21 @@ def _grown(
     count, dim = len(goals) + 1, len(first)
     capacity, steps, doubles = _sizes(count, dim, _CAPACITY)
     memory, given = world.lanes.arguments(doubles)
-    block, place = memory[steps:], given[-1] + 8 * steps
+    block, pointer = memory[steps:], given[-1] + 8 * steps
     begin, middle = kernel.STATE + 2, kernel.STATE + 2 + dim
     block[:begin], block[begin:middle] = 0.0, first
     block[middle : middle + goals.size] = goals.ravel()
-    sequence = _place(cube_points, dim) if samples is None else (address(samples), len(samples))
-    driven_by = sequence, _place(ball_points, dim)
+    sequence = _pointer_to(cube_points, dim) if samples is None else (address(samples), len(samples))
+    driven_by = sequence, _pointer_to(ball_points, dim)
     if not grow.overloads:
         # Compiled, or loaded, before the clock runs; no motion is looked at.
-        grow(place, count, capacity, *driven_by, (0, _SLICE), given)
+        grow(pointer, count, capacity, *driven_by, (0, _SLICE), given)
     deadline = now() + seconds
     while True:
-        ended = grow(place, count, capacity, *driven_by, (most, _SLICE), given)
+        ended = grow(pointer, count, capacity, *driven_by, (most, _SLICE), given)
         if ended == kernel.FULL:
-            block = _with_more_room(block, begin + count * dim, capacity, dim)
-            place, capacity = address(block), 2 * capacity
+            block = _with_more_capacity(block, begin + count * dim, capacity, dim)
+            pointer, capacity = address(block), 2 * capacity
         elif ended != kernel.PAUSED or now() >= deadline:
             break
     if ended == kernel.NO_NUMBERS:
@@ -264,8 +264,8 @@ def _sizes(count: int, dim: int, least: int) -> tuple[int, int, int]:
     """Return the capacity of trees for so many ends, and how many doubles go before them, and with them."""
     from evenroad.robot.kernel import tree_steps, trees
 
-    capacity, steps = -(-max(least, 2 * count + trees.ROOM) // 16) * 16, tree_steps.memory_for(dim)
-    return capacity, steps, steps + trees.room_for(count, capacity, dim)
+    capacity, steps = -(-max(least, 2 * count + trees.EXTRA_NODES) // 16) * 16, tree_steps.memory_for(dim)
+    return capacity, steps, steps + trees.floats_for(count, capacity, dim)
 
 
 @cache
@@ -276,13 +276,13 @@ def _shorten_path() -> Callable[..., tuple[Floats, int]]:
 
 
 @cache
-def _tighten_path() -> Callable[..., tuple[Floats, int]]:
-    from evenroad.robot.kernel.tighten import tighten_path
+def _smooth_path() -> Callable[..., tuple[Floats, int]]:
+    from evenroad.robot.kernel.smoothing import smooth_path
 
-    return tighten_path
+    return smooth_path
 
 
-def _with_more_room(block: Floats, begin: int, capacity: int, dim: int) -> Floats:
+def _with_more_capacity(block: Floats, begin: int, capacity: int, dim: int) -> Floats:
     """Return the memory of the trees, of which nodes, links and columns begin there, with room for twice as many."""
     larger = np.empty(begin + 2 * (4 * dim + 8) * capacity)
     larger[:begin] = block[:begin]
@@ -304,12 +304,12 @@ def _trees(
 
 
 @cache
-def _place(points: Callable[..., Floats], *dim: int) -> tuple[int, int]:
+def _pointer_to(points: Callable[..., Floats], *dim: int) -> tuple[int, int]:
     """Return the address of points that are kept for good, and how many they are."""
     return address(points(*dim)), len(points(*dim))
 
 
-def _ends(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> tuple[Floats, Floats]:
+def _start_and_goals(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> tuple[Floats, Floats]:
     """Return start, (dim,), and goals, (g, dim); that they are finite is left to compiled code."""
     try:
         first, others = np.asarray(start, dtype=np.float64), np.asarray(goals, dtype=np.float64)

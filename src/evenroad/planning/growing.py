@@ -101,7 +101,7 @@ class _Growth:
     """A roadmap that grows point by point: the milestones so far, what is known of them, and the best path."""
 
     def __init__(self, attempt: Attempt, rule: Rule) -> None:
-        self.attempt, self.rule, self.pairs, self.drawn = attempt, rule, KnownPairs(), 0
+        self.attempt, self.rule, self.pairs, self.drawn = attempt, rule, PairCache(), 0
         self.names = np.empty(0, dtype=np.int64)
         self.milestones = np.empty((0, attempt.world.space.dim))
         self.stages: list[Stage] = []
@@ -110,21 +110,21 @@ class _Growth:
 
     def take(self, points: PointSet) -> bool:
         """Search with these points, of which the first are known; return whether the budget was enough."""
-        attempt, ends = self.attempt, len(self.attempt.start_and_goals)
+        attempt, terminals = self.attempt, len(self.attempt.start_and_goals)
         samples = attempt.world.space.from_cube(points.points[self.drawn :])
         valid = attempt.valid(samples)
         # Names of nodes: start and goals are the first, point i comes so many later.
-        self.names = np.concatenate([self.names, ends + self.drawn + np.flatnonzero(valid)])
+        self.names = np.concatenate([self.names, terminals + self.drawn + np.flatnonzero(valid)])
         self.milestones = np.concatenate([self.milestones, samples[valid]])
         self.drawn = points.n
         states = attempt.candidates(self.rule, self.milestones)
         states.node_states[:] = FREE
         with attempt.watch("search"):
-            named = np.concatenate([self.names, np.arange(ends)])[states.edges]
+            named = np.concatenate([self.names, np.arange(terminals)])[states.edges]
             states.edge_states[:] = self.pairs.recall(named)
         self.last = attempt.search(find_lazily, states)
         with attempt.watch("search"):
-            self.pairs.learn(named, states.edge_states)
+            self.pairs.store(named, states.edge_states)
         attempt.motions_checked += states.motions_checked
         cost, checked = self.last.cost, attempt.motions_checked
         if cost is not None and cost < min(self._costs(), default=np.inf):
@@ -152,7 +152,7 @@ class _Growth:
         return [stage.cost for stage in self.stages if stage.cost is not None]
 
 
-class KnownPairs:
+class PairCache:
     """Verdicts on pairs of names below 2^31, which stay while the numbers of nodes change; memory O(pairs)."""
 
     def __init__(self) -> None:
@@ -162,7 +162,7 @@ class KnownPairs:
         """Return what is known of each pair, (m, 2) -> (m,)."""
         return np.array([self._states.get(key, UNKNOWN) for key in _keys(pairs)], dtype=np.int8)
 
-    def learn(self, pairs: npt.NDArray[np.int64], states: npt.NDArray[np.int8]) -> None:
+    def store(self, pairs: npt.NDArray[np.int64], states: npt.NDArray[np.int8]) -> None:
         """Take note of verdicts, the later one of two; those that are `UNKNOWN` are passed over."""
         new = states != UNKNOWN
         self._states.update(zip(_keys(pairs[new]), states[new].tolist(), strict=True))

@@ -44,10 +44,10 @@ class _Tree:
 
     def branch(self, node: int) -> list[int]:
         """Return the numbers of the nodes from one to its root."""
-        way = [node]
-        while self.parents[way[-1]] >= 0:
-            way.append(int(self.parents[way[-1]]))
-        return way
+        nodes = [node]
+        while self.parents[nodes[-1]] >= 0:
+            nodes.append(int(self.parents[nodes[-1]]))
+        return nodes
 
 
 def grow_trees(
@@ -75,8 +75,8 @@ def grow_trees(
             reached, asked = _reach(world, other, own.nodes[node], step, most_motions - motions)
             motions += asked
             if reached >= 0:
-                ways = own.branch(node)[::-1], other.branch(reached)
-                path = np.concatenate([own.nodes[ways[0]], other.nodes[ways[1]]])
+                branches = own.branch(node)[::-1], other.branch(reached)
+                path = np.concatenate([own.nodes[branches[0]], other.nodes[branches[1]]])
                 path = path if turn == 0 else path[::-1]
                 path = path[np.append(True, (path[1:] != path[:-1]).any(axis=1))]
                 goal = int(np.flatnonzero((goals == path[-1]).all(axis=1))[0])

@@ -13,41 +13,41 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.arm_request import mesh_check
 from evenroad.planning.connectors import connector_of
-from evenroad.planning.hemmed_in import with_reasons
+from evenroad.planning.enclosed import with_reasons
 from evenroad.planning.prm import PRM
 from evenroad.planning.read_request import read_request
-from evenroad.planning.request import Goal, Place, Reading, Request
+from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request
 from evenroad.planning.tip_motion import plan_tip_motion, refused
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import require_certified
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.kept import Roadmap, WorldRoadmap
+from evenroad.roadmap.point_roadmap import Roadmap, WorldRoadmap
 from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.result import PlanResult, Status
 from evenroad.robot import ArmWorld
-from evenroad.robot.reference.recheck import MeshCheck
+from evenroad.robot.cartesian_line import CartesianLine
+from evenroad.robot.orientation_constraint import OrientationConstraint
+from evenroad.robot.reference.validate import MeshCheck
 from evenroad.robot.scan import allowed_everywhere
-from evenroad.robot.straight import Straight
-from evenroad.robot.upright import Upright
 from evenroad.world import ShowsApart, World
 
 
 @dataclass(frozen=True)
-class Wishes:
+class Options:
     """What is wanted of a path, whoever plans it; see :func:`plan`."""
 
     budget: Budget = field(default_factory=lambda: Budget(seconds=RRTConnect.seconds))
     smooth: bool = True
     rng: RngLike = 0
     certified: bool = False
-    straight: Straight | None = None
-    upright: Upright | None = None
+    straight: CartesianLine | None = None
+    upright: OrientationConstraint | None = None
 
 
 def plan(
     world: Any,
-    start: Place,
+    start: ConfigurationLike,
     goal: Goal | Sequence[Goal],
     planner: Planner | Roadmap | PointSet | str | os.PathLike[str] | None = None,
     *,
@@ -56,8 +56,8 @@ def plan(
     smooth: bool = True,
     rng: RngLike = 0,
     certified: bool = False,
-    straight: Straight | None = None,
-    upright: Upright | None = None,
+    straight: CartesianLine | None = None,
+    upright: OrientationConstraint | None = None,
     degrees: bool = False,
     tip: str = "",
     frame: str = "",
@@ -93,9 +93,9 @@ def plan(
     certified : bool
         Check once more that every motion is proved free throughout.  Where one is not, the status is
         ``not_certified``, and the message says which.
-    straight : Straight, optional
+    straight : CartesianLine, optional
         How far an arm's tip moves in straight lines from its start and to its goal.
-    upright : Upright, optional
+    upright : OrientationConstraint, optional
         Which axis of an arm's tip is to be upright along the whole path.
     degrees : bool
         Angles in texts are degrees.
@@ -141,8 +141,8 @@ def plan(
             f"a roadmap plans in its own world: give er.plan its .world, got {request.world!r}"
         )
     budget = budget_of(planner, seconds, limits)
-    wishes = Wishes(budget, smooth, rng, certified, straight, upright)
-    return finished(request, solve(request, planner, wishes), certified=certified)[0]
+    options = Options(budget, smooth, rng, certified, straight, upright)
+    return finished(request, solve(request, planner, options), certified=certified)[0]
 
 
 def budget_of(
@@ -161,25 +161,25 @@ def budget_of(
         raise InvalidValue(f"limits must be of motions, samples or rounds, got {shown(limits)}") from None
 
 
-def solve(request: Request, planner: Planner | None, wishes: Wishes) -> PlanResult:
+def solve(request: Request, planner: Planner | None, options: Options) -> PlanResult:
     """Plan what is asked; the path is free in its world."""
-    straight, upright, given = wishes.straight, wishes.upright, request.given
+    straight, upright, given = options.straight, options.upright, request.given
     if given is not None and given.unreached:
         status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
         return replace(refused(request, status, given.unreached), timings={"goals": given.seconds})
     apart = None if given is None else given.apart(request.world, straight=straight is not None)
 
     def plan_once(world: World, start: Floats, goals: Floats, smooth: bool) -> PlanResult:
-        budget, connector = wishes.budget, connector_of(world)
-        how = dict(budget=budget, smooth=smooth, rng=wishes.rng, apart=apart, connector=connector)
+        budget, connector = options.budget, connector_of(world)
+        how = dict(budget=budget, smooth=smooth, rng=options.rng, apart=apart, connector=connector)
         problem = Problem(world, start, goals, **how)  # type: ignore[arg-type]
         return with_reasons(world, (default_planner(world) if planner is None else planner).solve(problem))
 
     if straight is None and upright is None:
-        return plan_once(request.world, request.start, request.goals, wishes.smooth)
+        return plan_once(request.world, request.start, request.goals, options.smooth)
     if not isinstance(request.world, ArmWorld):
         raise InvalidValue(f"straight and upright speak of an arm's tip, got {request.world!r}")
-    return plan_tip_motion(request, straight, upright, plan_once, shorten=wishes.smooth)
+    return plan_tip_motion(request, straight, upright, plan_once, shorten=options.smooth)
 
 
 def finished(

@@ -213,8 +213,8 @@ def _on_points(planner: _OnPoints, problem: Problem, query: Query, name: str, fi
     states.node_states[len(milestones) if planner.lazy_milestones else 0 :] = FREE
     certificate = None
     if planner.certify:
-        ends = 1 + len(attempt.goals)
-        certificate = certify_graph(points, world.space, states.configurations, states.edges, ends)
+        terminals = 1 + len(attempt.goals)
+        certificate = certify_graph(points, world.space, states.configurations, states.edges, terminals)
     result = answer(attempt, attempt.search(find, states), points.n)
     if certificate is not None and result.status in (Status.SOLVED, Status.NOT_CONNECTED):
         message = result.message

@@ -10,11 +10,11 @@ from typing import Any
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning import arm_trees
 from evenroad.planning.arm_request import arm_request, request_in
-from evenroad.planning.request import Goal, Place, Reading, Request
+from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request
 from evenroad.planning.trees import RRTConnect
-from evenroad.roadmap.kept import Roadmap
+from evenroad.roadmap.point_roadmap import Roadmap
 from evenroad.roadmap.problem import Planner
-from evenroad.roadmap.query import read_places
+from evenroad.roadmap.query import as_start_and_goals
 from evenroad.robot import ArmWorld, Scene
 from evenroad.robot.load import RobotOptions
 from evenroad.world import GridMap, load_map
@@ -25,7 +25,7 @@ OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
 
 def read_request(
     world: Any,
-    start: Place,
+    start: ConfigurationLike,
     goal: Goal | Sequence[Goal],
     reading: Reading,
     planner: Planner | Roadmap | None = None,
@@ -64,7 +64,7 @@ def read_request(
             "world must be a World, a GridMap with radius=, or a Scene with robot=; or the name or file of one, got"
             f" {shown(world)}"
         )
-    return Request(world, *read_places(start, goal, world.space))  # type: ignore[arg-type]
+    return Request(world, *as_start_and_goals(start, goal, world.space))  # type: ignore[arg-type]
 
 
 def _require_known(given: dict[str, Any], known: Sequence[str], what: str) -> None:

@@ -17,11 +17,11 @@ from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.urdf_xml import RobotFile
 
 PathLike = str | os.PathLike[str]
-Place = str | Mapping[str, float] | npt.ArrayLike
+ConfigurationLike = str | Mapping[str, float] | npt.ArrayLike
 """A configuration: numbers in the order of the group, joint -> value, or a text as
 :func:`evenroad.robot.configuration` takes it."""
 
-Goal = Place | Pose | PoseGoal
+Goal = ConfigurationLike | Pose | PoseGoal
 """A configuration, or where a link is to be."""
 
 

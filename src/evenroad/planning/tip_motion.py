@@ -10,11 +10,11 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult, Status
-from evenroad.roadmap.result import make_result, require_ends
+from evenroad.roadmap.result import make_result, require_start_and_goal
 from evenroad.robot import ArmWorld
+from evenroad.robot.cartesian_line import CartesianLine, Line, line_from
 from evenroad.robot.chain import Chain, chain_of, default_tip
-from evenroad.robot.straight import Line, Straight, line_from
-from evenroad.robot.upright import Upright, UprightWorld, upright_world
+from evenroad.robot.orientation_constraint import OrientationConstraint, OrientationWorld, orientation_world
 from evenroad.space.path import path_length
 from evenroad.world import World
 
@@ -38,8 +38,8 @@ def _chain(request: Request, tip: str) -> Chain:
 
 def plan_tip_motion(
     request: Request,
-    straight: Straight | None,
-    upright: Upright | None,
+    straight: CartesianLine | None,
+    upright: OrientationConstraint | None,
     plan: PlanOnce,
     *,
     shorten: bool = True,
@@ -51,17 +51,17 @@ def plan_tip_motion(
     """
     if upright is None:
         return _between_lines(request, straight, plan, request.world, shorten)
-    world = upright_world(request.world, _chain(request, upright.tip), upright, request.start)
+    world = orientation_world(request.world, _chain(request, upright.tip), upright, request.start)
     if (tilted := _tilted(request, world)) is not None:
         return tilted
 
-    def plan_upright(_: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
+    def plan_with_orientation(_: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
         return _through(world, plan(world, start, goals, False), shorten)
 
-    return _between_lines(request, straight, plan_upright, world, shorten)
+    return _between_lines(request, straight, plan_with_orientation, world, shorten)
 
 
-def _tilted(request: Request, world: UprightWorld) -> PlanResult | None:
+def _tilted(request: Request, world: OrientationWorld) -> PlanResult | None:
     """Return the result where the start, or every goal, is tilted by too much."""
     start, goals = world.tilts(request.start[np.newaxis])[0], world.tilts(request.goals)
     if start > world.tolerance:
@@ -73,7 +73,7 @@ def _tilted(request: Request, world: UprightWorld) -> PlanResult | None:
     return None
 
 
-def _through(world: UprightWorld, result: PlanResult, shorten: bool) -> PlanResult:
+def _through(world: OrientationWorld, result: PlanResult, shorten: bool) -> PlanResult:
     """Return a plan along upright milestones with all states of its path, and its largest tilt."""
     if result.path is None:
         return result
@@ -86,7 +86,7 @@ def _through(world: UprightWorld, result: PlanResult, shorten: bool) -> PlanResu
 
 
 def _between_lines(
-    request: Request, straight: Straight | None, plan: PlanOnce, within: World, shorten: bool
+    request: Request, straight: CartesianLine | None, plan: PlanOnce, within: World, shorten: bool
 ) -> PlanResult:
     """Plan between the lines that leave the start and lead to goals."""
     if straight is None:
@@ -126,19 +126,24 @@ def _between_lines(
     row, last = list(coming.items())[result.goal_index]
     result = replace(result, goal_index=row)
     raw = result.path if result.milestone_path is None else result.milestone_path
-    whole = [np.concatenate([leaving.path[:-1], way, last.path[::-1][1:]]) for way in (result.path, raw)]
+    whole = [
+        np.concatenate([leaving.path[:-1], waypoints, last.path[::-1][1:]])
+        for waypoints in (result.path, raw)
+    ]
     off = {name: max(getattr(leaving, name), getattr(last, name)) for name in ("off_m", "off_rad")}
     deviation = result.deviation | {"line_m": off["off_m"], "line_rad": off["off_rad"]}
-    if isinstance(within, UprightWorld):
+    if isinstance(within, OrientationWorld):
         tilted = [within.largest_tilt(line.path) for line in (leaving, last)]
         deviation |= {"tilt_rad": max(deviation.get("tilt_rad", 0.0), *tilted)}
     return _with_path(request.world, result, whole[0], whole[1], deviation)
 
 
-def _line(within: World, world: ArmWorld, chain: Chain, straight: Straight, q: Floats, length: float) -> Line:
+def _line(
+    within: World, world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float
+) -> Line:
     """Return a straight line, also refused where it tilts what is to be upright: that may be another link."""
     line = line_from(world, chain, straight, q, length)
-    if line.why or not isinstance(within, UprightWorld):
+    if line.why or not isinstance(within, OrientationWorld):
         return line
     if (tilt := within.largest_tilt(line.path)) <= within.tolerance:
         return line
@@ -149,7 +154,7 @@ def _with_path(
     world: World, result: PlanResult, path: Floats, raw: Floats, deviation: dict[str, float]
 ) -> PlanResult:
     """Return a result with another path."""
-    cost, raw_cost = (path_length(way, world.space) for way in (path, raw))
+    cost, raw_cost = (path_length(waypoints, world.space) for waypoints in (path, raw))
     to = f" to goal {result.goal_index}" if len(result.goals) > 1 else ""
     off = ", ".join(f"{name.replace('_', ' [')}] {value:.2g}" for name, value in deviation.items())
     changed = replace(
@@ -162,4 +167,4 @@ def _with_path(
         deviation=deviation,
         message=f"path of length {cost:.6g} with {len(path)} waypoints{to}; largest deviations: {off}",
     )
-    return require_ends(world.space, changed)
+    return require_start_and_goal(world.space, changed)

@@ -4,8 +4,8 @@ from evenroad.roadmap.budget import Budget as Budget
 from evenroad.roadmap.certificate import Certificate as Certificate
 from evenroad.roadmap.certify import certify as certify
 from evenroad.roadmap.certify import certify_roadmap as certify_roadmap
-from evenroad.roadmap.kept import Roadmap as Roadmap
-from evenroad.roadmap.kept import WorldRoadmap as WorldRoadmap
+from evenroad.roadmap.point_roadmap import Roadmap as Roadmap
+from evenroad.roadmap.point_roadmap import WorldRoadmap as WorldRoadmap
 from evenroad.roadmap.query import EdgeCost as EdgeCost
 from evenroad.roadmap.query import Query as Query
 from evenroad.roadmap.result import PlanResult as PlanResult

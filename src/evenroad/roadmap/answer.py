@@ -20,27 +20,27 @@ from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space import Space
 from evenroad.space.path import path_length
-from evenroad.world import Explains, ExplainsStarts, Rechecks, ShowsApart, World
+from evenroad.world import Explains, ExplainsStarts, ShowsApart, ValidatesPaths, World
 
 
 def refusal(attempt: Attempt) -> PlanResult | None:
     """Return the result if the start or all goals are not free; else None, and the attempt knows the free goals."""
-    places, world = attempt.query.start_and_goals, attempt.world
-    free = attempt.valid_ends()
+    terminals, world = attempt.query.start_and_goals, attempt.world
+    free = attempt.valid_terminals()
     if free[0] and attempt.goals.size:
         return None
     row = int(free[0])
-    reason = f": {world.explain(places[row])}" if isinstance(world, Explains) else ""
+    reason = f": {world.explain(terminals[row])}" if isinstance(world, Explains) else ""
     if not row and isinstance(world, ExplainsStarts):
-        reason = f": {world.explain_start(places[0])}"
-    within = world.space.contains(places[1:] if row else places[:1])
+        reason = f": {world.explain_start(terminals[0])}"
+    within = world.space.contains(terminals[1:] if row else terminals[:1])
     if within.any():
         status = (Status.START_INVALID, Status.GOAL_INVALID)[row]
         where = "in collision" if within.all() else "in collision or outside the limits"
     else:
         status, where = (Status.START_OUTSIDE_LIMITS, Status.GOAL_OUTSIDE_LIMITS)[row], "outside the limits"
-    if row and len(places) > 2:
-        return _result(attempt, status, f"all {len(places) - 1} goals are {where}; the first{reason}")
+    if row and len(terminals) > 2:
+        return _result(attempt, status, f"all {len(terminals) - 1} goals are {where}; the first{reason}")
     return _result(attempt, status, f"the {('start', 'goal')[row]} is {where}{reason}")
 
 
@@ -71,7 +71,7 @@ def answer(
         nodes, q = best.found.nodes, best.states.configurations
         goal = attempt.goals[nodes[-1] - len(q)]
         # A disk's paths along a roadmap keep the bits that published rows have.
-        by_connector = attempt.query.edge_cost is None and isinstance(attempt.world, Rechecks)
+        by_connector = attempt.query.edge_cost is None and isinstance(attempt.world, ValidatesPaths)
         result = _with_path(attempt, q[nodes], best.cost, int(goal), counts, by_connector=by_connector)
         return replace(result, roadmap=graph)
     so_far, missing = _reach(attempt, searched, counts)
@@ -195,7 +195,7 @@ def _few_directions(attempt: Attempt, points: int) -> str:
     if scale is None:
         return ""
     # Nearest points come in opposite pairs: so many are needed at least.
-    least, told = 2 * d - 1, f"at least {2 * d - 1} are needed"
+    least, advice = 2 * d - 1, f"at least {2 * d - 1} are needed"
     if d <= MOST_AXES and not ("permuted" in method and np.ptp(scale) > 1e-9 * scale[0]):
         numbers = [int(each) for each in lattice[2].split()]
         vector = [pow(numbers[0], i, points) for i in range(d)] if lattice[1] == "a" else numbers
@@ -208,8 +208,8 @@ def _few_directions(attempt: Attempt, points: int) -> str:
             # Longer still; or the points are not all that the lattice had.
             return ""
         # Fewer are enough if equally near ones happen to be the right ones.
-        least, told = needed, f"{max(needed, least)} would not"
-    return f"; the nearest {k} of this lattice leave directions out, {told}" if k < least else ""
+        least, advice = needed, f"{max(needed, least)} would not"
+    return f"; the nearest {k} of this lattice leave directions out, {advice}" if k < least else ""
 
 
 def _axis_scales(space: Space) -> Floats | None:
@@ -233,12 +233,14 @@ def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> Plan
     return make_result(attempt.world, query.start, query.goals, status, message, **named, **more)
 
 
-def _searched_graph(states: EdgeStates, ends: int) -> SearchedGraph:
-    """Return what is not known to be invalid, with start and goals as the last `ends`, and the free edges."""
+def _searched_graph(states: EdgeStates, terminals: int) -> SearchedGraph:
+    """Return what is not known to be invalid, with start and goals as the last `terminals`, and the free edges."""
     kept = states.node_states != BLOCKED
     number = np.cumsum(kept, dtype=np.int32) - 1
     edges = states.edges[states.edge_states == FREE]
-    return SearchedGraph(states.configurations[kept], number[edges].astype(np.int32), int(kept.sum()) - ends)
+    return SearchedGraph(
+        states.configurations[kept], number[edges].astype(np.int32), int(kept.sum()) - terminals
+    )
 
 
 def proof_of(world: World) -> str:
@@ -254,10 +256,10 @@ def require_certified(world: World, result: PlanResult) -> PlanResult:
     """
     if result.path is None or result.proof == "exact":
         return result
-    if not (isinstance(world, Rechecks) and world.proof == "certified"):
+    if not (isinstance(world, ValidatesPaths) and world.proof == "certified"):
         message = "the path is free at the states tested; motions of this world cannot be proved free"
         return replace(result, status=Status.NOT_CERTIFIED, message=message)
-    failed = np.flatnonzero(~world.recheck(result.path))
+    failed = np.flatnonzero(~world.validate(result.path))
     if not len(failed):
         return replace(result, proof="certified")
     first, last = ("(" + ", ".join(f"{x:.6g}" for x in result.path[failed[0] + i]) + ")" for i in (0, 1))

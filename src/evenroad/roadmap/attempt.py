@@ -19,11 +19,11 @@ from evenroad.roadmap.search import (
     FREE,
     NOT_FOUND,
     EdgeStates,
-    Ends,
     Finder,
     Found,
-    Known,
     SearchProblem,
+    StateCache,
+    Terminals,
     confirm,
     length_along,
     search_problem,
@@ -52,7 +52,7 @@ class Attempt:
     `origin`, `rule` and `planner` are those of :class:`PlanResult`.  `grows` says whether the planner draws its points
     itself, until the budget is spent.  `checked` configurations were checked outside of a graph, and `motions_checked`
     motions in earlier graphs: they count for the budget.  `spent` says whether that was over too early.  `goals` are
-    the rows of the query's goals that are free, (g,), once `valid_ends` was asked; the others are left out.
+    the rows of the query's goals that are free, (g,), once `valid_terminals` was asked; the others are left out.
     """
 
     world: World
@@ -76,12 +76,12 @@ class Attempt:
         """The start, then the goals that are free, (1 + g, dim)."""
         return self.query.start_and_goals[np.append(0, 1 + self.goals)]
 
-    def valid_ends(self) -> Bools:
+    def valid_terminals(self) -> Bools:
         """Return which of the start and all goals are free, (1 + g,); the others are no goals from now on."""
-        places = self.query.start_and_goals
+        terminals = self.query.start_and_goals
         with self.watch("validity"):
-            free = self.world.valid(places)
-        self.checked += len(places)
+            free = self.world.valid(terminals)
+        self.checked += len(terminals)
         self.goals = np.flatnonzero(free[1:])
         return free
 
@@ -89,7 +89,7 @@ class Attempt:
         """Return which of the samples, (n, dim), are known to be free, as far as the time allows: (n,)."""
         states = self.states(samples, np.empty((0, 2), dtype=np.int32))
         try:
-            states.ask_nodes(np.arange(len(samples)))
+            states.evaluate_nodes(np.arange(len(samples)))
         except BudgetSpent:
             self.spent = True
         self.checked += states.configurations_checked
@@ -97,23 +97,23 @@ class Attempt:
 
     def candidates(self, rule: Rule, milestones: Floats) -> EdgeStates:
         """Return the graph of milestones, start and goals: the edges of the rule, and the links that the query adds."""
-        space, ends = self.world.space, self.start_and_goals
-        configurations = np.concatenate([milestones, ends])
+        space, terminals = self.world.space, self.start_and_goals
+        configurations = np.concatenate([milestones, terminals])
         n = len(milestones)
         with self.watch("neighbours"):
-            edges = rule.edges(configurations, space, ends=len(ends))
+            edges = rule.edges(configurations, space, terminals=len(terminals))
             if most := self.query.links_among(n):
                 surroundings, usable = Surroundings(milestones, space), np.ones(n, dtype=np.bool_)
-                near = [nearest_of(surroundings.distances(end), usable, most) for end in ends]
+                near = [nearest_of(surroundings.distances(end), usable, most) for end in terminals]
                 links = [np.stack([rows, np.full(len(rows), n + i)], axis=1) for i, rows in enumerate(near)]
                 edges = ascending(np.concatenate([edges, *links]), len(configurations))
         return self.states(configurations, edges)
 
-    def states(self, configurations: Floats, edges: Ints32, known: Known | None = None) -> EdgeStates:
+    def states(self, configurations: Floats, edges: Ints32, cache: StateCache | None = None) -> EdgeStates:
         """Return what is known of a graph (default: nothing), with what is left of the budget for asking more."""
         most = self.query.budget.motions
         most = None if most is None else most - self.motions_checked
-        return EdgeStates(self.world, configurations, edges, self.watch, most, self.deadline, known)
+        return EdgeStates(self.world, configurations, edges, self.watch, most, self.deadline, cache)
 
     def search(self, find: Finder, states: EdgeStates, problem: SearchProblem | None = None) -> Searched:
         """Find a path that the world confirms, over all edges of `states`, or as `problem` says."""
@@ -121,7 +121,7 @@ class Attempt:
         cost, goals = self.query.edge_cost, len(self.goals)
         with self.watch("search"):
             if problem is not None or self.query.success_only:
-                what = problem or Ends.last(len(q), goals)
+                what = problem or Terminals.last(len(q), goals)
             else:
                 costs, bound = edge_costs(space, q, edges, cost), 1.0 if cost is None else BOUND
                 what = search_problem(states, costs, goals, bound=bound)

@@ -43,7 +43,7 @@ class Certificate:
         Some place is surely that far from all of them: how sharp beta is.
     between : float
         All free motions between milestones that are no longer are tried; inf: all.
-    ends : float
+    to_terminals : float
         The same for motions between start or goal and a milestone; that to the nearest one always is.
     direct : bool
         Whether the motion from start to goal is tried, too.
@@ -52,7 +52,7 @@ class Certificate:
     dispersion: float
     at_least: float
     between: float
-    ends: float
+    to_terminals: float
     direct: bool
 
     @property
@@ -70,7 +70,7 @@ class Certificate:
         if step <= 0.0:
             return math.inf
         bound = length + hops * (_pieces(length, step) + 1)
-        if (step := min(step, SAFE * self.ends - self.dispersion)) > 0.0:
+        if (step := min(step, SAFE * self.to_terminals - self.dispersion)) > 0.0:
             bound = min(bound, length + hops * max(_pieces(length, step) - 1, 0 if self.direct else 1))
         return bound
 
@@ -89,10 +89,10 @@ class Certificate:
 
     def _step(self, clearance: float) -> float:
         """Return the largest l of the proof, without what is asked of the ends; <= 0 if there is none."""
-        room = (SAFE * clearance) ** 2 - self.dispersion**2
-        if room <= 0.0:
+        remaining = (SAFE * clearance) ** 2 - self.dispersion**2
+        if remaining <= 0.0:
             return 0.0
-        return min(2.0 * math.sqrt(room), SAFE * self.between - 2.0 * self.dispersion)
+        return min(2.0 * math.sqrt(remaining), SAFE * self.between - 2.0 * self.dispersion)
 
 
 def _pieces(length: float, step: float) -> int:

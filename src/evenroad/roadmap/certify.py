@@ -14,8 +14,8 @@ from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points.measures.covering import DispersionBounds, dispersion_bounds
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.certificate import SAFE, Certificate
-from evenroad.roadmap.kept import PointRoadmap
 from evenroad.roadmap.neighbours import BLOCK, flat_metric
+from evenroad.roadmap.point_roadmap import PointRoadmap
 from evenroad.roadmap.query import LINKS, Query
 from evenroad.roadmap.rules import Complete, KNearest, Radius, Reach, Rule
 from evenroad.space import Space
@@ -72,23 +72,23 @@ def certify_roadmap(roadmap: PointRoadmap, *, links: int | None = LINKS) -> Cert
     reach = roadmap.rule.reach(roadmap.points.n, space)
     n = roadmap.points.n
     most = n if reach == Reach() else max(_links_among(n, links), reach.k or 0)
-    ends = max(reach.radius or 0.0, linked_within(roadmap.milestones, most, space, bounds.upper))
+    to_terminals = max(reach.radius or 0.0, linked_within(roadmap.milestones, most, space, bounds.upper))
     between = _nearest_untried(roadmap.milestones, roadmap.edges, space)
-    return Certificate(bounds.upper, bounds.lower, min(between, turn), min(ends, turn), True)
+    return Certificate(bounds.upper, bounds.lower, min(between, turn), min(to_terminals, turn), True)
 
 
 def certify_graph(
-    points: PointSet, space: Space, configurations: Floats, edges: Ints32, ends: int
+    points: PointSet, space: Space, configurations: Floats, edges: Ints32, terminals: int
 ) -> Certificate:
     """Return what a graph guarantees for its own ends, the last rows of `configurations`, (n, dim).
 
     `points` are those that the milestones among the rows are the valid ones of, at least.
     """
     bounds, turn = bounds_in(points, space), _half_turn(space)
-    n = len(configurations) - ends
+    n = len(configurations) - terminals
     inner = edges[:, 1] < n
     between = _nearest_untried(configurations[:n], edges[inner], space)
-    tried = np.zeros((ends, len(configurations)), dtype=np.bool_)
+    tried = np.zeros((terminals, len(configurations)), dtype=np.bool_)
     tried[edges[~inner, 1] - n, edges[~inner, 0]] = True
     away, tried, direct = (
         all_distances(space, configurations[n:], configurations[:n]),
@@ -96,7 +96,7 @@ def certify_graph(
         tried[1:, n],
     )
     to_end = SAFE * float(np.min(away[~tried], initial=math.inf))
-    if n and to_end < bounds.upper and not tried[np.arange(ends), away.argmin(axis=1)].all():
+    if n and to_end < bounds.upper and not tried[np.arange(terminals), away.argmin(axis=1)].all():
         # Another rule than those known here: an end may not even be joined to its nearest milestone.
         between = 0.0
     return Certificate(bounds.upper, bounds.lower, min(between, turn), min(to_end, turn), bool(direct.all()))
@@ -161,12 +161,14 @@ def _by_neighbours(
     if rank >= n:
         return Certificate(bounds.upper, bounds.lower, turn, turn, False)
     reach = _ranked(q, rank, space)
-    ends = max(SAFE * float(reach.min()), linked_within(q, _links_among(n, links), space, bounds.upper))
+    to_terminals = max(
+        SAFE * float(reach.min()), linked_within(q, _links_among(n, links), space, bounds.upper)
+    )
     between = math.inf
     for rows, away in _rows(q, space):
         untried = away >= np.maximum(reach[rows, np.newaxis], reach)
         between = min(between, float(np.min(away[untried], initial=math.inf)))
-    return Certificate(bounds.upper, bounds.lower, min(SAFE * between, turn), min(ends, turn), False)
+    return Certificate(bounds.upper, bounds.lower, min(SAFE * between, turn), min(to_terminals, turn), False)
 
 
 def _links_among(n: int, links: int | None) -> int:

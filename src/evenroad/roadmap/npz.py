@@ -11,7 +11,7 @@ from evenroad import __version__
 from evenroad._npz import Arrays, Path, digest, read_npz, require_array, write_npz
 from evenroad.errors import BrokenFile, EvenroadError
 from evenroad.points.npz import points_of
-from evenroad.roadmap.kept import PointRoadmap
+from evenroad.roadmap.point_roadmap import PointRoadmap
 from evenroad.roadmap.rules import rule_named
 
 FORMAT = 4

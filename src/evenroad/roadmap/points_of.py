@@ -9,7 +9,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
-from evenroad.points.samplers.even import DRAWN_IN_FROM, drawn_in
+from evenroad.points.samplers.even import CONTRACTED_FROM, contracted
 from evenroad.points.samplers.poses import Sliced
 from evenroad.roadmap.rules import Rule
 from evenroad.space import SO3, BoxSpace, Product, Space
@@ -47,4 +47,4 @@ def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike 
     if [(type(part), part.dim) for part in parts] == [(BoxSpace, 3), (SO3, 4)]:
         return (Sliced() if sparse else make_sampler("sobol")).draw(n, d, rng=rng)
     points = make_sampler("even").draw(n, d, rng=rng)
-    return drawn_in(points) if sparse and d >= DRAWN_IN_FROM and isinstance(space, BoxSpace) else points
+    return contracted(points) if sparse and d >= CONTRACTED_FROM and isinstance(space, BoxSpace) else points

@@ -9,7 +9,7 @@ from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Connector
-from evenroad.roadmap.query import AsksApart
+from evenroad.roadmap.query import ProvesApart
 from evenroad.roadmap.result import PlanResult
 from evenroad.world import World
 
@@ -44,7 +44,7 @@ class Problem:
     budget: Budget
     smooth: bool = True
     rng: RngLike = 0
-    apart: AsksApart | None = None
+    apart: ProvesApart | None = None
     connector: Connector | None = None
 
 

@@ -35,7 +35,7 @@ EdgeCost: TypeAlias = Callable[[Floats, Floats], Floats]
 BOUND = 1.0 - 1e-9
 """Costs are at least this share of the length: room for the rounding of a cost that should be the length."""
 
-AsksApart: TypeAlias = Callable[[Floats, Floats, bool], Apart | None]
+ProvesApart: TypeAlias = Callable[[Floats, Floats, bool], Apart | None]
 """Says of a start, (dim,), and goals, (g, dim), what keeps them apart, quickly or not: see ``world.ShowsApart``."""
 
 
@@ -43,8 +43,8 @@ AsksApart: TypeAlias = Callable[[Floats, Floats, bool], Apart | None]
 class Query:
     """From where to where, and how; never changed.
 
-    `start`, (dim,), and `goals`, (g, dim), are what :func:`read_places` gives.  `connector` is what plans and smooths
-    in this kind of world where there is something; the others are as in :class:`evenroad.PRM`.
+    `start`, (dim,), and `goals`, (g, dim), are what :func:`as_start_and_goals` gives.  `connector` plans and
+    smooths in this kind of world, where there is one; the others are as in :class:`evenroad.PRM`.
     UnknownName if there is no such search.
     """
 
@@ -57,7 +57,7 @@ class Query:
     edge_cost: EdgeCost | None = None
     links: int | None = None
     budget: Budget = field(default_factory=Budget)
-    apart: AsksApart | None = None
+    apart: ProvesApart | None = None
     connector: Connector | None = None
 
     def __post_init__(self) -> None:
@@ -89,7 +89,7 @@ class Query:
         return f"prm {name}{' + lazy milestones' if lazy_milestones else ''}"
 
 
-def read_places(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) -> tuple[Floats, Floats]:
+def as_start_and_goals(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) -> tuple[Floats, Floats]:
     """Return start, (dim,), and goals, (g, dim), from one start and one or more goals.
 
     Raises InvalidValue if they do not have the dimension of the space, or are not finite.

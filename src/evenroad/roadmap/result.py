@@ -196,10 +196,10 @@ def make_result(
     """
     named: dict[str, Any] = {"origin": NO_POINTS, "rule": "none", "planner": "none"} | more
     result = PlanResult(status=status, message=message, start=start, goals=goals, world=world, **named)
-    return result if world is None else require_ends(world.space, result)
+    return result if world is None else require_start_and_goal(world.space, result)
 
 
-def require_ends(space: Space, result: PlanResult) -> PlanResult:
+def require_start_and_goal(space: Space, result: PlanResult) -> PlanResult:
     """Return a result whose paths lead from its start to its goal.
 
     Coordinates that wrap may differ by whole turns.  AssertionError for anything else, which is evenroad's own fault:
@@ -208,12 +208,14 @@ def require_ends(space: Space, result: PlanResult) -> PlanResult:
     for path in (result.path, result.milestone_path):
         if path is None:
             continue
-        for name, place, asked in (("start", path[0], result.start), ("end", path[-1], result.goal)):
+        for name, configuration, asked in (("start", path[0], result.start), ("end", path[-1], result.goal)):
             # Most are the same numbers, which is known in a tenth of the time.
-            if place.tolist() == asked.tolist():
+            if configuration.tolist() == asked.tolist():
                 continue
-            finite = np.isfinite(place).all()
-            away = float(space.distance(place[np.newaxis], asked[np.newaxis])[0]) if finite else math.inf
+            finite = np.isfinite(configuration).all()
+            away = (
+                float(space.distance(configuration[np.newaxis], asked[np.newaxis])[0]) if finite else math.inf
+            )
             if not away <= NEAR * max(1.0, float(np.abs(asked).max())):
                 raise AssertionError(
                     f"the path that was found does not {name} where it was asked to, but {away:.3g} away:"

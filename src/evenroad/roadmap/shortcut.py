@@ -38,8 +38,8 @@ def shortcut(
     Each round puts waypoints evenly along the path, few at first, joins every pair that `world` says can be joined,
     and takes the shortest way through them; its own waypoints are always among those offered, so a round never makes
     the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.  Where the
-    world has a strict check (`Rechecks`), the motions of a round's way have to pass it, too; those that fail are taken
-    away, in time with those beside them, and the next shortest way is tried.
+    world has a strict check (`ValidatesPaths`), the motions of a round's path have to pass it, too.  Those that fail
+    are removed, in time with those beside them, and the next shortest path is tried.
 
     `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  At the deadline, on the clock of
     ``evenroad._clock``, what was reached so far is the answer.  The second number are the motions checked, rechecks
@@ -79,12 +79,12 @@ class _Shortcut:
         to_goal = space.distance(waypoints, np.broadcast_to(waypoints[-1], waypoints.shape))
         while True:
             edges = pairs.edges[pairs.usable]
-            way, _ = shortest_path(len(waypoints), edges, lengths[pairs.usable], to_goal, 0, goal)
-            shorter = self._total(waypoints[way])
+            kept, _ = shortest_path(len(waypoints), edges, lengths[pairs.usable], to_goal, 0, goal)
+            shorter = self._total(waypoints[kept])
             if not shorter < self.length:
                 return
-            if self._holds(waypoints, way, pairs):
-                self.path, self.length = waypoints[way], shorter
+            if self._holds(waypoints, kept, pairs):
+                self.path, self.length = waypoints[kept], shorter
                 return
 
     def drop_needless(self) -> None:
@@ -95,21 +95,21 @@ class _Shortcut:
             reach = np.arange(len(path))
             first, second = pairs.edges[pairs.usable].T
             np.maximum.at(reach, first, second)
-            way = [0]
-            while way[-1] < len(path) - 1:
-                way.append(int(reach[way[-1]]))
-            if self._holds(path, np.array(way), pairs):
+            kept = [0]
+            while kept[-1] < len(path) - 1:
+                kept.append(int(reach[kept[-1]]))
+            if self._holds(path, np.array(kept), pairs):
                 break
         # In a metric this never is longer; other costs may well prefer the waypoint.
-        if self._total(path[way]) <= self.length * (1.0 + 1e-12):
-            self.path = path[way]
+        if self._total(path[kept]) <= self.length * (1.0 + 1e-12):
+            self.path = path[kept]
 
-    def _holds(self, waypoints: Floats, way: Indices, pairs: _Pairs) -> bool:
+    def _holds(self, waypoints: Floats, kept: Indices, pairs: _Pairs) -> bool:
         """Return whether the world confirms a way; if it does not, some of its pairs are not usable any more."""
         if now() >= self.deadline:
             raise BudgetSpent
-        along = pairs.along(way)
-        passed = confirmed(self.world, waypoints[way], ~pairs.trusted[along])
+        along = pairs.along(kept)
+        passed = confirmed(self.world, waypoints[kept], ~pairs.trusted[along])
         pairs.trusted[along[passed]] = True
         if not passed.all():
             pairs.give_up(along[~passed])
@@ -147,9 +147,9 @@ class _Pairs:
         self.trusted[self._number[own[:-1], own[1:]]] = True
         self._failures = 0
 
-    def along(self, way: Indices) -> Indices:
+    def along(self, kept: Indices) -> Indices:
         """Return the numbers of the pairs along a way."""
-        return self._number[np.minimum(way[:-1], way[1:]), np.maximum(way[:-1], way[1:])]
+        return self._number[np.minimum(kept[:-1], kept[1:]), np.maximum(kept[:-1], kept[1:])]
 
     def give_up(self, failed: Indices) -> None:
         """Use these pairs no more, nor those beside them that were not checked: the more, the more have failed.

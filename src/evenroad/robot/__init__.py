@@ -2,10 +2,11 @@
 
 from evenroad.geometry.shapes import Capsule as Capsule
 from evenroad.robot.arm_world import ArmWorld as ArmWorld
+from evenroad.robot.cartesian_line import CartesianLine as CartesianLine
 from evenroad.robot.held import HeldObject as HeldObject
 from evenroad.robot.joint import Joint as Joint
 from evenroad.robot.joint import Mimic as Mimic
-from evenroad.robot.kinematics import capsule_ends as capsule_ends
+from evenroad.robot.kinematics import capsule_endpoints as capsule_endpoints
 from evenroad.robot.kinematics import held_values as held_values
 from evenroad.robot.kinematics import joint_values as joint_values
 from evenroad.robot.kinematics import link_poses as link_poses
@@ -13,6 +14,7 @@ from evenroad.robot.kinematics import tip_links as tip_links
 from evenroad.robot.load import find_robot as find_robot
 from evenroad.robot.load import load_model as load_model
 from evenroad.robot.load import load_robot as load_robot
+from evenroad.robot.orientation_constraint import OrientationConstraint as OrientationConstraint
 from evenroad.robot.pose_goal import PoseGoal as PoseGoal
 from evenroad.robot.robot import Robot as Robot
 from evenroad.robot.robot import in_scene as in_scene
@@ -34,5 +36,3 @@ from evenroad.robot.scene_file import load_scene as load_scene
 from evenroad.robot.states import at_states as at_states
 from evenroad.robot.states import configuration as configuration
 from evenroad.robot.states import named_states as named_states
-from evenroad.robot.straight import Straight as Straight
-from evenroad.robot.upright import Upright as Upright

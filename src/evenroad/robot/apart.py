@@ -42,7 +42,7 @@ def held_apart(robot: KinematicTree, pieces: Pieces, pairs: Collection[tuple[str
     moved = sorted(set().union(*(between[pair] for pair, touch in zip(every, first, strict=True) if touch)))
     if not moved:
         return {}
-    tried = _places([movable[name] for name in moved], [held[name] for name in moved])
+    tried = _sampled_values([movable[name] for name in moved], [held[name] for name in moved])
     values = {name: np.full(len(tried), value) for name, value in held.items()}
     values |= dict(zip(moved, tried.T, strict=True))
     count = _touching(robot, bodied, every, values).sum(axis=1)
@@ -56,18 +56,18 @@ def _joints_between(robot: KinematicTree, first: str, second: str) -> set[str]:
     """Return the joints that move two links on each other, for mimics those that they follow."""
     above = {joint.child: joint for joint in robot.joints}
 
-    def way(link: str) -> set[Joint]:
+    def joints_above(link: str) -> set[Joint]:
         joints = set()
         while link in above:
             joints.add(above[link])
             link = above[link].parent
         return joints
 
-    moving = (joint for joint in way(first) ^ way(second) if joint.kind != "fixed")
+    moving = (joint for joint in joints_above(first) ^ joints_above(second) if joint.kind != "fixed")
     return {joint.name if joint.mimic is None else joint.mimic.joint for joint in moving}
 
 
-def _places(joints: Sequence[Joint], values: Sequence[float]) -> Floats:
+def _sampled_values(joints: Sequence[Joint], values: Sequence[float]) -> Floats:
     """Return where joints may stand, (n, joints): where they are first, then farther, then anywhere."""
     now = np.array(values)
     circle = np.where([joint.kind == "continuous" for joint in joints], np.pi, np.inf)

@@ -25,8 +25,8 @@ from evenroad.robot.kernel.scene_surfaces import scene_surfaces
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import chosen_backend, lanes_failure
 from evenroad.robot.kernel.surface_scalar import fixed_contact, scalar_check_address
-from evenroad.robot.known_robots import prepared
 from evenroad.robot.planes import with_planes
+from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot, within_scene
 from evenroad.robot.scene import Scene, limits_in_words
 from evenroad.robot.separated import apart
@@ -42,8 +42,8 @@ from evenroad.world.protocol import Apart
 MOST_CLEARANCE = 1.0
 """No robot of this world is asked to keep farther from obstacles [m]."""
 
-RECHECK_TOLERANCE = 1e-6
-"""How near to contact `ArmWorld.recheck` still proves a motion free [m]; verdicts of single precision keep about
+VALIDATION_TOLERANCE = 1e-6
+"""How near to contact `ArmWorld.validate` still proves a motion free [m]; verdicts of single precision keep about
 twice that clear of contact, so that it refuses hardly a motion that touches nothing.
 """
 
@@ -59,7 +59,7 @@ class ArmWorld(OneOrMany):
     verdict is never free where the capsule touches.
 
     A motion is divided into ``n = ceil(distance / resolution)`` segments and free if all n + 1 ends of segments are.
-    What lies between two states is not seen: `recheck` proves the motions of a path with no gap.
+    What lies between two states is not seen: `validate` proves the motions of a path with no gap.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ class ArmWorld(OneOrMany):
     @property
     def spheres(self) -> int:
         """How many spheres stand for the capsules where obstacles are concerned."""
-        return sum(len(capsule.cover.places) for capsule in self.robot_tables.capsules)
+        return sum(len(capsule.cover.positions) for capsule in self.robot_tables.capsules)
 
     def _row(self, q: object) -> Floats:
         return as_configuration(self.robot, q, self.scene)  # type: ignore[arg-type]
@@ -218,17 +218,17 @@ class ArmWorld(OneOrMany):
 
     @property
     def proof(self) -> str:
-        """``certified``: what `recheck` calls free is proved to be, everywhere between its ends."""
+        """``certified``: what `validate` calls free is proved to be, everywhere between its ends."""
         return "certified"
 
-    def recheck(self, path: Floats) -> Bools:
+    def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,).
 
         The method is that of :mod:`evenroad.robot.certified`: no stretch of a motion is left open.  Refused is, too,
         what comes within some micrometres of contact, or needs more than 2^15 intervals.  Raises as `valid`.
         """
         waypoints = as_batch("path", path, self._space.dim)
-        return self.motion_certified(waypoints[:-1], waypoints[1:], RECHECK_TOLERANCE)
+        return self.motion_certified(waypoints[:-1], waypoints[1:], VALIDATION_TOLERANCE)
 
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,).
@@ -260,14 +260,16 @@ class ArmWorld(OneOrMany):
         The first joints alone show it, in tenths of a second, `quickly` in some milliseconds.  It is proved for bodies
         inside of the robot's true shapes, see :mod:`evenroad.robot.separated`.
         """
-        ends = as_batch("start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim)
-        return apart(self, ends[0], ends[1:], quickly=quickly)
+        terminals = as_batch(
+            "start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim
+        )
+        return apart(self, terminals[0], terminals[1:], quickly=quickly)
 
     def path_clearance(self, path: Floats) -> float | None:
         """Return what distance from obstacles a path, (p, dim), is proved to keep, to .1 mm; None if none [m]."""
 
-        def keeps(room: float) -> bool:
-            return bool(replace(self, clearance=room).recheck(path).all())
+        def keeps(distance: float) -> bool:
+            return bool(replace(self, clearance=distance).validate(path).all())
 
         return largest_kept(keeps, self.clearance, MOST_CLEARANCE, 1e-4)
 

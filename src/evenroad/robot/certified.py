@@ -60,7 +60,7 @@ class CertifiedWorld:
         """``certified``, as every motion is here."""
         return "certified"
 
-    def recheck(self, path: Floats) -> Bools:
+    def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,)."""
         waypoints = as_batch("path", path, self.space.dim)
         return self.motion_valid(waypoints[:-1], waypoints[1:])

@@ -14,7 +14,7 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.robot.kernel.moving_tree import MovingFrame, MovingTree
 from evenroad.robot.kernel.robot_tables import RobotTables
-from evenroad.robot.known_robots import prepared
+from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot
 from evenroad.robot.tree_sequences import cube_points
 
@@ -61,14 +61,14 @@ class Chain:
         q = np.repeat(middle[np.newaxis], _EVEN, axis=0)
         points = cube_points(len(self.moving))[:_EVEN]
         q[:, self.moving] += (points - 0.5) * width[self.moving]
-        return q, self.places(q)
+        return q, self.tip_poses(q)
 
-    def places(self, q: Floats) -> Floats:
+    def tip_poses(self, q: Floats) -> Floats:
         """Return where configurations, (n, dim), have the tip: rotation row by row, and origin, (n, 12)."""
-        from evenroad.robot.kernel.reach import places
+        from evenroad.robot.kernel.reach import tip_poses
 
         out = np.empty((len(q), 12))
-        places(np.array(q), self.ints, self.rows, out)
+        tip_poses(np.array(q), self.ints, self.rows, out)
         return out
 
     def reach(self) -> tuple[Floats, float]:
@@ -78,8 +78,8 @@ class Chain:
             far += math.hypot(*self.rows[i + 1, 9:12])
             frame = self.frames[i]
             if frame.slides:
-                ends = self.bounds[:, frame.coordinate] * frame.multiplier + frame.offset
-                far += float(np.abs(ends).max())
+                extremes = self.bounds[:, frame.coordinate] * frame.multiplier + frame.offset
+                far += float(np.abs(extremes).max())
             before = i
         return self.rows[before, 9:12], far
 
@@ -99,12 +99,12 @@ def chain_of(robot: Robot, tip: str) -> Chain:
     frames = _carrying(tree, tree.links[tip].frame)
     if not frames:
         raise InvalidValue(f"no joint of the group, {','.join(robot.group)}, moves the link {tip!r}")
-    place = tree.links[tip]
+    placement = tree.links[tip]
     rows = np.zeros((len(frames) + 1, 14))
     for row, frame in zip(rows, frames, strict=False):
         row[:] = *frame.rotation.ravel(), *frame.translation, frame.multiplier, frame.offset
     # A link is placed by what takes its points into its frame.
-    rows[-1, :12] = *place.rotation.ravel(), *place.translation
+    rows[-1, :12] = *placement.rotation.ravel(), *placement.translation
     ints = np.array([[frame.coordinate, int(frame.slides)] for frame in frames], dtype=np.int64)
     ranges = np.array([space.low, space.high])
     # All that a coordinate moves has to be where it was after a turn, not the tip alone.
@@ -142,8 +142,8 @@ def default_tip(robot: Robot) -> str:
     """Return the link at the end of what the group moves, none that is held; InvalidValue if there are several."""
     tree = prepared(robot).tables.tree
     carried = {
-        link: len({frame.coordinate for frame in _carrying(tree, place.frame)})
-        for link, place in tree.links.items()
+        link: len({frame.coordinate for frame in _carrying(tree, placement.frame)})
+        for link, placement in tree.links.items()
         if link not in robot.holds
     }
     most, parents = max(carried.values()), {joint.parent for joint in robot.joints if joint.child in carried}
@@ -162,9 +162,9 @@ def frame_pose(robot: Robot, frame: str) -> Pose:
         return IDENTITY
     links = prepared(robot).tables.tree.links
     require_known(f"link of {robot.name!r}:", frame, links)
-    place = links[frame]
-    if place.frame != 0:
+    placement = links[frame]
+    if placement.frame != 0:
         raise InvalidValue(
             f"the frame of a goal pose must stand still, but the group moves the link {frame!r}"
         )
-    return Pose(tuple(place.translation.tolist()), tuple(place.rotation.ravel().tolist()))
+    return Pose(tuple(placement.translation.tolist()), tuple(placement.rotation.ravel().tolist()))

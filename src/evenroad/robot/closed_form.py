@@ -23,10 +23,10 @@ def closed_form(chain: Chain) -> Any | None:
     return robot
 
 
-def branches(chain: Chain, robot: Any, rotation: Floats, place: Floats) -> Floats:
+def branches(chain: Chain, robot: Any, rotation: Floats, translation: Floats) -> Floats:
     """Return all configurations that EAIK finds for the tip's pose, (n, dim), angles in any turn; not yet checked."""
     pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = rotation.reshape(3, 3), place
+    pose[:3, :3], pose[:3, 3] = rotation.reshape(3, 3), translation
     angles = np.array(robot.calculate_IK(pose).Q, dtype=np.float64).reshape(-1, 6)
     q = np.zeros((len(angles), len(chain.group)))
     q[:, chain.ints[:, 0]] = (angles - chain.rows[:6, 13]) / chain.rows[:6, 12]

@@ -57,21 +57,21 @@ class Goals:
         """
         poses = [] if straight else [goal for goal, _ in self.poses]
 
-        def ask(start: Floats, goals: Floats, quickly: bool) -> Apart | None:
+        def prove(start: Floats, goals: Floats, quickly: bool) -> Apart | None:
             return apart(world, start, goals, poses, quickly=quickly, whole=self.whole and not straight)
 
-        return ask
+        return prove
 
     def records(self, world: Checks, end: Floats | None) -> list[dict[str, Any]]:
         """Return the poses as plain values; `end`, (dim,), is where a path ends: by how much it misses them."""
         return [_record(world, goal, reached, end) for goal, reached in self.poses]
 
 
-def require_tips(robot: Robot, places: Sequence[Any], tip: str = "", frame: str = "") -> None:
+def require_tips(robot: Robot, targets: Sequence[Any], tip: str = "", frame: str = "") -> None:
     """Raise what `goals_of` would where a pose is of a link, or in a frame, that cannot be: a world is dear to make."""
-    for place in places:
-        if isinstance(place, Pose | PoseGoal):
-            goal = as_pose_goal(place, tip, frame)
+    for target in targets:
+        if isinstance(target, Pose | PoseGoal):
+            goal = as_pose_goal(target, tip, frame)
             chain_of(robot, goal.tip or default_tip(robot))
             frame_pose(robot, goal.frame)
 
@@ -79,7 +79,7 @@ def require_tips(robot: Robot, places: Sequence[Any], tip: str = "", frame: str 
 def goals_of(
     world: Checks,
     start: Floats,
-    places: Sequence[Any],
+    targets: Sequence[Any],
     read: Callable[[Any], Floats],
     tip: str = "",
     frame: str = "",
@@ -89,12 +89,12 @@ def goals_of(
     names: list[str] = []
     poses = []
     began = now()
-    for place in places:
-        if not isinstance(place, Pose | PoseGoal):
-            rows.append(read(place)[np.newaxis])
-            names.append(place.strip() if isinstance(place, str) else "")
+    for target in targets:
+        if not isinstance(target, Pose | PoseGoal):
+            rows.append(read(target)[np.newaxis])
+            names.append(target.strip() if isinstance(target, str) else "")
             continue
-        goal = as_pose_goal(place, tip, frame)
+        goal = as_pose_goal(target, tip, frame)
         goal = goal if goal.tip else replace(goal, tip=default_tip(world.robot))
         reached = reach(world, goal, start)
         poses.append((goal, reached))

@@ -202,9 +202,9 @@ def followed_from(chain: Chain, tasks: Floats, q: Floats, longest: float, wraps:
     from evenroad.robot.kernel import reach as kernel
 
     low, high = np.where(wraps, [[-np.inf], [np.inf]], chain.bounds)
-    way, missing = np.repeat(q[np.newaxis], len(tasks), axis=0), np.empty(len(tasks))
+    waypoints, missing = np.repeat(q[np.newaxis], len(tasks), axis=0), np.empty(len(tasks))
     tables, bounds = (chain.ints, chain.rows), (low, high)
-    return way, kernel.solve(way, tables, bounds, tasks, _STEPS, len(tasks) + 1, longest, missing)
+    return waypoints, kernel.solve(waypoints, tables, bounds, tasks, _STEPS, len(tasks) + 1, longest, missing)
 
 
 def _numbers(task: Floats) -> int:
@@ -303,7 +303,7 @@ def misses(chain: Chain, task: Floats, q: Floats) -> tuple[float, float]:
     """Return by how much a configuration, (dim,), misses what a task says of place [m] and rotation [rad]."""
     from evenroad.robot.kernel import reach as at
 
-    tip = chain.places(q[np.newaxis])[0]
+    tip = chain.tip_poses(q[np.newaxis])[0]
     near = math.dist(tip[9:], task[9:12]) if task[at.PLACED] else 0.0
     turn = tip[:9].reshape(3, 3)
     if task[at.TURNED] == at.BY_AXIS:

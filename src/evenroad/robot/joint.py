@@ -131,5 +131,5 @@ def _range_for(follower: Joint, mimic: Mimic) -> tuple[float, float]:
     if mimic.multiplier == 0.0:
         stays = follower.lower - _ROUNDING <= mimic.offset <= follower.upper + _ROUNDING
         return (-math.inf, math.inf) if stays else (math.inf, -math.inf)
-    ends = [(limit - mimic.offset) / mimic.multiplier for limit in (follower.lower, follower.upper)]
-    return min(ends), max(ends)
+    extremes = [(limit - mimic.offset) / mimic.multiplier for limit in (follower.lower, follower.upper)]
+    return min(extremes), max(extremes)

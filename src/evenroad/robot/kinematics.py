@@ -119,14 +119,14 @@ def joint_motion(joint: Joint, value: Floats) -> Floats:
     return motion
 
 
-def capsule_ends(robot: KinematicTree, q: npt.ArrayLike) -> Floats:
+def capsule_endpoints(robot: KinematicTree, q: npt.ArrayLike) -> Floats:
     """Return the end points of all capsules in the frame of the root: (n, capsules, 2, 3) [m]."""
-    return ends_at(robot, link_poses(robot, q))
+    return endpoints_at(robot, link_poses(robot, q))
 
 
-def ends_at(robot: KinematicTree, poses: Floats) -> Floats:
+def endpoints_at(robot: KinematicTree, poses: Floats) -> Floats:
     """Return the end points of all capsules, (n, capsules, 2, 3), where the links have these poses."""
     link = [robot.links.index(capsule.link) for capsule in robot.capsules]
-    ends = np.array([[capsule.a, capsule.b] for capsule in robot.capsules]).reshape(-1, 2, 3)
-    rotated = np.einsum("nkij,kej->nkei", poses[:, link][..., :3, :3], ends)
+    endpoints = np.array([[capsule.a, capsule.b] for capsule in robot.capsules]).reshape(-1, 2, 3)
+    rotated = np.einsum("nkij,kej->nkei", poses[:, link][..., :3, :3], endpoints)
     return rotated + poses[:, link][:, :, np.newaxis, :3, 3]

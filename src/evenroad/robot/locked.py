@@ -16,7 +16,7 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats
 from evenroad.robot.kernel.moving_tree import moving_tree
 from evenroad.robot.kernel.placed_capsules import LARGEST_EXCESS, place_capsule, speed_bounds
-from evenroad.robot.known_robots import joint_space
+from evenroad.robot.prepared_robots import joint_space
 from evenroad.robot.robot import Robot
 
 SLACK = 1e-4
@@ -66,8 +66,8 @@ class Cells:
     @property
     def middles(self) -> list[Floats]:
         """The middles along each joint."""
-        places = zip(self.low, self.size, self.count, strict=True)
-        return [low + size * (np.arange(count) + 0.5) for low, size, count in places]
+        axes = zip(self.low, self.size, self.count, strict=True)
+        return [low + size * (np.arange(count) + 0.5) for low, size, count in axes]
 
     def cell(self, q: Floats) -> tuple[int, ...] | None:
         """Return which cell a place, (joints,), is in; None where it is in none."""
@@ -91,7 +91,7 @@ class Piece:
         return cell is not None and bool(self.reached[cell])
 
 
-def piece_of(bodies: Bodies, place: Floats, reach: tuple[float, ...], most: int) -> Piece | None:
+def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], most: int) -> Piece | None:
     """Return the cells that a robot's first joints, as many as `reach` has, cannot leave from a free place, (dim,).
 
     About so many cells lie around the place; `reach` says how far along each joint, to its limits at most [rad or m].
@@ -100,7 +100,7 @@ def piece_of(bodies: Bodies, place: Floats, reach: tuple[float, ...], most: int)
     first = first_links(bodies.robot, len(reach))
     if not first.capsules:
         return None
-    cells = _cells_around(first, place[: len(reach)], np.array(reach), most)
+    cells = _cells_around(first, configuration[: len(reach)], np.array(reach), most)
     thin = thinner(first, 0.5 * cells.size, SLACK + 4.0 * bodies.margin)
     if not thin.capsules:
         return None
@@ -108,7 +108,7 @@ def piece_of(bodies: Bodies, place: Floats, reach: tuple[float, ...], most: int)
     from scipy.ndimage import label
 
     number = _joined(label(_free_cells(bodies.in_scene(thin), cells))[0], cells.whole)
-    cell = cells.cell(place[: len(reach)])
+    cell = cells.cell(configuration[: len(reach)])
     # A place in no cell, or in a blocked one, is not as free as was said.
     if cell is None or number[cell] == 0:
         return None
@@ -173,14 +173,14 @@ def thinner(robot: Robot, half: Floats, slack: float) -> Robot:
     return replace(robot, capsules=tuple(kept))
 
 
-def _cells_around(first: Robot, place: Floats, reach: Floats, most: int) -> Cells:
+def _cells_around(first: Robot, configuration: Floats, reach: Floats, most: int) -> Cells:
     """Return about so many cells around a place; where a joint wraps, all the way round at most."""
     space = joint_space(first)
     period = space.flat.period
     reach = np.minimum(reach, 0.5 * period)
     wraps = np.isfinite(period)
-    low = np.where(wraps, place - reach, np.maximum(space.low, place - reach))
-    high = np.where(wraps, place + reach, np.minimum(space.high, place + reach))
+    low = np.where(wraps, configuration - reach, np.maximum(space.low, configuration - reach))
+    high = np.where(wraps, configuration + reach, np.minimum(space.high, configuration + reach))
     tree = moving_tree(first)
     placed = [place_capsule(capsule, tree) for capsule in first.capsules]
     speeds = speed_bounds(tree, placed, [], first)[0].max(axis=0)

@@ -215,12 +215,12 @@ class _Reader:
             name = str(model.geom(geom).name) or f"plane_{geom}"
             # A plane is no thicker for its margin, but begins earlier.
             turned = data.geom_xmat[geom].tolist()
-            place = Pose(tuple(data.geom_xpos[geom].tolist()), tuple(turned)) @ Pose(
+            plane_pose = Pose(tuple(data.geom_xpos[geom].tolist()), tuple(turned)) @ Pose(
                 (0.0, 0.0, contacts.grown[geom])
             )
             tested = {link for link, of in moving.items() if contacts.collide[geom, of].any()}
             untested = tuple(link for link in links if link not in tested)
-            planes.append(Plane(name, place.xyz, place.rotation, untested))
+            planes.append(Plane(name, plane_pose.xyz, plane_pose.rotation, untested))
             self.notes.append(
                 f"the plane {name!r} stands in every scene, as a box of {SIDE:g} x {SIDE:g} m, {DEPTH:g} m deep"
             )

@@ -52,14 +52,14 @@ def with_equalities(
 
 def _loop(mujoco: Any, model: Any, number: int, kind: str, notes: list[str]) -> str:
     """Return in words which loop an equality closes; empty where it closes none."""
-    ends = [int(model.eq_obj1id[number]), int(model.eq_obj2id[number])]
+    joined = [int(model.eq_obj1id[number]), int(model.eq_obj2id[number])]
     if int(model.eq_objtype[number]) == int(mujoco.mjtObj.mjOBJ_SITE):
-        ends = [int(model.site_bodyid[site]) for site in ends]
-    if model.body_weldid[ends[0]] == model.body_weldid[ends[1]]:
+        joined = [int(model.site_bodyid[site]) for site in joined]
+    if model.body_weldid[joined[0]] == model.body_weldid[joined[1]]:
         return ""
-    first, second = (name_of(model.body(body), "body") for body in ends)
+    first, second = (name_of(model.body(body), "body") for body in joined)
     said = f"the {kind} of {first!r} with {second!r}"
-    if any(model.body_mocapid[body] >= 0 for body in ends):
+    if any(model.body_mocapid[body] >= 0 for body in joined):
         notes.append(f"{said} is left out: a body of motion capture goes where it is put")
         return ""
     return said

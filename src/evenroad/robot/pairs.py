@@ -27,7 +27,7 @@ _MOSTLY = 0.5
 """Of all samples in which such two touch, and of the volume that is inside in one of these."""
 _MOST_HULLS = 128
 """A link of so many is not split."""
-_PLACES = 20
+_MOST_ROWS = 20
 """Of the samples in which two touch, so many tell how far one is inside of the other."""
 _ROUNDS = 12
 _LOOKED_AT = 400
@@ -212,7 +212,7 @@ class _Samples:
         rows = np.intersect1d(self.looked_at, self.touching[pair])
         if len(rows) <= _MOSTLY * len(self.looked_at):
             return False
-        rows = rows[:: 1 + len(rows) // _PLACES]
+        rows = rows[:: 1 + len(rows) // _MOST_ROWS]
         relative = np.asarray(np.linalg.inv(self._poses[second][rows]) @ self._poses[first][rows], np.float64)
         back = np.asarray(np.linalg.inv(relative), np.float64)
         shares = (
@@ -277,8 +277,8 @@ def _sampled_poses(robot: KinematicTree) -> Floats:
     q = low + generator(0).random((SAMPLES, len(movable))) * (high - low)
     held = held_values(robot)
     if held:
-        places = [i for i, joint in enumerate(movable) if joint.name in held]
+        columns = [i for i, joint in enumerate(movable) if joint.name in held]
         q = np.concatenate([q, q])
-        q[SAMPLES:, places] = [held[movable[i].name] for i in places]
+        q[SAMPLES:, columns] = [held[movable[i].name] for i in columns]
     values = with_mimics(robot, {joint.name: q[:, i] for i, joint in enumerate(movable)})
     return poses_at(robot, values, len(q))

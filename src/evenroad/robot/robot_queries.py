@@ -16,8 +16,8 @@ from evenroad.geometry.pose import Pose
 from evenroad.robot.chain import default_tip
 from evenroad.robot.inverse_kinematics import reach
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.known_robots import prepared
 from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
+from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot
 from evenroad.robot.states import as_configuration
 

@@ -14,7 +14,7 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.distance import point_distance
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, PointCloud, Shape
-from evenroad.robot.kinematics import capsule_ends, link_poses
+from evenroad.robot.kinematics import capsule_endpoints, link_poses
 from evenroad.robot.pairs import rigid_links
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import MARGIN, Obstacle, Scene
@@ -39,9 +39,9 @@ def without_robot(
     """
     margin = require_positive("margin", margin, or_zero=True)
     points = cloud.pose.apply(cloud.points)
-    ends = capsule_ends(robot, np.asarray(q, dtype=np.float64)[np.newaxis])[0]
+    endpoints = capsule_endpoints(robot, np.asarray(q, dtype=np.float64)[np.newaxis])[0]
     own = np.zeros(len(points), dtype=np.bool_)
-    for (a, b), capsule in zip(ends, robot.capsules, strict=True):
+    for (a, b), capsule in zip(endpoints, robot.capsules, strict=True):
         own |= _within(points, a, b, capsule.radius + cloud.radius + margin)
     return None if own.all() else replace(cloud, points=cloud.points[~own])
 
@@ -107,13 +107,13 @@ def allowed_within(scene: Scene, link: str, cloud: str, region: Shape, grow: flo
     return _opened(scene, link, cloud, [region], require_positive("grow", grow, or_zero=True))
 
 
-def allowed_near_ends(robot: Robot, scene: Scene, ends: npt.ArrayLike) -> Scene:
+def allowed_near_ends(robot: Robot, scene: Scene, endpoints: npt.ArrayLike) -> Scene:
     """Return a scene with the contacts that it allows near the ends of a path, of these ends, (n, dim) [rad or m].
 
     The link may touch balls whose centres are within the distance of its body at one of the ends: of what is attached
     in its shape, if that is a box, sphere, cylinder or capsule, else of its capsules.  Raises as `allowed_within`.
     """
-    configurations = np.atleast_2d(np.asarray(ends, dtype=np.float64))
+    configurations = np.atleast_2d(np.asarray(endpoints, dtype=np.float64))
     for link, cloud, distance in sorted(scene.near_ends):
         require_known("link allowed near the ends:", link, robot.links)
         scene = _opened(scene, link, cloud, _placed(robot, scene, link, configurations), distance)

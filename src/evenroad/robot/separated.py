@@ -124,10 +124,10 @@ def shown_by(
     group = bodies.robot.group
     used, shown = dict[str, None](), tuple[str, ...]()
     unreached, undecided = list(goals), list(tasks)
-    for k, room in pieces_between_walls(bodies.robot, start):
+    for k, enclosure in pieces_between_walls(bodies.robot, start):
         before = len(unreached) + len(undecided)
-        unreached = [goal for goal in unreached if room.holds(goal)]
-        undecided = [task for task in undecided if not is_beyond(room, *task)]
+        unreached = [goal for goal in unreached if enclosure.holds(goal)]
+        undecided = [task for task in undecided if not is_beyond(enclosure, *task)]
         if len(unreached) + len(undecided) < before:
             used[group[k]] = None
     if used and not unreached:
@@ -165,16 +165,18 @@ def is_beyond(piece: Piece, chain: Chain, task: Floats) -> bool:
     from evenroad.robot.kernel import reach as at
 
     known, coordinates = len(piece.cells.count), chain.ints[:, 0].tolist()
-    place = next((i for i, coordinate in enumerate(coordinates) if coordinate >= known), len(coordinates))
-    bars, target = np.linalg.norm(chain.rows[place + 1 :, 9:12], axis=1).tolist(), task[9:12]
+    first_free = next(
+        (i for i, coordinate in enumerate(coordinates) if coordinate >= known), len(coordinates)
+    )
+    bars, target = np.linalg.norm(chain.rows[first_free + 1 :, 9:12], axis=1).tolist(), task[9:12]
     if bars and task[at.TURNED] == at.ALL and task[at.TILT] == 0.0:
         # Where the last joint is is known, too.
         turn = task[:9].reshape(3, 3) @ chain.rows[-1, :9].reshape(3, 3).T
         target, bars = target - turn @ chain.rows[-1, 9:12], bars[:-1]
     slides = _slides(chain)
-    most = sum(bars) + sum(slides[place:])
+    most = sum(bars) + sum(slides[first_free:])
     least = max([0.0, *(2.0 * bar - most for bar in bars)])
-    away, moved = _distances(piece, chain, place, target, slides)
+    away, moved = _distances(piece, chain, first_free, target, slides)
     near = _NEAR + float(task[at.NEAR])
     return bool(((away - moved > most + near) | (away + moved < least - near)).all())
 
@@ -186,20 +188,20 @@ def _slides(chain: Chain) -> list[float]:
         [chain.ints, chain.rows[:-1, 12:14]]
     ).tolist():
         low, high = chain.bounds[:, int(coordinate)] + (-BEYOND, BEYOND)
-        ends = abs(multiplier * low + offset), abs(multiplier * high + offset)
-        lengths.append(max(ends) if slides else 0.0)
+        extremes = abs(multiplier * low + offset), abs(multiplier * high + offset)
+        lengths.append(max(extremes) if slides else 0.0)
     return lengths
 
 
 def _distances(
-    piece: Piece, chain: Chain, place: int, target: Floats, slides: list[float]
+    piece: Piece, chain: Chain, first_free: int, target: Floats, slides: list[float]
 ) -> tuple[Floats, float]:
     """Return how far a frame's origin is from a point in all cells' middles, (n,), and how far half a cell moves it."""
     cells, rows, ints = piece.cells, chain.rows, chain.ints
     where = np.nonzero(piece.reached)
     q = np.stack([cells.middles[k][row] for k, row in enumerate(where)], axis=1)
     rotation, origin = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
-    for i in range(place):
+    for i in range(first_free):
         origin = origin + rotation @ rows[i, 9:12]
         rotation = rotation @ rows[i, :9].reshape(3, 3)
         value = rows[i, 12] * q[:, ints[i, 0]] + rows[i, 13]
@@ -209,9 +211,9 @@ def _distances(
         cosine, sine, zero = np.cos(value), np.sin(value), np.zeros_like(value)
         turn = np.stack([cosine, -sine, zero, sine, cosine, zero, zero, zero, zero + 1.0], axis=1)
         rotation = rotation @ turn.reshape(-1, 3, 3)
-    origin = origin + rotation @ rows[place, 9:12]
-    straight, moved = float(np.linalg.norm(rows[place, 9:12])), 0.0
-    for i in range(place - 1, -1, -1):
+    origin = origin + rotation @ rows[first_free, 9:12]
+    straight, moved = float(np.linalg.norm(rows[first_free, 9:12])), 0.0
+    for i in range(first_free - 1, -1, -1):
         half = 0.5 * float(cells.size[ints[i, 0]]) * abs(float(rows[i, 12]))
         moved += half * (1.0 if ints[i, 1] else straight)
         straight += float(np.linalg.norm(rows[i, 9:12])) + slides[i]

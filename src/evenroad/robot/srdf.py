@@ -53,7 +53,7 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
         raise BrokenFile(f"{path} is a URDF, not an SRDF: it has joints")
     elements = {_attribute(group, "name", path): group for group in root.findall("group")}
     virtual = frozenset(_attribute(joint, "name", path) for joint in root.findall("virtual_joint"))
-    known = _Known(urdf, virtual)
+    known = _Model(urdf, virtual)
     passive = frozenset(
         name
         for joint in root.findall("passive_joint")
@@ -87,7 +87,7 @@ _MISSING = {
 
 
 @dataclass(frozen=True)
-class _Known:
+class _Model:
     """What the URDF has, and what was asked for that it lacks."""
 
     urdf: Urdf
@@ -120,7 +120,7 @@ class _Known:
 @dataclass(frozen=True)
 class _Groups:
     elements: Mapping[str, Element]
-    known: _Known
+    known: _Model
     path: Path
 
     def joints(self, name: str, inside: tuple[str, ...]) -> set[str]:
@@ -138,9 +138,9 @@ class _Groups:
                 link = _attribute(part, "name", self.path)
                 found.update([by_child[link].name] if self.known.links([link]) and link in by_child else [])
             elif part.tag == "chain":
-                ends = [_attribute(part, end, self.path) for end in ("base_link", "tip_link")]
-                if self.known.links(ends):
-                    found.update(self._chain(ends[0], ends[1], by_child))
+                base_and_tip = [_attribute(part, end, self.path) for end in ("base_link", "tip_link")]
+                if self.known.links(base_and_tip):
+                    found.update(self._chain(base_and_tip[0], base_and_tip[1], by_child))
             elif part.tag == "group":
                 found |= self.joints(_attribute(part, "name", self.path), (*inside, name))
         return found
@@ -155,7 +155,7 @@ class _Groups:
         return names
 
 
-def _values(state: Element, known: _Known, path: Path) -> dict[str, float]:
+def _values(state: Element, known: _Model, path: Path) -> dict[str, float]:
     values = {}
     for joint in state.findall("joint"):
         name = _attribute(joint, "name", path)

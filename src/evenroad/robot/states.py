@@ -166,15 +166,15 @@ def _number(name: str, values: Mapping[str, float], joint: str) -> float:
 def _from_pairs(robot: Robot, text: str, degrees: bool) -> Floats:
     joints = {joint.name: joint for joint in robot.joints}
     values: dict[str, float] = {}
-    place = 0
-    while pair := _PAIR.match(text, place):
-        place = pair.end()
+    offset = 0
+    while pair := _PAIR.match(text, offset):
+        offset = pair.end()
         name, number = pair.groups()
         require_known(f"joint of {robot.name!r}:", name, robot.group)
         if name in values:
             raise InvalidValue(f"joint {name!r} is given twice")
         values[name] = _value(robot, name, number, degrees)
-    rest = text[place:].strip(", \t\n")
+    rest = text[offset:].strip(", \t\n")
     if rest:
         raise InvalidValue(f"{rest!r} is not of the form name=value")
     neutral = {name: joints[name].neutral for name in robot.group}

@@ -248,11 +248,13 @@ def find_mesh(name: str, file: RobotFile, link: str) -> Path:
     ``file://`` is absolute; all else is relative to the URDF.  Raises BrokenFile if there is none; the text says where
     it was looked for.
     """
-    places = list(_candidates(name, file))
-    for place in places:
-        if place.is_file():
-            return place
-    looked = ", ".join(str(place) for place in places[:4]) + (", ..." if len(places) > 4 else "")
+    candidates = list(_candidates(name, file))
+    for candidate in candidates:
+        if candidate.is_file():
+            return candidate
+    looked = ", ".join(str(candidate) for candidate in candidates[:4]) + (
+        ", ..." if len(candidates) > 4 else ""
+    )
     package = name.removeprefix("package://").partition("/")[0] if name.startswith("package://") else ""
     hint = f"; --package {package}=FOLDER says where that package is" if package else ""
     where = f"of link {link!r} in {file.path}"

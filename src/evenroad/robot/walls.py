@@ -17,8 +17,8 @@ from evenroad.geometry.hulls import Hull
 from evenroad.robot.joint import Joint
 from evenroad.robot.kernel.hull_trees import HullTrees, contacts, hull_trees
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.known_robots import joint_space
 from evenroad.robot.locked import BEYOND, SLACK, Cells, Piece
+from evenroad.robot.prepared_robots import joint_space
 from evenroad.robot.robot import Robot
 
 _VALUES = 128
@@ -31,7 +31,7 @@ _ALONG, _AROUND = 64, 2_000
 """Cells between two walls along their joint, and all of them."""
 
 
-def pieces_between_walls(robot: Robot, place: Floats) -> Iterator[tuple[int, Piece]]:
+def pieces_between_walls(robot: Robot, start: Floats) -> Iterator[tuple[int, Piece]]:
     """Yield coordinates that have walls, each with all cells that a path from a place, (dim,), may come to."""
     space = joint_space(robot)
     period = space.flat.period
@@ -40,11 +40,11 @@ def pieces_between_walls(robot: Robot, place: Floats) -> Iterator[tuple[int, Pie
             continue
         low, high = np.array(space.low) - BEYOND, np.array(space.high) + BEYOND
         if np.isfinite(period[k]):
-            above = np.mod(walls - place[k], period[k])
-            low[k], high[k] = place[k] + above.max() - period[k], place[k] + above.min()
+            above = np.mod(walls - start[k], period[k])
+            low[k], high[k] = start[k] + above.max() - period[k], start[k] + above.min()
         else:
-            low[k] = walls[walls < place[k]].max(initial=low[k])
-            high[k] = walls[walls > place[k]].min(initial=high[k])
+            low[k] = walls[walls < start[k]].max(initial=low[k])
+            high[k] = walls[walls > start[k]].min(initial=high[k])
         count = np.full(k + 1, max(1, int((_AROUND / _ALONG) ** (1 / max(k, 1)))))
         count[k] = _ALONG
         yield (
@@ -96,14 +96,14 @@ def _between(robot: Robot, first: str, second: str) -> list[tuple[Joint, int]]:
         {joint.child: joint for joint in robot.joints},
         {name: k for k, name in enumerate(robot.group)},
     )
-    ways = []
+    chains = []
     for link in (first, second):
-        way = set()
+        chain = set()
         while link in above:
-            way.add(above[link])
+            chain.add(above[link])
             link = above[link].parent
-        ways.append(way)
-    leaders = [(joint, joint.mimic.joint if joint.mimic else joint.name) for joint in ways[0] ^ ways[1]]
+        chains.append(chain)
+    leaders = [(joint, joint.mimic.joint if joint.mimic else joint.name) for joint in chains[0] ^ chains[1]]
     return [(joint, number[name]) for joint, name in leaders if name in number and joint.kind != "fixed"]
 
 
@@ -159,10 +159,10 @@ class _Pair:
             hulls = [of[number] for of, number in zip(self.solid, met[cell], strict=True)]
             for still, other in (hulls, hulls[::-1]):
                 at, of = (poses[:, self.robot.links.index(hull.link)] for hull in (still, other))
-                place = np.linalg.solve(at, of)
-                point = _deepest(other, still, place[cell])
+                start = np.linalg.solve(at, of)
+                point = _deepest(other, still, start[cell])
                 deep = half * self._speed(poses[cell], still, point) + SLACK
-                in_other = np.einsum("nj,njk->nk", point - place[:, :3, 3], place[:, :3, :3])
+                in_other = np.einsum("nj,njk->nk", point - start[:, :3, 3], start[:, :3, :3])
                 left &= (_depths(other, in_other) < deep) | (_depths(still, point) < SLACK)
             if left[cell] or not left.any():
                 break

@@ -11,9 +11,9 @@ import numpy as np
 from evenroad._above import above
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._npz import Path
-from evenroad.roadmap.kept import Roadmap, WorldRoadmap
+from evenroad.roadmap.point_roadmap import Roadmap, WorldRoadmap
 from evenroad.robot import ArmWorld, Robot, Scene
-from evenroad.robot.known_robots import prepared
+from evenroad.robot.prepared_robots import prepared
 from evenroad.robot_roadmap.scene_graph import SceneGraph
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
 

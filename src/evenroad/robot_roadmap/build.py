@@ -12,15 +12,15 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet
-from evenroad.roadmap.kept import Roadmap, roadmap_of_points
 from evenroad.roadmap.neighbours import nearest
+from evenroad.roadmap.point_roadmap import Roadmap, roadmap_of_points
 from evenroad.roadmap.points_of import as_points
 from evenroad.roadmap.rules import KNearest, Rule
 from evenroad.robot import ArmWorld, in_scene, scene_seen_by
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap, read_only
-from evenroad.robot_roadmap.recipe import MEASURED, Recipe, chosen, known_of, recipe_for
+from evenroad.robot_roadmap.recipe import MEASURED, Recipe, chosen, precomputed, recipe_for
 from evenroad.robot_roadmap.spread import displacement_weights
-from evenroad.robot_roadmap.turns import OneTurn, lifted_motions_free, one_turn, shifts, whole_turns
+from evenroad.robot_roadmap.turns import OneTurn, one_turn, shifts, whole_turns, winding_motions_free
 from evenroad.space import JointSpace
 from evenroad.world import World
 
@@ -116,7 +116,7 @@ def arm_roadmap(
         first, second = world.fixed_contact
         raise InvalidValue(f"the robot is never free: {first!r} always touches {second!r}")
     recipe, one = recipe or recipe_for(world.robot), one_turn(world.space, whole_turns(world.robot))
-    known = known_of(world, one, int(n), recipe, generator(rng).spawn(3), progress)
+    known = precomputed(world, one, int(n), recipe, generator(rng).spawn(3), progress)
     progress("choosing and joining milestones", 0.0)
     milestones = known.pool[chosen(known, recipe, min(int(n), len(known.pool)))]
     return joined(_empty(world, known.weights), milestones, int(k))
@@ -178,7 +178,7 @@ def _free_edges(
         some = which[rest, first : first + k]
         new = np.unique(some[~checked[some]])
         a, b = milestones[pairs[new, 0]], milestones[pairs[new, 1]]
-        free[new] = lifted_motions_free(world, one, a, b, turns[new])
+        free[new] = winding_motions_free(world, one, a, b, turns[new])
         checked[new] = True
         reached[rest, first : first + k] = free[some]
     kept = np.unique(which[reached & (np.cumsum(reached, axis=1) <= k)])

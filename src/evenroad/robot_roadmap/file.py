@@ -14,11 +14,11 @@ from evenroad._checks import require_positive
 from evenroad._npz import Arrays, Path, read_json, require_array
 from evenroad.errors import BrokenFile, EvenroadError
 from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
-from evenroad.roadmap.kept import Roadmap
 from evenroad.roadmap.npz import OF_ALL, point_roadmap, read_roadmap, write_roadmap
+from evenroad.roadmap.point_roadmap import Roadmap
 from evenroad.robot import Obstacle, Scene
 from evenroad.robot.cache import robot_of
-from evenroad.robot.known_robots import prepared
+from evenroad.robot.prepared_robots import prepared
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap, read_only
 from evenroad.robot_roadmap.turns import TURN
 from evenroad.world.bisection import require_few_segments

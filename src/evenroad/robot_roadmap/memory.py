@@ -32,7 +32,7 @@ CAPACITY, HALVES, EDGES, DIM, TERMINALS, LINKS, STATES, ENTRIES = range(8)
 """Header: room for milestones, half edges and edges; coordinates; start and goals, and links of each; room for states
 and entries."""
 
-NODES, HALVES_MADE, EDGES_MADE, BASE, LIFTING = range(8, 13)
+NODES, HALVES_MADE, EDGES_MADE, BASE, ANY_MULTI_TURN = range(8, 13)
 """Header: milestones, half edges and edges there are; how many edges are known to be free of robot and static scene; 1
 where joints are lifted by whole turns."""
 
@@ -54,12 +54,12 @@ how it ends: a path, none, no room, start or goals not free, budget spent, its s
 OTHER, NEXT, NUMBER, HALF = range(4)
 """Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
 
-LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED, PRICE, RULE_ROWS = range(8)
+LOW, HIGH, MULTI_TURN, ENDLESS, MIDDLE, GREED, CHECK_COST, RULE_ROWS = range(8)
 """Rows of the rules: limits; 1 for joints that are lifted by whole turns, or turn on for ever; the middle of the range
 of milestones; what the bound is multiplied by, 1 for the shortest path; what a unit of length counts of an edge that is
 not evaluated yet, 1 where evaluations are cheap.  And how many rows that is."""
 
-OF, LIFTED, SIBLING, REACHED = range(4)
+OF, WINDINGS, SIBLING, REACHED = range(4)
 """Of a state: milestone, packed turns, the next state of the same milestone or -1, the entry it was reached by."""
 
 LEFT, LEAST = range(2)
@@ -127,10 +127,10 @@ class Search(NamedTuple):
     path: Floats
 
 
-PLACES = {name: i for i, name in enumerate(Search._fields[1:], start=BATCHES + 1)}
+HEADER_INDEX = {name: i for i, name in enumerate(Search._fields[1:], start=BATCHES + 1)}
 """Array -> where its address is in the header."""
 
-FIRST_PLACE, HEADER = BATCHES + 1, BATCHES + 1 + len(PLACES)
+FIRST_INDEX, HEADER = BATCHES + 1, BATCHES + 1 + len(HEADER_INDEX)
 
 
 @quick
@@ -138,7 +138,7 @@ def search_at(header: int) -> Search:
     """Return what lies at the addresses of a header."""
     h = integers_at(header, (HEADER,))
     capacity, dim, rows, states, entries = h[CAPACITY], h[DIM], h[TERMINALS] + 1, h[STATES], h[ENTRIES]
-    at = h[FIRST_PLACE:]
+    at = h[FIRST_INDEX:]
     return Search(
         h,
         matrix_at(at[0], (capacity, dim)),
@@ -175,9 +175,9 @@ def kept_in_order(keys: Floats, items: Ints, count: int, most: int, key: float, 
     if count == most and key >= keys[count - 1]:
         return count
     count = min(count + 1, most)
-    place = count - 1
-    while place > 0 and keys[place - 1] > key:
-        keys[place], items[place] = keys[place - 1], items[place - 1]
-        place -= 1
-    keys[place], items[place] = key, item
+    slot = count - 1
+    while slot > 0 and keys[slot - 1] > key:
+        keys[slot], items[slot] = keys[slot - 1], items[slot - 1]
+        slot -= 1
+    keys[slot], items[slot] = key, item
     return count

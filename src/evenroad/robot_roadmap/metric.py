@@ -6,15 +6,15 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.layout import quick
-from evenroad.robot_roadmap.memory import CAPACITY, DIM, ENDLESS, HIGH, LIFTS, LOW, NODES, Search
-from evenroad.robot_roadmap.turns import MOST_LIFTED, TURN
+from evenroad.robot_roadmap.memory import CAPACITY, DIM, ENDLESS, HIGH, LOW, MULTI_TURN, NODES, Search
+from evenroad.robot_roadmap.turns import MOST_MULTI_TURN, TURN
 
 Floats = npt.NDArray[np.float64]
 
 BITS = 4
 """Turns of all joints are packed into one number, ``sum_k turn_k 16^k``."""
 
-_OFFSETS = sum(2 ** (BITS - 1) << (BITS * k) for k in range(MOST_LIFTED))
+_OFFSETS = sum(2 ** (BITS - 1) << (BITS * k) for k in range(MOST_MULTI_TURN))
 
 
 @quick
@@ -24,13 +24,13 @@ def measure(s: Search, terminal: int) -> None:
     away, turns = s.away[terminal * capacity :][:n], s.turns[terminal, :n]
     for i in range(len(away)):
         away[i] = 0.0
-    lifted = False
+    initialised = False
     for k in range(s.header[DIM]):
         column, here = s.columns[k * capacity :][:n], np.float32(s.terminals[terminal, k])
-        if s.rules[LIFTS, k] > 0.0:
+        if s.rules[MULTI_TURN, k] > 0.0:
             low, high = s.rules[LOW, k], s.rules[HIGH, k]
             for i in range(len(away)):
-                if not lifted:
+                if not initialised:
                     turns[i] = 0
                 value = s.milestones[i, k]
                 turn = np.rint((s.terminals[terminal, k] - value) / TURN)
@@ -38,7 +38,7 @@ def measure(s: Search, terminal: int) -> None:
                 apart = np.float32(value + TURN * turn - s.terminals[terminal, k])
                 away[i] += apart * apart
                 turns[i] += np.int64(turn) << (BITS * k)
-            lifted = True
+            initialised = True
         elif s.rules[ENDLESS, k] > 0.0:
             for i in range(len(away)):
                 apart = np.float32(apart_in(s, k, s.milestones[i, k] - s.terminals[terminal, k]))
@@ -56,7 +56,7 @@ def write(s: Search, node: int, packed: int, q: Floats) -> None:
     """Write the configuration of a milestone after turns."""
     for k in range(s.header[DIM]):
         q[k] = s.milestones[node, k]
-        if s.rules[LIFTS, k] > 0.0:
+        if s.rules[MULTI_TURN, k] > 0.0:
             q[k] += TURN * _turn(packed, k)
 
 

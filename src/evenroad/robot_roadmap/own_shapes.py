@@ -12,9 +12,9 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad.geometry.shapes import Mesh, PointCloud, Shape
 from evenroad.robot import ArmWorld
-from evenroad.robot.arm_world import RECHECK_TOLERANCE
+from evenroad.robot.arm_world import VALIDATION_TOLERANCE
 from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.reference.recheck import FINER
+from evenroad.robot.reference.validate import FINER
 from evenroad.space import JointSpace
 
 RAY = np.array([0.35921, 0.48217, 0.79904])
@@ -74,7 +74,7 @@ class OwnShapesWorld:
 
     def motion_proved(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, (m, dim) each, the capsules prove free: (m,); that asks coal nothing."""
-        return self.capsules.motion_certified(a, b, RECHECK_TOLERANCE)
+        return self.capsules.motion_certified(a, b, VALIDATION_TOLERANCE)
 
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions, (m, dim) each, are proved free for the capsules, or free at states for the shapes."""
@@ -87,7 +87,7 @@ class OwnShapesWorld:
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, (m, dim) each, are free: (m,)."""
-        return self.motion_certified(a, b, RECHECK_TOLERANCE)
+        return self.motion_certified(a, b, VALIDATION_TOLERANCE)
 
     def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free."""
@@ -108,10 +108,10 @@ class SolidMeshes(CoalWorld):
         fixed = [obstacle.body.pose.matrix for obstacle in self.scene.obstacles]
         placed = np.concatenate([poses, np.reshape(fixed, (-1, 4, 4))])
         at, frame = placed[inner.body], placed[inner.mesh]
-        away = (at[:, :3, :3] @ inner.place[:, :, np.newaxis])[:, :, 0] + at[:, :3, 3] - frame[:, :3, 3]
-        place = (away[:, np.newaxis] @ frame[:, :3, :3])[:, 0]
-        for row in np.flatnonzero(((inner.low <= place) & (place <= inner.high)).all(axis=1)).tolist():
-            if is_inside(self._corners[int(inner.mesh[row])], place[row]):
+        away = (at[:, :3, :3] @ inner.point[:, :, np.newaxis])[:, :, 0] + at[:, :3, 3] - frame[:, :3, 3]
+        point = (away[:, np.newaxis] @ frame[:, :3, :3])[:, 0]
+        for row in np.flatnonzero(((inner.low <= point) & (point <= inner.high)).all(axis=1)).tolist():
+            if is_inside(self._corners[int(inner.mesh[row])], point[row]):
                 shape, other = sorted((int(inner.mesh[row]), int(inner.body[row])))
                 yield self._shapes[shape].link, self.scene.obstacles[other - len(self._shapes)].name
 
@@ -130,12 +130,12 @@ class SolidMeshes(CoalWorld):
             for mesh, body in ((shape, other), (other, shape)) if is_obstacle else ():
                 if mesh in self._corners:
                     # Surfaces that do not meet are inside of each other piece by piece: one place of each tells.
-                    places = (
-                        places_in_pieces(self._corners[body]) if body in self._corners else np.zeros((1, 3))
+                    points = (
+                        points_in_pieces(self._corners[body]) if body in self._corners else np.zeros((1, 3))
                     )
                     corners = self._corners[mesh].reshape(-1, 3)
                     box = corners.min(axis=0), corners.max(axis=0)
-                    rows += [(test, mesh, body, place, *box) for place in places]
+                    rows += [(test, mesh, body, point, *box) for point in points]
         numbers = np.array([row[:3] for row in rows], dtype=np.int64).reshape(-1, 3)
         placed = np.array([row[3:] for row in rows]).reshape(-1, 3, 3)
         return _Inner(*numbers.T, *np.moveaxis(placed, 1, 0))
@@ -163,32 +163,32 @@ class _Inner(NamedTuple):
     test: Ints
     mesh: Ints
     body: Ints
-    place: Floats
+    point: Floats
     low: Floats
     high: Floats
 
 
-def places_in_pieces(corners: Floats) -> Floats:
+def points_in_pieces(corners: Floats) -> Floats:
     """Return a corner of each connected piece of a surface of triangles, (t, 3, 3): (p, 3)."""
     # Imported late: linear algebra comes with it, which a plan without meshes does not need.
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    places, corner = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    points, corner = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     a, b, c = corner.reshape(-1, 3).T
     pairs = np.append(a, b), np.append(b, c)
-    joined = coo_array((np.ones(len(pairs[0])), pairs), shape=(len(places), len(places)))
+    joined = coo_array((np.ones(len(pairs[0])), pairs), shape=(len(points), len(points)))
     _, first = np.unique(connected_components(joined, directed=False)[1], return_index=True)
-    return np.asarray(places[first])
+    return np.asarray(points[first])
 
 
-def is_inside(corners: Floats, place: Floats) -> bool:
+def is_inside(corners: Floats, point: Floats) -> bool:
     """Return whether a place, (3,), is inside of the surface of triangles, (t, 3, 3), as nearly as it is closed.
 
     The solid angles of its triangles tell (van Oosterom and Strackee 1983), or the parity of a ray, which does not
     mind triangles that are seen from the wrong side.
     """
-    a, b, c = np.moveaxis(corners - place, 1, 0)
+    a, b, c = np.moveaxis(corners - point, 1, 0)
     one, two, three = (np.linalg.norm(each, axis=1) for each in (a, b, c))
     rest = one * two * three + (a * b).sum(axis=1) * three
     rest += (b * c).sum(axis=1) * one + (c * a).sum(axis=1) * two

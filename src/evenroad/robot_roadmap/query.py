@@ -10,7 +10,7 @@ from evenroad._arrays import Bools, Floats
 from evenroad._clock import now
 from evenroad._compiled import compile_beside
 from evenroad.robot import ArmWorld
-from evenroad.robot.arm_world import RECHECK_TOLERANCE
+from evenroad.robot.arm_world import VALIDATION_TOLERANCE
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.motion_states import COUNTS
 from evenroad.robot_roadmap import memory as at
@@ -62,7 +62,7 @@ def prepare() -> None:
     """Begin to compile what a plan along a roadmap takes, in processes beside this one, unless it is kept already."""
     # The last needed, and the longest, first: this process begins at the other end.
     compile_beside(
-        "evenroad.robot.kernel.tighten",
+        "evenroad.robot.kernel.smoothing",
         "evenroad.robot_roadmap.lane_search",
         "evenroad.robot_roadmap.scene_graph",
         "evenroad.robot.kernel.lane_check",
@@ -78,19 +78,19 @@ def search(
 
     The second of the worlds has what the roadmap does not know to be free; the first has everything.
     """
-    world, room = worlds[0], 1
+    world, growth = worlds[0], 1
     if isinstance(world, ArmWorld) and world.fixed_contact is not None:
         # Of what no joint moves compiled code is told nothing.
         return SearchResult(TAKEN, np.empty((0, len(query.start))), -1, 0, 0)
     while True:
-        graph.prepare(query, room)
+        graph.prepare(query, growth)
         if all(map(_is_compiled, worlds)):
             ended = _by_lanes(graph, worlds, most_motions, deadline)  # type: ignore[arg-type]
         else:
             ended = _by_calls(graph, worlds, most_motions, deadline)
         if ended != FULL:
             return _result(graph, ended)
-        room *= 2
+        growth *= 2
 
 
 def _result(graph: SceneGraph, ended: int) -> SearchResult:
@@ -112,7 +112,7 @@ def _by_lanes(
     from evenroad.robot_roadmap.lane_search import find_path
 
     world, dynamic = (each.lanes for each in worlds)
-    moved, (checks, resolution, *rest) = dynamic.places, world.arguments(COUNTS + dynamic.places[3])[1]
+    moved, (checks, resolution, *rest) = dynamic.addresses, world.arguments(COUNTS + dynamic.addresses[3])[1]
     # Both work in this thread's memory, one behind the other.
     behind = rest[-1] + 8 * COUNTS
     full = np.array([checks, *rest])
@@ -149,5 +149,5 @@ def _by_calls(graph: SceneGraph, worlds: tuple[Checks, Checks], most_motions: in
         else:
             header[at.MOTIONS] += 1
             judge = dynamic if check == EDGE and header[at.BY] < header[at.BASE] else world
-            free = judge.motion_certified(a, b, RECHECK_TOLERANCE)[0]
+            free = judge.motion_certified(a, b, VALIDATION_TOLERANCE)[0]
         result = PROVED if free else BLOCKED

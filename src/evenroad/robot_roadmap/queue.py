@@ -6,17 +6,16 @@ import numpy as np
 
 from evenroad.robot.kernel.layout import quick
 from evenroad.robot_roadmap.memory import (
+    ANY_MULTI_TURN,
     CAPACITY,
     DIM,
     GREED,
     HIGH,
     LEAST,
     LEFT,
-    LIFTED,
-    LIFTING,
-    LIFTS,
     LOW,
     MADE,
+    MULTI_TURN,
     OF,
     PARENT,
     REACHED,
@@ -26,6 +25,7 @@ from evenroad.robot_roadmap.memory import (
     TERMINALS,
     VIA,
     WAITING,
+    WINDINGS,
     Search,
 )
 from evenroad.robot_roadmap.metric import distance, write
@@ -36,22 +36,22 @@ def state_of(s: Search, node: int, packed: int) -> int:
     """Return the state of a milestone after turns, a new one where there was none; -1 where limits forbid it."""
     state = s.heads[node]
     while state >= 0:
-        if s.states[state, LIFTED] == packed:
+        if s.states[state, WINDINGS] == packed:
             return state if s.bounds[state, LEFT] < np.inf else -1
         state = s.states[state, SIBLING]
     h, state = s.header, s.header[SIZE]
     h[SIZE] += 1
-    s.states[state, OF], s.states[state, LIFTED] = node, packed
+    s.states[state, OF], s.states[state, WINDINGS] = node, packed
     s.states[state, SIBLING], s.states[state, REACHED] = s.heads[node], -1
     s.heads[node] = state
     least, inside = np.inf, True
-    if h[LIFTING] != 0:
+    if h[ANY_MULTI_TURN] != 0:
         write(s, node, packed, s.motion[1])
         for k in range(h[DIM]):
-            if s.rules[LIFTS, k] > 0.0:
+            if s.rules[MULTI_TURN, k] > 0.0:
                 inside &= s.rules[LOW, k] <= s.motion[1, k] <= s.rules[HIGH, k]
     for terminal in range(1, h[TERMINALS]):
-        if h[LIFTING] != 0 and packed != s.turns[terminal, node]:
+        if h[ANY_MULTI_TURN] != 0 and packed != s.turns[terminal, node]:
             least = min(least, distance(s, s.motion[1], s.terminals[terminal]))
         else:
             # Where the goal's link would be, as it was measured.
@@ -69,15 +69,15 @@ def push(s: Search, state: int, parent: int, via: int, cost: float, left: float)
     h[MADE] += 1
     s.entries[entry, STATE], s.entries[entry, PARENT], s.entries[entry, VIA] = state, parent, via
     s.costs[entry] = cost
-    key, place = cost + left, h[WAITING]
+    key, slot = cost + left, h[WAITING]
     h[WAITING] += 1
-    while place > 0:
-        above = (place - 1) // 2
+    while slot > 0:
+        above = (slot - 1) // 2
         if s.keys[above] <= key:
             break
-        s.keys[place], s.items[place] = s.keys[above], s.items[above]
-        place = above
-    s.keys[place], s.items[place] = key, entry
+        s.keys[slot], s.items[slot] = s.keys[above], s.items[above]
+        slot = above
+    s.keys[slot], s.items[slot] = key, entry
 
 
 @quick
@@ -86,14 +86,14 @@ def pop(s: Search) -> int:
     first = s.items[0]
     s.header[WAITING] -= 1
     size = s.header[WAITING]
-    key, item, place = s.keys[size], s.items[size], 0
+    key, item, slot = s.keys[size], s.items[size], 0
     while True:
-        below = 2 * place + 1
+        below = 2 * slot + 1
         if below + 1 < size and s.keys[below + 1] < s.keys[below]:
             below += 1
         if below >= size or s.keys[below] >= key:
             break
-        s.keys[place], s.items[place] = s.keys[below], s.items[below]
-        place = below
-    s.keys[place], s.items[place] = key, item
+        s.keys[slot], s.items[slot] = s.keys[below], s.items[below]
+        slot = below
+    s.keys[slot], s.items[slot] = key, item
     return first

@@ -12,8 +12,8 @@ from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
 from evenroad.robot import ArmWorld, Robot
-from evenroad.robot_roadmap.freedom import chance_of_freedom
-from evenroad.robot_roadmap.pockets import FIRST, Seen, ends_in_pockets
+from evenroad.robot_roadmap.free_probability import free_probability
+from evenroad.robot_roadmap.narrow_passages import FIRST, Visibility, hard_queries
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
 from evenroad.robot_roadmap.turns import TURN, OneTurn
 
@@ -23,16 +23,16 @@ CHOICE = 16
 MOST_DRAWN = 1 << 20
 """Where fewer than the wanted ones are free among so many, the robot is said to be hardly ever free."""
 
-ASKED = 100
+EXPLAINED = 100
 """Of these it is found out what blocks them, and what blocks most is named."""
 
 GAMMA = 4.0
 """Power of the chance of being free that milestones are as dense as, before the ends count."""
 
-ENDS = 3000
+HARD_QUERIES = 3000
 """Ends in pockets at random that milestones learn from."""
 
-PAIRS, FEWEST_ENDS = 60, 300
+PAIRS, FEWEST_HARD_QUERIES = 60, 300
 """Of robots with more pairs of capsules than that fewer in proportion, since each costs more, but so many at least."""
 
 SCENES = 400
@@ -46,10 +46,10 @@ class Recipe(NamedTuple):
     """The power of the chance of being free, >= 0, and how many ends in pockets are learned from."""
 
     gamma: float = GAMMA
-    ends: int = ENDS
+    hard_queries: int = HARD_QUERIES
 
 
-class Known(NamedTuple):
+class Precomputed(NamedTuple):
     """What milestones are chosen by: free configurations, (n, dim), the weights and periods of the metric, (dim,) each,
     the chance of each to be free among random boxes, (n,), and which of them ends in pockets see.
     """
@@ -58,53 +58,55 @@ class Known(NamedTuple):
     weights: Floats
     periods: Floats
     chance: Floats
-    seen: Seen
+    seen: Visibility
 
 
 def recipe_for(robot: Robot) -> Recipe:
     """Return the recipe for a robot: the more pairs it has, the fewer ends in pockets are tried."""
-    return Recipe(GAMMA, min(ENDS, max(FEWEST_ENDS, ENDS * PAIRS // max(len(robot.pairs), 1))))
+    return Recipe(
+        GAMMA, min(HARD_QUERIES, max(FEWEST_HARD_QUERIES, HARD_QUERIES * PAIRS // max(len(robot.pairs), 1)))
+    )
 
 
-def known_of(
+def precomputed(
     world: ArmWorld,
     one: OneTurn,
     n: int,
     recipe: Recipe,
     streams: Sequence[np.random.Generator],
     progress: Callable[[str, float], None],
-) -> Known:
+) -> Precomputed:
     """Find out what a recipe for n milestones needs; the streams draw pool, scenes and pockets."""
-    pool_rng, scene_rng, pocket_rng = streams
+    pool_rng, scene_rng, passage_rng = streams
     progress("drawing configurations", 0.0)
     pool = _free_pool(world, one, max(CHOICE * n, FIRST), pool_rng)
     weights = displacement_weights(world.robot, pool[:MEASURED])
     chance = np.ones(len(pool))
     if recipe.gamma > 0.0:
-        chance = chance_of_freedom(
+        chance = free_probability(
             world.robot, pool, SCENES, scene_rng, lambda share: progress("random scenes", share)
         )
-    seen = ends_in_pockets(
+    seen = hard_queries(
         world.robot,
         world.scene,
         pool,
         weights * pool,
-        recipe.ends,
-        pocket_rng,
+        recipe.hard_queries,
+        passage_rng,
         lambda share: progress("pockets", share),
     )
     # A joint with stops repeats after its range.
     periods = np.where(one.wraps, TURN, one.high - one.low)
-    return Known(pool, weights, periods, chance, seen)
+    return Precomputed(pool, weights, periods, chance, seen)
 
 
-def chosen(known: Known, recipe: Recipe, n: int) -> Ints:
+def chosen(data: Precomputed, recipe: Recipe, n: int) -> Ints:
     """Return which rows of the pool are the n milestones of a recipe, in order."""
-    preference = np.maximum(known.chance, 1.0 / SCENES) ** recipe.gamma
-    first = known.seen.first[: recipe.ends + 1]
-    weights = known.weights
+    preference = np.maximum(data.chance, 1.0 / SCENES) ** recipe.gamma
+    first = data.seen.first[: recipe.hard_queries + 1]
+    weights = data.weights
     return spread_order(
-        weights * known.pool, weights * known.periods, preference, n, first, known.seen.which[: first[-1]]
+        weights * data.pool, weights * data.periods, preference, n, first, data.seen.which[: first[-1]]
     )
 
 
@@ -119,7 +121,7 @@ def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generat
             break
         drawn *= 2
     if not len(free):
-        blocked = Counter(world.explain(each) for each in q[-ASKED:])
+        blocked = Counter(world.explain(each) for each in q[-EXPLAINED:])
         often, count = blocked.most_common(1)[0]
         raise InvalidValue(
             f"the robot is never free: of {drawn} configurations none; in {count} of the last"

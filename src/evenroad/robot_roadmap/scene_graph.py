@@ -29,7 +29,7 @@ JOINED = 8
 AT_ONCE = 2 ** (BITS - 1) + 1 - MOST_TURNS
 """An inserted motion of more turns would lead from turns that are followed over all that the packed form knows."""
 
-ROOM = 256
+GROWTH = 256
 """Milestones that room is made for when it is used up."""
 
 GREED = 3.0
@@ -56,7 +56,7 @@ class Query(NamedTuple):
     goals: Floats
     links: int
     greed: float = GREED
-    price: float = 1.0
+    check_cost: float = 1.0
 
 
 class SceneGraph:
@@ -76,14 +76,14 @@ class SceneGraph:
         order = np.argsort(own, kind="stable")
         own = own[order]
         self.header = np.zeros(at.HEADER, dtype=np.int64)
-        self.header[[at.DIM, at.LIFTING]] = dim, one.lifts.any()
+        self.header[[at.DIM, at.ANY_MULTI_TURN]] = dim, one.multi_turn.any()
         self.header[[at.NODES, at.HALVES_MADE, at.EDGES_MADE, at.BASE]] = n, 2 * m, m, m
         self.header[[at.CAPACITY, at.HALVES, at.EDGES]] = n, 2 * m, m
         rules = np.empty((at.RULE_ROWS, dim))
         rules[[at.LOW, at.HIGH]] = one.limits
-        rules[at.LIFTS], rules[at.ENDLESS] = one.lifts, one.wraps & ~one.lifts
+        rules[at.MULTI_TURN], rules[at.ENDLESS] = one.multi_turn, one.wraps & ~one.multi_turn
         rules[at.MIDDLE] = 0.5 * (one.low + one.high)
-        turned = np.where(one.lifts, turns, 0) @ (2**BITS) ** np.arange(dim)
+        turned = np.where(one.multi_turn, turns, 0) @ (2**BITS) ** np.arange(dim)
         first, halves = np.full(n, -1), np.empty((2 * m, at.HALF), dtype=np.int32)
         halves[:, at.OTHER] = np.concatenate([edges[:, 1], edges[:, 0]])[order]
         halves[:, at.NUMBER] = np.tile(np.arange(m), 2)[order]
@@ -93,7 +93,7 @@ class SceneGraph:
         motions = milestones[edges[:, 1]] + TURN * turns - milestones[edges[:, 0]]
         self.arrays: dict[str, npt.NDArray[Any]] = {}
         self._shape = (0, 0)
-        self._place(
+        self._bind(
             milestones=np.ascontiguousarray(milestones),
             columns=milestones.T.astype(np.float32, order="C"),
             nodes=np.zeros(n, dtype=np.uint8),
@@ -111,9 +111,9 @@ class SceneGraph:
         fresh.header, fresh._shape = self.header.copy(), (0, 0)
         fresh.arrays = {name: self.arrays[name] for name in OF_ROADMAP}
         rules[at.LOW], rules[at.HIGH] = np.maximum(rules[at.LOW], low), np.minimum(rules[at.HIGH], high)
-        outside = ((rules[at.LIFTS] == 0.0) & ((q < low) | (q > high))).any(axis=1)
+        outside = ((rules[at.MULTI_TURN] == 0.0) & ((q < low) | (q > high))).any(axis=1)
         nodes = np.where(outside, BLOCKED, UNKNOWN).astype(np.uint8)
-        fresh._place(nodes=nodes, edges=np.zeros_like(self.arrays["edges"]), rules=rules)
+        fresh._bind(nodes=nodes, edges=np.zeros_like(self.arrays["edges"]), rules=rules)
         return fresh
 
     def __getstate__(self) -> dict[str, Any]:
@@ -123,20 +123,20 @@ class SceneGraph:
     def __setstate__(self, kept: dict[str, Any]) -> None:
         """Make a copy, in which no query is written yet."""
         self.header, self.arrays, self._shape = kept["header"], {}, (0, 0)
-        self._place(**kept["arrays"])
+        self._bind(**kept["arrays"])
 
-    def _place(self, **arrays: npt.NDArray[Any]) -> None:
+    def _bind(self, **arrays: npt.NDArray[Any]) -> None:
         """Take these arrays, and write where they are."""
         self.arrays |= arrays
         for name, array in arrays.items():
-            self.header[at.PLACES[name]] = address(array)
+            self.header[at.HEADER_INDEX[name]] = address(array)
 
     def _grow(self) -> None:
         """Take more memory for milestones and edges, and copy what there is."""
-        header, more = self.header, ROOM * (JOINED + 2)
-        room = np.array([ROOM, 2 * more, more])
-        header[[at.CAPACITY, at.HALVES, at.EDGES]] += room
-        nodes, halves, edges = room.tolist()
+        header, more = self.header, GROWTH * (JOINED + 2)
+        added = np.array([GROWTH, 2 * more, more])
+        header[[at.CAPACITY, at.HALVES, at.EDGES]] += added
+        nodes, halves, edges = added.tolist()
         extra = {"edges": edges, "halves": halves, "leads": halves, "lengths": halves}
         extra |= dict.fromkeys(("milestones", "nodes", "first"), nodes)
         longer = {}
@@ -144,41 +144,41 @@ class SceneGraph:
             array = self.arrays[name]
             longer[name] = np.concatenate([array, np.zeros((count, *array.shape[1:]), array.dtype)])
         longer["columns"] = longer["milestones"].T.astype(np.float32, order="C")
-        self._place(**longer)
+        self._bind(**longer)
         # What there is of a query has another shape now.
         self._shape = (0, 0)
 
-    def prepare(self, query: Query, room: int = 1) -> None:
-        """Write a query; `room` multiplies the usual memory: where it is more than 1, the same query goes on."""
+    def prepare(self, query: Query, growth: int = 1) -> None:
+        """Write a query; `growth` multiplies the usual memory: where it is more than 1, the same query goes on."""
         header, rules, count = self.header, self.arrays["rules"], 1 + len(query.goals)
-        rules[at.GREED], rules[at.PRICE] = query.greed, query.price
-        known = [self.arrays[name] for name in OF_QUERY] if room > 1 else []
-        if self._shape != (count, room):
-            self._take_room(count, room)
+        rules[at.GREED], rules[at.CHECK_COST] = query.greed, query.check_cost
+        earlier = [self.arrays[name] for name in OF_QUERY] if growth > 1 else []
+        if self._shape != (count, growth):
+            self._allocate(count, growth)
         header[at.LINKS] = min(query.links, int(header[at.NODES]))
         terminals = self.arrays["terminals"]
         terminals[0], terminals[1:count] = query.start, query.goals
-        if not known:
+        if not earlier:
             header[[at.CONFIGURATIONS, at.MOTIONS, at.BATCHES]] = 0
             for name in OF_QUERY:
                 self.arrays[name].fill(UNKNOWN)
-        for name, before in zip(OF_QUERY, known, strict=False):
+        for name, before in zip(OF_QUERY, earlier, strict=False):
             self.arrays[name][:] = before
 
-    def _take_room(self, terminals: int, room: int) -> None:
+    def _allocate(self, terminals: int, growth: int) -> None:
         """Take memory for a query of so many start and goals, in which nothing is written yet."""
         header, dim, capacity = self.header, int(self.header[at.DIM]), int(self.header[at.CAPACITY])
-        self._shape = terminals, room
+        self._shape = terminals, growth
         # The last row is a configuration to be inserted.
-        rows, states = terminals + 1, 2 * room * (capacity + ROOM)
-        entries = room * (int(header[at.HALVES]) + (16 + terminals) * (capacity + ROOM))
+        rows, states = terminals + 1, 2 * growth * (capacity + GROWTH)
+        entries = growth * (int(header[at.HALVES]) + (16 + terminals) * (capacity + GROWTH))
         header[at.TERMINALS], header[at.STATES], header[at.ENTRIES], header[at.SIZE] = (
             terminals,
             states,
             entries,
             0,
         )
-        self._place(
+        self._bind(
             terminals=np.zeros((rows, dim)),
             motion=np.zeros((2, dim)),
             turns=np.zeros((rows, capacity), dtype=np.int64),
@@ -208,14 +208,14 @@ class SceneGraph:
         Nothing is inserted where joints turn so far that packed turns would be read as others.
         """
         path, rules = np.ascontiguousarray(path), self.arrays["rules"]
-        turns = np.rint((path - rules[at.MIDDLE]) / TURN)[:, rules[at.LIFTS] > 0.0]
+        turns = np.rint((path - rules[at.MIDDLE]) / TURN)[:, rules[at.MULTI_TURN] > 0.0]
         steps = np.abs(np.diff(turns, axis=0))
         if np.abs(turns).max(initial=0.0) > MOST_TURNS or steps.max(initial=0.0) > AT_ONCE:
             return
         while True:
             if self._shape == (0, 0):
                 # Room that is worked in.
-                self._take_room(2, 1)
+                self._allocate(2, 1)
             if _insert(address(self.header), address(path), len(path)):
                 return
             self._grow()
@@ -250,7 +250,7 @@ def _add_milestone(s: Search, q: Floats) -> tuple[int, int]:
     h, dim, packed, count = s.header, s.header[at.DIM], 0, 0
     new, guest = h[at.NODES], h[at.TERMINALS]
     for k in range(dim):
-        turn = np.rint((q[k] - s.rules[at.MIDDLE, k]) / TURN) if s.rules[at.LIFTS, k] > 0.0 else 0.0
+        turn = np.rint((q[k] - s.rules[at.MIDDLE, k]) / TURN) if s.rules[at.MULTI_TURN, k] > 0.0 else 0.0
         s.terminals[guest, k], s.milestones[new, k] = q[k], q[k] - TURN * turn
         s.columns[k * h[at.CAPACITY] + new] = s.milestones[new, k]
         packed += int(turn) << (BITS * k)
@@ -281,11 +281,11 @@ def _same(s: Search, a: int, b: int) -> bool:
 
 
 @quick
-def _add_edge(s: Search, a: int, b: int, turns: int, known: int) -> None:
+def _add_edge(s: Search, a: int, b: int, turns: int, state: int) -> None:
     """Join two milestones by a motion that leads past the second by packed turns."""
     h, edge, length = s.header, s.header[at.EDGES_MADE], length_of_edge(s, a, b, turns)
     h[at.EDGES_MADE] += 1
-    s.edges[edge] = known
+    s.edges[edge] = state
     for side in range(2):
         half, here = h[at.HALVES_MADE], a if side == 0 else b
         h[at.HALVES_MADE] += 1

@@ -14,9 +14,11 @@ import numpy.typing as npt
 from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap.links import choose_links
 from evenroad.robot_roadmap.memory import (
+    ANY_MULTI_TURN,
     BLOCKED,
     BY,
     CAPACITY,
+    CHECK_COST,
     CHECK_GOALS,
     CHECK_STRAIGHT,
     DIM,
@@ -29,8 +31,6 @@ from evenroad.robot_roadmap.memory import (
     GREED,
     LEAST,
     LEFT,
-    LIFTED,
-    LIFTING,
     LINK,
     LINKS,
     MADE,
@@ -44,7 +44,6 @@ from evenroad.robot_roadmap.memory import (
     PARENT,
     PENDING,
     PHASE,
-    PRICE,
     REACHED,
     ROWS,
     SEARCH,
@@ -57,6 +56,7 @@ from evenroad.robot_roadmap.memory import (
     UNKNOWN,
     VIA,
     WAITING,
+    WINDINGS,
     Search,
     search_at,
 )
@@ -113,7 +113,7 @@ def _clear(s: Search) -> None:
 @quick
 def step(s: Search) -> int:
     """Go on until something has to be evaluated, there is a path, or there is none."""
-    h, cheap = s.header, s.rules[PRICE, 0] <= 1.0
+    h, cheap = s.header, s.rules[CHECK_COST, 0] <= 1.0
     if h[PHASE] == CHECK_STRAIGHT:
         h[PHASE] = CHECK_GOALS
         for goal in range(1, h[TERMINALS]):
@@ -163,7 +163,7 @@ def step(s: Search) -> int:
 def _node_check(s: Search, state: int) -> int:
     """Write the milestone of a state to be evaluated."""
     s.header[TO] = s.states[state, OF]
-    write(s, s.states[state, OF], s.states[state, LIFTED], s.motion[0])
+    write(s, s.states[state, OF], s.states[state, WINDINGS], s.motion[0])
     return NODE
 
 
@@ -189,7 +189,7 @@ def _goal_link(s: Search) -> int:
 @quick
 def _weight(s: Search, result: int) -> float:
     """Return what a unit of length of an edge counts of which this is known."""
-    return 1.0 if result >= FREE else np.inf if result == BLOCKED else s.rules[PRICE, 0]
+    return 1.0 if result >= FREE else np.inf if result == BLOCKED else s.rules[CHECK_COST, 0]
 
 
 @quick
@@ -212,7 +212,7 @@ def _open(s: Search) -> None:
 @quick
 def _expand(s: Search, state: int, entry: int, cheap: bool) -> bool:
     """Put all that a state leads to into the queue; return whether there was room."""
-    h, node, packed, cost = s.header, s.states[state, OF], s.states[state, LIFTED], s.costs[entry]
+    h, node, packed, cost = s.header, s.states[state, OF], s.states[state, WINDINGS], s.costs[entry]
     if h[MADE] + h[TERMINALS] > h[ENTRIES]:
         return False
     for goal in range(1, h[TERMINALS]):
@@ -223,7 +223,7 @@ def _expand(s: Search, state: int, entry: int, cheap: bool) -> bool:
     while half >= 0:
         there, edge = s.halves[half, OTHER], s.halves[half, NUMBER]
         reached = cost + _weight(s, s.edges[edge]) * s.lengths[half]
-        turned = packed + s.leads[half] if h[LIFTING] != 0 else packed
+        turned = packed + s.leads[half] if h[ANY_MULTI_TURN] != 0 else packed
         half = s.halves[half, NEXT]
         if s.edges[edge] == BLOCKED or s.nodes[there] == BLOCKED:
             continue
@@ -297,7 +297,7 @@ def _write_configuration(s: Search, entry: int, q: Floats) -> None:
         for k in range(s.header[DIM]):
             q[k] = s.terminals[-state, k]
     else:
-        write(s, s.states[state, OF], s.states[state, LIFTED], q)
+        write(s, s.states[state, OF], s.states[state, WINDINGS], q)
 
 
 @quick

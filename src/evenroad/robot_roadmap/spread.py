@@ -6,7 +6,7 @@ import numpy as np
 
 from evenroad._arrays import Floats, Ints
 from evenroad._njit import njit
-from evenroad.robot.kinematics import KinematicTree, capsule_ends
+from evenroad.robot.kinematics import KinematicTree, capsule_endpoints
 
 STEP = 1e-4
 """Of the difference quotient that measures how far a joint moves the body [rad or m]."""
@@ -34,8 +34,8 @@ def displacement_weights(robot: KinematicTree, q: Floats) -> Floats:
     for joint in range(len(moved)):
         there = q.copy()
         there[:, joint] += STEP
-        ways = np.linalg.norm(_body_points(robot, there) - body, axis=2)
-        moved[joint] = ways.max(axis=1).mean() / STEP
+        moves = np.linalg.norm(_body_points(robot, there) - body, axis=2)
+        moved[joint] = moves.max(axis=1).mean() / STEP
     if not moved.any():
         return np.ones(len(moved))
     weights = np.sqrt(np.maximum(moved, LEAST_WEIGHT * moved.max()))
@@ -44,8 +44,8 @@ def displacement_weights(robot: KinematicTree, q: Floats) -> Floats:
 
 def _body_points(robot: KinematicTree, q: Floats) -> Floats:
     """Return the ends and middles of all capsules, (n, 3 capsules, 3) [m]."""
-    ends = capsule_ends(robot, q)
-    return np.concatenate([ends[:, :, 0], ends[:, :, 1], ends.mean(axis=2)], axis=1)
+    queries = capsule_endpoints(robot, q)
+    return np.concatenate([queries[:, :, 0], queries[:, :, 1], queries.mean(axis=2)], axis=1)
 
 
 def spread_order(
@@ -65,18 +65,18 @@ def spread_order(
 @njit(cache=True, nogil=True)
 def _order(points, period, preference, count, first, which):  # type: ignore[no-untyped-def]
     n, dim = points.shape
-    ends = max(len(first) - 1, 1)
-    seeing, times = np.zeros(n + 1, dtype=np.int64), np.ones(ends)
+    queries = max(len(first) - 1, 1)
+    seeing, times = np.zeros(n + 1, dtype=np.int64), np.ones(queries)
     use = np.full(n, LEAST_SEEN)
     for i in which:
         seeing[i + 1] += 1
-        use[i] += 1.0 / ends
+        use[i] += 1.0 / queries
     seeing = np.cumsum(seeing)
-    place, by_point = seeing[:n].copy(), np.empty(len(which), dtype=np.int64)
+    slot, by_point = seeing[:n].copy(), np.empty(len(which), dtype=np.int64)
     for e in range(len(first) - 1):
         for i in which[first[e] : first[e + 1]]:
-            by_point[place[i]] = e
-            place[i] += 1
+            by_point[slot[i]] = e
+            slot[i] += 1
     order = np.empty(count, dtype=np.int64)
     nearest = np.full(n, np.inf)
     chosen = int(np.argmax(preference * use))
@@ -86,7 +86,7 @@ def _order(points, period, preference, count, first, which):  # type: ignore[no-
             lost = times[e] ** -SERVED - (times[e] + 1.0) ** -SERVED
             times[e] += 1.0
             for row in which[first[e] : first[e + 1]]:
-                use[row] -= lost / ends
+                use[row] -= lost / queries
         best, following = -1.0, 0
         for row in range(n):
             squared = 0.0

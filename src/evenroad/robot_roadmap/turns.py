@@ -8,7 +8,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.robot import ArmWorld, Robot
-from evenroad.robot.arm_world import RECHECK_TOLERANCE
+from evenroad.robot.arm_world import VALIDATION_TOLERANCE
 from evenroad.space import JointSpace
 
 TURN = 2.0 * np.pi
@@ -16,7 +16,7 @@ TURN = 2.0 * np.pi
 MOST_TURNS = 6
 """So many turns to either side are followed; the packed form of the search has room for one more."""
 
-MOST_LIFTED = 14
+MOST_MULTI_TURN = 14
 """And of so many joints, the first ones."""
 
 
@@ -29,10 +29,10 @@ class OneTurn:
     low, high : ndarrays, shape (dim,)
         What milestones are drawn in [rad or m]; a joint of more than one turn has the turn in the middle of its range.
     limits : ndarray, shape (2, dim)
-        The joints' own ranges; of one that `lifts` at most MOST_TURNS to either side of `low` and `high` [rad or m].
+        The joints' own ranges; of `multi_turn` joints at most MOST_TURNS to either side of `low` and `high` [rad or m].
     wraps : ndarray of bool, shape (dim,)
         Joints whose edges may lead over the end of the range: those that turn on for ever, or more than once.
-    lifts : ndarray of bool, shape (dim,)
+    multi_turn : ndarray of bool, shape (dim,)
         Of these, the ones with limits: their number of turns is counted along a path.
     """
 
@@ -40,7 +40,7 @@ class OneTurn:
     high: Floats
     limits: Floats
     wraps: Bools
-    lifts: Bools
+    multi_turn: Bools
 
 
 def one_turn(space: JointSpace, whole: Bools) -> OneTurn:
@@ -50,14 +50,14 @@ def one_turn(space: JointSpace, whole: Bools) -> OneTurn:
     """
     limits = np.array([space.low, space.high])
     endless = np.array(space.wrapping)
-    lifts = whole & ~endless & (limits[1] - limits[0] > TURN)
-    lifts[MOST_LIFTED:] = False
+    multi_turn = whole & ~endless & (limits[1] - limits[0] > TURN)
+    multi_turn[MOST_MULTI_TURN:] = False
     middle = limits.mean(axis=0)
-    low = np.where(lifts, middle - 0.5 * TURN, limits[0])
-    high = np.where(lifts, middle + 0.5 * TURN, limits[1])
-    limits[0, lifts] = np.maximum(limits[0], low - MOST_TURNS * TURN)[lifts]
-    limits[1, lifts] = np.minimum(limits[1], high + MOST_TURNS * TURN)[lifts]
-    return OneTurn(low, high, limits, endless | lifts, lifts)
+    low = np.where(multi_turn, middle - 0.5 * TURN, limits[0])
+    high = np.where(multi_turn, middle + 0.5 * TURN, limits[1])
+    limits[0, multi_turn] = np.maximum(limits[0], low - MOST_TURNS * TURN)[multi_turn]
+    limits[1, multi_turn] = np.minimum(limits[1], high + MOST_TURNS * TURN)[multi_turn]
+    return OneTurn(low, high, limits, endless | multi_turn, multi_turn)
 
 
 def shifts(one: OneTurn, a: Floats, b: Floats) -> Ints:
@@ -72,13 +72,13 @@ def whole_turns(robot: Robot) -> Bools:
     return np.array([kinds[name] != "prismatic" and name not in leaders for name in robot.group])
 
 
-def lifted_motions_free(world: ArmWorld, one: OneTurn, a: Floats, b: Floats, turns: Ints) -> Bools:
+def winding_motions_free(world: ArmWorld, one: OneTurn, a: Floats, b: Floats, turns: Ints) -> Bools:
     """Return which motions are proved free, with both ends turned so that they are within the limits: (m,)."""
-    b = np.where(one.lifts, b + TURN * turns, b)
+    b = np.where(one.multi_turn, b + TURN * turns, b)
     low, high = np.minimum(a, b), np.maximum(a, b)
     least, most = np.ceil((one.limits[0] - low) / TURN), np.floor((one.limits[1] - high) / TURN)
-    turned = np.where(one.lifts, TURN * np.clip(0.0, least, most), 0.0)
-    fits = np.all(~one.lifts | (least <= most), axis=1)
+    turned = np.where(one.multi_turn, TURN * np.clip(0.0, least, most), 0.0)
+    fits = np.all(~one.multi_turn | (least <= most), axis=1)
     free = np.zeros(len(a), dtype=np.bool_)
-    free[fits] = world.motion_certified((a + turned)[fits], (b + turned)[fits], RECHECK_TOLERANCE)
+    free[fits] = world.motion_certified((a + turned)[fits], (b + turned)[fits], VALIDATION_TOLERANCE)
     return free

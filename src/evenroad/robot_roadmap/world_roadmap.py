@@ -13,23 +13,28 @@ from evenroad._arrays import Floats
 from evenroad._checks import counted, require_count
 from evenroad._clock import now
 from evenroad._shared import OwnLock, one_at_a_time
-from evenroad.planning.arm_trees import tighten
+from evenroad.planning.arm_trees import smooth
 from evenroad.planning.connectors import ArmTrees
 from evenroad.planning.trees import RRTConnect
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import NO_LIMIT, Attempt
 from evenroad.roadmap.connector import Connection
-from evenroad.roadmap.kept import WorldRoadmap
+from evenroad.roadmap.point_roadmap import WorldRoadmap
 from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.query import Query as PlanQuery
 from evenroad.roadmap.result import NO_POINTS, make_result
 from evenroad.robot import ArmWorld
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 from evenroad.robot_roadmap.memory import NONE, TAKEN
-from evenroad.robot_roadmap.places import Goal, Place, ends_free, read_ends
 from evenroad.robot_roadmap.query import Checks, SearchResult, prepare, search
 from evenroad.robot_roadmap.scene_graph import EXPENSIVE, GREED, Query
+from evenroad.robot_roadmap.start_and_goals import (
+    ConfigurationLike,
+    Goal,
+    read_start_and_goals,
+    start_and_goals_free,
+)
 from evenroad.robot_roadmap.static_scene import left_to_check, require_within
 from evenroad.space.path import path_length
 
@@ -124,7 +129,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         here = milestones[first : first + 1]
         found = search(self._graph, self._worlds, Query(here[0], here, 1), 0, math.inf)
         self._graph.insert(milestones[:0])
-        tighten(self.capsules, np.repeat(here, 2, axis=0), batches=0)
+        smooth(self.capsules, np.repeat(here, 2, axis=0), batches=0)
         if found.ended != TAKEN:
             _ready.add(world.backend)
 
@@ -165,7 +170,7 @@ class ArmWorldRoadmap(WorldRoadmap):
     @one_at_a_time
     def plan(
         self,
-        start: Place,
+        start: ConfigurationLike,
         goal: Goal | Sequence[Goal],
         *,
         budget: Budget | None = None,
@@ -197,14 +202,14 @@ class ArmWorldRoadmap(WorldRoadmap):
         InvalidValue, UnknownName
             If start or goal is no configuration of the robot.
         """
-        read = read_ends(self.capsules, start, goal)
+        read = read_start_and_goals(self.capsules, start, goal)
         if isinstance(read, PlanResult):
             return read
         first, goals, budget = read[0], read[1].configurations, budget or Budget(seconds=SECONDS)
         trees_of = ArmTrees(self.capsules)
         query = PlanQuery(first, goals, shorten=shorten, budget=budget, connector=trees_of)
         attempt = Attempt(self._worlds[0], query, NO_POINTS, "none", PLANNER)
-        if self._first is not None and ends_free(self.capsules, first, goals):
+        if self._first is not None and start_and_goals_free(self.capsules, first, goals):
             found = self._first.plan(first, goals, budget=_by_capsules(budget), shorten=shorten, trees=trees)
             if found.solved:
                 return found
@@ -219,7 +224,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         """Return the result of a query."""
         first, goals, budget = attempt.query.start, attempt.query.goals, attempt.query.budget
         # Trees grow among what is free for the capsules.
-        follow = trees and (not self._expensive or ends_free(self.capsules, first, goals))
+        follow = trees and (not self._expensive or start_and_goals_free(self.capsules, first, goals))
         links = links_of(self._size) if not follow else EXPENSIVE_LINKS if self._expensive else TRIED_LINKS
         most = NO_LIMIT if budget.motions is None else max(budget.motions - attempt.motions_checked, 0)
         most = min(most, TRIED_MOTIONS) if follow else most
@@ -274,7 +279,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         if attempt.query.shorten:
             work = WORK if capsules.lanes.surfaces is None else AMONG_SURFACES
             work = EXPENSIVE_WORK if self._expensive else max(LEAST_WORK, work - found.batches)
-            path, counts["shortcut_motions"] = tighten(capsules, path, batches=work)
+            path, counts["shortcut_motions"] = smooth(capsules, path, batches=work)
             length, attempt.watch.seconds["shortcut"] = self._length(path), now() - began
         to = f" to goal {found.goal}" if len(goals) > 1 else ""
         return make_result(
@@ -296,14 +301,16 @@ class ArmWorldRoadmap(WorldRoadmap):
 
     def _proof(self, path: Floats) -> str:
         """Return what a path is known by: states alone where the capsules do not prove all of it."""
-        proved = not self._expensive or self.capsules.recheck(path).all()
+        proved = not self._expensive or self.capsules.validate(path).all()
         return self.capsules.proof if proved else "resolution"
 
     def _length(self, path: Floats) -> float:
-        places = path.tolist()
+        waypoints = path.tolist()
         # Where nothing wraps the sum is the same, in a tenth of the time.
         return (
-            path_length(path, self.capsules.space) if self._wraps else sum(map(math.dist, places, places[1:]))
+            path_length(path, self.capsules.space)
+            if self._wraps
+            else sum(map(math.dist, waypoints, waypoints[1:]))
         )
 
 

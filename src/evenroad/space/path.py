@@ -48,7 +48,7 @@ def resample(path: Floats, space: Space, step: float) -> tuple[Floats, Ints]:
     return states, np.concatenate([[0], np.repeat(np.arange(len(path) - 1), segments)]).astype(np.int64)
 
 
-def place_at(path: Floats, space: Space, t: npt.ArrayLike) -> Floats:
+def configuration_at(path: Floats, space: Space, t: npt.ArrayLike) -> Floats:
     """Return where on a path a robot is after shares `t` of its length, (n,) in [0, 1], as (n, dim).
 
     Raises InvalidValue if a share lies outside [0, 1].
@@ -58,9 +58,9 @@ def place_at(path: Floats, space: Space, t: npt.ArrayLike) -> Floats:
         raise InvalidValue(f"t must lie in [0, 1], got {t!r}")
     if len(path) == 1:
         return np.repeat(path, len(shares), axis=0)
-    ends = np.concatenate([[0.0], np.cumsum(motion_lengths(path, space))])
-    along = shares * ends[-1]
-    motion = np.clip(np.searchsorted(ends, along, side="right") - 1, 0, len(path) - 2)
-    length = ends[motion + 1] - ends[motion]
-    within = np.divide(along - ends[motion], length, out=np.zeros_like(along), where=length > 0.0)
+    travelled = np.concatenate([[0.0], np.cumsum(motion_lengths(path, space))])
+    along = shares * travelled[-1]
+    motion = np.clip(np.searchsorted(travelled, along, side="right") - 1, 0, len(path) - 2)
+    length = travelled[motion + 1] - travelled[motion]
+    within = np.divide(along - travelled[motion], length, out=np.zeros_like(along), where=length > 0.0)
     return space.interpolate(path[motion], path[motion + 1], np.clip(within, 0.0, 1.0))

@@ -87,18 +87,18 @@ class SpaceContract:
         rng, dim = np.random.default_rng(3), self.space.cube_dim
         directions = rng.normal(size=(20_000, dim))
         directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-        places = 0.1 + 0.8 * rng.random((8, dim))
+        centres = 0.1 + 0.8 * rng.random((8, dim))
         # A step as long as every axis' own counts about the same: else a few directions would decide the mean.
-        directions /= self._lengths(places[0], np.eye(dim))
+        directions /= self._lengths(centres[0], np.eye(dim))
         # The volume of {step : its length <= 1}, up to a factor, in polar coordinates.
-        volumes = [np.mean(self._lengths(place, directions) ** -dim) for place in places]
+        volumes = [np.mean(self._lengths(centre, directions) ** -dim) for centre in centres]
         np.testing.assert_allclose(volumes / np.mean(volumes), 1.0, atol=_VOLUME_TOLERANCE)
 
-    def _lengths(self, place: Floats, steps: Floats) -> Floats:
+    def _lengths(self, centre: Floats, steps: Floats) -> Floats:
         """Return how far the space goes for `steps` of the cube, (n, cube_dim), in the limit of small ones."""
         shrink = 1e-4 / np.abs(steps).max(axis=1)
-        here = self.space.from_cube(np.tile(place, (len(steps), 1)))
-        there = self.space.from_cube(place + shrink[:, np.newaxis] * steps)
+        here = self.space.from_cube(np.tile(centre, (len(steps), 1)))
+        there = self.space.from_cube(centre + shrink[:, np.newaxis] * steps)
         return self.space.distance(here, there) / shrink
 
     def test_distance_is_zero_to_itself_and_positive_to_others(self) -> None:
@@ -123,7 +123,7 @@ class SpaceContract:
         assert self.space.flat.dim == self.space.dim
         np.testing.assert_allclose(self.space.flat.distance(a, b), self.space.distance(a, b), atol=tolerance)
 
-    def test_interpolation_starts_and_ends_at_its_ends(self) -> None:
+    def test_interpolation_starts_and_stops_at_its_endpoints(self) -> None:
         a, b, tolerance = self.pairs()
         start, end = self.space.interpolate(a, b, 0.0), self.space.interpolate(a, b, 1.0)
         np.testing.assert_allclose(self.space.distance(start, a), 0.0, atol=tolerance)
@@ -136,7 +136,7 @@ class SpaceContract:
         np.testing.assert_allclose(self.space.distance(a, middle), t * whole, atol=tolerance)
         np.testing.assert_allclose(self.space.distance(middle, b), (1.0 - t) * whole, atol=tolerance)
 
-    def test_interpolation_back_is_the_same_way(self) -> None:
+    def test_interpolation_back_is_the_same_path(self) -> None:
         a, b, tolerance = self.pairs()
         there, back = self.space.interpolate(a, b, 0.25), self.space.interpolate(b, a, 0.75)
         np.testing.assert_allclose(self.space.distance(there, back), 0.0, atol=tolerance)

@@ -9,11 +9,11 @@ from evenroad._arrays import Floats
 from evenroad._checks import as_batch
 from evenroad.errors import InvalidValue
 from evenroad.robot import ArmWorld, Robot, held_values, tip_links
+from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.straight import Straight
-from evenroad.robot.upright import Upright
-from evenroad.trajectory.kept import kept_ways
+from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.trajectory.limits import Limits, limits_of
+from evenroad.trajectory.tip_constraints import constrained_world
 from evenroad.trajectory.trajectory import DEVIATION, STEP, Trajectory, make_trajectory
 from evenroad.trajectory.urscript import with_radii
 
@@ -27,7 +27,7 @@ def arm_trajectory(
     deviation: float = DEVIATION,
     step: float = STEP,
     rounded_by_controller: bool = False,
-    ways: tuple[Straight | None, Upright | None] = (None, None),
+    constraints: tuple[CartesianLine | None, OrientationConstraint | None] = (None, None),
 ) -> Trajectory:
     """Return the trajectory of an arm along a path, checked in its world as it is driven.
 
@@ -46,7 +46,7 @@ def arm_trajectory(
         As :func:`make_trajectory`.
     rounded_by_controller : bool
         Find out, too, how far the controller may round off the corners, for ``.movej.script``.
-    ways : a Straight and an Upright, or None
+    constraints : pair of CartesianLine and OrientationConstraint, each may be None
         As the path was planned with: what is driven keeps them, too, within the same tolerances.
 
     Raises
@@ -57,13 +57,13 @@ def arm_trajectory(
     robot = world.robot
     within = (limits_of(robot) if limits is None else limits).at_speed(speed)
     controller = controller_joints(robot)
-    places = as_batch("path", path, world.space.dim)
-    if len(places) < 2:
+    waypoints = as_batch("path", path, world.space.dim)
+    if len(waypoints) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
-    places = _turned_on(world, places)
-    asked = kept_ways(world, places, *ways)
+    waypoints = _turned_on(world, waypoints)
+    asked = constrained_world(world, waypoints, *constraints)
     trajectory = make_trajectory(
-        places,
+        waypoints,
         within,
         world=asked,
         names=robot.group,
@@ -77,8 +77,8 @@ def arm_trajectory(
     tip = robot.links.index(tip_links(robot)[-1])
 
     def tip_at(q: Floats) -> Floats:
-        places: Floats = link_poses(robot, q)[:, tip, :3, 3]
-        return places
+        positions: Floats = link_poses(robot, q)[:, tip, :3, 3]
+        return positions
 
     return with_radii(trajectory, asked, tip_at)
 

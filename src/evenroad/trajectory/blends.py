@@ -48,8 +48,8 @@ class RoundedPath:
         cosine, sine = np.cos(turned), np.sin(turned)
         radius = np.divide(1.0, bend, out=np.zeros_like(bend), where=bend > 0.0)
         reached = np.where(bend > 0.0, radius * sine, after)
-        place = self.origin[i] + radius * cosine * out + reached * along
-        return place, cosine * along - sine * out, -bend * (cosine * out + sine * along)
+        position = self.origin[i] + radius * cosine * out + reached * along
+        return position, cosine * along - sine * out, -bend * (cosine * out + sine * along)
 
 
 def rounded(path: Floats, deviation: Floats) -> RoundedPath:
@@ -67,11 +67,11 @@ def rounded(path: Floats, deviation: Floats) -> RoundedPath:
     turns = half > 0.5 * _STRAIGHT
     # A path that turns back on itself has no arc.
     round_off = turns & (half < 0.5 * np.pi - 1e-3) & (deviation[1:-1] > 0.0)
-    room = 0.5 * np.minimum(lengths[:-1], lengths[1:])
+    available = 0.5 * np.minimum(lengths[:-1], lengths[1:])
     cut = np.zeros(len(path))
     with np.errstate(divide="ignore", invalid="ignore"):
         by_deviation = deviation[1:-1] * np.sin(half) / (1.0 - np.cos(half))
-    cut[1:-1] = np.where(round_off, np.minimum(room, by_deviation), 0.0)
+    cut[1:-1] = np.where(round_off, np.minimum(available, by_deviation), 0.0)
 
     pieces: list[tuple[float, Floats, Floats, Floats, float]] = []
     corners, stops, nowhere, total = [], [], np.zeros(path.shape[1]), 0.0

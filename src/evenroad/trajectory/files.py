@@ -114,8 +114,10 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
         raise ValueError("places of held joints must be finite numbers")
     if len(set(names) | set(held)) < len(names) + len(held):
         raise ValueError("every joint must be named once")
-    moved, room = np.abs(np.diff(tables[0], axis=0)), np.diff(times)[:, None] * np.array(limits.velocity)
-    if np.any(moved > 1.001 * room + 1e-9) or np.any(np.abs(tables[1]) > 1.001 * np.array(limits.velocity)):
+    moved, allowed = np.abs(np.diff(tables[0], axis=0)), np.diff(times)[:, None] * np.array(limits.velocity)
+    if np.any(moved > 1.001 * allowed + 1e-9) or np.any(
+        np.abs(tables[1]) > 1.001 * np.array(limits.velocity)
+    ):
         raise ValueError("it moves faster than its own limits say")
     return Trajectory(
         names=names,

@@ -56,10 +56,10 @@ class TimeLaw:
         i, s, speed = self._where(np.clip(t, 0.0, self.duration))
         # The end of an interval belongs to its own piece, whose bend may differ from the next one's.
         piece = self.path.piece_at(0.5 * (self.lengths[i] + self.lengths[i + 1]))
-        place, direction, bend = self.path.at(s, piece)
+        position, direction, bend = self.path.at(s, piece)
         speed = np.where(inside, speed, 0.0)[:, None]
         push = np.where(inside, self.accelerations[i], 0.0)[:, None]
-        return place, direction * speed, direction * push + bend * speed**2
+        return position, direction * speed, direction * push + bend * speed**2
 
 
 def fastest(path: RoundedPath, limits: Limits) -> TimeLaw:
@@ -68,8 +68,8 @@ def fastest(path: RoundedPath, limits: Limits) -> TimeLaw:
     least = np.where(path.bend > 0.0, _PER_ARC, _PER_LINE)
     counts = np.maximum(np.ceil(INTERVALS * share).astype(int), least)
     piece = np.repeat(np.arange(len(counts)), counts)
-    ends = np.concatenate([np.linspace(a, b, n + 1)[1:] for a, b, n in _spans(path.starts, counts)])
-    grid = np.concatenate([[0.0], ends])
+    marks = np.concatenate([np.linspace(a, b, n + 1)[1:] for a, b, n in _spans(path.starts, counts)])
+    grid = np.concatenate([[0.0], marks])
     _, ahead, ahead_bend = path.at(grid[:-1], piece)
     _, behind, behind_bend = path.at(grid[1:], piece)
     velocity, acceleration = np.array(limits.velocity), _WITHIN * np.array(limits.acceleration)

@@ -17,7 +17,7 @@ from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.limits import Limits
 from evenroad.trajectory.timing import TimeLaw, fastest, paused, stretched
-from evenroad.world import Rechecks, World
+from evenroad.world import ValidatesPaths, World
 
 STEP = 0.008
 """Time between two states of a trajectory [s]: the cycle of a UR controller, 125 Hz."""
@@ -247,9 +247,9 @@ def make_trajectory(
 def _apart(path: Floats) -> Floats:
     """Return a path without waypoints that are where the one before is, up to rounding; its ends stay as they are."""
     kept: list[Floats] = []
-    for place in path:
-        if not kept or np.max(np.abs(place - kept[-1])) > _SAME:
-            kept.append(place)
+    for position in path:
+        if not kept or np.max(np.abs(position - kept[-1])) > _SAME:
+            kept.append(position)
     if len(kept) > 1:
         kept[-1] = path[-1]
     return np.array(kept).reshape(-1, path.shape[1])
@@ -279,12 +279,12 @@ def _averaged(law: TimeLaw, window: float, t: Floats) -> tuple[Floats, Floats, F
     if window == 0.0:
         return law.at(t)
     grid = np.linspace(-window, law.duration + window, len(t) + 1)
-    place, velocity, _ = law.at(grid)
-    travelled = CubicHermiteSpline(grid, place, velocity).antiderivative()
-    (place, velocity, _), (place_before, velocity_before, _) = law.at(t), law.at(t - window)
+    position, velocity, _ = law.at(grid)
+    travelled = CubicHermiteSpline(grid, position, velocity).antiderivative()
+    (position, velocity, _), (position_before, velocity_before, _) = law.at(t), law.at(t - window)
     positions = (travelled(t) - travelled(t - window)) / window
-    positions[[0, -1]] = place[[0, -1]]
-    return positions, (place - place_before) / window, (velocity - velocity_before) / window
+    positions[[0, -1]] = position[[0, -1]]
+    return positions, (position - position_before) / window, (velocity - velocity_before) / window
 
 
 def _shares(states: tuple[Floats, Floats, Floats], limits: Limits) -> dict[str, float]:
@@ -293,13 +293,13 @@ def _shares(states: tuple[Floats, Floats, Floats], limits: Limits) -> dict[str, 
     return {kind: float(np.max(np.abs(rows) / getattr(limits, kind))) for kind, rows in used.items()}
 
 
-def _distance_to(path: Floats, places: Floats) -> Floats:
+def _distance_to(path: Floats, points: Floats) -> Floats:
     """Return how far each place, (n, dim), is from a path, (p, dim): (n,)."""
-    nearest = np.full(len(places), np.inf)
+    nearest = np.full(len(points), np.inf)
     for a, b in pairwise(path):
         along = b - a
-        share = np.clip((places - a) @ along / (along @ along), 0.0, 1.0)
-        nearest = np.minimum(nearest, np.linalg.norm(places - a - share[:, None] * along, axis=1))
+        share = np.clip((points - a) @ along / (along @ along), 0.0, 1.0)
+        nearest = np.minimum(nearest, np.linalg.norm(points - a - share[:, None] * along, axis=1))
     return nearest
 
 
@@ -307,8 +307,8 @@ def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:
     """Return which motions from state to state are free, (n - 1,), and what shows it."""
     if world is None:
         return np.ones(len(positions) - 1, dtype=bool), "unchecked"
-    if isinstance(world, Rechecks):
-        return world.recheck(positions), world.proof
+    if isinstance(world, ValidatesPaths):
+        return world.validate(positions), world.proof
     return world.motion_valid(positions[:-1], positions[1:]), str(getattr(world, "proof", "resolution"))
 
 

@@ -61,9 +61,9 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
     """
     names, _ = columns_of_ur(trajectory, order)
     path = trajectory.waypoints
-    places = {name: np.full(len(path), value) for name, value in trajectory.held.items()}
-    places |= dict(zip(trajectory.names, path.T, strict=True))
-    waypoints = np.column_stack([places[name] for name in names])
+    columns = {name: np.full(len(path), value) for name, value in trajectory.held.items()}
+    columns |= dict(zip(trajectory.names, path.T, strict=True))
+    waypoints = np.column_stack([columns[name] for name in names])
     radii = [*(trajectory.radii or np.zeros(len(path) - 2)), 0.0]
     fastest = (
         f"a={min(trajectory.limits.acceleration):.6g}, v={min(*trajectory.limits.velocity, _FASTEST):.6g}"

@@ -12,8 +12,8 @@ from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad.geometry.shapes import Mesh, PointCloud
 from evenroad.roadmap import PlanResult, Status
-from evenroad.robot.kinematics import capsule_ends, link_poses, tip_links
-from evenroad.space.path import place_at, resample
+from evenroad.robot.kinematics import capsule_endpoints, link_poses, tip_links
+from evenroad.space.path import configuration_at, resample
 from evenroad.viz import style
 from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
 from evenroad.viz.sheet import Colour, Faint, Sheet, View
@@ -47,10 +47,10 @@ def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: Ar
 def save_arm_gif(path: str | os.PathLike[str], result: PlanResult, world: ArmWorld) -> None:
     """Save a moving picture of the arm on its path as GIF, atomically; without a path of start and goal in turn."""
     if result.path is None:
-        places = np.stack([result.start, result.goal])
+        configurations = np.stack([result.start, result.goal])
     else:
-        places = place_at(result.path, world.space, np.linspace(0.0, 1.0, _FRAMES))
-    frames = [draw_arm_plan(result, world, now=q).reduce(2).quantize(160) for q in places]
+        configurations = configuration_at(result.path, world.space, np.linspace(0.0, 1.0, _FRAMES))
+    frames = [draw_arm_plan(result, world, now=q).reduce(2).quantize(160) for q in configurations]
     pauses = [_PAUSE, *(len(frames) - 2) * [_FRAME], _PAUSE]
     with atomic_write(path) as file:
         frames[0].save(file, format="gif", save_all=True, append_images=frames[1:], duration=pauses, loop=0)
@@ -66,7 +66,7 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, *, now: Floats | None = N
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
     sheet = Sheet(SIZE, len(VIEWS), title)
     low, high = _limits(world, _shown(result, world))
-    scale = min(float(np.min(np.array(sheet.room) / (high - low)[list(pair)])) for _, pair in VIEWS)
+    scale = min(float(np.min(np.array(sheet.available) / (high - low)[list(pair)])) for _, pair in VIEWS)
     for i, (name, pair) in enumerate(VIEWS):
         view = View(low[list(pair)], high[list(pair)], scale)
         draw_arm_view(view, result, world, pair, now=now)
@@ -82,17 +82,17 @@ def draw_arm_view(
     """Draw what is seen in the plane of two of the axes x, y, z, from the far to the near."""
     shown = _shown(result, world)
     last = len(shown) - 1
-    arms = [(i / last, ends) for i, ends in enumerate(capsule_ends(world.robot, shown))]
+    arms = [(i / last, endpoints) for i, endpoints in enumerate(capsule_endpoints(world.robot, shown))]
     between = arms[1:-1]
     if now is not None:
-        between = [(0.5, capsule_ends(world.robot, now[np.newaxis])[0])]
+        between = [(0.5, capsule_endpoints(world.robot, now[np.newaxis])[0])]
     axis, towards = next((k, _TOWARDS[k]) for k in range(3) if k not in pair)
     things: list[tuple[float, Floats, Colour, Colour, float]] = []
-    for share, ends in [*between, arms[0], arms[-1]]:
+    for share, endpoints in [*between, arms[0], arms[-1]]:
         # Of many places those in between are a hint; of a moving picture that one is what it is about.
         faint = (share in (0.0, 1.0)) == (now is not None)
         fill, edge = _tint(share, 0.25 if faint else 0.55), _tint(share, 0.45 if faint else 1.0)
-        for body, outline in zip(ends, _bodies(world.robot, ends, pair), strict=True):
+        for body, outline in zip(endpoints, _bodies(world.robot, endpoints, pair), strict=True):
             depth = -np.inf if faint else towards * float(body[:, axis].mean())
             things.append((depth, outline, fill, edge, 1.0 if faint else 1.5))
     for obstacle in world.scene.obstacles:
@@ -118,8 +118,8 @@ def draw_arm_view(
         for outline in _colliding(result, world, pair):
             view.polygon(outline, _faint(style.COLLISION, 0.35), style.COLLISION, 3)
     for tips in _tips(np.stack([result.start, result.goal]), world):
-        for place, colour in zip(tips[:, pair], (style.START, style.GOAL), strict=True):
-            view.dot(place, colour, 6)
+        for position, colour in zip(tips[:, pair], (style.START, style.GOAL), strict=True):
+            view.dot(position, colour, 6)
 
 
 def _shown(result: PlanResult, world: ArmWorld) -> Floats:
@@ -132,10 +132,10 @@ def _shown(result: PlanResult, world: ArmWorld) -> Floats:
     return dense[np.abs(lengths - wanted[:, np.newaxis]).argmin(axis=1)]
 
 
-def _bodies(robot: Robot, ends: Floats, pair: tuple[int, int]) -> list[Floats]:
+def _bodies(robot: Robot, endpoints: Floats, pair: tuple[int, int]) -> list[Floats]:
     return [
         stadium(a[list(pair)], b[list(pair)], capsule.radius)
-        for (a, b), capsule in zip(ends, robot.capsules, strict=True)
+        for (a, b), capsule in zip(endpoints, robot.capsules, strict=True)
     ]
 
 
@@ -150,7 +150,7 @@ def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> li
     """Return the outlines of the bodies that the message names."""
     end = result.start if result.status is Status.START_INVALID else result.goal
     reason = world.explain(end)
-    bodies = _bodies(world.robot, capsule_ends(world.robot, end[np.newaxis])[0], pair)
+    bodies = _bodies(world.robot, capsule_endpoints(world.robot, end[np.newaxis])[0], pair)
     named = [body for body, own in zip(bodies, world.robot.capsules, strict=True) if repr(own.link) in reason]
     # A cloud or a mesh is all around: the robot's own body says where.
     obstacles = [each for each in world.scene.obstacles if repr(each.name) in reason and each.row]
@@ -172,9 +172,9 @@ def _faint(colour: str, opacity: float) -> Faint:
 
 def _limits(world: ArmWorld, shown: Floats) -> tuple[Floats, Floats]:
     """Return corners, (3,) each, of the box that is shown: the arm, and of the obstacles what is near it."""
-    ends = capsule_ends(world.robot, shown)
+    endpoints = capsule_endpoints(world.robot, shown)
     radius = max(capsule.radius for capsule in world.robot.capsules)
-    low, high = ends.min(axis=(0, 1, 2)) - radius, ends.max(axis=(0, 1, 2)) + radius
+    low, high = endpoints.min(axis=(0, 1, 2)) - radius, endpoints.max(axis=(0, 1, 2)) + radius
     near = 0.35 * float((high - low).max())
     least, most = low.copy(), high.copy()
     for obstacle in world.scene.obstacles:

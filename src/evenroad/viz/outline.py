@@ -64,5 +64,5 @@ def _sum_of_segments(centre: Floats, sides: Floats) -> Floats:
     """Return the outline, (2 s, 2), of a Minkowski sum of segments, (s, 2): each twice, in the order of angles."""
     upward = np.where((sides[:, 1:] < 0) | ((sides[:, 1:] == 0) & (sides[:, :1] < 0)), -sides, sides)
     upward = upward[np.argsort(np.arctan2(upward[:, 1], upward[:, 0]))]
-    half_way = np.cumsum(upward, axis=0) - 0.5 * upward.sum(axis=0)
-    return np.concatenate([centre + half_way, centre - half_way])
+    midpoints = np.cumsum(upward, axis=0) - 0.5 * upward.sum(axis=0)
+    return np.concatenate([centre + midpoints, centre - midpoints])

@@ -18,12 +18,12 @@ from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld, tip_links
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.urdf_xml import RobotFile
-from evenroad.space.path import place_at
+from evenroad.space.path import configuration_at
 from evenroad.viz import style
 from evenroad.viz.outline import obstacle_bounds
 from evenroad.viz.surfaces import link_surfaces, surface_of
 
-PLACES = 200
+SAMPLES = 200
 """Number of positions of the slider, evenly along the path."""
 
 _SECONDS = 4.0
@@ -77,7 +77,7 @@ class ArmPage:
         self._tip = tip_links(world.robot)[-1]
         scene, gui = self._server.scene, self._server.gui
         scene.set_up_direction("+z")
-        self._ends = {"start": result.start.copy(), "goal": result.goal.copy()}
+        self._endpoints = {"start": result.start.copy(), "goal": result.goal.copy()}
         surfaces = link_surfaces(world.robot, file)
         self._arms = {
             "arm": self._add_arm("arm", surfaces, _ARM, 1.0),
@@ -90,10 +90,10 @@ class ArmPage:
         self.play = gui.add_button("play")
         self.graph = gui.add_checkbox("trees" if result.roadmap is None else "roadmap", False)
         self.hands = gui.add_checkbox("move start and goal by hand", True)
-        self.slider.on_update(lambda _: self._show_place())
+        self.slider.on_update(lambda _: self._show_configuration())
         self.play.on_click(lambda _: self._playing.set())
         self.graph.on_update(lambda _: self._show_graph())
-        self._hands = {end: self._add_hand(end) for end in self._ends}
+        self._hands = {end: self._add_hand(end) for end in self._endpoints}
         self.hands.on_update(lambda _: self._show_hands())
         low, high = self._corners()
         # Below everything: a table's top at its height would flicker.
@@ -117,8 +117,8 @@ class ArmPage:
         while True:
             if self._playing.wait(0.1):
                 self._playing.clear()
-                for place in np.linspace(0.0, 100.0, int(25 * _SECONDS)):
-                    self.slider.value = float(place)
+                for position in np.linspace(0.0, 100.0, int(25 * _SECONDS)):
+                    self.slider.value = float(position)
                     time.sleep(0.04)
 
     def close(self) -> None:
@@ -128,8 +128,8 @@ class ArmPage:
     def move_end(self, end: str, position: Floats, wxyz: Floats) -> PlanResult:
         """Let the tip of start or goal follow a hand, (3,) [m] and unit quaternion, as far as it can; plan again."""
         with self._busy:
-            self._ends[end] = follow(self.world, self._ends[end], self._tip, position, wxyz)
-            self.result = self._plan(self._ends["start"], self._ends["goal"])
+            self._endpoints[end] = follow(self.world, self._endpoints[end], self._tip, position, wxyz)
+            self.result = self._plan(self._endpoints["start"], self._endpoints["goal"])
             self._show()
             return self.result
 
@@ -170,37 +170,37 @@ class ArmPage:
             # While a plan is made a hand moves on: only where it is then counts.
             self._wanted[end] = np.array(event.target.position), np.array(event.target.wxyz)
             while self._wanted and not self._busy.locked():
-                which, place = self._wanted.popitem()
-                self.move_end(which, *place)
+                which, pose = self._wanted.popitem()
+                self.move_end(which, *pose)
 
         hand.on_update(moved)
         return hand
 
     def _show(self) -> None:
         """Show the result: both ends, the path of the tip, and what is known of it."""
-        for end, q in self._ends.items():
-            self._place_arm(end, q)
-            place, wxyz = _place(self.world, q, self._tip)
+        for end, q in self._endpoints.items():
+            self._pose_arm(end, q)
+            position, wxyz = _link_pose(self.world, q, self._tip)
             if not self._busy.locked():
-                self._hands[end].position, self._hands[end].wxyz = place, wxyz
+                self._hands[end].position, self._hands[end].wxyz = position, wxyz
         seconds = self.result.seconds
         self.status.content = f"**{self.result.status}** in {1e3 * seconds:.1f} ms: {self.result.message}"
         scene = self._server.scene
         if self.result.path is None:
             scene.remove_by_name("/path")
         else:
-            tips = self._tips(self._along(np.linspace(0.0, 1.0, PLACES)))
+            tips = self._tips(self._along(np.linspace(0.0, 1.0, SAMPLES)))
             segments = np.stack([tips[:-1], tips[1:]], axis=1).astype(np.float32)
             red = ImageColor.getrgb(style.PATH)[:3]
             scene.add_line_segments("/path", segments, red, thickness=_LINE, thickness_units="screen")
-        self._show_place()
+        self._show_configuration()
         self._show_graph()
 
-    def _show_place(self) -> None:
+    def _show_configuration(self) -> None:
         q = self.result.start[np.newaxis]
         if self.result.path is not None:
             q = self._along(np.array([self.slider.value / 100.0]))
-        self._place_arm("arm", q[0])
+        self._pose_arm("arm", q[0])
 
     def _show_graph(self) -> None:
         graph, scene = self.result.roadmap, self._server.scene
@@ -225,13 +225,13 @@ class ArmPage:
 
     def _along(self, shares: Floats) -> Floats:
         assert self.result.path is not None
-        return place_at(self.result.path, self.world.space, np.clip(shares, 0.0, 1.0))
+        return configuration_at(self.result.path, self.world.space, np.clip(shares, 0.0, 1.0))
 
     def _tips(self, q: Floats) -> Floats:
-        places: Floats = link_poses(self.world.robot, q)[:, self.world.robot.links.index(self._tip), :3, 3]
-        return places
+        positions: Floats = link_poses(self.world.robot, q)[:, self.world.robot.links.index(self._tip), :3, 3]
+        return positions
 
-    def _place_arm(self, name: str, q: Floats) -> None:
+    def _pose_arm(self, name: str, q: Floats) -> None:
         poses = link_poses(self.world.robot, q[np.newaxis])[0]
         with self._server.atomic():
             for link, handle in self._arms[name].items():
@@ -239,9 +239,9 @@ class ArmPage:
                 handle.position, handle.wxyz = pose[:3, 3], _wxyz(pose[:3, :3])
 
     def _corners(self) -> tuple[Floats, Floats]:
-        q = np.stack(list(self._ends.values()))
-        places = link_poses(self.world.robot, q)[..., :3, 3].reshape(-1, 3)
-        return places.min(axis=0), places.max(axis=0)
+        q = np.stack(list(self._endpoints.values()))
+        positions = link_poses(self.world.robot, q)[..., :3, 3].reshape(-1, 3)
+        return positions.min(axis=0), positions.max(axis=0)
 
 
 def follow(world: ArmWorld, q: Floats, link: str, position: Floats, wxyz: Floats) -> Floats:
@@ -263,7 +263,7 @@ def follow(world: ArmWorld, q: Floats, link: str, position: Floats, wxyz: Floats
     return q
 
 
-def _place(world: ArmWorld, q: Floats, link: str) -> tuple[Floats, Floats]:
+def _link_pose(world: ArmWorld, q: Floats, link: str) -> tuple[Floats, Floats]:
     pose = link_poses(world.robot, q[np.newaxis])[0, world.robot.links.index(link)]
     return pose[:3, 3], _wxyz(pose[:3, :3])
 

@@ -77,8 +77,8 @@ def _cells_with_components(result: PlanResult, world: DiskWorld) -> np.ndarray:
     kinds = np.where(grid.occupied, 1, 0)
     kinds[grid.unknown] = 2
     if result.status is Status.NOT_CONNECTED and not world.may_connect(result.start, result.goal):
-        for place, kind in ((result.start, 3), (result.goal, 4)):
-            kinds[world.cells_of(world.component(place))] = kind
+        for configuration, kind in ((result.start, 3), (result.goal, 4)):
+            kinds[world.cells_of(world.component(configuration))] = kind
     return kinds
 
 
@@ -90,18 +90,18 @@ def _draw_map(axes: Axes, gridmap: GridMap, kinds: np.ndarray) -> None:
     # imshow draws in pixel coordinates; the affine map takes those to map units, yaw included.
     corners = frame.to_map(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
     (a, b), (c, d), (e, f) = corners[1] - corners[0], corners[2] - corners[0], corners[0]
-    place = Affine2D.from_values(a, b, c, d, e, f) + axes.transData
+    to_axes = Affine2D.from_values(a, b, c, d, e, f) + axes.transData
     extent = (0.0, frame.cols, frame.rows, 0.0)
     colours: dict[str, Any] = dict(cmap=ListedColormap(_MAP_COLOURS), vmin=0, vmax=len(_MAP_COLOURS) - 1)
-    axes.imshow(kinds, extent=extent, interpolation="nearest", transform=place, zorder=1, **colours)
+    axes.imshow(kinds, extent=extent, interpolation="nearest", transform=to_axes, zorder=1, **colours)
 
 
 def _draw_swept_disks(axes: Axes, path: np.ndarray, radius: float) -> None:
     """Show the robot itself at each waypoint, so that one sees how close it passes."""
     size = np.full(len(path), 2 * radius)
     look: dict[str, Any] = dict(facecolors="none", edgecolors=style.PATH, linewidths=0.8, zorder=5)
-    places: dict[str, Any] = dict(units="xy", offsets=path, offset_transform=axes.transData)
-    axes.add_collection(EllipseCollection(size, size, np.zeros(len(path)), **places, **look))
+    options: dict[str, Any] = dict(units="xy", offsets=path, offset_transform=axes.transData)
+    axes.add_collection(EllipseCollection(size, size, np.zeros(len(path)), **options, **look))
 
 
 def _mark_collision(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
@@ -136,7 +136,7 @@ def _shown(result: PlanResult, world: DiskWorld) -> tuple[np.ndarray, np.ndarray
     corners = frame.to_map(np.array(list(sides), dtype=float))
     if known.all():
         return corners.min(axis=0), corners.max(axis=0)
-    disks = [place + world.radius * np.array([[-1.0], [1.0]]) for place in (result.start, result.goal)]
+    disks = [to_axes + world.radius * np.array([[-1.0], [1.0]]) for to_axes in (result.start, result.goal)]
     shown = np.concatenate([corners, *disks])
     margin = 0.03 * (shown.max(axis=0) - shown.min(axis=0)).max()
     return shown.min(axis=0) - margin, shown.max(axis=0) + margin

@@ -34,9 +34,9 @@ class View:
         self._draw = ImageDraw.Draw(self.image, "RGBA")
         for axis in (0, 1):
             for tick in ticks(low[axis], high[axis]):
-                ends = np.array([low, high])
-                ends[:, axis] = tick
-                self.line(ends, GRID, 1)
+                endpoints = np.array([low, high])
+                endpoints[:, axis] = tick
+                self.line(endpoints, GRID, 1)
 
     def pixels(self, points: Floats) -> list[tuple[float, float]]:
         """Return where points, (n, 2), lie in the image; y points up in metres, down in pixels."""
@@ -79,10 +79,10 @@ class View:
         for mask, colour in zip(masks, (fill, edge), strict=True):
             self.image.paste(colour[:3], mask=mask)
 
-    def dot(self, place: Floats, colour: Colour, radius: float) -> None:
+    def dot(self, position: Floats, colour: Colour, radius: float) -> None:
         """Draw a dot with a white rim."""
         for size, fill in ((radius + 1, "white"), (radius, colour)):
-            self._draw.circle(self.pixels(place[np.newaxis])[0], FINER * size, fill=fill)
+            self._draw.circle(self.pixels(position[np.newaxis])[0], FINER * size, fill=fill)
 
 
 def ticks(low: float, high: float) -> Floats:
@@ -99,15 +99,15 @@ class Sheet:
     def __init__(self, size: tuple[int, int], count: int, title: str) -> None:
         self.image = Image.new("RGB", size, "white")
         self._draw = ImageDraw.Draw(self.image, "RGBA")
-        self.room = (size[0] - _LEFT + 60) // count - _BETWEEN, size[1] - _TOP - _BOTTOM
+        self.available = (size[0] - _LEFT + 60) // count - _BETWEEN, size[1] - _TOP - _BOTTOM
         for i, line in enumerate(wrap(title, size[0] // 11)[:3]):
             self._text((size[0] / 2, 20 + 22 * i), line, 18)
 
     def add(self, view: View, number: int, title: str, labels: tuple[str, str]) -> None:
         """Put a view into its place, with frame, ticks and labels."""
         image = view.image.reduce(FINER)
-        left = _LEFT + number * (self.room[0] + _BETWEEN) + (self.room[0] - image.width) // 2
-        top = _TOP + (self.room[1] - image.height) // 2
+        left = _LEFT + number * (self.available[0] + _BETWEEN) + (self.available[0] - image.width) // 2
+        top = _TOP + (self.available[1] - image.height) // 2
         right, bottom = left + image.width, top + image.height
         self.image.paste(image, (left, top))
         self._draw.rectangle((left, top, right, bottom), outline=TEXT)
@@ -136,5 +136,5 @@ class Sheet:
             self._text((x + 46, y), name, 18, "lm")
             x += width
 
-    def _text(self, place: tuple[float, float], text: str, size: int, anchor: str = "mm") -> None:
-        self._draw.text(place, text, fill=TEXT, font=ImageFont.load_default(size), anchor=anchor)
+    def _text(self, position: tuple[float, float], text: str, size: int, anchor: str = "mm") -> None:
+        self._draw.text(position, text, fill=TEXT, font=ImageFont.load_default(size), anchor=anchor)

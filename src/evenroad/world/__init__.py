@@ -9,6 +9,6 @@ from evenroad.world.protocol import Apart as Apart
 from evenroad.world.protocol import Explains as Explains
 from evenroad.world.protocol import ExplainsStarts as ExplainsStarts
 from evenroad.world.protocol import MeasuresPaths as MeasuresPaths
-from evenroad.world.protocol import Rechecks as Rechecks
 from evenroad.world.protocol import ShowsApart as ShowsApart
+from evenroad.world.protocol import ValidatesPaths as ValidatesPaths
 from evenroad.world.protocol import World as World

@@ -30,7 +30,7 @@ def require_few_segments(resolution: object, segments: float) -> None:
         )
 
 
-def between_ends(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, Ints]]:
+def between_endpoints(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, Ints]]:
     """Yield the states between the ends of motions of so many segments, (m,), level by level, each once.
 
     They are the motions' indices and the states' numbers; state k of n lies a fraction k / n along.  A motion is left
@@ -43,8 +43,8 @@ def between_ends(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, In
         if len(motions) == 0:
             return
         for start in range(0, len(motions) * per_motion, _STATES_AT_ONCE):
-            place = np.arange(start, min(start + _STATES_AT_ONCE, len(motions) * per_motion))
-            motion, multiple = motions[place // per_motion], 2 * (place % per_motion) + 1
+            index = np.arange(start, min(start + _STATES_AT_ONCE, len(motions) * per_motion))
+            motion, multiple = motions[index // per_motion], 2 * (index % per_motion) + 1
             count = segments[motion]
             state = (multiple * count) >> level
             # Rounded down, an odd multiple may fall on an even one beside it, which has another level.

@@ -19,9 +19,9 @@ def least_distance(path: Floats, distance: Callable[[Floats], Floats], tolerance
     far they are apart, as every distance does.  So a piece of the path is halved while its middle leaves open that the
     least is within it (S. Piyavskii, 1972, of functions with a Lipschitz constant).
     """
-    ends = path if len(path) > 1 else np.repeat(path, 2, axis=0)
-    a, b = ends[:-1], ends[1:]
-    least, looked_at = float(distance(ends).min()), 0
+    waypoints = path if len(path) > 1 else np.repeat(path, 2, axis=0)
+    a, b = waypoints[:-1], waypoints[1:]
+    least, looked_at = float(distance(waypoints).min()), 0
     floor = np.inf
     while len(a):
         middle = 0.5 * (a + b)

@@ -16,7 +16,7 @@ from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.space import BoxSpace, Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.protocol import all_distances
-from evenroad.world.bisection import MOST_SEGMENTS, between_ends, require_few_segments
+from evenroad.world.bisection import MOST_SEGMENTS, between_endpoints, require_few_segments
 from evenroad.world.one_or_many import OneOrMany, one_or_many
 
 OUTSIDE = "it lies outside the bounds of the space"
@@ -26,7 +26,7 @@ ONE_BY_ONE = "asked about one configuration at a time: from (n, dim) to (n,) it 
 SHARE_OF_EXTENT = 0.01
 """Default resolution, as a share of the extent of the space."""
 FINER = 20
-"""Factor by which `FunctionWorld.recheck` checks states more densely."""
+"""Factor by which `FunctionWorld.validate` checks states more densely."""
 
 
 @explains_calls
@@ -39,7 +39,7 @@ class FunctionWorld(OneOrMany):
     between two states is not seen, so the resolution should be small beside the thinnest obstacle.  The ends come
     first, then halves, quarters and so on (van der Corput's order), for all motions of a batch together, each until a
     state of it is blocked: a vectorised function is called few times, with many states.  A path that is handed out is
-    looked at more closely (`recheck`): shortcutting tries so many motions that it would find the gaps between states.
+    looked at more closely (`validate`): shortcutting tries so many motions that it would find the gaps between states.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class FunctionWorld(OneOrMany):
     """
 
     proof: ClassVar[str] = "resolution"
-    """A function says nothing of what lies between two states, `recheck` or not."""
+    """A function says nothing of what lies between two states, `validate` or not."""
 
     space: Space
     is_valid: Callable[[Floats], Any]
@@ -116,7 +116,7 @@ class FunctionWorld(OneOrMany):
         """
         return self._motions_free(*as_batch_pair(a, b, self.space.dim), finer=1)
 
-    def recheck(self, path: Floats) -> Bools:
+    def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are free at a twentieth of the resolution: (p - 1,)."""
         waypoints = as_batch("path", path, self.space.dim)
         return self._motions_free(waypoints[:-1], waypoints[1:], finer=FINER)
@@ -128,7 +128,7 @@ class FunctionWorld(OneOrMany):
         segments = np.zeros(len(free), dtype=np.int64)
         segments[free] = np.minimum(finer * self._segments(first[free], second[free]), MOST_SEGMENTS)
         start, end = _in_fixed_order(first, second)
-        for motion, state in between_ends(segments, free):
+        for motion, state in between_endpoints(segments, free):
             fraction = state / segments[motion]
             states = self.space.interpolate(start[motion], end[motion], fraction)
             self._clear_blocked(free, motion, states)
@@ -176,11 +176,11 @@ class FunctionWorld(OneOrMany):
         if self.vectorised is None:
             set_fields(self, vectorised=self._takes_many(states))
         if self.vectorised:
-            free[owner[~self._ask(states)]] = False
+            free[owner[~self._evaluate(states)]] = False
             return
         for i, state in zip(owner, states, strict=True):
             if free[i]:
-                free[i] = self._ask_one(state)
+                free[i] = self._evaluate_one(state)
 
     def _takes_many(self, states: Floats) -> bool:
         """Return whether the function answers for many at once; where it answers neither way, as if it did."""
@@ -198,7 +198,7 @@ class FunctionWorld(OneOrMany):
         except Exception:
             return True
 
-    def _ask(self, states: Floats) -> Bools:
+    def _evaluate(self, states: Floats) -> Bools:
         answer = np.asarray(self.is_valid(states))
         if answer.shape != (len(states),) or answer.dtype != np.bool_:
             raise InvalidValue(
@@ -208,7 +208,7 @@ class FunctionWorld(OneOrMany):
             )
         return answer
 
-    def _ask_one(self, state: Floats) -> bool:
+    def _evaluate_one(self, state: Floats) -> bool:
         answer = self.is_valid(state)
         if not isinstance(answer, bool | np.bool_):
             raise InvalidValue(f"{self._name} must return a bool for one configuration, got {answer!r}")

@@ -48,14 +48,14 @@ class ExplainsStarts(Explains, Protocol):
 
 
 @runtime_checkable
-class Rechecks(Protocol):
+class ValidatesPaths(Protocol):
     """A world whose verdicts on motions have gaps, and that can look closer at the path that is handed out."""
 
     @property
     def proof(self) -> str:
-        """What `recheck` shows: ``resolution`` (states closer than planned with) or ``certified`` (no gap)."""
+        """What `validate` shows: ``resolution`` (states closer than planned with) or ``certified`` (no gap)."""
 
-    def recheck(self, path: Floats) -> Bools:
+    def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are free by the strict check: (p - 1,)."""
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from evenroad.points import PointSet, draw
-from evenroad.points.samplers.even import Even, drawn_in
+from evenroad.points.samplers.even import Even, contracted
 from evenroad.points.samplers.korobov import Korobov, korobov_generator
 from tests.points.samplers.sampler_contract import SamplerContract
 
@@ -42,7 +42,7 @@ class TestDrawnIn:
     @pytest.mark.parametrize("share", [1.0, 0.85, 0.5])
     def test_all_distances_shrink_by_the_share_and_the_middle_stays(self, share):
         points = draw("even", 20, 3, rng=1)
-        near = drawn_in(points, share)
+        near = contracted(points, share)
         for first, second in (
             (points.points - 0.5, near.points - 0.5),
             (np.diff(points, axis=0), np.diff(near, axis=0)),
@@ -52,9 +52,9 @@ class TestDrawnIn:
             )
 
     def test_the_set_says_so(self):
-        origin = drawn_in(draw("even", 8, 12, rng=1)).origin
+        origin = contracted(draw("even", 8, 12, rng=1)).origin
         assert (origin.family, origin.method) == ("even", "scrambled Sobol, drawn in to 0.85")
 
     def test_corners_stay_in_the_cube(self):
         corner = PointSet(np.full((1, 5), np.nextafter(1.0, 0.0)))
-        assert drawn_in(corner, 1.0).points.max() < 1.0
+        assert contracted(corner, 1.0).points.max() < 1.0

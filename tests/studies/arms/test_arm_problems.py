@@ -27,7 +27,7 @@ def test_a_problem_has_free_ends_that_no_straight_motion_joins_and_that_trees_do
     assert not problem.world.motion_valid(ends[:1], ends[1:])[0]
     found = connect(problem.world, problem.start, problem.goal[np.newaxis])
     assert found.goal == 0
-    assert problem.world.recheck(found.path).all()
+    assert problem.world.validate(found.path).all()
 
 
 def test_the_same_number_is_the_same_problem_and_another_one_is_not():

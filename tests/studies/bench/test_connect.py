@@ -99,7 +99,7 @@ def test_stock_counts_the_milestones_of_a_planner_that_adds_them_one_by_one(n):
         milestones = q[world.valid(q)]
         expected = _one_by_one(world, milestones)
         configurations = np.concatenate([milestones, [world.start], [world.goal]])
-        edges = rule_named("k=10 earlier").edges(configurations, world.space, ends=2)
+        edges = rule_named("k=10 earlier").edges(configurations, world.space, terminals=2)
         states = EdgeStates(world, configurations, edges)
         states.node_states[:] = FREE
         assert milestones_until_connected(states) == expected
@@ -130,7 +130,7 @@ def test_all_searches_agree_on_whether_there_is_a_path_and_the_shortest_ones_on_
     for seed in range(12):
         q = np.random.default_rng(seed).random((80, 3))
         configurations = np.concatenate([q[world.valid(q)], [world.start], [world.goal]])
-        edges = rule_named("k=6 symmetrised").edges(configurations, world.space, ends=2)
+        edges = rule_named("k=6 symmetrised").edges(configurations, world.space, terminals=2)
         found = {}
         for name in SEARCHES:
             states = EdgeStates(world, configurations, edges)

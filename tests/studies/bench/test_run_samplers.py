@@ -7,7 +7,7 @@ from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import draw
 from evenroad.points.bank import Bank
 from evenroad.points.samplers import Halton, Sobol
-from evenroad.points.samplers.even import drawn_in
+from evenroad.points.samplers.even import contracted
 from evenroad.roadmap import KNearest
 from evenroad.roadmap.points_of import even_points
 from evenroad.space import SE3, BoxSpace
@@ -122,4 +122,4 @@ def test_where_even_is_sobol_points_they_are_those_of_the_row_of_sobol(use, d):
 def test_where_even_is_sobol_points_drawn_in_they_are_those_of_the_row_of_sobol_drawn_in():
     given, _ = draw_set("even", 30, 10, 0, np.random.default_rng(2), (CUBE, KNearest(4)))
     other, _ = draw_set("sobol scrambled", 30, 10, 0, np.random.default_rng(2))
-    np.testing.assert_array_equal(given.points, drawn_in(other).points)
+    np.testing.assert_array_equal(given.points, contracted(other).points)

@@ -106,8 +106,8 @@ def _file(folder: Path, family: str, n: int, d: int) -> Path:
     path = folder / family / cell_name(n, d)
     if folder != DATA or path.exists():
         return path
-    for place in _large_folders():
-        if (large := place / family / path.name).exists():
+    for location in _large_folders():
+        if (large := location / family / path.name).exists():
             return large
     raise NotAvailable(
         f"the {family} sets of n={n} in d={d} are in the package evenroad-studies, which is not installed:"
@@ -123,8 +123,8 @@ def has_large_sets() -> bool:
 def _large_folders() -> list[Path]:
     """Return where the studies, if they are installed, keep the large sets."""
     studies = find_spec(STUDIES)
-    places = [] if studies is None else studies.submodule_search_locations or []
-    return [folder for place in places if (folder := Path(place, LARGE_SETS)).is_dir()]
+    locations = [] if studies is None else studies.submodule_search_locations or []
+    return [folder for location in locations if (folder := Path(location, LARGE_SETS)).is_dir()]
 
 
 def cell_name(n: int, d: int) -> str:

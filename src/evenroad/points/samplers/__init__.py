@@ -40,7 +40,7 @@ class Sampler(Protocol):
         """
 
 
-class KnownSampler(Sampler, Protocol):
+class NamedSampler(Sampler, Protocol):
     """A sampler of the registry says itself what lists and other verbs need to know of it."""
 
     @property
@@ -56,7 +56,7 @@ class KnownSampler(Sampler, Protocol):
         """Which transformations keep the quality of its sets."""
 
 
-SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
+SAMPLERS: dict[str, Callable[..., NamedSampler]] = {
     each.name: each for each in (Even, Growing, Korobov, Lattice, Cover, Halton, Sobol, Sukharev, Uniform)
 } | {family: partial(Trained, family) for family in TRAINED_FAMILIES}
 """Name -> how to make the sampler from its options; without any it says what it is, and what keeps its sets even."""
@@ -65,7 +65,7 @@ ALIASES = {"random": "uniform"}
 """Other names that people know samplers by."""
 
 
-def make_sampler(name: str, **options: Any) -> KnownSampler:
+def make_sampler(name: str, **options: Any) -> NamedSampler:
     """Return the sampler of this name, one of :data:`SAMPLERS`, with its own parameters as options.
 
     Raises UnknownName, which lists what there is, if there is no sampler of this name, or it does not take an option.

@@ -19,10 +19,10 @@ TURNED_FROM = 6
 SOBOL_FROM = 10
 """Dimension from which on `even` is scrambled Sobol points: there no lattice solves more."""
 
-DRAWN_IN_FROM = 7
+CONTRACTED_FROM = 7
 """Dimension from which on the points of a sparse roadmap are contracted to the middle of a box."""
 
-DRAWN_IN = 0.85
+CONTRACTION = 0.85
 """Factor by which the points of a sparse roadmap are contracted to the middle."""
 
 
@@ -52,12 +52,12 @@ class Even(Korobov):
         return Sobol().draw(n, d, rng=rng).with_origin(family=self.name, method="scrambled Sobol")
 
     def _vector(self, n: int, d: int) -> tuple[Sequence[int], str]:
-        vector, told = super()._vector(n, d)
+        vector, text = super()._vector(n, d)
         better = rank_one_vector(n, d)
-        return (vector, told) if better == tuple(vector) else (better, f"z={' '.join(map(str, better))}")
+        return (vector, text) if better == tuple(vector) else (better, f"z={' '.join(map(str, better))}")
 
 
-def drawn_in(points: PointSet, share: float = DRAWN_IN) -> PointSet:
+def contracted(points: PointSet, share: float = CONTRACTION) -> PointSet:
     """Return the points, each moved towards the middle of the cube to this share of its distance, 0 < share <= 1.
 
     Motions between them are shorter by that share.  Where each point has few neighbours, that is worth more than to

@@ -81,8 +81,8 @@ class Growing:
 def reversed_digits(first: int, count: int) -> Ints:
     """Return phi(i) 2^30 for i = first .. first + count - 1: the binary digits of i reversed."""
     left, turned = np.arange(first, first + count), np.zeros(count, dtype=np.int64)
-    for place in range(DIGITS):
-        turned |= (left >> place & 1) << (DIGITS - 1 - place)
+    for digit in range(DIGITS):
+        turned |= (left >> digit & 1) << (DIGITS - 1 - digit)
     return turned
 
 
@@ -120,12 +120,12 @@ def _best(found: Ints, scores: Floats, digit: int, tried: int, kept: int) -> tup
     d = found.shape[1]
     if 2 ** (d - 1) <= tried:
         bits = np.arange(2 ** (d - 1))[:, np.newaxis] >> np.arange(d - 1) & 1
-        ways = np.broadcast_to(bits, (len(found), *bits.shape))
+        choices = np.broadcast_to(bits, (len(found), *bits.shape))
     else:
-        ways = np.random.default_rng(digit).integers(0, 2, (len(found), tried, d - 1))
-    longer = np.repeat(found[:, np.newaxis], ways.shape[1], axis=1)
-    longer[:, :, 1:] += ways << digit - 1
-    longer, scores = longer.reshape(-1, d), np.repeat(scores, ways.shape[1])
+        choices = np.random.default_rng(digit).integers(0, 2, (len(found), tried, d - 1))
+    longer = np.repeat(found[:, np.newaxis], choices.shape[1], axis=1)
+    longer[:, :, 1:] += choices << digit - 1
+    longer, scores = longer.reshape(-1, d), np.repeat(scores, choices.shape[1])
     # Mirrored axes, and axes in another order, make the same lattice.
     same = np.sort(np.minimum(longer[:, 1:], 2**digit - longer[:, 1:]), axis=1)
     _, different = np.unique(same, axis=0, return_index=True)
@@ -164,12 +164,12 @@ def _differences(digit: int) -> tuple[Floats, Floats]:
     Differences are those of phi, in units of 2^-digit and up to their sign.
     """
     size = 2**digit
-    places = reversed_digits(0, size) >> DIGITS - digit
+    positions = reversed_digits(0, size) >> DIGITS - digit
     lengths = [round(size / 2 * (1 + part)) for part in PARTS]
     counts = []
     for length in lengths:
         held = np.zeros(size)
-        held[places[:length]] = 1.0
+        held[positions[:length]] = 1.0
         spectrum = np.fft.rfft(held)
         pairs = np.rint(np.fft.irfft(spectrum * spectrum.conj(), size))[1 : size // 2 + 1]
         pairs[:-1] *= 2.0

@@ -82,10 +82,10 @@ def _points_in_ball(basis: Floats, shift: Floats, radius: float) -> Floats:
     d = basis.shape[0]
     partial = np.zeros((1, d))
     for k in range(d - 1, -1, -1):
-        room = np.sqrt(np.maximum(radius**2 - (partial[:, k + 1 :] ** 2).sum(axis=1), 0.0))
+        remaining = np.sqrt(np.maximum(radius**2 - (partial[:, k + 1 :] ** 2).sum(axis=1), 0.0))
         step = basis[k, k]
-        lowest = np.ceil((-room - partial[:, k]) / step - shift[k]).astype(np.int64)
-        highest = np.floor((room - partial[:, k]) / step - shift[k]).astype(np.int64)
+        lowest = np.ceil((-remaining - partial[:, k]) / step - shift[k]).astype(np.int64)
+        highest = np.floor((remaining - partial[:, k]) / step - shift[k]).astype(np.int64)
         count = np.maximum(highest - lowest + 1, 0)
         parent = np.repeat(np.arange(len(partial)), count)
         z = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + lowest[parent]

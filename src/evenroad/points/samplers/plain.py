@@ -61,8 +61,8 @@ class Sukharev:
                 f" {k**d} and {(k + 1) ** d} (or allow_fewer)"
             )
         # The digits of the row number in base k are the row's cell; for k = 1 all are 0, whatever d.
-        place = k ** np.arange(d - 1, -1, -1, dtype=np.int64) if k > 1 else np.ones(d, dtype=np.int64)
-        digits = np.arange(k**d)[:, np.newaxis] // place % k
+        weight = k ** np.arange(d - 1, -1, -1, dtype=np.int64) if k > 1 else np.ones(d, dtype=np.int64)
+        digits = np.arange(k**d)[:, np.newaxis] // weight % k
         return PointSet((digits + 0.5) / k, Origin(family=self.name, method="grid"))
 
 

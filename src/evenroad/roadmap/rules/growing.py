@@ -29,7 +29,7 @@ class _Growing(Rule, Protocol):
     def at(self, n: int, d: int) -> Rule:
         """Return the rule for n configurations in d dimensions."""
 
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
+    def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
         """Return the pairs of the rule for so many; see :class:`Rule`."""
         return self.at(len(q), q.shape[1] if space is None else space.cube_dim).edges(q, space)
 
@@ -136,7 +136,7 @@ class TheoryRadius(Rule):
             )
         return radius
 
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
+    def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
         """Return the pairs within the radius; see :class:`Rule`."""
         if space is None:
             raise InvalidValue("the theory radius depends on the space: give one")

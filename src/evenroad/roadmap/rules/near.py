@@ -33,11 +33,11 @@ class Reach:
 class Rule(Protocol):
     """Chooses candidate edges among configurations, before anything is checked; ``str()`` is its name."""
 
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
+    def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
         """Return the pairs i < j of configurations `q`, (n, dim), to try, (m, 2), in ascending order, each once.
 
-        Distances are those of the space, by default Euclidean.  The last `ends` rows are starts and goals: rules that
-        depend on an order of insertion take them as the first; for all others they come last among ties.
+        Distances are those of the space, by default Euclidean.  The last `terminals` rows are starts and goals.  Rules
+        that depend on an order of insertion take them as the first; in all others they come last among ties.
         """
 
     def reach(self, milestones: int, space: Space) -> Reach:
@@ -65,7 +65,7 @@ class Complete(Rule):
     def __str__(self) -> str:
         return "complete"
 
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
+    def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
         """Return all pairs; see :class:`Rule`."""
         return np.stack(np.triu_indices(len(q), k=1), axis=1).astype(np.int32)
 
@@ -98,7 +98,7 @@ class KNearest(_ByNumber):
 
     which = "symmetrised"
 
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
+    def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
         """Return the pairs of each with its k nearest; see :class:`Rule`."""
         return ascending(_arcs(nearest(q, self.k, space)), len(q))
 
@@ -109,7 +109,7 @@ class KMutual(_ByNumber):
 
     which = "mutual"
 
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
+    def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
         """Return the pairs that are near each other both ways; see :class:`Rule`."""
         n = len(q)
         arcs = _arcs(nearest(q, self.k, space)).astype(np.int64)
@@ -128,10 +128,10 @@ class KEarlier(_ByNumber):
 
     which = "earlier"
 
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
+    def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
         """Return the pairs of each with its k nearest earlier ones; see :class:`Rule`."""
         n = len(q)
-        inserted = np.concatenate([np.arange(n - ends, n), np.arange(n - ends)])
+        inserted = np.concatenate([np.arange(n - terminals, n), np.arange(n - terminals)])
         arcs = _arcs(nearest(q[inserted], self.k, space, earlier=True))
         return ascending(inserted[arcs], n)
 
@@ -155,7 +155,7 @@ class Radius(Rule):
     def __str__(self) -> str:
         return f"radius={plain(self.r)}"
 
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
+    def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
         """Return the pairs within the radius; see :class:`Rule`."""
         return ascending(within(q, self.r, space), len(q))
 

@@ -4,7 +4,7 @@ from evenroad.roadmap.search.edge_states import BLOCKED as BLOCKED
 from evenroad.roadmap.search.edge_states import FREE as FREE
 from evenroad.roadmap.search.edge_states import UNKNOWN as UNKNOWN
 from evenroad.roadmap.search.edge_states import EdgeStates as EdgeStates
-from evenroad.roadmap.search.edge_states import Known as Known
+from evenroad.roadmap.search.edge_states import StateCache as StateCache
 from evenroad.roadmap.search.finders import FINDERS as FINDERS
 from evenroad.roadmap.search.finders import Finder as Finder
 from evenroad.roadmap.search.finders import confirm as confirm
@@ -17,10 +17,10 @@ from evenroad.roadmap.search.graph import Graph as Graph
 from evenroad.roadmap.search.graph import components as components
 from evenroad.roadmap.search.graph import join as join
 from evenroad.roadmap.search.shortest import NOT_FOUND as NOT_FOUND
-from evenroad.roadmap.search.shortest import Ends as Ends
 from evenroad.roadmap.search.shortest import FixedPoint as FixedPoint
 from evenroad.roadmap.search.shortest import Found as Found
 from evenroad.roadmap.search.shortest import SearchProblem as SearchProblem
+from evenroad.roadmap.search.shortest import Terminals as Terminals
 from evenroad.roadmap.search.shortest import best_path as best_path
 from evenroad.roadmap.search.shortest import length_along as length_along
 from evenroad.roadmap.search.shortest import shortest_path as shortest_path

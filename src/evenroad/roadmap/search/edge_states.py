@@ -20,7 +20,7 @@ UNKNOWN, FREE, BLOCKED = np.int8(0), np.int8(1), np.int8(2)
 
 
 @dataclass(frozen=True, eq=False)
-class Known:
+class StateCache:
     """What is known of nodes and edges: `UNKNOWN`, `FREE` or `BLOCKED`, (nodes,) and (m,) int8.
 
     `confirmed`, (m,), says which free edges have passed the strict check of a world that has one.
@@ -31,7 +31,7 @@ class Known:
     confirmed: Bools
 
     @classmethod
-    def nothing(cls, nodes: int, edges: int) -> Known:
+    def nothing(cls, nodes: int, edges: int) -> StateCache:
         """Return that nothing is known yet."""
         return cls(np.full(nodes, UNKNOWN), np.full(edges, UNKNOWN), np.zeros(edges, dtype=np.bool_))
 
@@ -40,7 +40,7 @@ class EdgeStates:
     """The states of nodes and edges, filled in as the world checks them; nothing is ever checked twice.
 
     Of `configurations`, (nodes, dim), and `edges`, (m, 2), whose motions are checked from the first node to the second.
-    What is `known` already is added to in place.  At most so many motions are checked, before the deadline, and
+    What is `cache` already is added to in place.  At most so many motions are checked, before the deadline, and
     `configurations_checked` and `motions_checked` count; `watch` gets the phases ``validity`` and ``motions``.
     """
 
@@ -52,17 +52,17 @@ class EdgeStates:
         watch: Stopwatch | None = None,
         most_motions: int | None = None,
         deadline: float = math.inf,
-        known: Known | None = None,
+        cache: StateCache | None = None,
     ) -> None:
         self.world, self.configurations, self.edges = world, configurations, edges
-        known = Known.nothing(len(configurations), len(edges)) if known is None else known
-        self.node_states, self.edge_states, self.confirmed = known.nodes, known.edges, known.confirmed
+        cache = StateCache.nothing(len(configurations), len(edges)) if cache is None else cache
+        self.node_states, self.edge_states, self.confirmed = cache.nodes, cache.edges, cache.confirmed
         self.configurations_checked = self.motions_checked = 0
         self.watch = Stopwatch() if watch is None else watch
         self.most_motions, self.deadline = most_motions, deadline
         self._node_pace, self._edge_pace = Pace(), Pace()
 
-    def ask_nodes(self, nodes: npt.NDArray[np.integer]) -> None:
+    def evaluate_nodes(self, nodes: npt.NDArray[np.integer]) -> None:
         """Ask the world about those of the nodes that are not known yet; BudgetSpent if time does not allow all."""
         unknown = nodes[self.node_states[nodes] == UNKNOWN]
         for rows in in_time(unknown, self.deadline, self._node_pace):
@@ -71,7 +71,7 @@ class EdgeStates:
             self.node_states[rows] = np.where(free, FREE, BLOCKED)
             self.configurations_checked += len(rows)
 
-    def ask_edges(self, edges: npt.NDArray[np.integer]) -> None:
+    def evaluate_edges(self, edges: npt.NDArray[np.integer]) -> None:
         """Ask the world about those of the edges that are not known yet; BudgetSpent if there are too many."""
         unknown = edges[self.edge_states[edges] == UNKNOWN]
         wanted = len(unknown)

@@ -15,11 +15,11 @@ from evenroad._arrays import Bools, Floats, Ints32
 from evenroad._njit import njit
 from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates, States
 from evenroad.roadmap.search.graph import Graph
-from evenroad.roadmap.search.shortest import NOT_FOUND, Ends, FixedPoint, Found, SearchProblem, best_path
-from evenroad.world import Rechecks, World
+from evenroad.roadmap.search.shortest import NOT_FOUND, FixedPoint, Found, SearchProblem, Terminals, best_path
+from evenroad.world import ValidatesPaths, World
 
 Finder: TypeAlias = Callable[[Any, EdgeStates], Found]
-"""A search: what it takes are `Ends`, or all of a `SearchProblem`."""
+"""A search: what it takes are `Terminals`, or all of a `SearchProblem`."""
 
 
 def search_problem(states: EdgeStates, costs: Floats, goals: int = 1, *, bound: float = 1.0) -> SearchProblem:
@@ -28,10 +28,12 @@ def search_problem(states: EdgeStates, costs: Floats, goals: int = 1, *, bound: 
     `costs`, (m,), are at least the share `bound` of the distances in the space.
     """
     nodes = len(states.configurations)
-    ends = Ends.last(nodes, goals)
+    terminals = Terminals.last(nodes, goals)
     unit = FixedPoint.of(float(costs.max(initial=0.0)), nodes)
-    bounds = unit.bounds(bound * _away(states, ends.goals))
-    return SearchProblem(ends.start, ends.goals, Graph.of(nodes, states.edges), unit.weights(costs), bounds)
+    bounds = unit.bounds(bound * _away(states, terminals.goals))
+    return SearchProblem(
+        terminals.start, terminals.goals, Graph.of(nodes, states.edges), unit.weights(costs), bounds
+    )
 
 
 def _away(states: EdgeStates, nodes: Iterable[int]) -> Floats:
@@ -43,9 +45,9 @@ def _away(states: EdgeStates, nodes: Iterable[int]) -> Floats:
 
 def find_after_all(problem: SearchProblem, states: EdgeStates) -> Found:
     """Ask about every node, then about every edge between free ones, and return the shortest path."""
-    states.ask_nodes(np.arange(len(states.node_states)))
+    states.evaluate_nodes(np.arange(len(states.node_states)))
     open_edges = (states.node_states[states.edges] == FREE).all(axis=1)
-    states.ask_edges(np.flatnonzero(open_edges))
+    states.evaluate_edges(np.flatnonzero(open_edges))
     return best_path(problem, states.edge_states, states.node_states)
 
 
@@ -57,8 +59,8 @@ def find_lazily(problem: SearchProblem, states: EdgeStates) -> Found:
     """
     while True:
         found = best_path(problem, states.edge_states, states.node_states)
-        nodes_free = _all_free(found.nodes, states.node_states, states.ask_nodes)
-        if nodes_free and _all_free(found.edges, states.edge_states, states.ask_edges):
+        nodes_free = _all_free(found.nodes, states.node_states, states.evaluate_nodes)
+        if nodes_free and _all_free(found.edges, states.edge_states, states.evaluate_edges):
             return found
 
 
@@ -66,16 +68,16 @@ FINDERS: dict[str, Finder] = {"full": find_after_all, "lazy": find_lazily}
 """The searches by name; both find the same path."""
 
 
-def _all_free(numbers: Ints32, states: States, ask: Callable[[Ints32], None]) -> bool:
+def _all_free(numbers: Ints32, states: States, evaluate: Callable[[Ints32], None]) -> bool:
     """Ask about those nodes or edges of a path that are not known, until one is blocked; return whether none is."""
     for number in numbers[states[numbers] == UNKNOWN]:
-        ask(number[np.newaxis])
+        evaluate(number[np.newaxis])
         if states[number] == BLOCKED:
             return False
     return True
 
 
-def find_any(ends: Ends, states: EdgeStates) -> Found:
+def find_any(terminals: Terminals, states: EdgeStates) -> Found:
     """Return some path of free edges if there is one, asking about no more edges than the full search.
 
     Two trees grow, from the start and from the goals: both ask about the edges that lead nearest to where the other
@@ -83,9 +85,9 @@ def find_any(ends: Ends, states: EdgeStates) -> Found:
     Edges between two nodes of one tree are not asked about.
     """
     edges = states.edges
-    away = np.stack([_away(states, ends.goals), _away(states, [ends.start])])
+    away = np.stack([_away(states, terminals.goals), _away(states, [terminals.start])])
     tree = np.zeros(len(states.configurations), dtype=np.int8)
-    tree[ends.start], tree[ends.goals] = 1, 2
+    tree[terminals.start], tree[terminals.goals] = 1, 2
     parent_edge = np.full(len(tree), -1, dtype=np.int32)
     asked, most = np.empty(0, dtype=np.int32), _FIRST
     lazy_nodes = bool((states.node_states == UNKNOWN).any())
@@ -101,10 +103,10 @@ def find_any(ends: Ends, states: EdgeStates) -> Found:
             return NOT_FOUND
         most += len(asked) // 4
         if lazy_nodes:
-            states.ask_nodes(takers)
-            states.ask_edges(asked[states.node_states[takers] == FREE])
+            states.evaluate_nodes(takers)
+            states.evaluate_edges(asked[states.node_states[takers] == FREE])
         else:
-            states.ask_edges(asked)
+            states.evaluate_edges(asked)
 
 
 _FIRST = 16
@@ -142,16 +144,16 @@ def _grow(edges, edge_states, node_states, tree, parent_edge, away, asked, most)
         if offer[b] >= 0:
             continue
         offer[b] = e
-        row, far, place = nearest[side], away[side - 1], min(count[side], most)
-        if place == most:
+        row, far, slot = nearest[side], away[side - 1], min(count[side], most)
+        if slot == most:
             # Rows stay sorted, and lose their last.
-            place -= 1
-            if far[row[place]] <= far[b]:
+            slot -= 1
+            if far[row[slot]] <= far[b]:
                 continue
-        while place > 0 and far[row[place - 1]] > far[b]:
-            row[place] = row[place - 1]
-            place -= 1
-        row[place] = b
+        while slot > 0 and far[row[slot - 1]] > far[b]:
+            row[slot] = row[slot - 1]
+            slot -= 1
+        row[slot] = b
         count[side] += 1
     takers = np.concatenate((nearest[1, : min(count[1], most)], nearest[2, : min(count[2], most)]))
     if not (grows[1] and grows[2]):
@@ -177,7 +179,7 @@ def march(problem: SearchProblem, states: EdgeStates) -> Found:
         if node in goals:
             return _path_back(parent_edge, states.edges, node)._replace(reached=int(np.count_nonzero(stage)))
         fresh, offers = _best_offers(node, graph, weights, cost, stage)
-        states.ask_edges(offers)
+        states.evaluate_edges(offers)
         free = states.edge_states[offers] == FREE
         fresh, offers = fresh[free], offers[free]
         # Taken up after all have been asked: none of the fresh ones is an offer to another one of them.
@@ -230,18 +232,18 @@ def _path_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
     return Found(np.array(nodes[::-1], dtype=np.int32), np.array(along[::-1], dtype=np.int32))
 
 
-def confirmed(world: World, path: Floats, doubtful: Bools) -> Bools:
+def confirmed(world: World, path: Floats, uncertain: Bools) -> Bools:
     """Return which motions of a path, (p, dim), pass the world's strict check, (p - 1,); all where it has none.
 
     Only the doubtful ones, (p - 1,), have to be checked: the others passed before.
     """
-    passed = ~doubtful
-    if not isinstance(world, Rechecks):
+    passed = ~uncertain
+    if not isinstance(world, ValidatesPaths):
         return np.ones_like(passed)
     # Runs of motions that follow one another are one call.
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], doubtful, [False]])))
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], uncertain, [False]])))
     for first, last in edges.reshape(-1, 2):
-        passed[first:last] = world.recheck(path[first : last + 1])
+        passed[first:last] = world.validate(path[first : last + 1])
     return passed
 
 

@@ -65,15 +65,15 @@ def _rows(nodes, edges, numbered_from):  # type: ignore[no-untyped-def]
     for v in edges.ravel():
         first[v + 1] += 1
     first = np.cumsum(first)
-    place = first[:-1].copy()
+    slot = first[:-1].copy()
     other = np.empty(first[nodes], dtype=np.int32)
     edge = np.empty(first[nodes], dtype=np.int32)
     for e in range(edges.shape[0]):
         for side in range(2):
             v = edges[e, side]
-            other[place[v]] = edges[e, 1 - side]
-            edge[place[v]] = numbered_from + e
-            place[v] += 1
+            other[slot[v]] = edges[e, 1 - side]
+            edge[slot[v]] = numbered_from + e
+            slot[v] += 1
     return first, other, edge
 
 

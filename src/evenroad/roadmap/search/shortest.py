@@ -65,20 +65,20 @@ class FixedPoint:
 
 
 @dataclass(frozen=True, eq=False)
-class Ends:
+class Terminals:
     """From which node to which goals, (g,)."""
 
     start: int
     goals: Ints
 
     @classmethod
-    def last(cls, nodes: int, goals: int) -> Ends:
+    def last(cls, nodes: int, goals: int) -> Terminals:
         """Return that of so many nodes the last ones are the start and then so many goals."""
         return cls(nodes - goals - 1, np.arange(nodes - goals, nodes))
 
 
 @dataclass(frozen=True, eq=False)
-class SearchProblem(Ends):
+class SearchProblem(Terminals):
     """The ends in a graph: `weights`, (m,), are lengths of its edges, >= 1 (see `FixedPoint`).
 
     `bounds`, (nodes,), are lower ones of the path from each node to the nearest goal.
@@ -98,8 +98,8 @@ def best_path(problem: SearchProblem, edge_states: States, node_states: States) 
     found among unchecked edges turns out to be free, it is the path that a search of the free edges finds.
     """
     graph, weights, bounds = problem.graph, problem.weights, problem.bounds
-    states, ends = (edge_states, node_states), (problem.start, problem.goals)
-    return Found(*_a_star(graph.fixed, graph.links, weights, *states, bounds, *ends))
+    states, endpoints = (edge_states, node_states), (problem.start, problem.goals)
+    return Found(*_a_star(graph.fixed, graph.links, weights, *states, bounds, *endpoints))
 
 
 def shortest_path(
@@ -138,17 +138,17 @@ def _a_star(fixed, links, weights, edge_states, node_states, bounds, start, goal
     # fast as heapq.
     heap = np.empty(nodes, dtype=np.int32)
     keys = np.empty(nodes, dtype=np.int64)
-    place = np.full(nodes, -1, dtype=np.int32)
+    heap_index = np.full(nodes, -1, dtype=np.int32)
     cost[start] = 0
-    heap[0], keys[0], place[start] = start, bounds[start], 0
+    heap[0], keys[0], heap_index[start] = start, bounds[start], 0
     size = 1
     # Ties with the goal are looked at too: one of them may have the lower node.
     while size > 0 and (end < 0 or keys[0] <= cost[end]):
         node = heap[0]
-        place[node] = -1
+        heap_index[node] = -1
         size -= 1
         if size > 0:
-            _sink(heap, keys, place, heap[size], keys[size], size)
+            _sink(heap, keys, heap_index, heap[size], keys[size], size)
         if is_goal[node]:
             if end < 0 or cost[node] < cost[end] or (cost[node] == cost[end] and node < end):
                 end = node
@@ -163,11 +163,11 @@ def _a_star(fixed, links, weights, edge_states, node_states, bounds, start, goal
                 reached = cost[node] + weights[e]
                 if reached < cost[neighbour]:
                     cost[neighbour], parent[neighbour], via[neighbour] = reached, node, e
-                    hole = place[neighbour]
+                    hole = heap_index[neighbour]
                     if hole < 0:
                         hole = size
                         size += 1
-                    _rise(heap, keys, place, neighbour, reached + bounds[neighbour], hole)
+                    _rise(heap, keys, heap_index, neighbour, reached + bounds[neighbour], hole)
                 elif reached == cost[neighbour] and node < parent[neighbour]:
                     parent[neighbour], via[neighbour] = node, e
     if end < 0:
@@ -180,20 +180,20 @@ def _a_star(fixed, links, weights, edge_states, node_states, bounds, start, goal
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _rise(heap, keys, place, node, key, hole):  # type: ignore[no-untyped-def]
+def _rise(heap, keys, heap_index, node, key, hole):  # type: ignore[no-untyped-def]
     """Put a node where it belongs at or above `hole`."""
     while hole > 0:
         above = (hole - 1) // 2
         if keys[above] <= key:
             break
         heap[hole], keys[hole] = heap[above], keys[above]
-        place[heap[hole]] = hole
+        heap_index[heap[hole]] = hole
         hole = above
-    heap[hole], keys[hole], place[node] = node, key, hole
+    heap[hole], keys[hole], heap_index[node] = node, key, hole
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _sink(heap, keys, place, node, key, size):  # type: ignore[no-untyped-def]
+def _sink(heap, keys, heap_index, node, key, size):  # type: ignore[no-untyped-def]
     """Fill the hole at the top of a heap of so many entries with a node, and put it where it belongs."""
     hole = 0
     while 2 * hole + 1 < size:
@@ -203,6 +203,6 @@ def _sink(heap, keys, place, node, key, size):  # type: ignore[no-untyped-def]
         if key <= keys[child]:
             break
         heap[hole], keys[hole] = heap[child], keys[child]
-        place[heap[hole]] = hole
+        heap_index[heap[hole]] = hole
         hole = child
-    heap[hole], keys[hole], place[node] = node, key, hole
+    heap[hole], keys[hole], heap_index[node] = node, key, hole

@@ -38,7 +38,7 @@ def call_at(typing_context: Any, address: Any, arguments: Any) -> Any:
 
 
 @intrinsic
-def room_for(typing_context: Any, count: Any) -> Any:
+def stack_memory(typing_context: Any, count: Any) -> Any:
     """Return the address of so many doubles, a literal, that last as long as the calling function."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:

@@ -7,10 +7,10 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import address, bytes_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.layout import LANES, ROOM, Given, Pair, program
+from evenroad.robot.kernel.layout import LANES, MEMORY, Given, Pair, program
 from evenroad.robot.kernel.motion import enter, wrapped
 from evenroad.robot.kernel.motion_checks import (
-    NO_END,
+    NO_ENDPOINT,
     blocked,
     checks_of,
     motion_free,
@@ -51,7 +51,7 @@ def motions_free(world: LaneWorld, a: Floats, b: Floats, tolerance: float) -> Fl
 def check_configurations(q: int, n: int, dim: int, free: int, given: Given) -> None:
     """Do the work of `configurations_free`, arrays by their addresses."""
     checks = checks_of(*given)
-    rows, verdicts = matrix_at(q, (n, dim)), bytes_at(free, (n,))
+    rows, results = matrix_at(q, (n, dim)), bytes_at(free, (n,))
     for first in range(0, n, LANES):
         count = min(LANES, n - first)
         outside = 0
@@ -69,20 +69,20 @@ def check_configurations(q: int, n: int, dim: int, free: int, given: Given) -> N
                 states[lane] = value if within else low
         outside |= blocked(checks)
         for lane in range(count):
-            verdicts[first + lane] = 1 - ((outside >> lane) & 1)
+            results[first + lane] = 1 - ((outside >> lane) & 1)
 
 
 @program
 def check_motions(motions: Pair, m: int, dim: int, tolerance: float, free: int, given: Given) -> None:
     """Do the work of `motions_free`, arrays by their addresses: where motions begin, and where they end."""
     checks = checks_of(*given)
-    starts, ends = matrix_at(motions[0], (m, dim)), matrix_at(motions[1], (m, dim))
-    inner_ends, verdicts = matrix_at(given[ROOM] + 8 * COUNTS, (2, dim)), bytes_at(free, (m,))
-    start, end = inner_ends[0], inner_ends[1]
+    starts, goals = matrix_at(motions[0], (m, dim)), matrix_at(motions[1], (m, dim))
+    inner_endpoints, results = matrix_at(given[MEMORY] + 8 * COUNTS, (2, dim)), bytes_at(free, (m,))
+    start, end = inner_endpoints[0], inner_endpoints[1]
     for row in range(m):
-        verdicts[row] = (
+        results[row] = (
             enter(starts[row], checks.bounds, start)
-            and enter(ends[row], checks.bounds, end)
-            and motion_free(start, end, NO_END, checks)
+            and enter(goals[row], checks.bounds, end)
+            and motion_free(start, end, NO_ENDPOINT, checks)
             and (tolerance <= 0.0 or motion_proved(start, end, tolerance, _MOST_BATCHES, checks))
         )

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import call_at
-from evenroad.robot.kernel.forward_kinematics import scratch_places
+from evenroad.robot.kernel.forward_kinematics import scratch_offsets
 from evenroad.robot.kernel.lane_memory import column, load_vector, row, store_vector
 from evenroad.robot.kernel.lanes import (
     ONE,
@@ -61,7 +61,7 @@ def _meeting_obstacles(scratch: Singles, ints: Ints, table: Singles, enough: int
     Sixteen obstacles at once are tested against the box around all lanes of a body, if it has many capsules, and then
     of a capsule; those that are near one by one.
     """
-    bodies, capsules = scratch_places(ints)
+    bodies, capsules = scratch_offsets(ints)
     blocks, blocked = ints[at.BLOCKS], 0
     # From the outermost bodies inwards: those meet obstacles most often.
     for body in range(ints[at.BODIES] - 1, ints[at.FIXED_BODIES] - 1, -1):
@@ -174,7 +174,7 @@ def _meeting_themselves(
     scratch: Singles, ints: Ints, table: Singles, blocked: int, enough: int, hulls: int
 ) -> int:
     """Return `blocked` and the mask of lanes in which two bodies of a pair touch."""
-    bodies, capsules = scratch_places(ints)
+    bodies, capsules = scratch_offsets(ints)
     by_hulls = ints[at.BODY_PAIRS] - ints[at.HULL_PAIRS]
     margins = ints[at.HULL_MARGINS] - by_hulls
     for p in range(ints[at.BODY_PAIRS]):
@@ -249,6 +249,6 @@ def _touching(scratch: Singles, a: int, b: int, reach: Any, one_by_ee: Any, one_
 
 
 @inlined
-def _cut(place: Any) -> Any:
-    """Return `place` cut to [-1, 1]."""
-    return larger(smaller(place, ONE), -ONE)
+def _cut(value: Any) -> Any:
+    """Return `value` cut to [-1, 1]."""
+    return larger(smaller(value, ONE), -ONE)

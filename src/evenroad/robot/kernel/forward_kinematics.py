@@ -30,7 +30,7 @@ _S9 = np.float32(2.6000547418e-06)
 
 
 @inlined
-def scratch_places(ints: Ints) -> tuple[int, int]:
+def scratch_offsets(ints: Ints) -> tuple[int, int]:
     """Return where bodies and capsules begin in the scratch memory, after the frames."""
     bodies = FRAME * (ints[at.FRAMES] + 1)
     return bodies, bodies + PLACED * ints[at.BODIES]
@@ -39,12 +39,12 @@ def scratch_places(ints: Ints) -> tuple[int, int]:
 @inner
 def place_fixed(scratch: Singles, ints: Ints, table: Singles) -> None:
     """Write what no joint moves, and the half segments, zeros, of the balls among the capsules."""
-    _, capsules = scratch_places(ints)
+    _, capsules = scratch_offsets(ints)
     for entry in range(12):
         store(scratch, entry * LANES, spread(ONE if entry in (0, 4, 8) else ZERO))
-    for place in range(capsules + HALF, ints[at.SCRATCH], PLACED):
+    for index in range(capsules + HALF, ints[at.SCRATCH], PLACED):
         for axis in range(3):
-            store(scratch, place + axis * LANES, spread(ZERO))
+            store(scratch, index + axis * LANES, spread(ZERO))
     # Not a plain 0: numba compiles a function once more for a literal.
     _place_bodies(scratch, np.int64(0), ints[at.FIXED_BODIES], ints, table)
 
@@ -92,12 +92,12 @@ def _place_frames(scratch: Singles, states: Floats, ints: Ints, table: Singles) 
 @inner
 def _place_bodies(scratch: Singles, first: int, end: int, ints: Ints, table: Singles) -> None:
     """Write bodies, the boxes around those of many capsules, and their capsules."""
-    bodies, capsules = scratch_places(ints)
+    bodies, capsules = scratch_offsets(ints)
     for body in range(first, end):
         frame, first_capsule, end_capsule = row(ints, ints[at.BODY_INTS] + at.BODY_INT_ROW * body, 3)
-        place = FRAME * frame
-        rx, ry = load_vector(scratch, place), load_vector(scratch, place + 3 * LANES)
-        rz, origin = load_vector(scratch, place + 6 * LANES), load_vector(scratch, place + 9 * LANES)
+        index = FRAME * frame
+        rx, ry = load_vector(scratch, index), load_vector(scratch, index + 3 * LANES)
+        rz, origin = load_vector(scratch, index + 6 * LANES), load_vector(scratch, index + 9 * LANES)
         x, y, z, _, a, b, c = row(table, ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * body, 7)
         here, centre, half = bodies + PLACED * body, (x, y, z), (a, b, c)
         store_vector(scratch, here, plus(origin, (dot(rx, centre), dot(ry, centre), dot(rz, centre))))

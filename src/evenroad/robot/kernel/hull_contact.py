@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.addresses import doubles_at, integers_at, room_for
+from evenroad.robot.kernel.addresses import doubles_at, integers_at, stack_memory
 from evenroad.robot.kernel.layout import quick
 
 Floats = npt.NDArray[np.float64]
@@ -28,28 +28,28 @@ _SAME = 1e-9
 
 
 @quick
-def bodies_meet(places: Any, lane: int, lanes: int, margin: float, pair: int, ints: Ints, table: Any) -> bool:
+def bodies_meet(poses: Any, lane: int, lanes: int, margin: float, pair: int, ints: Ints, table: Any) -> bool:
     """Return whether hulls of a pair of bodies come within a margin where a lane, of so many, of frames has them."""
     row = ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * pair
     a = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row]
     b = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row + 1]
-    pose = doubles_at(room_for(12), (12,))
-    write_relative(places, 12 * lanes * ints[a] + lane, 12 * lanes * ints[b] + lane, lanes, pose)
+    pose = doubles_at(stack_memory(12), (12,))
+    write_relative(poses, 12 * lanes * ints[a] + lane, 12 * lanes * ints[b] + lane, lanes, pose)
     return hulls_meet(ints[a + 3], ints[b + 3], pose, margin, ints, table) != APART
 
 
 @quick
-def write_relative(places: Any, a: int, b: int, step: int, pose: Floats) -> None:
+def write_relative(poses: Any, a: int, b: int, step: int, pose: Floats) -> None:
     """Write the pose of one frame in another, whose numbers begin at `a` and `b`, a step apart."""
     for i in range(3):
         pose[9 + i] = 0.0
         for k in range(3):
             pose[3 * i + k] = 0.0
         for axis in range(3):
-            turned = np.float64(places[a + (3 * axis + i) * step])
-            pose[9 + i] += turned * (places[b + (9 + axis) * step] - places[a + (9 + axis) * step])
+            turned = np.float64(poses[a + (3 * axis + i) * step])
+            pose[9 + i] += turned * (poses[b + (9 + axis) * step] - poses[a + (9 + axis) * step])
             for k in range(3):
-                pose[3 * i + k] += turned * places[b + (3 * axis + k) * step]
+                pose[3 * i + k] += turned * poses[b + (3 * axis + k) * step]
 
 
 @quick
@@ -59,7 +59,7 @@ def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints,
     `first` and `second` are the roots of their trees, numbers of nodes; `pose` is that of the second body in the
     frame of the first, (12,): rotation row by row, translation.
     """
-    waiting, way = integers_at(room_for(DEEPEST), (DEEPEST,)), doubles_at(room_for(3), (3,))
+    waiting, direction = integers_at(stack_memory(DEEPEST), (DEEPEST,)), doubles_at(stack_memory(3), (3,))
     waiting[0], count = first << 32 | second, 1
     while count > 0:
         count -= 1
@@ -68,15 +68,15 @@ def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints,
             ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * a,
             ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * b,
         )
-        squared = _write_way(ball, other, pose, way, table)
+        squared = _write_direction(ball, other, pose, direction, table)
         near, next_near = table[ball + 6] + margin, table[other + 6] + margin
         if squared > (near + table[other + 6]) ** 2:
             continue
         # The box of the one and the ball of the other.
         aside, next_aside = 0.0, 0.0
         for axis in range(3):
-            turned = pose[axis] * way[0] + pose[3 + axis] * way[1] + pose[6 + axis] * way[2]
-            aside += max(abs(way[axis]) - table[ball + 3 + axis], 0.0) ** 2
+            turned = pose[axis] * direction[0] + pose[3 + axis] * direction[1] + pose[6 + axis] * direction[2]
+            aside += max(abs(direction[axis]) - table[ball + 3 + axis], 0.0) ** 2
             next_aside += max(abs(turned) - table[other + 3 + axis], 0.0) ** 2
         if aside > next_near * next_near or next_aside > near * near:
             continue
@@ -99,38 +99,42 @@ def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints,
 def leaves_near(a: int, b: int, pose: Floats, margin: float, ints: Ints, table: Any) -> bool:
     """Return whether the hulls of two leaves come within a margin; the pose is that of the second body in the first."""
     ball, other = ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * a, ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * b
-    way = doubles_at(room_for(3), (3,))
-    if _write_way(ball, other, pose, way, table) == 0.0:
+    direction = doubles_at(stack_memory(3), (3,))
+    if _write_direction(ball, other, pose, direction, table) == 0.0:
         return True
     row, other_row = ints[at.NODE_INTS] + at.NODE_INT_ROW * a, ints[at.NODE_INTS] + at.NODE_INT_ROW * b
-    return _hulls_near(row, other_row, way, pose, table[ball + 7] + table[other + 7] + margin, ints, table)
+    return _hulls_near(
+        row, other_row, direction, pose, table[ball + 7] + table[other + 7] + margin, ints, table
+    )
 
 
 @quick
-def _write_way(ball: int, other: int, pose: Floats, way: Floats, table: Any) -> float:
+def _write_direction(ball: int, other: int, pose: Floats, direction: Floats, table: Any) -> float:
     """Write the way from the middle of a node, whose row is at `other`, to that of another; return its square."""
     squared = 0.0
     for axis in range(3):
-        way[axis] = table[ball + axis] - pose[9 + axis]
+        direction[axis] = table[ball + axis] - pose[9 + axis]
         for entry in range(3):
-            way[axis] -= pose[3 * axis + entry] * table[other + entry]
-        squared += way[axis] * way[axis]
+            direction[axis] -= pose[3 * axis + entry] * table[other + entry]
+        squared += direction[axis] * direction[axis]
     return squared
 
 
 @quick
 def _hulls_near(
-    row: int, other_row: int, way: Floats, pose: Floats, margin: float, ints: Ints, table: Any
+    row: int, other_row: int, direction: Floats, pose: Floats, margin: float, ints: Ints, table: Any
 ) -> bool:
     """Return whether two hulls, nodes at these rows, come within `margin`; False only where a plane says so.
 
-    `way` is a direction from the second to the first, not of length 0, that the search begins with.
+    `direction` is a direction from the second to the first, not of length 0, that the search begins with.
     """
     p, p_end, q, q_end = ints[row + 2], ints[row + 3], ints[other_row + 2], ints[other_row + 3]
-    simplex, v = doubles_at(room_for(12), (12,)), doubles_at(room_for(3), (3,))
+    simplex, v = doubles_at(stack_memory(12), (12,)), doubles_at(stack_memory(3), (3,))
     corner, other, size = p, q, 0
-    length = math.sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
-    x, y, z = way[0] / length, way[1] / length, way[2] / length
+    length = math.sqrt(
+        direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]
+    )
+    x, y, z = direction[0] / length, direction[1] / length, direction[2] / length
     for _ in range(_MOST_STEPS):
         least, most = np.inf, -np.inf
         for i in range(p, p_end):
@@ -178,22 +182,22 @@ def _nearest(simplex: Floats, size: int, v: Floats) -> int:
     """
     if size == 4 and _is_inside(simplex):
         return 0
-    weights, place = doubles_at(room_for(4), (4,)), doubles_at(room_for(3), (3,))
+    weights, nearest_point = doubles_at(stack_memory(4), (4,)), doubles_at(stack_memory(3), (3,))
     kept, least = 0, np.inf
     for face in range(1, min(1 << size, 15)):
         if not _projects_into(simplex, face, weights):
             continue
         squared = 0.0
         for axis in range(3):
-            place[axis] = 0.0
+            nearest_point[axis] = 0.0
             for i in range(size):
                 if (face >> i) & 1:
-                    place[axis] += weights[i] * simplex[3 * i + axis]
-            squared += place[axis] * place[axis]
+                    nearest_point[axis] += weights[i] * simplex[3 * i + axis]
+            squared += nearest_point[axis] * nearest_point[axis]
         if squared < least:
             least, kept = squared, face
             for axis in range(3):
-                v[axis] = place[axis]
+                v[axis] = nearest_point[axis]
     count = 0
     for i in range(size):
         if (kept >> i) & 1:

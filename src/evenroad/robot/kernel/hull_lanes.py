@@ -18,7 +18,7 @@ from numba.extending import intrinsic
 from evenroad._njit import cfunc
 from evenroad._shared import once
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, room_for, singles_at
+from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, singles_at, stack_memory
 from evenroad.robot.kernel.hull_contact import DEEPEST, leaves_near, write_relative
 from evenroad.robot.kernel.lane_memory import load_vector, row, store_vector
 from evenroad.robot.kernel.lanes import (
@@ -63,13 +63,13 @@ def meeting_address() -> int:
 
 
 def _meeting(scratch: int, asked: int, enough: int, margin: float, pair: int, ints: int, table: int) -> int:
-    places, floats = singles_at(scratch, (ANY_LENGTH,)), singles_at(table, (ANY_LENGTH,))
-    return bodies_meeting(places, asked, enough, margin, pair, integers_at(ints, (ANY_LENGTH,)), floats)
+    poses, floats = singles_at(scratch, (ANY_LENGTH,)), singles_at(table, (ANY_LENGTH,))
+    return bodies_meeting(poses, asked, enough, margin, pair, integers_at(ints, (ANY_LENGTH,)), floats)
 
 
 @inner
 def bodies_meeting(
-    places: Singles, asked: int, enough: int, margin: float, pair: int, ints: Ints, table: Singles
+    poses: Singles, asked: int, enough: int, margin: float, pair: int, ints: Ints, table: Singles
 ) -> int:
     """Return the mask of those lanes asked for in which hulls of a pair of bodies come within a margin.
 
@@ -80,11 +80,14 @@ def bodies_meeting(
     frame, _, _, first = row(ints, ints[at.BODY_INTS] + at.BODY_INT_ROW * a, 4)
     other_frame, _, _, second = row(ints, ints[at.BODY_INTS] + at.BODY_INT_ROW * b, 4)
     frame, other_frame = at.FRAME * frame, at.FRAME * other_frame
-    pose = singles_at((room_for(104) + 63) // 64 * 64, (at.FRAME,))
+    pose = singles_at((stack_memory(104) + 63) // 64 * 64, (at.FRAME,))
     size = _reach(first, ints, table) + _reach(second, ints, table)
-    near = spread(np.float32(margin)) + _write_relative(places, frame, other_frame, size, pose)
-    waiting, lanes = integers_at(room_for(DEEPEST), (DEEPEST,)), integers_at(room_for(DEEPEST), (DEEPEST,))
-    relative = doubles_at(room_for(12), (12,))
+    near = spread(np.float32(margin)) + _write_relative(poses, frame, other_frame, size, pose)
+    waiting, lanes = (
+        integers_at(stack_memory(DEEPEST), (DEEPEST,)),
+        integers_at(stack_memory(DEEPEST), (DEEPEST,)),
+    )
+    relative = doubles_at(stack_memory(12), (12,))
     waiting[0], lanes[0], count = first << 32 | second, asked, 1
     meeting = 0
     while count > 0:
@@ -107,7 +110,7 @@ def bodies_meeting(
             while left != 0:
                 lane = lowest_bit(left)
                 left &= left - 1
-                write_relative(places, frame + lane, other_frame + lane, LANES, relative)
+                write_relative(poses, frame + lane, other_frame + lane, LANES, relative)
                 if leaves_near(a, b, relative, margin, ints, table):
                     meeting |= 1 << lane
                     if enough == 1:
@@ -131,16 +134,16 @@ def _reach(root: int, ints: Ints, table: Singles) -> Any:
 
 
 @inlined
-def _write_relative(places: Singles, a: int, b: int, size: Any, pose: Singles) -> Any:
+def _write_relative(poses: Singles, a: int, b: int, size: Any, pose: Singles) -> Any:
     """Write the poses of one frame in another, and return by how much distances may be wrong for it.
 
     `size` is how far both bodies reach from their frames' origins.
     """
-    px, py, pz = load_vector(places, a)
-    qx, qy, qz = load_vector(places, a + 3 * LANES)
-    rx, ry, rz = load_vector(places, a + 6 * LANES)
-    apart = minus(load_vector(places, b + 9 * LANES), load_vector(places, a + 9 * LANES))
-    p, q, r = load_vector(places, b), load_vector(places, b + 3 * LANES), load_vector(places, b + 6 * LANES)
+    px, py, pz = load_vector(poses, a)
+    qx, qy, qz = load_vector(poses, a + 3 * LANES)
+    rx, ry, rz = load_vector(poses, a + 6 * LANES)
+    apart = minus(load_vector(poses, b + 9 * LANES), load_vector(poses, a + 9 * LANES))
+    p, q, r = load_vector(poses, b), load_vector(poses, b + 3 * LANES), load_vector(poses, b + 6 * LANES)
     x, y, z = (px, qx, rx), (py, qy, ry), (pz, qz, rz)
     store_vector(pose, 0, plus(plus(times(p, px), times(q, qx)), times(r, rx)))
     store_vector(pose, 3 * LANES, plus(plus(times(p, py), times(q, qy)), times(r, ry)))
@@ -153,8 +156,8 @@ def _write_relative(places: Singles, a: int, b: int, size: Any, pose: Singles) -
 @inlined
 def _boxes_near(pose: Singles, ball: int, other: int, near: Any, table: Singles) -> int:
     """Return the mask of lanes in which no side of the boxes of two nodes, rows of floats, separates them."""
-    way, turned, sizes, other_sizes = _boxes(pose, ball, other, table)
-    x, y, z = minus(absolute(way), sizes)
+    direction, turned, sizes, other_sizes = _boxes(pose, ball, other, table)
+    x, y, z = minus(absolute(direction), sizes)
     u, v, w = minus(absolute(turned), other_sizes)
     return below_zero(larger(larger(larger(x, y), larger(z, u)), larger(v, w)) - near)
 
@@ -167,19 +170,19 @@ def _boxes(pose: Singles, ball: int, other: int, table: Singles) -> Any:
     x, y, z, e, f, g = row(table, ball, 6)
     u, v, w, h, k, m = row(table, other, 6)
     half, other_half = (e, f, g), (h, k, m)
-    way = minus((x, y, z), _seen(pose, (u, v, w)))
+    direction = minus((x, y, z), _seen(pose, (u, v, w)))
     a, b, c = load_vector(pose, 0), load_vector(pose, 3 * LANES), load_vector(pose, 6 * LANES)
     a_size, b_size, c_size = absolute(a), absolute(b), absolute(c)
     sizes = plus((dot(a_size, other_half), dot(b_size, other_half), dot(c_size, other_half)), half)
     across = plus(plus(times(a_size, spread(e)), times(b_size, spread(f))), times(c_size, spread(g)))
-    return way, _turned_back(pose, way), sizes, plus(across, other_half)
+    return direction, _turned_back(pose, direction), sizes, plus(across, other_half)
 
 
 @inlined
-def _seen(pose: Singles, place: Any) -> Any:
+def _seen(pose: Singles, point: Any) -> Any:
     """Return a place in the second body's frame as the first sees it."""
     a, b, c = load_vector(pose, 0), load_vector(pose, 3 * LANES), load_vector(pose, 6 * LANES)
-    return plus(load_vector(pose, 9 * LANES), (dot(a, place), dot(b, place), dot(c, place)))
+    return plus(load_vector(pose, 9 * LANES), (dot(a, point), dot(b, point), dot(c, point)))
 
 
 @inlined
@@ -205,10 +208,10 @@ def _not_apart(pose: Singles, a: int, b: int, near: Any, asked: int, ints: Ints,
     x, y, z = x / u, y / v, z / w
     most = larger(larger(absolute(x), absolute(y)), larger(absolute(z), _LEAST))
     x, y, z = x / most, y / most, z / most
-    way = x * x * x / u, y * y * y / v, z * z * z / w
-    last, meeting = way, 0
+    direction = x * x * x / u, y * y * y / v, z * z * z / w
+    last, meeting = direction, 0
     for step in range(PLANES):
-        along = times(way, spread(ONE) / square_root(larger(dot(way, way), _LEAST)))
+        along = times(direction, spread(ONE) / square_root(larger(dot(direction, direction), _LEAST)))
         back, corner = _farthest(minus(ZERO, along), p, p_end, table)
         on, other_corner = _farthest(_turned_back(pose, along), q, q_end, table)
         asked &= ~below_zero(near + (back + on + dot(along, load_vector(pose, 9 * LANES))))
@@ -216,9 +219,9 @@ def _not_apart(pose: Singles, a: int, b: int, near: Any, asked: int, ints: Ints,
             break
         # On from the way between these corners; then from what of the last two and the way so far is nearest to 0.
         corner = minus(corner, _seen(pose, other_corner))
-        way = corner if step == 0 else _nearest_of_three(way, last, corner)
+        direction = corner if step == 0 else _nearest_of_three(direction, last, corner)
         last = corner
-        touching = asked & below_zero(dot(way, way) - near * near)
+        touching = asked & below_zero(dot(direction, direction) - near * near)
         meeting |= touching
         asked &= ~touching
         if asked == 0:

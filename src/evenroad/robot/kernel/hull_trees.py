@@ -42,7 +42,7 @@ def _tree_over(low: Floats, high: Floats, reach: Floats) -> tuple[Ints, Floats, 
     n = len(low)
     children, boxes = np.full((2 * n - 1, 2), -1), np.empty((2 * n - 1, 7))
     leaf, order = np.zeros(2 * n - 1, dtype=np.int64), np.arange(n)
-    places = low + high
+    centres = low + high
     waiting = [(0, 0, n)]
     made = 1
     while waiting:
@@ -50,18 +50,18 @@ def _tree_over(low: Floats, high: Floats, reach: Floats) -> tuple[Ints, Floats, 
         below = order[first:end]
         lowest, highest = low[below].min(axis=0), high[below].max(axis=0)
         middle, half = 0.5 * (lowest + highest), 0.5 * (highest - lowest) + 1e-12
-        away = (0.5 * places[below] - middle) ** 2
+        away = (0.5 * centres[below] - middle) ** 2
         radius = np.sqrt(away[:, 0] + away[:, 1] + away[:, 2]) + reach[below] + 1e-12
         boxes[node] = *middle, *half, radius.max()
         if end - first == 1:
             leaf[node] = order[first]
             continue
         # The first of the longest sides.
-        order[first:end] = below[np.argsort(places[below, half.argmax()], kind="stable")]
+        order[first:end] = below[np.argsort(centres[below, half.argmax()], kind="stable")]
         halfway = (first + end) // 2
-        for side, ends in enumerate(((first, halfway), (halfway, end))):
+        for side, parts in enumerate(((first, halfway), (halfway, end))):
             children[node, side] = made
-            waiting.append((made, *ends))
+            waiting.append((made, *parts))
             made += 1
     return children, boxes, leaf
 

@@ -17,9 +17,9 @@ from evenroad.robot.kernel.layout import LANES
 _WIDE = ir.VectorType(ir.DoubleType(), LANES)
 
 
-def _pointer(context: Any, builder: Any, kind: Any, array: Any, place: Any, *, number: ir.Type) -> ir.Value:
+def _pointer(context: Any, builder: Any, kind: Any, array: Any, index: Any, *, number: ir.Type) -> ir.Value:
     data = context.make_array(kind)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [place], inbounds=True), number.as_pointer())
+    return builder.bitcast(builder.gep(data, [index], inbounds=True), number.as_pointer())
 
 
 def _loaded(builder: ir.IRBuilder, pointer: ir.Value, axis: int = 0) -> ir.Value:
@@ -30,13 +30,13 @@ def _loaded(builder: ir.IRBuilder, pointer: ir.Value, axis: int = 0) -> ir.Value
 
 
 def _stored(builder: ir.IRBuilder, pointer: ir.Value, value: ir.Value, axis: int = 0) -> None:
-    place = builder.gep(pointer, [ir.Constant(ir.IntType(64), axis)]) if axis else pointer
-    builder.store(value, place).align = 4
+    index = builder.gep(pointer, [ir.Constant(ir.IntType(64), axis)]) if axis else pointer
+    builder.store(value, index).align = 4
 
 
 @intrinsic
-def load(typing_context: Any, array: Any, place: Any) -> Any:
-    """Return the sixteen numbers of a float32 array from `place` on."""
+def load(typing_context: Any, array: Any, index: Any) -> Any:
+    """Return the sixteen numbers of a float32 array from `index` on."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
         return _loaded(builder, _pointer(context, builder, array, *args, number=VECTOR))
@@ -45,8 +45,8 @@ def load(typing_context: Any, array: Any, place: Any) -> Any:
 
 
 @intrinsic
-def store(typing_context: Any, array: Any, place: Any, lanes: Any) -> Any:
-    """Write sixteen numbers to a float32 array from `place` on."""
+def store(typing_context: Any, array: Any, index: Any, lanes: Any) -> Any:
+    """Write sixteen numbers to a float32 array from `index` on."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
         _stored(builder, _pointer(context, builder, array, *args[:2], number=VECTOR), args[2])
@@ -56,8 +56,8 @@ def store(typing_context: Any, array: Any, place: Any, lanes: Any) -> Any:
 
 
 @intrinsic
-def load_vector(typing_context: Any, array: Any, place: Any) -> Any:
-    """Return three times sixteen numbers of a float32 array from `place` on: x, y, z."""
+def load_vector(typing_context: Any, array: Any, index: Any) -> Any:
+    """Return three times sixteen numbers of a float32 array from `index` on: x, y, z."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
         pointer = _pointer(context, builder, array, *args, number=VECTOR)
@@ -69,8 +69,8 @@ def load_vector(typing_context: Any, array: Any, place: Any) -> Any:
 
 
 @intrinsic
-def store_vector(typing_context: Any, array: Any, place: Any, vector: Any) -> Any:
-    """Write a vector to a float32 array from `place` on, as `load_vector` reads it."""
+def store_vector(typing_context: Any, array: Any, index: Any, vector: Any) -> Any:
+    """Write a vector to a float32 array from `index` on, as `load_vector` reads it."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
         pointer = _pointer(context, builder, array, *args[:2], number=VECTOR)
@@ -88,15 +88,15 @@ def _numbers(stride: int) -> Callable[..., Any]:
     """
 
     @intrinsic(prefer_literal=True)
-    def numbers(typing_context: Any, array: Any, place: Any, count: Any) -> Any:
+    def numbers(typing_context: Any, array: Any, index: Any, count: Any) -> Any:
         kind = types.UniTuple(array.dtype, count.literal_value)
 
         def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
             pointer = _pointer(context, builder, array, *args[:2], number=context.get_data_type(array.dtype))
-            places = (
+            fields = (
                 builder.gep(pointer, [ir.Constant(ir.IntType(64), i * stride)]) for i in range(kind.count)
             )
-            return context.make_tuple(builder, kind, [builder.load(each) for each in places])
+            return context.make_tuple(builder, kind, [builder.load(each) for each in fields])
 
         return kind(array, types.intp, count), lower
 
@@ -107,8 +107,8 @@ row, column = _numbers(1), _numbers(LANES)
 
 
 @intrinsic
-def store_along(typing_context: Any, array: Any, place: Any, begin: Any, shares: Any, way: Any) -> Any:
-    """Write ``begin + share * way`` to a float64 array from `place` on, for the sixteen shares of another."""
+def store_along(typing_context: Any, array: Any, index: Any, begin: Any, shares: Any, direction: Any) -> Any:
+    """Write ``begin + share * direction`` to a float64 array from `index` on, for the sixteen shares of another."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
         first = ir.Constant(ir.IntType(64), 0)
@@ -122,7 +122,7 @@ def store_along(typing_context: Any, array: Any, place: Any, begin: Any, shares:
 
 
 @intrinsic
-def load_angles(typing_context: Any, array: Any, place: Any, multiplier: Any, offset: Any, turn: Any) -> Any:
+def load_angles(typing_context: Any, array: Any, index: Any, multiplier: Any, offset: Any, turn: Any) -> Any:
     """Return multiples and more of sixteen numbers of a float64 array, less whole turns, unless a turn is 0.
 
     Computed in double precision: single precision has no digits for a large angle.

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from evenroad._shared import once, once_property
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import address
-from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING, Given
+from evenroad.robot.kernel.layout import LANES, MOST_WAITING, WORKSPACE, Given
 from evenroad.robot.kernel.scene_surfaces import SceneSurfaces
 
 Floats = npt.NDArray[np.float64]
@@ -54,7 +54,7 @@ class LaneWorld:
 
         The memory is this thread's, for the next call of a program only.
         """
-        checks, tables, by_joint, doubles = self.places
+        checks, tables, by_joint, doubles = self.addresses
         array, begin = _memory.array, _memory.address
         if len(array) < doubles + more:
             array = _memory.array = np.empty(doubles + more)
@@ -67,13 +67,13 @@ class LaneWorld:
 
         Bodies beside each other may be nearer for good.
         """
-        if (known := self._wider.get(margin)) is None:
+        if (cached := self._wider.get(margin)) is None:
             # Of several threads one makes them: what another was given must last.
             with _enlarging:
-                if (known := self._wider.get(margin)) is None:
+                if (cached := self._wider.get(margin)) is None:
                     table = self._enlarged(margin)
-                    known = self._wider[margin] = table, address(table)
-        return known[1]
+                    cached = self._wider[margin] = table, address(table)
+        return cached[1]
 
     def _enlarged(self, margin: float) -> npt.NDArray[np.float32]:
         """Return what `wider` tells the address of."""
@@ -92,12 +92,12 @@ class LaneWorld:
         return {}
 
     @once_property
-    def places(self) -> tuple[int, int, int, int]:
+    def addresses(self) -> tuple[int, int, int, int]:
         """Addresses of the checks and of the two arrays, and how much memory a program's checks need."""
         header = self.tables[: at.HEADER].tolist()
         dim, things = header[at.COORDINATES], header[at.CAPSULES] + header[at.PAIRS]
-        places = (LANES + 3) * dim + LANES + things + 2 * MOST_WAITING
-        doubles = DESK + 2 * LANES + places + header[at.SCRATCH] // 2 + len(self.tables)
+        floats = (LANES + 3) * dim + LANES + things + 2 * MOST_WAITING
+        doubles = WORKSPACE + 2 * LANES + floats + header[at.SCRATCH] // 2 + len(self.tables)
         checks = _address_of_checks(header[at.HULL_PAIRS] > 0)
         tables, by_joint = self.at or (address(self.tables), address(self.by_joint))
         if self.surfaces is not None:

@@ -105,7 +105,7 @@ MOST_WAITING = 640
 """Stretches of a motion that may wait for a proof: 16 more at most for each halving, of which single precision bears
 some thirty."""
 
-DESK = 16
+WORKSPACE = 16
 """Length of the desk at the beginning of the memory, see ``motion_checks.checks_of``."""
 
 LEAST_SQUARE = 1e-30
@@ -125,7 +125,7 @@ Given: TypeAlias = tuple[int, float, int, int, int, int]
 """What a program takes beside numbers: an array by its address and length; a shape; and ``LaneWorld.arguments``.
 ``_njit`` knows them by these names."""
 
-ROOM = 5
+MEMORY = 5
 """Where in ``LaneWorld.arguments`` the address of the memory stands that was asked for."""
 
 inner = njit(nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
-from evenroad.robot.kernel.addresses import ANY_LENGTH, bytes_at, integers_at, room_for
+from evenroad.robot.kernel.addresses import ANY_LENGTH, bytes_at, integers_at, stack_memory
 from evenroad.robot.kernel.lane_memory import column, load_vector, row
 from evenroad.robot.kernel.lanes import (
     ONE,
@@ -47,12 +47,12 @@ def near_nodes(header: Ints, cloud: Singles, level: int, node: int, capsule: Any
     x, y, z = minus(minus(absolute(apart), load_vector(cloud, first + HALF)), extents)
     ball, _, _ = load_vector(cloud, first + 2 * HALF)
     near = ball + reach
-    apart = minus(apart, times(along, nearest_place(apart, along, one_by_squared)))
+    apart = minus(apart, times(along, nearest_parameter(apart, along, one_by_squared)))
     return below_zero(larger(larger(x, y), z)) & below_zero(dot(apart, apart) - near * near)
 
 
 @inlined
-def nearest_place(apart: Any, along: Any, one_by_squared: Any) -> Any:
+def nearest_parameter(apart: Any, along: Any, one_by_squared: Any) -> Any:
     """Return where on a segment, from -1 to 1, the places `apart` from its middle are nearest."""
     return larger(smaller(dot(apart, along) * one_by_squared, ONE), -ONE)
 
@@ -66,10 +66,10 @@ def near_triangles(
     Nearest are the segment and a side, or the place of the segment that is nearest to the plane, where it is above the
     triangle: from any other above it, one comes nearer on the way there, or to a side.
     """
-    place = tree.LEAVES + tree.TRIANGLE_ROW * leaf
-    corner = minus(load_vector(table, place), centre)
-    first, second = load_vector(table, place + HALF), load_vector(table, place + 2 * HALF)
-    normal, third = load_vector(table, place + 3 * HALF), minus(second, first)
+    base = tree.LEAVES + tree.TRIANGLE_ROW * leaf
+    corner = minus(load_vector(table, base), centre)
+    first, second = load_vector(table, base + HALF), load_vector(table, base + 2 * HALF)
+    normal, third = load_vector(table, base + 3 * HALF), minus(second, first)
     near = _near_side(corner, first, along, one_by_squared, reach)
     near |= _near_side(corner, second, along, one_by_squared, reach)
     near |= _near_side(plus(corner, first), third, along, one_by_squared, reach)
@@ -89,16 +89,21 @@ def _outside(first: Any, second: Any, third: Any, normal: Any, here: Any, slack:
 
 
 @inner
-def _near_side(start: Any, way: Any, along: Any, one_by_squared: Any, reach: Any) -> int:
+def _near_side(start: Any, direction: Any, along: Any, one_by_squared: Any, reach: Any) -> int:
     """Return which sides are within `reach` of a segment, see ``scalar._squared_distance_of_pair``."""
-    ef, er, fr, ff = dot(way, along), dot(start, along), dot(way, start), dot(way, way)
-    across = minus(way, times(along, ef * one_by_squared))
+    ef, er, fr, ff = (
+        dot(direction, along),
+        dot(start, along),
+        dot(direction, start),
+        dot(direction, direction),
+    )
+    across = minus(direction, times(along, ef * one_by_squared))
     aside = minus(start, times(along, er * one_by_squared))
     share = _part((ZERO - dot(across, aside)) / larger(dot(across, across), _LEAST))
-    place = _cut((er + ef * share) * one_by_squared)
-    share = _part((ef * place - fr) / larger(ff, _LEAST))
-    place = _cut((er + ef * share) * one_by_squared)
-    apart = minus(plus(start, times(way, share)), times(along, place))
+    base = _cut((er + ef * share) * one_by_squared)
+    share = _part((ef * base - fr) / larger(ff, _LEAST))
+    base = _cut((er + ef * share) * one_by_squared)
+    apart = minus(plus(start, times(direction, share)), times(along, base))
     return below_zero(dot(apart, apart) - reach * reach)
 
 
@@ -108,8 +113,8 @@ def _cross(a: Any, b: Any) -> Any:
 
 
 @inlined
-def _cut(place: Any) -> Any:
-    return larger(smaller(place, ONE), -ONE)
+def _cut(base: Any) -> Any:
+    return larger(smaller(base, ONE), -ONE)
 
 
 @inlined
@@ -118,13 +123,13 @@ def _part(share: Any) -> Any:
 
 
 @inner
-def is_inside(scratch: Singles, here: int, place: int, table: Singles) -> bool:
+def is_inside(scratch: Singles, here: int, base: int, table: Singles) -> bool:
     """Return whether the middle of a capsule that touches no triangle is inside of a closed mesh, in one lane.
 
     How often the mesh winds around it is known for the middle of its cell, and changes where the way there crosses a
     triangle.  Where a crossing is too near to a side to tell, it counts as inside.
     """
-    header = integers_at(place, (tree.HEADER,))
+    header = integers_at(base, (tree.HEADER,))
     x, y, z = column(scratch, here, 3)
     low_x, low_y, low_z, one_by_cell, width, depth, height = row(table, tree.LOW, 7)
     u, v, w = x - low_x, y - low_y, z - low_z
@@ -132,9 +137,9 @@ def is_inside(scratch: Singles, here: int, place: int, table: Singles) -> bool:
         return False
     i, j, k = int(u * one_by_cell), int(v * one_by_cell), int(w * one_by_cell)
     number = (i * header[tree.CELLS_Y] + j) * header[tree.CELLS_Z] + k
-    if bytes_at(place + header[tree.GRID], (ANY_LENGTH,))[number] != 0:
+    if bytes_at(base + header[tree.GRID], (ANY_LENGTH,))[number] != 0:
         return False
-    winding = np.int64(bytes_at(place + header[tree.WINDINGS], (ANY_LENGTH,))[number])
+    winding = np.int64(bytes_at(base + header[tree.WINDINGS], (ANY_LENGTH,))[number])
     winding -= 256 * (winding > 127)
     cell = ONE / one_by_cell
     a = _HALF * (low_x + (np.float32(i) + _HALF) * cell - x)
@@ -143,7 +148,7 @@ def is_inside(scratch: Singles, here: int, place: int, table: Singles) -> bool:
     centre, along = (x + a, y + b, z + c), (a, b, c)
     extents = abs(a) + _UNSURE, abs(b) + _UNSURE, abs(c) + _UNSURE
     one_by_squared = ONE / max(a * a + b * b + c * c, _LEAST)
-    waiting = integers_at(room_for(32), (32,))
+    waiting = integers_at(stack_memory(32), (32,))
     top = header[tree.LEVELS] - 1
     level, node = top, 0
     near = near_nodes(header, table, level, node, (centre, along, extents, one_by_squared), _UNSURE)
@@ -178,10 +183,10 @@ def _crossings(table: Singles, leaf: int, begin: Any, along: Any) -> int:
 
     `begin` is where it begins, `along` half of it.  _OPEN where that cannot be told.
     """
-    place = tree.LEAVES + tree.TRIANGLE_ROW * leaf
-    corner = minus(load_vector(table, place), begin)
-    first, second = load_vector(table, place + HALF), load_vector(table, place + 2 * HALF)
-    normal, third = load_vector(table, place + 3 * HALF), minus(second, first)
+    base = tree.LEAVES + tree.TRIANGLE_ROW * leaf
+    corner = minus(load_vector(table, base), begin)
+    first, second = load_vector(table, base + HALF), load_vector(table, base + 2 * HALF)
+    normal, third = load_vector(table, base + 3 * HALF), minus(second, first)
     before = ZERO - dot(normal, corner)
     after = before + dot(normal, along) + dot(normal, along)
     apart = larger(smaller(before, after), ZERO - larger(before, after))

@@ -76,7 +76,7 @@ def canonical(q: Floats, bounds: Floats) -> None:
 
 
 @quick_inlined
-def distance_and_way(a: Floats, b: Floats, bounds: Floats, way: Floats) -> float:
+def distance_and_direction(a: Floats, b: Floats, bounds: Floats, direction: Floats) -> float:
     """Write the short way from `a` to `b` and return its length."""
     squared = 0.0
     for k in range(len(a)):
@@ -84,6 +84,6 @@ def distance_and_way(a: Floats, b: Floats, bounds: Floats, way: Floats) -> float
         period = bounds[2, k]
         if period != np.inf:
             apart -= period * np.rint(apart / period)
-        way[k] = apart
+        direction[k] = apart
         squared += apart * apart
     return np.sqrt(squared)

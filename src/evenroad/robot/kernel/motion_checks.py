@@ -22,7 +22,7 @@ from evenroad.robot.kernel.addresses import (
     matrix_at,
     singles_at,
 )
-from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING, quick, quick_inlined
+from evenroad.robot.kernel.layout import LANES, MOST_WAITING, WORKSPACE, quick, quick_inlined
 from evenroad.robot.kernel.motion import span
 from evenroad.robot.kernel.motion_proof import is_proved
 from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS, Motion, World, are_free, blocked_states
@@ -30,7 +30,7 @@ from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS, Motion, World, 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-NO_END, START, BOTH_ENDS, COARSE, SHORTCUT, PROOF, STATES = range(7)
+NO_ENDPOINT, START, BOTH_ENDPOINTS, COARSE, SHORTCUT, PROOF, STATES = range(7)
 """What a motion is checked for: that its states are free where neither end, its start or both are known to be; that no
 more than sixteen states between free ends are, which before a proof is enough; that they are, and then that it is free
 throughout; that alone.  The last is for no motion but sixteen states."""
@@ -41,7 +41,7 @@ class Checks(NamedTuple):
 
     Attributes
     ----------
-    address, desk : int
+    address, workspace : int
         Of the check of a motion, and of what it reads: addresses and sizes of tables and of memory, see `World`.
     resolution : float
         Largest distance between neighbouring states of a motion.
@@ -54,7 +54,7 @@ class Checks(NamedTuple):
     """
 
     address: int
-    desk: int
+    workspace: int
     resolution: float
     states: Floats
     bounds: Floats
@@ -71,20 +71,32 @@ def checks_of(
     table = tables + 8 * ints[at.INTEGERS]
     bounds = matrix_at(by_joint, (3, dim))
     arms = by_joint + 8 * 3 * dim
-    desk = integers_at(memory, (DESK,))
+    workspace = integers_at(memory, (WORKSPACE,))
     # Lanes begin on a cache line.
-    states = (memory + 8 * DESK + 63) // 64 * 64
+    states = (memory + 8 * WORKSPACE + 63) // 64 * 64
     scratch = states + 8 * LANES * dim
     # Behind the places the check of sixteen keeps where hulls are decided.
     enlarged = scratch + 4 * ints[at.SCRATCH] + 64
     floats = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * ints[at.BLOCKS]
     given, copied = singles_at(table, (floats,)), singles_at(enlarged, (floats,))
-    for place in range(floats):
-        copied[place] = given[place]
+    for index in range(floats):
+        copied[index] = given[index]
     motion = enlarged + (4 * floats + 7) // 8 * 8
-    desk[0], desk[1], desk[2], desk[3], desk[4], desk[5] = check[1], by_joint, states, counts, tables, table
-    desk[6], desk[7], desk[8], desk[9] = arms, arms + 8 * dim * capsules, scratch, enlarged
-    desk[10], desk[11], desk[12], desk[13] = motion, dim, capsules, pairs
+    workspace[0], workspace[1], workspace[2], workspace[3], workspace[4], workspace[5] = (
+        check[1],
+        by_joint,
+        states,
+        counts,
+        tables,
+        table,
+    )
+    workspace[6], workspace[7], workspace[8], workspace[9] = (
+        arms,
+        arms + 8 * dim * capsules,
+        scratch,
+        enlarged,
+    )
+    workspace[10], workspace[11], workspace[12], workspace[13] = motion, dim, capsules, pairs
     call_at(check[1], (scratch, check[2], tables, table, 0))
     return Checks(
         check[0],
@@ -99,14 +111,14 @@ def checks_of(
 @quick_inlined
 def blocked(c: Checks) -> int:
     """Return the mask of the sixteen configurations in ``c.states`` that touch something."""
-    return call_at(c.address, (0, 0, STATES, 0.0, 0, 1.0, c.desk))
+    return call_at(c.address, (0, 0, STATES, 0.0, 0, 1.0, c.workspace))
 
 
 @quick_inlined
 def look_at(table: int, c: Checks) -> int:
     """Let checks of states read the lengths at an address, proofs enlarge them; return where those before were."""
-    desk = integers_at(c.desk, (DESK,))
-    before, desk[5] = desk[5], table
+    workspace = integers_at(c.workspace, (WORKSPACE,))
+    before, workspace[5] = workspace[5], table
     return before
 
 
@@ -118,7 +130,7 @@ def motion_free(a: Floats, b: Floats, known: int, c: Checks) -> bool:
     over the motion; the others follow in stretches of sixteen neighbours, halves before quarters before eighths.
     `known` says which ends are known to be free and not tested again: NO_END, START, BOTH_ENDS or COARSE.
     """
-    return call_at(c.address, (a, b, known, 0.0, 0, c.resolution, c.desk)) != 0
+    return call_at(c.address, (a, b, known, 0.0, 0, c.resolution, c.workspace)) != 0
 
 
 @quick_inlined
@@ -128,13 +140,13 @@ def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: 
     A stretch of which half moves nothing by more than the tolerance is not halved again [m], and after so many batches
     of sixteen stretches the answer is no.
     """
-    return call_at(c.address, (a, b, PROOF, tolerance, most_batches, c.resolution, c.desk)) != 0
+    return call_at(c.address, (a, b, PROOF, tolerance, most_batches, c.resolution, c.workspace)) != 0
 
 
 @quick_inlined
 def motion_is(a: Floats, b: Floats, kind: int, tolerance: float, most_batches: int, c: Checks) -> bool:
     """Return whether the motion from `a` to `b` is what one of the kinds above says, in one call for all of them."""
-    return call_at(c.address, (a, b, kind, tolerance, most_batches, c.resolution, c.desk)) != 0
+    return call_at(c.address, (a, b, kind, tolerance, most_batches, c.resolution, c.workspace)) != 0
 
 
 @once
@@ -145,14 +157,14 @@ def motion_check_address() -> int:
 
 
 def _motion_check(
-    a: int, b: int, kind: int, tolerance: float, most_batches: int, resolution: float, desk: int
+    a: int, b: int, kind: int, tolerance: float, most_batches: int, resolution: float, workspace: int
 ) -> int:
     """Return 1 where a motion is what `kind` says, else 0; for STATES the mask of those that touch something."""
-    d = integers_at(desk, (DESK,))
-    room, dim, capsules, pairs = d[10], d[11], d[12], d[13]
+    d = integers_at(workspace, (WORKSPACE,))
+    buffer, dim, capsules, pairs = d[10], d[11], d[12], d[13]
     # Bytes; eight for each double.
     row = 8 * dim
-    speeds = room + 3 * row + 8 * LANES
+    speeds = buffer + 3 * row + 8 * LANES
     waiting = speeds + 8 * (capsules + pairs)
     w = World(
         d[0],
@@ -170,10 +182,10 @@ def _motion_check(
     if kind == STATES:
         return blocked_states(w, w.table, LANES)
     m = Motion(
-        doubles_at(room, (dim,)),
-        doubles_at(room + row, (dim,)),
-        doubles_at(room + 2 * row, (dim,)),
-        doubles_at(room + 3 * row, (LANES,)),
+        doubles_at(buffer, (dim,)),
+        doubles_at(buffer + row, (dim,)),
+        doubles_at(buffer + 2 * row, (dim,)),
+        doubles_at(buffer + 3 * row, (LANES,)),
         doubles_at(speeds, (capsules,)),
         doubles_at(speeds + 8 * capsules, (pairs,)),
         doubles_at(waiting, (MOST_WAITING,)),
@@ -181,16 +193,16 @@ def _motion_check(
     begin, end = doubles_at(a, (dim,)), doubles_at(b, (dim,))
     for k in range(dim):
         m.start[k], m.end[k] = begin[k], end[k]
-    segments = span(m.start, m.end, w.bounds, resolution, m.way)
+    segments = span(m.start, m.end, w.bounds, resolution, m.direction)
     w.counts[MOTIONS] += 1
     if kind != PROOF:
         exchanged = False
         for k in range(dim):
             exchanged |= m.start[k] != begin[k]
         first_state, last_state = 0, segments
-        if kind >= BOTH_ENDS or (kind == START and not exchanged):
+        if kind >= BOTH_ENDPOINTS or (kind == START and not exchanged):
             first_state = 1
-        if kind >= BOTH_ENDS or (kind == START and exchanged):
+        if kind >= BOTH_ENDPOINTS or (kind == START and exchanged):
             last_state = segments - 1
         free = are_free(m, segments, first_state, last_state, kind >= COARSE, w)
         if kind != SHORTCUT or not free:

@@ -23,7 +23,9 @@ _UP = np.float32(1.0 + 3e-7)
 @quick_inlined
 def is_proved(m: Motion, tolerance: float, most_batches: int, w: World) -> bool:
     """Return whether a motion is proved free throughout; see `motion_proved`."""
-    fastest = max(_write_speeds(w.arms, m.way, m.speeds), _write_speeds(w.pair_arms, m.way, m.pair_speeds))
+    fastest = max(
+        _write_speeds(w.arms, m.direction, m.speeds), _write_speeds(w.pair_arms, m.direction, m.pair_speeds)
+    )
     for lane in range(LANES):
         # The first stretch is the last to be pushed and the first to be looked at.
         m.centres[lane], w.levels[lane] = 1.0 - (lane + 0.5) / LANES, 0
@@ -59,12 +61,12 @@ def is_proved(m: Motion, tolerance: float, most_batches: int, w: World) -> bool:
 
 
 @quick
-def _write_speeds(arms: Floats, way: Floats, speeds: Floats) -> float:
+def _write_speeds(arms: Floats, direction: Floats, speeds: Floats) -> float:
     """Write how far each body can move during the whole motion, and return the largest [m]."""
     for i in range(len(speeds)):
         speeds[i] = 0.0
-    for k in range(len(way)):
-        size = abs(way[k])
+    for k in range(len(direction)):
+        size = abs(direction[k])
         row = arms[k]
         for i in range(len(row)):
             speeds[i] += row[i] * size
@@ -85,14 +87,14 @@ def _enlarge(half: float, m: Motion, w: World) -> None:
     first, size = ints[at.CAPSULE_FLOATS], at.CAPSULE_FLOAT_ROW * len(m.speeds)
     table, rows = given[first : first + size], wide[first : first + size]
     for i in range(len(m.speeds)):
-        place = at.CAPSULE_FLOAT_ROW * i + 6
-        rows[place] = _wider(table[place], half * m.speeds[i])
+        index = at.CAPSULE_FLOAT_ROW * i + 6
+        rows[index] = _wider(table[index], half * m.speeds[i])
     # What is around a body moves no farther than the fastest of its capsules.
     for body in range(ints[at.BODIES]):
         _, first, end = row(ints, ints[at.BODY_INTS] + at.BODY_INT_ROW * body, 3)
         fastest = _largest(m.speeds[first:end])
-        place = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * body + 3
-        table, rows = given[place : place + 4], wide[place : place + 4]
+        index = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * body + 3
+        table, rows = given[index : index + 4], wide[index : index + 4]
         for entry in range(4):
             rows[entry] = _wider(table[entry], half * fastest)
     by_hulls = ints[at.HULL_PAIRS]
@@ -100,9 +102,9 @@ def _enlarge(half: float, m: Motion, w: World) -> None:
     first, size = ints[at.PAIR_FLOATS], at.PAIR_FLOAT_ROW * capsule_pairs
     table, rows = given[first : first + size], wide[first : first + size]
     for pair in range(capsule_pairs):
-        margin, place = half * m.pair_speeds[pair], at.PAIR_FLOAT_ROW * pair
-        rows[place] = _wider(table[place], margin)
-        rows[place + 1] = _wider(table[place + 1], margin)
+        margin, index = half * m.pair_speeds[pair], at.PAIR_FLOAT_ROW * pair
+        rows[index] = _wider(table[index], margin)
+        rows[index + 1] = _wider(table[index + 1], margin)
     first, size = ints[at.BODY_PAIR_FLOATS], ints[at.BODY_PAIRS]
     table, rows = given[first : first + size], wide[first : first + size]
     for p in range(len(rows)):

@@ -58,7 +58,7 @@ class Motion(NamedTuple):
 
     Attributes
     ----------
-    start, end, way : float64 arrays, shape (dim,)
+    start, end, direction : float64 arrays, shape (dim,)
         Its ends in a fixed order, and the way between them.
     share : float64 array, shape (16,)
         Where its states at hand are.
@@ -70,7 +70,7 @@ class Motion(NamedTuple):
 
     start: Floats
     end: Floats
-    way: Floats
+    direction: Floats
     share: Floats
     speeds: Floats
     pair_speeds: Floats
@@ -88,7 +88,7 @@ def blocked_states(w: World, table: Singles, enough: int) -> int:
 def write_states(m: Motion, w: World) -> None:
     """Write the configurations at the sixteen shares of a motion."""
     for k in range(len(m.start)):
-        store_along(w.states, k * LANES, m.start[k], m.share, m.way[k])
+        store_along(w.states, k * LANES, m.start[k], m.share, m.direction[k])
 
 
 @quick_inlined
@@ -98,17 +98,17 @@ def are_free(m: Motion, segments: int, first: int, last: int, sixteen_do: bool, 
     if count <= 0:
         return True
     rest = max(count - LANES, 0)
-    stretches = (rest + LANES - 1) // LANES
+    intervals = (rest + LANES - 1) // LANES
     level = 0
-    while (1 << level) < stretches:
+    while (1 << level) < intervals:
         level += 1
     for lane in range(LANES):
         number = lane * (count - 1) // (LANES - 1) if rest > 0 else min(lane, count - 1)
         m.share[lane] = (first + number) / max(segments, 1)
-    place = -1
+    index = -1
     while True:
         write_states(m, w)
-        if place < 0:
+        if index < 0:
             if last == segments:
                 for k in range(len(m.end)):
                     # Exactly the end, so that a motion is free only where its end is.
@@ -118,19 +118,19 @@ def are_free(m: Motion, segments: int, first: int, last: int, sixteen_do: bool, 
             return False
         if rest == 0 or sixteen_do:
             return True
-        stretch = stretches
-        while stretch >= stretches:
-            place += 1
-            if place == 1 << level:
+        interval = intervals
+        while interval >= intervals:
+            index += 1
+            if index == 1 << level:
                 return True
-            stretch = 0
+            interval = 0
             for bit in range(level):
-                stretch |= ((place >> bit) & 1) << (level - 1 - bit)
+                interval |= ((index >> bit) & 1) << (level - 1 - bit)
         # The r-th of these has number r + 1 + gap, where gap counts the spread ones passed since the first.
         gap = 0
         for lane in range(LANES):
-            rank = min(stretch * LANES + lane, rest - 1)
+            rank = min(interval * LANES + lane, rest - 1)
             while (gap + 1) * (count - 1) // (LANES - 1) - (gap + 1) <= rank:
                 gap += 1
             m.share[lane] = (first + rank + 1 + gap) / segments
-        w.counts[CONFIGURATIONS] += min(LANES, rest - stretch * LANES)
+        w.counts[CONFIGURATIONS] += min(LANES, rest - interval * LANES)

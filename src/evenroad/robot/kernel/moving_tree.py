@@ -134,14 +134,14 @@ def _require_whole_turns(follower: Joint, joint: Joint, multiplier: float) -> No
         )
 
 
-def _moved(place: Placement, joint: Joint, value: float) -> Placement:
+def _moved(placement: Placement, joint: Joint, value: float) -> Placement:
     """Return the place of the child of a joint that keeps one value."""
     if joint.kind == "fixed":
-        return place
+        return placement
     to_z = rotation_from_z(joint.axis)
     if joint.kind == "prismatic":
-        translation = place.translation + place.rotation @ to_z[:, 2] * value
-        return Placement(place.frame, place.rotation, translation)
+        translation = placement.translation + placement.rotation @ to_z[:, 2] * value
+        return Placement(placement.frame, placement.rotation, translation)
     cosine, sine = math.cos(value), math.sin(value)
     about_z = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-    return Placement(place.frame, place.rotation @ to_z @ about_z @ to_z.T, place.translation)
+    return Placement(placement.frame, placement.rotation @ to_z @ about_z @ to_z.T, placement.translation)

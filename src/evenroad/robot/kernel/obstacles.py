@@ -52,11 +52,11 @@ def tested_contacts(capsules: Sequence[PlacedCapsule], links: Sequence[str], sce
         for link, name in scene.allowed:
             if link not in links:
                 raise UnknownName.among("link", link, links)
-            place = next((k for k, each in enumerate(scene.obstacles) if each.name == name), -1)
-            if place < 0:
+            index = next((k for k, each in enumerate(scene.obstacles) if each.name == name), -1)
+            if index < 0:
                 raise UnknownName.among("obstacle", name, [each.name for each in scene.obstacles])
             for other in bodied:
                 if other == link:
-                    tested[place] = 0
-                place += count
+                    tested[index] = 0
+                index += count
     return np.frombuffer(tested, dtype=np.bool_).reshape(len(capsules), count)

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.layout import quick
-from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
+from evenroad.robot.kernel.motion import canonical, distance_and_direction, enter
 from evenroad.robot.kernel.motion_checks import (
-    BOTH_ENDS,
-    NO_END,
+    BOTH_ENDPOINTS,
+    NO_ENDPOINT,
     Checks,
     look_at,
     motion_free,
@@ -26,7 +26,7 @@ Floats = npt.NDArray[np.float64]
 TOLERANCE, PROOF_BATCHES = 1e-6, 1024
 """Limits of the proofs [m]."""
 
-MOST_BENT, PLACES = 2, 8
+MOST_BENT, SAMPLES = 2, 8
 """So many motions of a path are bent, and so many places are tried for the waypoint in the middle of one: beside it as
 far as two states are apart, about half of them do."""
 
@@ -42,7 +42,13 @@ def is_proved(points: Floats, size: int, checks: Checks) -> bool:
 
 @quick
 def proved_or_bent(
-    points: Floats, size: int, wider: int, directions: Floats, there: Floats, way: Floats, checks: Checks
+    points: Floats,
+    size: int,
+    wider: int,
+    directions: Floats,
+    there: Floats,
+    direction: Floats,
+    checks: Checks,
 ) -> int:
     """Return the size of a path whose motions are all proved free, those that were not with a bend; 0 where that fails.
 
@@ -53,7 +59,9 @@ def proved_or_bent(
         if _is_motion_proved(points[i], points[i + 1], checks):
             i += 1
             continue
-        if bent == MOST_BENT or not _is_bent(points[i], points[i + 1], wider, directions, there, way, checks):
+        if bent == MOST_BENT or not _is_bent(
+            points[i], points[i + 1], wider, directions, there, direction, checks
+        ):
             return 0
         for row in range(size - 1, i, -1):
             move(points, row, row + 1)
@@ -65,20 +73,20 @@ def proved_or_bent(
 
 @quick
 def _is_bent(
-    a: Floats, b: Floats, wider: int, directions: Floats, there: Floats, way: Floats, checks: Checks
+    a: Floats, b: Floats, wider: int, directions: Floats, there: Floats, direction: Floats, checks: Checks
 ) -> bool:
     """Write a place beside the middle of a motion by which both ways are proved; return whether there is one."""
-    for number in range(PLACES):
-        distance_and_way(a, b, checks.bounds, way)
+    for number in range(SAMPLES):
+        distance_and_direction(a, b, checks.bounds, direction)
         for k in range(len(a)):
-            there[k] = a[k] + 0.5 * way[k] + checks.resolution * directions[number % len(directions), k]
+            there[k] = a[k] + 0.5 * direction[k] + checks.resolution * directions[number % len(directions), k]
         within = enter(there, checks.bounds, there)
         canonical(there, checks.bounds)
         if not within:
             continue
         # What is free with larger bodies is nearly always proved, and known sooner.
         plain = look_at(wider, checks)
-        free = motion_free(a, there, NO_END, checks) and motion_free(there, b, BOTH_ENDS, checks)
+        free = motion_free(a, there, NO_ENDPOINT, checks) and motion_free(there, b, BOTH_ENDPOINTS, checks)
         look_at(plain, checks)
         if free and _is_motion_proved(a, there, checks) and _is_motion_proved(there, b, checks):
             return True

@@ -31,13 +31,13 @@ class Cover:
 
     Attributes
     ----------
-    places : tuple of floats
+    positions : tuple of floats
         Centres along the segment, from -1 at one end to 1 at the other.
     radius : float
         Of every sphere [m].
     """
 
-    places: tuple[float, ...]
+    positions: tuple[float, ...]
     radius: float
 
 
@@ -67,7 +67,7 @@ class PlacedCapsule:
     cover: Cover
 
     @property
-    def ends(self) -> Floats:
+    def endpoints(self) -> Floats:
         """Ends of the segment, (2, 3)."""
         return np.stack([self.centre - self.half, self.centre + self.half])
 
@@ -80,7 +80,7 @@ class PlacedHulls:
     leaves: tuple[tuple[Floats, float], ...]
 
     @property
-    def ends(self) -> Floats:
+    def endpoints(self) -> Floats:
         """All corners, (n, 3)."""
         return np.concatenate([corners[0] for corners, _ in self.leaves])
 
@@ -90,9 +90,11 @@ Placed = PlacedCapsule | PlacedHulls
 
 def place_hulls(hulls: Sequence[Hull], tree: MovingTree) -> PlacedHulls:
     """Return the hulls of one link in its frame."""
-    place = tree.links[hulls[0].link]
-    leaves = [((h.points @ place.rotation.T + place.translation)[np.newaxis], h.radius) for h in hulls]
-    return PlacedHulls(place.frame, tuple(leaves))
+    placement = tree.links[hulls[0].link]
+    leaves = [
+        ((h.points @ placement.rotation.T + placement.translation)[np.newaxis], h.radius) for h in hulls
+    ]
+    return PlacedHulls(placement.frame, tuple(leaves))
 
 
 def place_capsule(capsule: Capsule, tree: MovingTree) -> PlacedCapsule:
@@ -108,12 +110,12 @@ def place_capsule(capsule: Capsule, tree: MovingTree) -> PlacedCapsule:
         raise InvalidValue(f"a capsule must have finite ends and a radius > 0, got {capsule!r}")
     if max(map(abs, (*capsule.a, *capsule.b, capsule.radius))) > FARTHEST:
         raise InvalidValue(f"a capsule must be no larger than {FARTHEST:g} m, got {capsule!r}")
-    place = tree.links[capsule.link]
-    half = place.rotation @ (0.5 * (b - a))
+    placement = tree.links[capsule.link]
+    half = placement.rotation @ (0.5 * (b - a))
     return PlacedCapsule(
         capsule.link,
-        place.frame,
-        place.rotation @ (0.5 * (a + b)) + place.translation,
+        placement.frame,
+        placement.rotation @ (0.5 * (a + b)) + placement.translation,
         half,
         float(capsule.radius),
         cover_capsule(float(np.linalg.norm(half)), float(capsule.radius)),
@@ -147,8 +149,8 @@ def cover_capsule(half_length: float, radius: float) -> Cover:
         else:
             most = middle
     outermost = (half_length - (most - radius)) / half_length if gaps else 0.0
-    places = [outermost * (2.0 * i / gaps - 1.0) for i in range(gaps + 1)] if gaps else [0.0]
-    return Cover(tuple(places), most)
+    positions = [outermost * (2.0 * i / gaps - 1.0) for i in range(gaps + 1)] if gaps else [0.0]
+    return Cover(tuple(positions), most)
 
 
 def joint_arms(tree: MovingTree, capsules: Sequence[Placed], robot: Robot) -> npt.NDArray[np.float64]:
@@ -162,9 +164,9 @@ def joint_arms(tree: MovingTree, capsules: Sequence[Placed], robot: Robot) -> np
     """
     arms = np.zeros((len(capsules), len(tree.frames)))
     for row, capsule in zip(arms, capsules, strict=True):
-        ends = capsule.ends
-        aside = float(np.hypot(ends[:, 0], ends[:, 1]).max())
-        straight = float(np.linalg.norm(ends, axis=1).max())
+        endpoints = capsule.endpoints
+        aside = float(np.hypot(endpoints[:, 0], endpoints[:, 1]).max())
+        straight = float(np.linalg.norm(endpoints, axis=1).max())
         number = capsule.frame
         while number > 0:
             frame = tree.frames[number - 1]
@@ -208,8 +210,8 @@ def farthest(tree: MovingTree, capsules: Sequence[PlacedCapsule], robot: Robot) 
     """Return a distance from the root's origin beyond which no capsule ever reaches [m]."""
     most = 0.0
     for capsule in capsules:
-        ends = capsule.ends
-        straight = float(np.linalg.norm(ends, axis=1).max()) + 1.2 * capsule.radius
+        endpoints = capsule.endpoints
+        straight = float(np.linalg.norm(endpoints, axis=1).max()) + 1.2 * capsule.radius
         number = capsule.frame
         while number > 0:
             frame = tree.frames[number - 1]
@@ -222,8 +224,8 @@ def farthest(tree: MovingTree, capsules: Sequence[PlacedCapsule], robot: Robot) 
 def largest_value(frame: MovingFrame, robot: Robot) -> float:
     """Return the largest size of a frame's value within the limits of the joint that moves it [rad or m]."""
     joint = next(joint for joint in robot.joints if joint.name == robot.group[frame.coordinate])
-    ends = (-math.pi, math.pi) if joint.kind == "continuous" else (joint.lower, joint.upper)
-    return max(abs(frame.multiplier * value + frame.offset) for value in ends)
+    endpoints = (-math.pi, math.pi) if joint.kind == "continuous" else (joint.lower, joint.upper)
+    return max(abs(frame.multiplier * value + frame.offset) for value in endpoints)
 
 
 def _longest_slide(frame: MovingFrame, robot: Robot) -> float:

@@ -31,7 +31,7 @@ _DAMPING = 0.03
 
 
 @quick
-def _place(q: Floats, ints: Ints, rows: Floats, joints: Floats, tip: Floats) -> None:
+def _place_tip(q: Floats, ints: Ints, rows: Floats, joints: Floats, tip: Floats) -> None:
     """Write axis and origin of each frame of a chain, (k, 6), and where the tip is: rotation, origin (12)."""
     for entry in range(12):
         tip[entry] = 1.0 if entry in (0, 4, 8) else 0.0
@@ -179,20 +179,20 @@ def _step(columns: Floats, used: Floats, error: Floats, damping: float, square: 
 
 @quick
 def _solve(
-    q: Floats, ints: Ints, rows: Floats, low: Floats, high: Floats, goal: Floats, most: int, room: Floats
+    q: Floats, ints: Ints, rows: Floats, low: Floats, high: Floats, goal: Floats, most: int, memory: Floats
 ) -> float:
     """Move a configuration, in place, until its tip is where it is wanted; return what is missing (0: nothing)."""
     dim, frames = len(q), len(ints)
-    tip, error = room[:12], room[12:18]
-    used, step = room[18 : 18 + dim], room[18 + dim : 18 + 2 * dim]
+    tip, error = memory[:12], memory[12:18]
+    used, step = memory[18 : 18 + dim], memory[18 + dim : 18 + 2 * dim]
     at = 18 + 2 * dim
-    square = room[at : at + 42].reshape(7, 6)
-    columns = room[at + 42 : at + 42 + 6 * dim].reshape(dim, 6)
-    joints = room[at + 42 + 6 * dim : at + 42 + 6 * dim + 6 * frames].reshape(frames, 6)
+    square = memory[at : at + 42].reshape(7, 6)
+    columns = memory[at + 42 : at + 42 + 6 * dim].reshape(dim, 6)
+    joints = memory[at + 42 + 6 * dim : at + 42 + 6 * dim + 6 * frames].reshape(frames, 6)
     before = math.inf
     missing = math.inf
     for count in range(most + 1):
-        _place(q, ints, rows, joints, tip)
+        _place_tip(q, ints, rows, joints, tip)
         _error(tip, goal, error)
         missing = _wanted(error, goal)
         if missing == 0.0 or count == most:
@@ -241,12 +241,12 @@ def solve(
     dim = q.shape[1]
     ints, rows = chain
     low, high = bounds
-    room = np.empty(60 + 8 * dim + 6 * len(ints))
+    memory = np.empty(60 + 8 * dim + 6 * len(ints))
     found = 0
     for i in range(len(q)):
         if longest > 0.0 and i > 0:
             q[i] = q[i - 1]
-        missing[i] = _solve(q[i], ints, rows, low, high, goals[min(i, len(goals) - 1)], most, room)
+        missing[i] = _solve(q[i], ints, rows, low, high, goals[min(i, len(goals) - 1)], most, memory)
         if longest > 0.0:
             far = 0.0
             for k in range(dim):
@@ -260,8 +260,8 @@ def solve(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def places(q: Floats, ints: Ints, rows: Floats, out: Floats) -> None:
+def tip_poses(q: Floats, ints: Ints, rows: Floats, out: Floats) -> None:
     """Write where configurations, (n, dim), have the tip: rotation row by row, and origin, (n, 12)."""
     joints = np.empty((len(ints), 6))
     for i in range(len(q)):
-        _place(q[i], ints, rows, joints, out[i])
+        _place_tip(q[i], ints, rows, joints, out[i])

@@ -89,7 +89,7 @@ def enlarged(tables: RobotTables, clearance: float) -> RobotTables:
         replace(
             capsule,
             radius=capsule.radius + clearance,
-            cover=Cover(capsule.cover.places, capsule.cover.radius + clearance),
+            cover=Cover(capsule.cover.positions, capsule.cover.radius + clearance),
         )
         for capsule in tables.capsules
     )
@@ -200,8 +200,8 @@ def _fixed_contact(
     for a, b in fixed:
         for i in of.get(a, ()):
             for k in of.get(b, ()):
-                ends = capsules[i].ends[np.newaxis], capsules[k].ends[np.newaxis]
-                if segment_distance(*ends)[0] >= capsules[i].radius + capsules[k].radius:
+                endpoints = capsules[i].endpoints[np.newaxis], capsules[k].endpoints[np.newaxis]
+                if segment_distance(*endpoints)[0] >= capsules[i].radius + capsules[k].radius:
                     continue
                 trees = hull_trees({link: hulls[link].leaves for link in (a, b) if link in hulls})
                 if len(trees.roots) < 2 or contacts(trees, a, b, here, here)[0, 0] >= 0:
@@ -251,13 +251,13 @@ def _pack(
     rows.begin(layout.CAPSULE_INTS, layout.CAPSULE_FLOATS)
     first = 0
     for capsule in capsules:
-        end = first + len(capsule.cover.places)
+        end = first + len(capsule.cover.positions)
         rows.ints += [capsule.frame, first, end]
         rows.floats += [*capsule.centre, *capsule.half, capsule.cover.radius + padding]
         first = end
     rows.begin(None, layout.SAMPLES)
     for capsule in capsules:
-        rows.floats += capsule.cover.places
+        rows.floats += capsule.cover.positions
     _pack_pairs(rows, tree, capsules, pairs, hulls, padding)
     rows.header[layout.HULL_PAIRS] = by_hulls
     rows.header[layout.PAIRS] += by_hulls
@@ -330,20 +330,20 @@ def _pack_hulls(rows: _Rows, hulls: Mapping[str, PlacedHulls]) -> dict[str, int]
 
 def _ball(capsules: Sequence[PlacedCapsule]) -> tuple[Floats, float]:
     """Return centre and radius of a ball that holds capsules of one frame: around the middle of their box."""
-    ends = [(end, c.radius) for c in capsules for end in (c.centre - c.half, c.centre + c.half)]
-    low = np.min([end - radius for end, radius in ends], axis=0)
-    high = np.max([end + radius for end, radius in ends], axis=0)
+    endpoints = [(end, c.radius) for c in capsules for end in (c.centre - c.half, c.centre + c.half)]
+    low = np.min([end - radius for end, radius in endpoints], axis=0)
+    high = np.max([end + radius for end, radius in endpoints], axis=0)
     centre = 0.5 * (low + high)
-    return centre, max(float(np.linalg.norm(end - centre)) + radius for end, radius in ends)
+    return centre, max(float(np.linalg.norm(end - centre)) + radius for end, radius in endpoints)
 
 
 def _half_extents(capsules: Sequence[PlacedCapsule], centre: Floats) -> Floats:
     """Return the half extents of a box about `centre` that holds the spheres that cover capsules of one frame."""
     return np.max(
         [
-            np.abs(c.centre + place * c.half - centre) + c.cover.radius
+            np.abs(c.centre + position * c.half - centre) + c.cover.radius
             for c in capsules
-            for place in c.cover.places
+            for position in c.cover.positions
         ],
         axis=0,
     )

@@ -26,7 +26,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
 
-DESK, SURFACE_ROW = 4, 3
+WORKSPACE, SURFACE_ROW = 4, 3
 """The desk: how many surfaces there are, where capsules' floats are, a grid around all surfaces or 0, and how many of
 them each capsule is tested against; of each surface its array, the flags of the capsules that are tested against it,
 and the number of its obstacle."""
@@ -66,7 +66,7 @@ class SceneSurfaces:
     capsules: npt.NDArray[np.float32]
     around: Ints | None = None
     _count: Ints = field(init=False, repr=False)
-    _desk: Ints = field(init=False, repr=False)
+    _workspace: Ints = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         # At once, since worlds of several threads may share these surfaces.
@@ -74,7 +74,7 @@ class SceneSurfaces:
         rows = [len(self.arrays), address(self.capsules), around, address(count)]
         for array, flags, number in zip(self.arrays, self.tested, self.numbers, strict=True):
             rows += [address(array), address(flags), number]
-        self.__dict__.update(_count=count, _desk=np.array(rows, dtype=np.int64))
+        self.__dict__.update(_count=count, _workspace=np.array(rows, dtype=np.int64))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made: it finds out for itself where its arrays are."""
@@ -83,7 +83,7 @@ class SceneSurfaces:
     def added_to(self, ints: Ints, check: int) -> Ints:
         """Return tables of integers that name the surfaces, and the address of the check against them."""
         added = ints.copy()
-        added[[at.SURFACES, at.SURFACE_CHECK]] = address(self._desk), check
+        added[[at.SURFACES, at.SURFACE_CHECK]] = address(self._workspace), check
         # As the tables: code would be compiled anew for arrays that can be written to.
         added.setflags(write=False)
         return added
@@ -109,16 +109,16 @@ def _surfaces(
 ) -> SceneSurfaces | None:
     """Return these bodies as `scene_surfaces` does; kept, since the next world often has them, too."""
     arrays = [surface_of(body, robot.reach) for body in bodies]
-    near = [place for place, array in enumerate(arrays) if array is not None]
+    near = [index for index, array in enumerate(arrays) if array is not None]
     if not near:
         return None
     flags = np.frombuffer(tested, dtype=np.bool_).reshape(-1, len(bodies))[:, near]
     return SceneSurfaces(
         tuple(array for array in arrays if array is not None),
-        tuple(numbers[place] for place in near),
+        tuple(numbers[index] for index in near),
         np.ascontiguousarray(flags.T, dtype=np.int64),
         _capsule_rows(robot.capsules),
-        _around(tuple(bodies[place] for place in near), robot.reach) if len(near) >= MANY else None,
+        _around(tuple(bodies[index] for index in near), robot.reach) if len(near) >= MANY else None,
     )
 
 

@@ -63,7 +63,7 @@ def arm_tables(robot: RobotTables, obstacles: Floats, tested: Bools) -> tuple[Ar
     `tested` says which capsules are tested against which obstacles, (capsules, n).  The numbers are the address of
     `lanes`, and the first obstacle that is too far or too large for single precision, or -1.
     """
-    ints, floats, lanes, added, kept, capsule, obstacle, place, too_far = _pack(
+    ints, floats, lanes, added, kept, capsule, obstacle, index, too_far = _pack(
         robot.ints, robot.floats, robot.singles, robot.reach, obstacles, tested
     )
     for array in (ints, floats, lanes, kept):
@@ -71,7 +71,7 @@ def arm_tables(robot: RobotTables, obstacles: Floats, tested: Bools) -> tuple[Ar
     # Once for what is added, once more for what rounding may add to that.
     margin = 2.0 * (PADDING * max(1.0, robot.reach) + added)
     contact = None if capsule < 0 else (capsule, obstacle)
-    return ArmTables(ints, floats, lanes, margin, kept, contact), place, too_far
+    return ArmTables(ints, floats, lanes, margin, kept, contact), index, too_far
 
 
 @njit(cache=True, nogil=True, no_cfunc_wrapper=True, error_model="numpy")
@@ -96,10 +96,10 @@ def _pack(
     floats = np.empty(block_floats + at.BLOCK_FLOAT_ROW * blocks)
     lanes = np.zeros(length + (len(floats) + 1) // 2, dtype=np.int64)
     ints, singles = lanes[:length], lanes[length:].view(np.float32)
-    for place in range(first_int):
-        ints[place] = robot_ints[place]
-    for place in range(first_float):
-        floats[place], singles[place] = robot_floats[place], robot_singles[place]
+    for index in range(first_int):
+        ints[index] = robot_ints[index]
+    for index in range(first_float):
+        floats[index], singles[index] = robot_floats[index], robot_singles[index]
     ints[at.OBSTACLES], ints[at.BLOCKS] = count, blocks
     ints[at.OBSTACLE_INTS], ints[at.TESTED] = first_int, first_int + count
     ints[at.OBSTACLE_FLOATS], ints[at.BLOCK_FLOATS] = first_float, block_floats
@@ -228,16 +228,16 @@ def _fixed_contact(ints: Ints, floats: Floats, kept: Ints, tested: Bools) -> tup
         for k in range(ints[at.OBSTACLES]):
             if not tested[i, kept[k]]:
                 continue
-            form, place = (
+            form, index = (
                 ints[ints[at.OBSTACLE_INTS] + k],
                 ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * k,
             )
-            near = floats[data + 6] + floats[place + 15]
+            near = floats[data + 6] + floats[index + 15]
             for sample in range(ints[row + 1], ints[row + 2]):
                 along = floats[ints[at.SAMPLES] + sample]
                 x = floats[data] + along * floats[data + 3]
                 y = floats[data + 1] + along * floats[data + 4]
                 z = floats[data + 2] + along * floats[data + 5]
-                if squared_distance_to_obstacle(x, y, z, form, floats, place) < near * near:
+                if squared_distance_to_obstacle(x, y, z, form, floats, index) < near * near:
                     return i, kept[k]
     return -1, -1

@@ -38,10 +38,10 @@ def lanes_failure() -> str | None:
         # Whatever goes wrong in compiling for a machine we have not seen, there is the other way.
         first_line = next(iter(str(error).strip().splitlines()), "")
         return f"{type(error).__name__}: {first_line}"
-    return None if np.array_equal(free, expected_verdicts()) else "verdicts of a self-test are wrong"
+    return None if np.array_equal(free, expected_results()) else "verdicts of a self-test are wrong"
 
 
-def expected_verdicts() -> npt.NDArray[np.bool_]:
+def expected_results() -> npt.NDArray[np.bool_]:
     """Return which rows of `small_batch` are free."""
     return np.array([_FREE >> i & 1 for i in range(len(small_batch()))], dtype=np.bool_)
 

@@ -47,7 +47,7 @@ def surface_around(arrays: Sequence[Ints]) -> Ints:
     table = grid.view(np.float32)[2 * tree.HEADER :]
     table[tree.LOW : tree.LOW + 3], table[tree.ONE_BY_CELL] = low, 1.0 / cell
     table[tree.SIZE : tree.SIZE + 3] = np.array(counts) * cell * _LESS
-    table[tree.STEP], table[tree.TOLD] = cell / STEPS * (1.0 - 1e-6), _NEVER
+    table[tree.STEP], table[tree.EXCESS] = cell / STEPS * (1.0 - 1e-6), _NEVER
     table[tree.RADIUS] = max(float(each[tree.RADIUS]) for each in floats)
     steps = np.clip(away * np.float32(STEPS / cell), 0.0, 255.0)
     grid.view(np.uint8)[first : first + away.size] = steps.astype(np.uint8).ravel()
@@ -55,7 +55,9 @@ def surface_around(arrays: Sequence[Ints]) -> Ints:
     return grid
 
 
-def _squared(array: Ints, table: Singles, low: Floats, size: Floats, places: Sequence[Floats]) -> Singles:
+def _squared(
+    array: Ints, table: Singles, low: Floats, size: Floats, coordinates: Sequence[Floats]
+) -> Singles:
     """Return the square of what a surface is at least away from places, (x, y, z) of them along each axis [m^2].
 
     Outside of its grid the nearest place inside is asked, as ``surface_contact`` does.
@@ -63,7 +65,7 @@ def _squared(array: Ints, table: Singles, low: Floats, size: Floats, places: Seq
     counts = array[[tree.CELLS_X, tree.CELLS_Y, tree.CELLS_Z]].tolist()
     outside, cells = [], []
     for axis in range(3):
-        within = places[axis] - low[axis]
+        within = coordinates[axis] - low[axis]
         inside = np.clip(within, 0.0, size[axis])
         outside.append(((within - inside) ** 2).astype(np.float32))
         cells.append(np.minimum((inside * float(table[tree.ONE_BY_CELL])).astype(np.int64), counts[axis] - 1))

@@ -19,8 +19,8 @@ from evenroad._njit import cfunc
 from evenroad._shared import once
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
-from evenroad.robot.kernel.addresses import ANY_LENGTH, integers_at, room_for, singles_at
-from evenroad.robot.kernel.forward_kinematics import scratch_places
+from evenroad.robot.kernel.addresses import ANY_LENGTH, integers_at, singles_at, stack_memory
+from evenroad.robot.kernel.forward_kinematics import scratch_offsets
 from evenroad.robot.kernel.lane_memory import column, load_vector, row
 from evenroad.robot.kernel.lanes import (
     LANES_TYPE,
@@ -37,13 +37,13 @@ from evenroad.robot.kernel.lanes import (
     times,
 )
 from evenroad.robot.kernel.layout import HALF, LANES, PLACED, inlined, inner
-from evenroad.robot.kernel.mesh_contact import is_inside, near_nodes, near_triangles, nearest_place
-from evenroad.robot.kernel.scene_surfaces import CAPSULE_ROW, DESK, SURFACE_ROW
+from evenroad.robot.kernel.mesh_contact import is_inside, near_nodes, near_triangles, nearest_parameter
+from evenroad.robot.kernel.scene_surfaces import CAPSULE_ROW, SURFACE_ROW, WORKSPACE
 
 ALL = (1 << LANES) - 1
 FEW = 2
 """Of capsules that at most so many spheres cover the grid is not asked as a whole: it would cost as much."""
-_TOLD_APART = np.float32(254.5)
+_LARGEST_EXACT = np.float32(254.5)
 _LEAST = np.float32(at.LEAST_SQUARE)
 
 Ints = npt.NDArray[np.int64]
@@ -75,10 +75,10 @@ def _meeting_surfaces(scratch: int, ints: int, table: int, blocked: int, enough:
 @inner
 def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int, enough: int) -> int:
     """Return the mask of lanes, of those that are not blocked, in which a capsule touches a surface or is inside."""
-    _, capsules = scratch_places(ints)
-    desk, meeting = integers_at(ints[at.SURFACES], (ANY_LENGTH,)), 0
-    surfaces, of_capsules = desk[0], singles_at(desk[1], (ANY_LENGTH,))
-    around, counts = desk[2], integers_at(desk[3], (ANY_LENGTH,))
+    _, capsules = scratch_offsets(ints)
+    workspace, meeting = integers_at(ints[at.SURFACES], (ANY_LENGTH,)), 0
+    surfaces, of_capsules = workspace[0], singles_at(workspace[1], (ANY_LENGTH,))
+    around, counts = workspace[2], integers_at(workspace[3], (ANY_LENGTH,))
     # From the outermost capsules inwards: those touch most often.
     for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
         if counts[i] == 0:
@@ -88,18 +88,21 @@ def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int,
         (covering,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
         # First, for all of them, the grid around several.
         for number in range(-1 if around != 0 and counts[i] > 1 else 0, surfaces):
-            place = desk[DESK + SURFACE_ROW * number] if number >= 0 else around
-            if number >= 0 and integers_at(desk[DESK + SURFACE_ROW * number + 1], (ANY_LENGTH,))[i] == 0:
+            base = workspace[WORKSPACE + SURFACE_ROW * number] if number >= 0 else around
+            if (
+                number >= 0
+                and integers_at(workspace[WORKSPACE + SURFACE_ROW * number + 1], (ANY_LENGTH,))[i] == 0
+            ):
                 continue
-            cloud = singles_at(place + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
-            windings = integers_at(place, (tree.HEADER,))[tree.WINDINGS]
+            cloud = singles_at(base + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
+            windings = integers_at(base, (tree.HEADER,))[tree.WINDINGS]
             reach = covering - slack + cloud[tree.RADIUS]
             if surfaces > 1 and number >= 0 and _beside(scratch, here, half + reach, cloud) & open_to == 0:
                 continue
             samples = row(ints, ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * i, 3)[1:]
             wide = covering + cloud[tree.RADIUS]
             lengths = half, wide, wide - slack
-            near, sure = _near_and_touching(scratch, here, samples, lengths, place, cloud, ints, table)
+            near, sure = _near_and_touching(scratch, here, samples, lengths, base, cloud, ints, table)
             if number < 0:
                 open_to = near & ~(blocked | meeting)
                 if open_to == 0:
@@ -110,14 +113,14 @@ def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int,
             if meeting != 0 and enough == 1:
                 return meeting
             alone = near & (near - 1) == 0
-            close = near != 0 and (alone or _reaches(scratch, here, reach, place, cloud))
+            close = near != 0 and (alone or _reaches(scratch, here, reach, base, cloud))
             if not close and windings == 0:
                 continue
             while near != 0:
                 lane = lowest_bit(near)
                 near &= near - 1
-                if (close and _touches(scratch, here + lane, one_by_squared, reach, place, cloud)) or (
-                    windings != 0 and is_inside(scratch, here + lane, place, cloud)
+                if (close and _touches(scratch, here + lane, one_by_squared, reach, base, cloud)) or (
+                    windings != 0 and is_inside(scratch, here + lane, base, cloud)
                 ):
                     meeting |= 1 << lane
                     if enough == 1:
@@ -133,7 +136,7 @@ def _near_and_touching(
     here: int,
     samples: tuple[int, int],
     lengths: tuple[Any, Any, Any],
-    place: int,
+    base: int,
     cloud: Singles,
     ints: Ints,
     table: Singles,
@@ -147,33 +150,33 @@ def _near_and_touching(
     half, covering, reach = lengths
     centre, along = load_vector(scratch, here), load_vector(scratch, here + HALF)
     if end - first > FEW:
-        near, _ = _asked(centre, half + reach, reach, place, cloud)
+        near, _ = _asked(centre, half + reach, reach, base, cloud)
         if near == 0:
             return 0, 0
     near, sure = 0, 0
     for sample in range(first, end):
         (share,) = row(table, ints[at.SAMPLES] + sample, 1)
-        near_here, sure_here = _asked(plus(centre, times(along, share)), covering, reach, place, cloud)
+        near_here, sure_here = _asked(plus(centre, times(along, share)), covering, reach, base, cloud)
         near |= near_here
         sure |= sure_here
     return near, sure
 
 
 @inner
-def _asked(centre: Any, near: Any, touching: Any, place: int, cloud: Singles) -> tuple[int, int]:
+def _asked(centre: Any, near: Any, touching: Any, base: int, cloud: Singles) -> tuple[int, int]:
     """Return the masks of lanes in which a point may be within `near` of a place, and is within `touching` for sure.
 
     Outside of the grid it is asked for the nearest place inside: what lies beyond that is farther by at least the third
     side of a triangle with an obtuse angle.
     """
-    header = integers_at(place, (tree.HEADER,))
+    header = integers_at(base, (tree.HEADER,))
     x, y, z, one_by_cell, width, depth, height, step = row(cloud, tree.LOW, 8)
     u, v, w = minus(centre, (x, y, z))
     a, b, c = _cut(u, width), _cut(v, depth), _cut(w, height)
     u, v, w = u - a, v - b, w - c
     away = (
         bytes_of_cells(
-            place + header[tree.GRID],
+            base + header[tree.GRID],
             a * one_by_cell,
             b * one_by_cell,
             c * one_by_cell,
@@ -184,7 +187,7 @@ def _asked(centre: Any, near: Any, touching: Any, place: int, cloud: Singles) ->
     )
     outside = u * u + v * v + w * w
     # Of the largest byte only a lower bound is known.
-    sure = below_zero(larger(away + cloud[tree.TOLD] - touching, away - step * _TOLD_APART))
+    sure = below_zero(larger(away + cloud[tree.EXCESS] - touching, away - step * _LARGEST_EXACT))
     sure &= below_zero(outside - _LEAST)
     return below_zero(outside + away * away - near * near), sure
 
@@ -199,17 +202,17 @@ def _beside(scratch: Singles, here: int, near: Any, cloud: Singles) -> int:
 
 
 @inlined
-def _cut(place: Any, most: Any) -> Any:
-    return larger(smaller(place, most), ZERO)
+def _cut(base: Any, most: Any) -> Any:
+    return larger(smaller(base, most), ZERO)
 
 
 @inner
-def _reaches(scratch: Singles, here: int, reach: Any, place: int, cloud: Singles) -> bool:
+def _reaches(scratch: Singles, here: int, reach: Any, base: int, cloud: Singles) -> bool:
     """Return whether the box around a capsule in all lanes meets that around a leaf."""
-    header = integers_at(place, (tree.HEADER,))
+    header = integers_at(base, (tree.HEADER,))
     extents = plus(absolute(load_vector(scratch, here + HALF)), reach)
     centre, half = box_of_lanes(load_vector(scratch, here), extents)
-    waiting = integers_at(room_for(32), (32,))
+    waiting = integers_at(stack_memory(32), (32,))
     top = header[tree.LEVELS] - 1
     level, node, fresh, inside = top, 0, True, 0
     while True:
@@ -233,14 +236,12 @@ def _reaches(scratch: Singles, here: int, reach: Any, place: int, cloud: Singles
 
 
 @inner
-def _touches(
-    scratch: Singles, here: int, one_by_squared: Any, reach: Any, place: int, cloud: Singles
-) -> bool:
+def _touches(scratch: Singles, here: int, one_by_squared: Any, reach: Any, base: int, cloud: Singles) -> bool:
     """Return whether a point or triangle is within `reach` of the segment of the capsule at a place, in one lane."""
-    header = integers_at(place, (tree.HEADER,))
+    header = integers_at(base, (tree.HEADER,))
     x, y, z, i, j, k = column(scratch, here, 6)
     centre, along, extents = (x, y, z), (i, j, k), (abs(i) + reach, abs(j) + reach, abs(k) + reach)
-    waiting = integers_at(room_for(32), (32,))
+    waiting = integers_at(stack_memory(32), (32,))
     top = header[tree.LEVELS] - 1
     level, node = top, 0
     inside = near_nodes(header, cloud, level, node, (centre, along, extents, one_by_squared), reach)
@@ -259,7 +260,7 @@ def _touches(
             continue
         if level == 0:
             apart = minus(load_vector(cloud, tree.LEAVES + tree.POINT_ROW * child), centre)
-            apart = minus(apart, times(along, nearest_place(apart, along, one_by_squared)))
+            apart = minus(apart, times(along, nearest_parameter(apart, along, one_by_squared)))
             if below_zero(dot(apart, apart) - reach * reach) != 0:
                 return True
             continue
@@ -291,8 +292,8 @@ def bytes_of_cells(
         grid = builder.inttoptr(args[0], byte.as_pointer())
         found = ir.Constant(ir.VectorType(byte, LANES), ir.Undefined)
         for lane in range(LANES):
-            place = builder.zext(builder.extract_element(number, word(lane)), ir.IntType(64))
-            found = builder.insert_element(found, builder.load(builder.gep(grid, [place])), word(lane))
+            base = builder.zext(builder.extract_element(number, word(lane)), ir.IntType(64))
+            found = builder.insert_element(found, builder.load(builder.gep(grid, [base])), word(lane))
         return builder.uitofp(found, ir.VectorType(ir.FloatType(), LANES))
 
     return LANES_TYPE(types.int64, LANES_TYPE, LANES_TYPE, LANES_TYPE, types.int64, types.int64), lower

@@ -55,7 +55,7 @@ class Grid:
         return _distances(self.taken)
 
     @property
-    def told(self) -> float:
+    def excess(self) -> float:
         """By how much a place of a cell is farther from the surface at most than its distance says [m]."""
         return self.cell * (1.0 / STEPS + 2.0 * math.sqrt(3.0)) * (1.0 + 1e-5)
 
@@ -64,8 +64,8 @@ def grid_of_points(points: Floats) -> Grid:
     """Return the grid of points, (n, 3)."""
     low, cell, counts = frame(points.min(axis=0), points.max(axis=0))
     taken = np.zeros(counts, dtype=np.bool_)
-    places = np.minimum(((points - low) * (1.0 / cell)).astype(np.int64), np.array(counts) - 1)
-    taken[tuple(places.T)] = True
+    indices = np.minimum(((points - low) * (1.0 / cell)).astype(np.int64), np.array(counts) - 1)
+    taken[tuple(indices.T)] = True
     return Grid(low, cell, taken)
 
 
@@ -101,7 +101,7 @@ def frame(low: Floats, high: Floats, cells: int = CELLS) -> tuple[Floats, float,
 def _take(triangles: Floats, low: Floats, cell: float, taken: Bools) -> None:
     """Mark the cells that triangles are in: of each, cut into slabs and these into columns, from end to end."""
     shape = np.array(taken.shape)
-    whole, slab, column, room = np.empty((3, 3)), np.empty((16, 3)), np.empty((16, 3)), np.empty((16, 3))
+    whole, slab, column, buffer = np.empty((3, 3)), np.empty((16, 3)), np.empty((16, 3)), np.empty((16, 3))
     first, last, number = (
         np.empty(3, dtype=np.int64),
         np.empty(3, dtype=np.int64),
@@ -124,9 +124,9 @@ def _take(triangles: Floats, low: Floats, cell: float, taken: Bools) -> None:
         # Columns run along the longest axis: so they are few.
         one, other = (longest + 1) % 3, (longest + 2) % 3
         for a in range(first[one], last[one] + 1):
-            corners = _within(whole, 3, one, a, slab, room)
+            corners = _within(whole, 3, one, a, slab, buffer)
             for b in range(first[other], last[other] + 1):
-                count = _within(slab, corners, other, b, column, room)
+                count = _within(slab, corners, other, b, column, buffer)
                 least, most = np.inf, -np.inf
                 for corner in range(count):
                     least, most = min(least, column[corner, longest]), max(most, column[corner, longest])
@@ -139,10 +139,10 @@ def _take(triangles: Floats, low: Floats, cell: float, taken: Bools) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _within(corners: Floats, count: int, axis: int, number: int, into: Floats, room: Floats) -> int:
+def _within(corners: Floats, count: int, axis: int, number: int, into: Floats, buffer: Floats) -> int:
     """Write the corners of a convex polygon that is cut off below and above a row of cells, and return how many."""
     return _cut(
-        room, _cut(corners, count, axis, number - _SURE, 1.0, room), axis, number + 1 + _SURE, -1.0, into
+        buffer, _cut(corners, count, axis, number - _SURE, 1.0, buffer), axis, number + 1 + _SURE, -1.0, into
     )
 
 
@@ -191,8 +191,8 @@ def _wind(triangles: Floats, turned: bool, low: Floats, cell: float, windings: n
                 a, b, c = _side(t[1], t[2], p, q), _side(t[2], t[0], p, q), _side(t[0], t[1], p, q)
                 if not ((a > 0.0) == (b > 0.0) and (b > 0.0) == (c > 0.0)):
                     continue
-                place = (a * t[0, 0] + b * t[1, 0] + c * t[2, 0]) / (a + b + c)
-                behind = math.ceil(min(max((place - low[0]) / cell - 0.5, 0.0), float(nx)))
+                position = (a * t[0, 0] + b * t[1, 0] + c * t[2, 0]) / (a + b + c)
+                behind = math.ceil(min(max((position - low[0]) / cell - 0.5, 0.0), float(nx)))
                 crossings[y, z, behind] += 1 if a > 0.0 or not turned else -1
     for y in range(ny):
         for z in range(nz):

@@ -27,7 +27,7 @@ leaves to that of the one root."""
 
 HEADER, BYTES_OF_HEADER = 16, 128
 
-LOW, ONE_BY_CELL, SIZE, STEP, RADIUS, TOLD, LEAVES = 0, 3, 4, 7, 8, 9, 16
+LOW, ONE_BY_CELL, SIZE, STEP, RADIUS, EXCESS, LEAVES = 0, 3, 4, 7, 8, 9, 16
 """Floats: lower corner of the grid (3), one over the side of a cell, extents of the grid (3), what a byte counts in,
 radius of the points, by how much a distance is larger at most than a byte says; rows of leaves."""
 
@@ -68,13 +68,13 @@ def surface_array(corners: Floats, radius: float, grid: Grid) -> Ints:
     array[FIRST_NODES : FIRST_NODES + len(levels)] = starts
     table = array.view(np.float32)[2 * HEADER : 2 * HEADER + floats]
     table[LOW : LOW + 3], table[ONE_BY_CELL] = grid.low, 1.0 / grid.cell
-    table[STEP], table[RADIUS], table[TOLD] = grid.cell / STEPS * (1.0 - 1e-6), radius, grid.told
+    table[STEP], table[RADIUS], table[EXCESS] = grid.cell / STEPS * (1.0 - 1e-6), radius, grid.excess
     # A place on the upper side is in the last cell, not beyond it.
     table[SIZE : SIZE + 3] = np.array(grid.taken.shape) * grid.cell * (1.0 - 1e-5)
-    places = array.view(np.uint8)[first:]
-    places[:cells] = grid.distances.ravel()
+    centres = array.view(np.uint8)[first:]
+    centres[:cells] = grid.distances.ravel()
     if grid.windings is not None:
-        places[cells : 2 * cells] = grid.windings.ravel().view(np.uint8)
+        centres[cells : 2 * cells] = grid.windings.ravel().view(np.uint8)
     _write_leaves(ordered, row, table[LEAVES : int(starts[0])])
     wider = np.float32(_WIDER * (1.0 + float(np.abs(corners).max())))
     _write_nodes(ordered.astype(np.float32), np.array(levels), table[int(starts[0]) :], wider)
@@ -89,10 +89,10 @@ def _write_leaves(corners: Floats, row: int, table: Singles) -> None:
     columns[:, :3] = NOWHERE
     columns[: len(corners), :3] = corners[:, 0]
     if row == TRIANGLE_ROW:
-        ways = corners[:, 1:] - corners[:, :1]
-        normals = np.cross(ways[:, 0], ways[:, 1])
+        edges = corners[:, 1:] - corners[:, :1]
+        normals = np.cross(edges[:, 0], edges[:, 1])
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-        columns[: len(corners), 3:9] = ways.reshape(-1, 6)
+        columns[: len(corners), 3:9] = edges.reshape(-1, 6)
         columns[: len(corners), 9:] = np.where(
             lengths > 0.0, normals / np.where(lengths > 0.0, lengths, 1.0), 0.0
         )
@@ -101,9 +101,9 @@ def _write_leaves(corners: Floats, row: int, table: Singles) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _order(places: Singles, order: Ints) -> None:
+def _order(centres: Singles, order: Ints) -> None:
     """Bring places, and their numbers, into an order in which sixteen, or 256, ... neighbours are near each other."""
-    waiting = [(0, len(places))]
+    waiting = [(0, len(centres))]
     while len(waiting) > 0:
         first, end = waiting.pop()
         if end - first <= LANES:
@@ -114,34 +114,34 @@ def _order(places: Singles, order: Ints) -> None:
         middle = first + ((end - first + unit - 1) // unit // 2) * unit
         axis, widest = 0, np.float32(-1.0)
         for k in range(3):
-            low = high = places[first, k]
+            low = high = centres[first, k]
             for i in range(first, end):
-                low, high = min(low, places[i, k]), max(high, places[i, k])
+                low, high = min(low, centres[i, k]), max(high, centres[i, k])
             if high - low > widest:
                 axis, widest = k, high - low
         if widest > 0.0:
-            _split(places, order, first, end - 1, middle, axis)
+            _split(centres, order, first, end - 1, middle, axis)
         waiting.append((first, middle))
         waiting.append((middle, end))
 
 
 @njit(cache=True, nogil=True)
-def _split(places: Singles, order: Ints, low: int, high: int, middle: int, axis: int) -> None:
+def _split(centres: Singles, order: Ints, low: int, high: int, middle: int, axis: int) -> None:
     """Bring the lesser ones along an axis before place `middle`, of those from `low` to `high` (C. Hoare, 1961)."""
     while low < high:
-        a, b, c = places[low, axis], places[(low + high) // 2, axis], places[high, axis]
+        a, b, c = centres[low, axis], centres[(low + high) // 2, axis], centres[high, axis]
         pivot = max(min(a, b), min(max(a, b), c))
         i, k = low, high
         while i <= k:
-            while places[i, axis] < pivot:
+            while centres[i, axis] < pivot:
                 i += 1
-            while places[k, axis] > pivot:
+            while centres[k, axis] > pivot:
                 k -= 1
             if i <= k:
                 for entry in range(3):
-                    kept = places[i, entry]
-                    places[i, entry] = places[k, entry]
-                    places[k, entry] = kept
+                    kept = centres[i, entry]
+                    centres[i, entry] = centres[k, entry]
+                    centres[k, entry] = kept
                 number = order[i]
                 order[i] = order[k]
                 order[k] = number
@@ -166,8 +166,8 @@ def _write_nodes(corners: Singles, levels: Ints, table: Singles, wider: np.float
             low, high = np.float32(np.inf), np.float32(-np.inf)
             for i in range(first, end):
                 for corner in range(corners.shape[1]):
-                    place = corners[i, corner, axis]
-                    low, high = min(low, place), max(high, place)
+                    coordinate = corners[i, corner, axis]
+                    low, high = min(low, coordinate), max(high, coordinate)
             boxes[leaf, axis] = np.float32(0.5) * (low + high)
             boxes[leaf, 3 + axis] = np.float32(0.5) * (high - low)
         squared = np.float32(0.0)

@@ -78,36 +78,36 @@ def add_node(trees: Trees, tree: int, q: Floats, parent: int) -> int:
     trees.links[PROVED, tree, number] = 0
     capacity = trees.nodes.shape[1]
     for k in range(dim):
-        place = (tree * dim + k) * capacity + number
+        index = (tree * dim + k) * capacity + number
         if number % LANES == 0:
             for lane in range(1, LANES):
-                trees.columns[place + lane] = _FAR
-        trees.columns[place] = q[k]
+                trees.columns[index + lane] = _FAR
+        trees.columns[index] = q[k]
     trees.sizes[tree] = number + 1
     return number
 
 
 @quick
-def nearest(trees: Trees, tree: int, q: Floats, room: Singles) -> int:
+def nearest(trees: Trees, tree: int, q: Floats, buffer: Singles) -> int:
     """Return the number of a tree's node nearest to `q`, the first of equals, in single precision.
 
-    `room` is memory for sixteen numbers and one a coordinate.
+    `buffer` is memory for sixteen numbers and one a coordinate.
     """
     _, capacity, dim = trees.nodes.shape
     for k in range(dim):
-        room[LANES + k] = q[k]
+        buffer[LANES + k] = q[k]
     best, number = np.float32(3e38), 0
     for first in range(0, trees.sizes[tree], LANES):
         squared = spread(ZERO)
         for k in range(dim):
-            apart = absolute(load(trees.columns, (tree * dim + k) * capacity + first) - room[LANES + k])
+            apart = absolute(load(trees.columns, (tree * dim + k) * capacity + first) - buffer[LANES + k])
             apart = smaller(apart, spread(trees.periods[k]) - apart)
             squared = squared + apart * apart
         least = smallest_lane(squared)
         if least < best:
-            store(room, 0, squared)
+            store(buffer, 0, squared)
             lane = 0
-            while room[lane] > least:
+            while buffer[lane] > least:
                 lane += 1
             best, number = least, first + lane
     return number

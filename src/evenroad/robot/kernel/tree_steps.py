@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import integers_at, matrix_at, singles_at
 from evenroad.robot.kernel.layout import LANES, quick, quick_inlined
-from evenroad.robot.kernel.motion import canonical, distance_and_way
+from evenroad.robot.kernel.motion import canonical, distance_and_direction
 from evenroad.robot.kernel.motion_checks import Checks, blocked
 from evenroad.robot.kernel.motion_states import CONFIGURATIONS, COUNTS, MOTIONS
 from evenroad.robot.kernel.tree_nodes import TRIED, Trees, least_tried, nearest
@@ -51,7 +51,7 @@ class Memory(NamedTuple):
         Where candidates lead.
     origins : int64 array, shape (8,)
         The nodes that they begin at.
-    here, there, way, target : float64 arrays, shape (dim,)
+    here, there, direction, target : float64 arrays, shape (dim,)
     lanes : float32 array, shape (16 + dim,)
     """
 
@@ -61,7 +61,7 @@ class Memory(NamedTuple):
     origins: Ints
     here: Floats
     there: Floats
-    way: Floats
+    direction: Floats
     target: Floats
     lanes: Singles
 
@@ -72,22 +72,22 @@ def memory_for(dim: int) -> int:
 
 
 @quick
-def memory_of(room: int, bounds: Floats) -> Memory:
+def memory_of(buffer: int, bounds: Floats) -> Memory:
     """Return room, and steps as long as the ranges of the joints, (3, dim), ask for."""
     dim = bounds.shape[1]
     squares = 0.0
     for k in range(dim):
         squares += (bounds[1, k] - bounds[0, k]) ** 2 / dim
     step = min(LONGEST_STEP, STEP_SHARE * np.sqrt(squares))
-    rows = matrix_at(room, (STEPS_AT_ONCE + 5, dim))
-    end = room + 8 * (STEPS_AT_ONCE + 5) * dim
+    rows = matrix_at(buffer, (STEPS_AT_ONCE + 5, dim))
+    end = buffer + 8 * (STEPS_AT_ONCE + 5) * dim
     radii = rows[4]
     for k in range(dim):
         radii[k] = min(LARGEST_BALL, BALL_SHARE * step, 0.5 * (bounds[1, k] - bounds[0, k]))
     return Memory(
         step,
         radii,
-        matrix_at(room + 8 * 5 * dim, (STEPS_AT_ONCE, dim)),
+        matrix_at(buffer + 8 * 5 * dim, (STEPS_AT_ONCE, dim)),
         integers_at(end, (STEPS_AT_ONCE,)),
         rows[0],
         rows[1],
@@ -126,10 +126,10 @@ def candidates(
     if tried[closest] < EXTENSIONS:
         tried[closest] += 1
         here = trees.nodes[tree, closest]
-        length = distance_and_way(here, memory.target, bounds, memory.way)
+        length = distance_and_direction(here, memory.target, bounds, memory.direction)
         share = min(1.0, memory.step / max(length, 1e-300))
         for k in range(dim):
-            memory.targets[0, k] = here[k] + share * memory.way[k]
+            memory.targets[0, k] = here[k] + share * memory.direction[k]
         canonical(memory.targets[0], bounds)
         memory.origins[0] = closest
         return 1
@@ -143,9 +143,9 @@ def candidates(
         for k in range(dim):
             target[k] = here[k] + memory.radii[k] * ball[row, k]
         canonical(target, bounds)
-        distance_and_way(here, target, bounds, memory.way)
+        distance_and_direction(here, target, bounds, memory.direction)
         for k in range(dim):
-            checks.states[k * LANES + 2 * candidate] = here[k] + 0.5 * memory.way[k]
+            checks.states[k * LANES + 2 * candidate] = here[k] + 0.5 * memory.direction[k]
             checks.states[k * LANES + 2 * candidate + 1] = target[k]
     touching = blocked(checks)
     state[CONFIGURATIONS] += 2 * most

@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import integers_at, matrix_at
 from evenroad.robot.kernel.layout import LANES, Given, Pair, program, quick, quick_inlined
-from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
+from evenroad.robot.kernel.motion import canonical, distance_and_direction, enter
 from evenroad.robot.kernel.motion_checks import (
-    BOTH_ENDS,
+    BOTH_ENDPOINTS,
     START,
     Checks,
     blocked,
@@ -59,7 +59,7 @@ or not finite, a path found."""
 MOST_STEPS = 64
 """So many steps at most are made in one go towards the other tree."""
 
-ROOM = (STEPS_AT_ONCE + 1) * (MOST_STEPS + 2)
+EXTRA_NODES = (STEPS_AT_ONCE + 1) * (MOST_STEPS + 2)
 """A round may add so many nodes."""
 
 MOST_STRAIGHT = 16
@@ -70,7 +70,7 @@ PROOF_BATCHES = 1024
 """Limits of the proof of a motion of the trees [m]."""
 
 
-def room_for(count: int, capacity: int, dim: int) -> int:
+def floats_for(count: int, capacity: int, dim: int) -> int:
     """Return how many doubles the trees take, see `grow`."""
     return STATE + 2 + count * dim + (4 * dim + 8) * capacity
 
@@ -82,7 +82,7 @@ def grow(kept: int, count: int, capacity: int, samples: Pair, steps: Pair, limit
     Parameters
     ----------
     kept, count, capacity
-        Address of `room_for` doubles, one after the other: counts and what else is kept from call to call, sizes of the
+        Address of `floats_for` doubles, one after the other: counts and what is kept from call to call, sizes of the
         trees, integers that are zeros at first; start and goals, (count, dim), of which the goals become the roots of
         the second tree, and the first are tried straight on; nodes, links and columns of ``Trees``, with room for
         2 count + ROOM nodes at least, and as much as the columns again.  A path that was found is written over the
@@ -96,20 +96,20 @@ def grow(kept: int, count: int, capacity: int, samples: Pair, steps: Pair, limit
     given
         With room for ``memory_of``.
     """
-    check, resolution, tables, by_joint, memory, room = given
+    check, resolution, tables, by_joint, memory, buffer = given
     checks = checks_of(check, resolution, tables, by_joint, memory, kept)
     most_motions, slice_batches = limits
     bounds = checks.bounds
     dim = bounds.shape[1]
-    state, ends = integers_at(kept, (STATE,)), matrix_at(kept + 8 * (STATE + 2), (count, dim))
+    state, terminals = integers_at(kept, (STATE,)), matrix_at(kept + 8 * (STATE + 2), (count, dim))
     sequence, ball = matrix_at(samples[0], (samples[1], dim)), matrix_at(steps[0], (steps[1], dim))
-    trees = trees_at(kept + 8 * (STATE + 2 + count * dim), capacity, kept + 8 * STATE, room, bounds)
+    trees = trees_at(kept + 8 * (STATE + 2 + count * dim), capacity, kept + 8 * STATE, buffer, bounds)
     sizes = trees.sizes
-    own = memory_of(room + 8 * dim, bounds)
+    own = memory_of(buffer + 8 * dim, bounds)
     if state[BEGUN] == 0:
-        if not _are_finite(ends):
+        if not _are_finite(terminals):
             return NO_NUMBERS
-        _begin(ends, trees, own, checks)
+        _begin(terminals, trees, own, checks)
         state[BEGUN] = 1
     if sizes[0] == 0 or sizes[1] == 0:
         return NOT_FREE
@@ -122,7 +122,7 @@ def grow(kept: int, count: int, capacity: int, samples: Pair, steps: Pair, limit
             return SPENT
         if state[BATCHES] >= pause:
             return PAUSED
-        if max(sizes[0], sizes[1]) + ROOM > capacity:
+        if max(sizes[0], sizes[1]) + EXTRA_NODES > capacity:
             return FULL
         many = 0
         if state[STRAIGHT] < min(goals, MOST_STRAIGHT):
@@ -157,24 +157,24 @@ def grow(kept: int, count: int, capacity: int, samples: Pair, steps: Pair, limit
 
 
 @quick
-def _are_finite(ends: Floats) -> bool:
-    for end in range(len(ends)):
-        for k in range(ends.shape[1]):
-            if not np.isfinite(ends[end, k]):
+def _are_finite(terminals: Floats) -> bool:
+    for end in range(len(terminals)):
+        for k in range(terminals.shape[1]):
+            if not np.isfinite(terminals[end, k]):
                 return False
     return True
 
 
 @quick
-def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
+def _begin(terminals: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
     """Plant the trees: the start in the first, the goals in the second; leave out what is not free."""
-    count, dim = ends.shape
+    count, dim = terminals.shape
     for first in range(0, count, LANES):
         some = min(LANES, count - first)
         inside = 0
         for lane in range(LANES):
             # Lanes to spare repeat the last row.
-            if enter(ends[first + min(lane, some - 1)], checks.bounds, memory.here):
+            if enter(terminals[first + min(lane, some - 1)], checks.bounds, memory.here):
                 inside |= 1 << lane
             else:
                 # What is out of bounds may be too large for single precision.
@@ -211,19 +211,21 @@ def _reach(
 
     Return the node from which the last step led to the other, or -1, also once the budget is spent.
     """
-    here, there, target, way = memory.here, memory.there, memory.target, memory.way
+    here, there, target, direction = memory.here, memory.there, memory.target, memory.direction
     for k in range(len(here)):
         here[k], there[k] = trees.nodes[tree, found, k], trees.nodes[1 - tree, other, k]
-    steps = max(1, int(np.ceil(distance_and_way(here, there, checks.bounds, way) / memory.step)))
+    steps = max(1, int(np.ceil(distance_and_direction(here, there, checks.bounds, direction) / memory.step)))
     for step in range(1, min(steps, MOST_STEPS) + 1):
         for k in range(len(here)):
-            target[k] = there[k] if step == steps else here[k] + step / steps * way[k]
+            target[k] = there[k] if step == steps else here[k] + step / steps * direction[k]
         if step < steps:
             # The other tree's node stays as it is: a root may exceed a limit by the slack.
             canonical(target, checks.bounds)
         if checks.counts[MOTIONS] >= most_motions:
             return -1
-        if not motion_free(trees.nodes[tree, found], target, BOTH_ENDS if step == steps else START, checks):
+        if not motion_free(
+            trees.nodes[tree, found], target, BOTH_ENDPOINTS if step == steps else START, checks
+        ):
             return -1
         if step == steps:
             return found

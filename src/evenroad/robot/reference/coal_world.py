@@ -18,9 +18,9 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Capsule, Mesh, PointCloud, Shape, along_z
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.known_robots import joint_space
 from evenroad.robot.load import find_robot, read_robot
 from evenroad.robot.planes import with_planes
+from evenroad.robot.prepared_robots import joint_space
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
@@ -163,13 +163,13 @@ class CoalWorld(EngineWorld):
     def _contacts(self, poses: Floats, near: Bools) -> Iterator[tuple[str, str]]:
         """Yield two bodies that touch after the other two, for the poses of all shapes, (shapes, 4, 4)."""
         coal, solids = self._coal, self._solids
-        places = cache(lambda shape: _transform(coal, poses[shape]))
-        request, result = asking_for_contacts(coal.CollisionRequest()), coal.CollisionResult()
+        transform_of = cache(lambda shape: _transform(coal, poses[shape]))
+        request, result = with_contacts(coal.CollisionRequest()), coal.CollisionResult()
         for number in np.flatnonzero(near).tolist():
             shape, other, is_obstacle = self._tests[number]
-            second = self._obstacles[other] if is_obstacle else (solids[other], places(other))
+            second = self._obstacles[other] if is_obstacle else (solids[other], transform_of(other))
             result.clear()
-            if coal.collide(solids[shape], places(shape), *second, request, result):
+            if coal.collide(solids[shape], transform_of(shape), *second, request, result):
                 name = self.scene.obstacles[other].name if is_obstacle else self._shapes[other].link
                 yield self._shapes[shape].link, name
 
@@ -218,7 +218,7 @@ def coal_shape(coal: Any, shape: Shape) -> Any:
     return kinds[shape.kind](*shape.size)
 
 
-def asking_for_contacts(request: Any) -> Any:
+def with_contacts(request: Any) -> Any:
     """Return a request of coal's, set so that round shapes are not missed.
 
     Without contacts coal 3.0.3 leaves out the step that finds how deep two shapes are in each other, and with it about

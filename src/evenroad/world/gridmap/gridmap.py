@@ -94,8 +94,8 @@ class GridMap(CellGrid):
         DiskWorld(radius 0.25, 20 x 30 cells)
         """
         own = require_positive("radius", radius)
-        room = require_positive("clearance", clearance, or_zero=True)
-        return DiskWorld(self, require_positive("radius + clearance", own + room), room)
+        extra = require_positive("clearance", clearance, or_zero=True)
+        return DiskWorld(self, require_positive("radius + clearance", own + extra), extra)
 
 
 @explains_calls

@@ -67,7 +67,7 @@ def find_path(
         np.zeros(nodes, np.bool_),
         np.full(_BUCKETS, -1, np.int64),
     )
-    ends, targets, motions = _goal_nodes(goals, nodes, disk, gates)
+    goal_of, targets, motions = _goal_nodes(goals, nodes, disk, gates)
     entries, links, waiting, key, tried = _seeded(start, targets, search, disk, gates)
     size, motions, expanded = waiting, motions + tried, 0
     while waiting > 0 and motions < most:
@@ -83,9 +83,9 @@ def find_path(
             continue
         search.closed[node] = True
         expanded += 1
-        if ends[node] >= 0:
-            path = _trace(node, search.came, wide, start, goals[ends[node]], disk)
-            return path, ends[node], expanded, motions
+        if goal_of[node] >= 0:
+            path = _trace(node, search.came, wide, start, goals[goal_of[node]], disk)
+            return path, goal_of[node], expanded, motions
         r, c = divmod(node, wide)
         at_gate = _is_at_gate(r, c, gates)
         for s in range(0 if _is_centre(r, c, disk) else 8, len(STEPS) if at_gate else 8):
@@ -119,7 +119,7 @@ def find_path(
 @njit(cache=True, nogil=True)
 def _goal_nodes(goals: Any, nodes: int, disk: DiskTables, gates: Bools) -> tuple[Any, Any, int]:
     """Return to which goal each lattice point leads, -1 to none, the goals on the lattice, and the motions tested."""
-    ends = np.full(nodes, -1, np.int32)
+    goal_of = np.full(nodes, -1, np.int32)
     targets = np.empty((len(goals), 2))
     motions = 0
     for g in range(len(goals)):
@@ -128,9 +128,9 @@ def _goal_nodes(goals: Any, nodes: int, disk: DiskTables, gates: Bools) -> tuple
         linked, tried = _links(goals[g, 0], goals[g, 1], disk, gates)
         motions += tried
         for node in linked:
-            if ends[node] < 0:
-                ends[node] = g
-    return ends, targets, motions
+            if goal_of[node] < 0:
+                goal_of[node] = g
+    return goal_of, targets, motions
 
 
 @njit(cache=True, nogil=True)

@@ -13,7 +13,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.errors import NotAvailable
 from evenroad.robot import ArmWorld, Robot, Scene
-from evenroad.robot.arm_world import RECHECK_TOLERANCE
+from evenroad.robot.arm_world import VALIDATION_TOLERANCE
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 from evenroad.robot_roadmap.world_roadmap import ArmWorldRoadmap
@@ -99,7 +99,7 @@ def is_worth(robot: str, problem: Problem, rng: np.random.Generator) -> bool:
     """Say whether a problem is neither easy nor beyond 5000 uniform points."""
     world, start, goal = problem.world, problem.start, problem.goal
     assert isinstance(world, ArmWorld)
-    if world.motion_certified(start[np.newaxis], goal[np.newaxis], RECHECK_TOLERANCE)[0]:
+    if world.motion_certified(start[np.newaxis], goal[np.newaxis], VALIDATION_TOLERANCE)[0]:
         return False
     few = box_roadmap(world.robot, rng.random((EASY, world.space.dim)), EASY_K)
     if joins(few, problem, EASY):

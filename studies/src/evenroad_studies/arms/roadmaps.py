@@ -12,7 +12,7 @@ from evenroad.roadmap.neighbours import nearest
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 from evenroad.robot_roadmap.build import arm_roadmap, joined
-from evenroad.robot_roadmap.turns import lifted_motions_free, one_turn, shifts
+from evenroad.robot_roadmap.turns import one_turn, shifts, winding_motions_free
 from evenroad_studies.arms.robots import arm_named
 from evenroad_studies.bench.samplers import SAMPLERS, draw_set, why_not
 
@@ -89,7 +89,7 @@ def _joined_in_box(world: ArmWorld, milestones: Floats, k: int) -> ArmRoadmap:
     one = one_turn(world.space, np.zeros(world.space.dim, dtype=np.bool_))
     a, b = milestones[pairs[:, 0]], milestones[pairs[:, 1]]
     turns = shifts(one, a, b)
-    free = lifted_motions_free(world, one, a, b, turns)
+    free = winding_motions_free(world, one, a, b, turns)
     return ArmRoadmap(
         robot=world.robot,
         scene=world.scene,

@@ -77,7 +77,7 @@ def _run(task: Task) -> Outcome:
 
 def _search(problem: Problem, milestones: Floats, rule: str, search: str) -> tuple[Finding, EdgeStates]:
     configurations = np.concatenate([milestones, problem.start[np.newaxis], problem.goal[np.newaxis]])
-    edges = rule_named(rule).edges(configurations, problem.world.space, ends=2)
+    edges = rule_named(rule).edges(configurations, problem.world.space, terminals=2)
     states = EdgeStates(problem.world, configurations, edges)
     states.node_states[:] = FREE
     return search_named(search)(states), states

@@ -74,7 +74,7 @@ def is_connected(states: EdgeStates) -> bool:
         )
         if not len(asked):
             return False
-        states.ask_edges(asked)
+        states.evaluate_edges(asked)
         join(label, states.edges[asked[states.edge_states[asked] == FREE]])
     return True
 
@@ -97,7 +97,7 @@ def milestones_until_connected(states: EdgeStates) -> int | None:
         edges = order[begin : begin + CHUNK]
         # Edges inside one component change nothing, now or later.
         edges = edges[label[states.edges[edges, 0]] != label[states.edges[edges, 1]]]
-        states.ask_edges(edges)
+        states.evaluate_edges(edges)
         free = edges[states.edge_states[edges] == FREE]
         before = label.copy()
         join(label, states.edges[free])

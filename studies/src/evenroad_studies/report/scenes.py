@@ -19,7 +19,7 @@ from evenroad.planning import PRM, plan
 from evenroad.points import draw
 from evenroad.roadmap import KNearest, PlanResult
 from evenroad.robot import ArmWorld
-from evenroad.space.path import place_at
+from evenroad.space.path import configuration_at
 from evenroad.viz import style
 from evenroad.viz.arm import draw_arm_plan
 from evenroad.viz.plan import draw_plan
@@ -93,7 +93,7 @@ def draw_chain(problem: Problem, world: ChainWorld, title: str) -> Figure:
     result = find_path(problem)
     if result.path is not None:
         shades = colormaps["Blues"](np.linspace(0.25, 0.75, CHAIN_POSES))
-        poses = place_at(result.path, world.space, np.linspace(0.0, 1.0, CHAIN_POSES))
+        poses = configuration_at(result.path, world.space, np.linspace(0.0, 1.0, CHAIN_POSES))
         for pose, shade in zip(poses, shades, strict=True):
             axes.plot(*_joints(pose).T, color=shade, linewidth=1.0, zorder=2)
     for pose, colour, name in ((problem.start, style.START, "start"), (problem.goal, style.GOAL, "goal")):
@@ -123,7 +123,7 @@ def draw_solids(problem: Problem, world: SolidWorld, title: str) -> Figure:
     result = find_path(problem)
     poses = np.stack([problem.start, problem.goal])
     if result.path is not None:
-        poses = place_at(result.path, world.space, np.linspace(0.0, 1.0, BODY_POSES))
+        poses = configuration_at(result.path, world.space, np.linspace(0.0, 1.0, BODY_POSES))
     obstacles = np.concatenate([_faces(box.corners) for box in world.obstacles])
     for place, (elevation, azimuth) in enumerate(((68.0, -90.0), (24.0, -62.0)), 1):
         axes = figure.add_subplot(1, 2, place, projection="3d")

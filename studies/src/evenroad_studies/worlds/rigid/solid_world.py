@@ -22,7 +22,7 @@ from evenroad_studies.worlds.rigid.kernel import contacts, motions_are_free, mot
 from evenroad_studies.worlds.rigid.oriented_box import OrientedBox, SolidTables, box_table, reaches_of
 
 _TOLERANCE = 1e-3
-"""How near to contact `SolidWorld.recheck` still proves a motion free, as a share of the step of translations."""
+"""How near to contact `SolidWorld.validate` still proves a motion free, as a share of the step of translations."""
 
 
 RigidSpace: TypeAlias = Product | BoxSpace
@@ -97,7 +97,7 @@ class SolidWorld:
 
     A motion is divided into ``n = max(ceil(distance / step), ceil(rotation / rotation_step))`` segments and free if
     all n + 1 ends of segments are; they are tested in bisection order, the ends first.  What lies between two states is
-    not seen; `recheck` proves the motions of a path that is handed out, with no gap.
+    not seen; `validate` proves the motions of a path that is handed out, with no gap.
 
     `space` are the poses of the body's frame, ``SE2(..)``, ``SE3(..)``, or a BoxSpace of 2 or 3 axes, in which the
     body does not rotate; all boxes are of its plane or space, those of the `body`, at least one, in the body's frame.
@@ -107,7 +107,7 @@ class SolidWorld:
     """
 
     proof: ClassVar[str] = "certified"
-    """What `recheck` calls free is proved to be, everywhere between its ends."""
+    """What `validate` calls free is proved to be, everywhere between its ends."""
 
     space: RigidSpace
     body: Sequence[OrientedBox]
@@ -147,7 +147,7 @@ class SolidWorld:
         free[inside] = motions_are_free(start, end, *self._steps, self._solids)
         return free
 
-    def recheck(self, path: Floats) -> Bools:
+    def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,).
 
         Stricter than testing states, however many: no stretch of a motion is left open.  A motion is refused, too, that

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.planning.arm_trees import connect, shorten, tighten
+from evenroad.planning.arm_trees import connect, shorten, smooth
 from evenroad.robot import Obstacle, Scene, load_robot
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
@@ -21,7 +21,7 @@ from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.lane_world import check_addresses
 from evenroad.robot.kernel.motion_states import BATCHES as DONE
 from evenroad.robot.kernel.motion_states import COUNTS
-from evenroad.robot.kernel.tighten import CLEARANCE
+from evenroad.robot.kernel.smoothing import CLEARANCE
 from evenroad.robot.tree_sequences import ball_points, sphere_points
 from tests.robot.kernel_arms import box_scene, edge, random_scene, random_tree, ur5
 from tests.robot.oracle import clearance, link_poses
@@ -55,21 +55,21 @@ def searched(world, count, least, **how):
 def lengths(world, found):
     """How long paths are all together: straight, drawn tight, and as shortcuts leave them."""
     straight = sum(length(world, path[[0, -1]]) for path in found)
-    tight = sum(length(world, tighten(world, path, batches=BATCHES)[0]) for path in found)
+    tight = sum(length(world, smooth(world, path, batches=BATCHES)[0]) for path in found)
     return straight, tight, sum(length(world, shorten(world, path)[0]) for path in found)
 
 
 def test_no_tightened_path_touches_anything(paths):  # noqa: F811
     world, found = paths
     for path in found:
-        tight, _ = tighten(world, path, batches=BATCHES)
+        tight, _ = smooth(world, path, batches=BATCHES)
         assert clearance(world.robot, world.scene, dense_states(world, tight)).min() > 0.0
 
 
 def test_every_motion_of_a_tightened_path_is_proved(paths):  # noqa: F811
     world, found = paths
     for path in found:
-        tight, motions = tighten(world, path, batches=BATCHES)
+        tight, motions = smooth(world, path, batches=BATCHES)
         assert proved(world, tight)
         assert motions > 0
 
@@ -78,7 +78,7 @@ def test_tightened_paths_keep_their_ends_and_are_never_longer(paths):  # noqa: F
     world, found = paths
     for path in found:
         for batches in (0, 30, BATCHES):
-            tight, _ = tighten(world, path, batches=batches)
+            tight, _ = smooth(world, path, batches=batches)
             np.testing.assert_array_equal(tight[[0, -1]], path[[0, -1]])
             assert length(world, tight) <= length(world, path) * (1 + 1e-12)
             assert world.space.contains(tight).all()
@@ -95,7 +95,7 @@ def test_few_batches_give_a_free_path_and_more_a_shorter_one(paths):  # noqa: F8
     world, found = paths
     sums = []
     for batches in (0, 100, 4 * BATCHES):
-        tight = [tighten(world, path, batches=batches)[0] for path in found]
+        tight = [smooth(world, path, batches=batches)[0] for path in found]
         sums.append(sum(length(world, path) for path in tight))
         assert all(proved(world, path) for path in tight)
     assert sums[0] > sums[1] > sums[2]
@@ -116,7 +116,7 @@ def test_paths_beside_prismatic_joints_slide_within_their_limits():
     for start, goal in zip(starts[:60], goals[:60], strict=True):
         path = connect(world, start, [goal], most_motions=5_000, seconds=30).path
         if len(path) > 2:
-            tight, _ = tighten(world, path, batches=BATCHES)
+            tight, _ = smooth(world, path, batches=BATCHES)
             assert np.all(tight >= np.array(world.space.low))
             assert np.all(tight <= np.array(world.space.high))
             assert proved(world, tight)
@@ -136,32 +136,32 @@ def test_the_same_path_is_tightened_to_the_same_bits(paths):  # noqa: F811
     world, found = paths
     fresh = ArmWorld(world.robot, world.scene)
     for path in found[:5]:
-        first, motions = tighten(world, path, batches=BATCHES)
+        first, motions = smooth(world, path, batches=BATCHES)
         # What other calls leave behind in memory changes nothing.
-        tighten(world, found[-1], batches=BATCHES)
-        again, motions_again = tighten(fresh, path.copy(), batches=BATCHES)
+        smooth(world, found[-1], batches=BATCHES)
+        again, motions_again = smooth(fresh, path.copy(), batches=BATCHES)
         np.testing.assert_array_equal(first, again)
         assert motions == motions_again
 
 
 def test_threads_do_not_disturb_each_others_tightening(detour):
     world, path = detour
-    alone, _ = tighten(world, path, batches=BATCHES)
+    alone, _ = smooth(world, path, batches=BATCHES)
     # Of a world that nobody has asked for larger bodies.
     fresh = box_world()
     with ThreadPoolExecutor(4) as threads:
-        for tight in threads.map(lambda _: tighten(fresh, path, batches=BATCHES)[0], range(40)):
+        for tight in threads.map(lambda _: smooth(fresh, path, batches=BATCHES)[0], range(40)):
             np.testing.assert_array_equal(tight, alone)
 
 
 def test_another_process_tightens_to_the_same_bits(detour):
     world, path = detour
-    tight, motions = tighten(world, path, batches=BATCHES)
+    tight, motions = smooth(world, path, batches=BATCHES)
     code = (
         "import sys\nimport numpy as np\n"
-        "from evenroad.planning.arm_trees import tighten\nfrom tests.robot.test_trees import box_world\n"
+        "from evenroad.planning.arm_trees import smooth\nfrom tests.robot.test_trees import box_world\n"
         "path = np.frombuffer(bytes.fromhex(sys.stdin.read())).reshape(-1, 5)\n"
-        f"tight, motions = tighten(box_world(), path, batches={BATCHES})\nprint(motions, tight.tobytes().hex())"
+        f"tight, motions = smooth(box_world(), path, batches={BATCHES})\nprint(motions, tight.tobytes().hex())"
     )
     answer = subprocess.run(
         [sys.executable, "-c", code], input=path.tobytes().hex(), capture_output=True, text=True, check=True
@@ -173,13 +173,13 @@ def test_another_process_tightens_to_the_same_bits(detour):
 def test_a_path_of_two_waypoints_stays_as_it_is(backend):
     world = box_world(backend)
     for path in (np.stack([START, START + 0.1]), np.stack([START, START])):
-        np.testing.assert_array_equal(tighten(world, path, batches=BATCHES)[0], path)
+        np.testing.assert_array_equal(smooth(world, path, batches=BATCHES)[0], path)
 
 
 def test_without_lanes_paths_are_shortened(detour):
     _, path = detour
     slow = box_world("scalar")
-    tight, motions = tighten(slow, path, batches=BATCHES)
+    tight, motions = smooth(slow, path, batches=BATCHES)
     short, expected = shorten(slow, path)
     np.testing.assert_array_equal(tight, short)
     assert motions == expected
@@ -190,7 +190,7 @@ def test_a_path_that_cannot_be_proved_is_shortened(detour):
     # Through the wall: no path at all, but what is said of it is told apart from a good one.
     through = np.stack([START, 0.5 * (START + GOAL), GOAL])
     assert not world.motion_certified(through[:-1], through[1:], 1e-6).all()
-    tight, _ = tighten(world, through, batches=BATCHES)
+    tight, _ = smooth(world, through, batches=BATCHES)
     np.testing.assert_array_equal(tight, shorten(world, through, pairs=20, cuts=16)[0])
 
 
@@ -202,7 +202,7 @@ def test_where_a_given_motion_cannot_be_proved_no_other_is_put_in_unproved(detou
     assert len(seen) > 10
     for place in seen[:10]:
         given = np.stack([START, place, 0.95 * START + 0.05 * place, GOAL])
-        tight, _ = tighten(world, given, batches=BATCHES)
+        tight, _ = smooth(world, given, batches=BATCHES)
         np.testing.assert_array_equal(tight[[0, -1]], given[[0, -1]])
         assert length(world, tight) < length(world, given)
         unproved = [motion for motion in pairwise(tight) if not proved(world, np.stack(motion))]
@@ -227,7 +227,7 @@ def test_of_a_path_that_nobody_proved_nothing_is_returned_that_is_not_proved():
             free = world.motion_valid(given[:-1], given[1:])
             if not free.all() or proved(world, given):
                 continue
-            tight, motions = tighten(world, given, batches=BATCHES, proved=False)
+            tight, motions = smooth(world, given, batches=BATCHES, proved=False)
             assert motions > 0
             if not len(tight):
                 assert tight.shape == (0, world.space.dim)
@@ -242,8 +242,8 @@ def test_of_a_path_that_nobody_proved_nothing_is_returned_that_is_not_proved():
 def test_a_proved_path_is_drawn_as_tight_where_nobody_says_that_it_is(paths):  # noqa: F811
     world, found = paths
     for path in found[:8]:
-        expected, _ = tighten(world, path, batches=BATCHES)
-        np.testing.assert_array_equal(tighten(world, path, batches=BATCHES, proved=False)[0], expected)
+        expected, _ = smooth(world, path, batches=BATCHES)
+        np.testing.assert_array_equal(smooth(world, path, batches=BATCHES, proved=False)[0], expected)
 
 
 def test_work_heeds_the_limit_of_batches():
@@ -252,7 +252,7 @@ def test_work_heeds_the_limit_of_batches():
     for batches in (0, 100, 2000):
         used = []
         for path in found:
-            tighten(world, path, batches=batches)
+            smooth(world, path, batches=batches)
             room, _ = world.lanes.arguments(COUNTS)
             used.append(int(room[:COUNTS].view(np.int64)[DONE]))
         most[batches] = max(used)
@@ -269,9 +269,9 @@ def on_motion(q, a, b):
 
 def test_straight_paths_need_no_other_program():
     code = (
-        "import numpy as np\nfrom evenroad.planning.arm_trees import tighten\n"
+        "import numpy as np\nfrom evenroad.planning.arm_trees import smooth\n"
         "from evenroad.robot.kernel import shorten\nfrom tests.robot.test_trees import START, box_world\n"
-        "tighten(box_world(), np.stack([START, START + 0.1]), batches=9)\nprint(len(shorten.shorten_points.overloads))"
+        "smooth(box_world(), np.stack([START, START + 0.1]), batches=9)\nprint(len(shorten.shorten_points.overloads))"
     )
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert answer.stdout == "0\n"
@@ -292,13 +292,13 @@ def test_straight_paths_need_no_other_program():
 )
 def test_what_is_no_path_is_not_tightened_but_refused(path):
     with pytest.raises(InvalidValue):
-        tighten(box_world(), path, batches=BATCHES)
+        smooth(box_world(), path, batches=BATCHES)
 
 
 def test_a_list_of_waypoints_is_a_path_too(detour):
     world, path = detour
-    tight, _ = tighten(world, path.tolist(), batches=BATCHES)
-    np.testing.assert_array_equal(tight, tighten(world, path, batches=BATCHES)[0])
+    tight, _ = smooth(world, path.tolist(), batches=BATCHES)
+    np.testing.assert_array_equal(tight, smooth(world, path, batches=BATCHES)[0])
 
 
 def with_ball_beside(world, q, away, place):
@@ -338,7 +338,7 @@ def test_ends_that_nearly_touch_are_kept_and_their_paths_tightened(both):
             continue
         touching += 1
         for way in (path, path[::-1].copy()):
-            tight, _ = tighten(world, way, batches=BATCHES)
+            tight, _ = smooth(world, way, batches=BATCHES)
             np.testing.assert_array_equal(tight[[0, -1]], way[[0, -1]])
             assert proved(world, tight)
             assert clearance(world.robot, world.scene, dense_states(world, tight, 2)).min() > 0.0
@@ -364,7 +364,7 @@ def test_where_all_that_leads_away_from_an_end_nearly_touches_the_path_is_tighte
         if not np.all((near > 2e-4) & (near < CLEARANCE)):
             continue
         touching += 1
-        tight, _ = tighten(world, way, batches=BATCHES)
+        tight, _ = smooth(world, way, batches=BATCHES)
         np.testing.assert_array_equal(tight[[0, -1]], way[[0, -1]])
         assert proved(world, tight)
         assert clearance(world.robot, world.scene, dense_states(world, tight, 2)).min() > 0.0
@@ -379,7 +379,7 @@ def test_robots_with_hulls_are_told_apart_by_them_on_tight_paths(fork_file):  # 
     world = ArmWorld(robot, EMPTY)
     found = searched(world, 12, 4)
     for path in found:
-        tight, _ = tighten(world, path, batches=BATCHES)
+        tight, _ = smooth(world, path, batches=BATCHES)
         assert proved(world, tight)
         np.testing.assert_array_equal(tight[[0, -1]], path[[0, -1]])
         assert min(rod_gap(robot, q) for q in dense_states(world, tight, 1)) > 0.0
@@ -404,7 +404,7 @@ def test_tight_paths_touch_no_cloud_and_no_mesh(kind):
     assert world.lanes.surfaces is not None
     found = searched(world, 20, 4)
     for path in found:
-        tight, _ = tighten(world, path, batches=BATCHES)
+        tight, _ = smooth(world, path, batches=BATCHES)
         assert proved(world, tight)
         assert apart(world.robot, scene, dense_states(world, tight, 1)).min() > 0.0
     _, tight, short = lengths(world, found)
@@ -415,7 +415,7 @@ def lane_verdicts(world, q, table):
     """Which configurations touch nothing, by sixteen lanes that read the lengths at an address."""
     lanes = world.lanes
     check = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_int64] * 5)(int(check_addresses(False)[1]))
-    _, tables, _, _ = lanes.places
+    _, tables, _, _ = lanes.addresses
     header = lanes.tables[: at.HEADER]
     room = np.zeros(header[at.SCRATCH] + 64, dtype=np.float32)
     states = np.empty(world.space.dim * at.LANES + 8)
@@ -448,7 +448,7 @@ def test_larger_bodies_keep_so_far_from_obstacles_and_as_near_to_each_other(kind
     near = np.clip(near + shift, world.space.low, world.space.high)
     some = np.concatenate([near, others, q[:800]])
     some = some[: len(some) // 16 * 16]
-    plain = world.lanes.places[1] + 8 * int(world.lanes.tables[at.INTEGERS])
+    plain = world.lanes.addresses[1] + 8 * int(world.lanes.tables[at.INTEGERS])
     obstacles = clearance(replace(robot, pairs=()), scene, some)
     itself = clearance(robot, Scene(name="nothing"), some)
     for grown, table in ((0.0, plain), (margin, world.lanes.wider(margin))):

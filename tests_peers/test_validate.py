@@ -13,7 +13,7 @@ from evenroad.errors import BrokenFile
 from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
 from evenroad.robot.load import load_model
 from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
-from evenroad.robot.reference.recheck import has_meshes, recheck, unseen_pairs
+from evenroad.robot.reference.validate import has_meshes, unseen_pairs, validate
 from evenroad.space.path import resample
 
 pytest.importorskip("coal")
@@ -60,7 +60,7 @@ def test_only_a_robot_whose_urdf_names_a_mesh_has_meshes(arm):
 def test_a_path_that_is_free_for_the_capsules_is_free_for_the_meshes(arm):
     robot = load_robot(arm)
     path = np.array([[0.0, 0.0, 0.0], [0.5, 0.5, 0.2], [1.0, 0.0, 0.0]])
-    check = recheck(arm, robot, NOTHING, path)
+    check = validate(arm, robot, NOTHING, path)
     assert check.verdict == "free"
     assert str(check) == f"free ({check.states} states)"
 
@@ -69,20 +69,20 @@ def test_a_contact_is_named_with_its_motion_and_its_state(arm):
     robot = load_robot(arm)
     scene = Scene((Obstacle.of("wall", "box", (1.0, 0.02, 1.0), (0.3, 0.15, 0.6)),), name="wall")
     path = np.array([[-0.4, 0.0, 0.0], [-0.2, 0.0, 0.0], [1.5, 0.0, 0.0]])
-    check = recheck(arm, robot, scene, path)
+    check = validate(arm, robot, scene, path)
     assert check.verdict == "in collision"
     assert "in motion 1 of the path: 'fork' touches 'wall'" in check.message
     assert str(check).startswith("in collision at (")
     assert -0.2 < check.configuration[0] < 1.5
     before = np.array([[-0.4, 0.0, 0.0], [check.configuration[0] - 0.05, 0.0, 0.0]])
-    assert recheck(arm, robot, scene, before).verdict == "free", "it is the first"
+    assert validate(arm, robot, scene, before).verdict == "free", "it is the first"
 
 
 def test_a_mesh_that_is_gone_by_then_is_an_error(arm, tmp_path):
     robot = load_robot(arm)
     (tmp_path / "meshes" / "fork.stl").unlink()
     with pytest.raises(BrokenFile, match=r"fork\.stl"):
-        recheck(arm, robot, NOTHING, np.zeros((2, 3)))
+        validate(arm, robot, NOTHING, np.zeros((2, 3)))
 
 
 # ---- pairs that the planner does not test
@@ -94,22 +94,22 @@ PLATE_WAY = np.array([[0.0, -1.0, 0.0], [0.5, 0.5, 0.1], [1.0, 1.6, 0.0]])
 def test_a_pair_that_the_planner_does_not_test_is_tested_with_its_shapes(arm, tmp_path):
     file = write_plate_arm(tmp_path)
     model = load_model(file)
-    assert not ArmWorld(model.robot, NOTHING).recheck(PLATE_WAY).all(), "it sees the tip in the plate"
+    assert not ArmWorld(model.robot, NOTHING).validate(PLATE_WAY).all(), "it sees the tip in the plate"
     pair = ("plate", "tip")
     robot = replace(model.robot, pairs=tuple(other for other in model.robot.pairs if other != pair))
     unseen = (*unseen_pairs(model), pair)
     assert not has_meshes(model), "it is not for meshes alone"
-    assert ArmWorld(robot, NOTHING).recheck(PLATE_WAY).all(), "nobody else sees it"
-    check = recheck(file, robot, NOTHING, PLATE_WAY, unseen=unseen)
+    assert ArmWorld(robot, NOTHING).validate(PLATE_WAY).all(), "nobody else sees it"
+    check = validate(file, robot, NOTHING, PLATE_WAY, unseen=unseen)
     assert check.verdict == "in collision"
     assert "in motion 1 of the path: 'plate' touches 'tip'" in check.message
-    assert recheck(file, robot, NOTHING, PLATE_WAY[:2], unseen=unseen).verdict == "free"
+    assert validate(file, robot, NOTHING, PLATE_WAY[:2], unseen=unseen).verdict == "free"
 
 
 def test_a_pair_whose_shapes_always_touch_is_left_out_and_named(arm, tmp_path):
     file = write_plate_arm(tmp_path)
     model = load_model(file)
-    check = recheck(file, model.robot, NOTHING, PLATE_WAY[:2], unseen=unseen_pairs(model))
+    check = validate(file, model.robot, NOTHING, PLATE_WAY[:2], unseen=unseen_pairs(model))
     assert ("plate", "collar") in check.always_touching
     assert ("plate", "tip") not in check.always_touching
     assert "left out, for they always touch: " in str(check)
@@ -126,7 +126,7 @@ def test_a_graze_between_the_states_of_the_planner_is_found(arm):
     place = corner[:3, :3] @ (0.05, 0.0, 0.02) + corner[:3, 3]
     scene = Scene((Obstacle.of("needle", "sphere", (1e-3,), tuple(place)),), name="needle")
     assert CoalWorld(robot, scene, original_shapes(arm, robot)).valid(coarse).all()
-    check = recheck(arm, robot, scene, path, resolution=0.951)
+    check = validate(arm, robot, scene, path, resolution=0.951)
     assert check.verdict == "in collision"
     assert "'fork' touches 'needle'" in check.message
 
@@ -224,6 +224,6 @@ def test_a_mesh_between_whose_triangles_there_is_room_is_not_filled(arm, tmp_pat
     frame = link_poses(robot, q)[0, robot.links.index("fork")]
     middle = frame[:3, :3] @ (0.05, 0.0, 0.12) + frame[:3, 3]
     scene = Scene((Obstacle.of("ball", "sphere", (0.04,), tuple(middle)),), name="ball")
-    assert recheck(arm, robot, scene, q).verdict == "free"
+    assert validate(arm, robot, scene, q).verdict == "free"
     hull.export(tmp_path / "meshes" / "fork.stl")
-    assert recheck(arm, robot, scene, q).verdict == "in collision"
+    assert validate(arm, robot, scene, q).verdict == "in collision"

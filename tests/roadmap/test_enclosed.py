@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from evenroad.planning import PRM, plan
-from evenroad.planning.hemmed_in import with_reasons
+from evenroad.planning.enclosed import with_reasons
 from evenroad.roadmap import Budget
 from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld

@@ -21,7 +21,7 @@ from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import resample
 
-Verdict = Literal["free", "in collision", "not checked"]
+MeshStatus = Literal["free", "in collision", "not checked"]
 FINER = 10
 """States are this many times as dense as those that a motion was planned with."""
 SAMPLES = 100
@@ -38,7 +38,7 @@ class MeshCheck:
     configurations.
     """
 
-    verdict: Verdict
+    verdict: MeshStatus
     states: int = 0
     message: str = ""
     configuration: tuple[float, ...] | None = None
@@ -63,7 +63,7 @@ def unseen_pairs(model: RobotModel) -> tuple[tuple[str, str], ...]:
     return tuple((first, second) for first, second, why in model.dropped if why in (TOUCHING, HELD_TOUCHING))
 
 
-def recheck(
+def validate(
     source: str | os.PathLike[str] | RobotFile,
     robot: Robot,
     scene: Scene,

@@ -48,7 +48,7 @@ def joint_space(robot: Robot) -> JointSpace:
 class Prepared(NamedTuple):
     """What is a robot's in every scene: `longest` bounds the length of a motion, `by_joint` is as in ``LaneWorld``.
 
-    `bounds`, (3, dim), are its first rows; `place` is its address.
+    `bounds`, (3, dim), are its first rows; `address` is its address.
     """
 
     space: JointSpace
@@ -56,7 +56,7 @@ class Prepared(NamedTuple):
     tables: RobotTables
     by_joint: Floats
     bounds: Floats
-    place: int
+    address: int
 
 
 _recent: dict[int, tuple[Robot, dict[str, float], Prepared]] = {}

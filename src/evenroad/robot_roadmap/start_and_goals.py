@@ -10,31 +10,38 @@ import numpy.typing as npt
 from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
 from evenroad.roadmap import PlanResult, Status
-from evenroad.roadmap.query import read_places
+from evenroad.roadmap.query import as_start_and_goals
 from evenroad.roadmap.result import make_result
 from evenroad.robot import ArmWorld, configuration
 from evenroad.robot.goals import Goals, goals_of
 from evenroad.robot.pose_goal import PoseGoal
 
-Place = str | npt.ArrayLike
+ConfigurationLike = str | npt.ArrayLike
 """A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
 
 POSES = (Pose, PoseGoal)
-Goal = Place | Pose | PoseGoal
+Goal = ConfigurationLike | Pose | PoseGoal
 """A configuration, or where a link is to be."""
 
 
-def read_ends(
-    world: ArmWorld, start: Place, goal: Goal | Sequence[Goal]
+def read_start_and_goals(
+    world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[Goal]
 ) -> tuple[Floats, Goals] | PlanResult:
     """Return start, (dim,), and goals, with all postures found that reach poses; else why a pose is not reached."""
     if not any(isinstance(each, POSES) for each in (goal if isinstance(goal, list | tuple) else (goal,))):
-        first, goals = read_places(_place(world, start), _places(world, goal), world.space)
+        first, goals = as_start_and_goals(
+            _configuration(world, start), _configurations(world, goal), world.space
+        )
         return first, Goals(goals, ("",) * len(goals))
-    places: Sequence[Goal] = [goal] if isinstance(goal, POSES) else goal  # type: ignore[assignment]
-    place, space = _place(world, start), world.space
-    first = read_places(place, place, space)[0]
-    given = goals_of(world, first, places, lambda each: read_places(place, _place(world, each), space)[1][0])
+    targets: Sequence[Goal] = [goal] if isinstance(goal, POSES) else goal  # type: ignore[assignment]
+    at_start, space = _configuration(world, start), world.space
+    first = as_start_and_goals(at_start, at_start, space)[0]
+    given = goals_of(
+        world,
+        first,
+        targets,
+        lambda each: as_start_and_goals(at_start, _configuration(world, each), space)[1][0],
+    )
     if not given.unreached:
         return first, given
     status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
@@ -42,17 +49,17 @@ def read_ends(
     return make_result(world, first, given.configurations, status, given.unreached, timings=timings)
 
 
-def ends_free(world: ArmWorld, start: Floats, goals: Floats) -> bool:
+def start_and_goals_free(world: ArmWorld, start: Floats, goals: Floats) -> bool:
     """Return whether a start, (dim,), and one of the goals, (g, dim), are free."""
     return bool(world.valid(start[np.newaxis])[0] and world.valid(goals).any())
 
 
-def _place(world: ArmWorld, place: Place) -> npt.ArrayLike:
+def _configuration(world: ArmWorld, given: ConfigurationLike) -> npt.ArrayLike:
     """Return a configuration of a text; of numbers themselves."""
-    return configuration(world.robot, place, world.scene) if isinstance(place, str) else place
+    return configuration(world.robot, given, world.scene) if isinstance(given, str) else given
 
 
-def _places(world: ArmWorld, goal: Goal | Sequence[Goal]) -> npt.ArrayLike:
+def _configurations(world: ArmWorld, goal: Goal | Sequence[Goal]) -> npt.ArrayLike:
     if isinstance(goal, list | tuple) and any(isinstance(each, str) for each in goal):
-        return [_place(world, each) for each in goal]  # type: ignore[return-value]
-    return _place(world, goal)  # type: ignore[arg-type]
+        return [_configuration(world, each) for each in goal]  # type: ignore[return-value]
+    return _configuration(world, goal)  # type: ignore[arg-type]

@@ -13,10 +13,10 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import doubles_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.layout import LANES, ROOM, Given, Pair, Triple, program, quick, quick_inlined
-from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
+from evenroad.robot.kernel.layout import LANES, MEMORY, Given, Pair, Triple, program, quick, quick_inlined
+from evenroad.robot.kernel.motion import canonical, distance_and_direction, enter
 from evenroad.robot.kernel.motion_checks import (
-    BOTH_ENDS,
+    BOTH_ENDPOINTS,
     Checks,
     blocked,
     checks_of,
@@ -26,15 +26,15 @@ from evenroad.robot.kernel.motion_checks import (
 from evenroad.robot.kernel.motion_states import BATCHES, CONFIGURATIONS, COUNTS, MOTIONS
 from evenroad.robot.kernel.path_proof import MOST_BENT, is_proved, proved_or_bent
 from evenroad.robot.kernel.shorten import (
-    MOST_CUTS,
+    MOST_SHORTCUTS,
     NO_LIMIT,
     Buffer,
-    cut_corners,
     measure,
     move,
     move_to,
     pair_joined,
     pass_by,
+    shortcut_corners,
 )
 
 Floats = npt.NDArray[np.float64]
@@ -53,7 +53,7 @@ PASSED_BY = 3
 MOST_ROUNDS, SPARE_PAIRS = 64, 20
 """So many rounds at most; so many shortcuts where what was drawn tight is not proved."""
 
-PLACES, STATES = 5, 3
+CANDIDATES, STATES = 5, 3
 """So many places are tried at once for a waypoint, each with a state to both of its sides: fifteen of sixteen lanes."""
 
 TRIED = 2
@@ -93,7 +93,7 @@ class Slides(NamedTuple):
     lengths: Floats
 
 
-def tighten_path(
+def smooth_path(
     world: LaneWorld,
     path: Floats,
     pairs: tuple[int, int],
@@ -109,47 +109,47 @@ def tighten_path(
     """
     size, dim = path.shape
     # A slide adds no waypoint; a shortcut, a cut or a bend one, the ends two.
-    rows = size + MOST_ROUNDS * PAIRS + MOST_CUTS + MOST_BENT + 8
-    room, given = world.arguments(COUNTS + rows * (dim + 1) + (PLACES + 5 + size) * dim + PLACES)
-    points = room[-rows * dim :].reshape(rows, dim)
-    room[:COUNTS], points[:size] = 0.0, path
+    rows = size + MOST_ROUNDS * PAIRS + MOST_SHORTCUTS + MOST_BENT + 8
+    memory, given = world.arguments(COUNTS + rows * (dim + 1) + (CANDIDATES + 5 + size) * dim + CANDIDATES)
+    points = memory[-rows * dim :].reshape(rows, dim)
+    memory[:COUNTS], points[:size] = 0.0, path
     wider = world.wider(CLEARANCE), world.wider(LITTLE)
-    found = tighten_points((rows, size, dim), pairs, sphere, most_batches, int(proved), wider, given)
+    found = smooth_points((rows, size, dim), pairs, sphere, most_batches, int(proved), wider, given)
     motions, left = divmod(found, _BESIDE)
     return points[:left].copy(), motions
 
 
 @program
-def tighten_points(
+def smooth_points(
     shape: Triple, shares: Pair, sphere: Pair, most_batches: int, proved: int, wider: Pair, given: Given
 ) -> int:
-    """Do the work of `tighten_path` on the last rows of the memory; return how many are left, and 2^32 a motion.
+    """Do the work of `smooth_path` on the last rows of the memory; return how many are left, and 2^32 a motion.
 
     0 are left where the path is not finite.  Where what was drawn tight is not proved, the path is shortened as it was
     given, each motion proved before it is put in; 0 are left where `proved` is 0 and that is not proved either.
     """
     checks = checks_of(*given)
     rows, size, dim = shape
-    own = given[ROOM] + 8 * COUNTS
+    own = given[MEMORY] + 8 * COUNTS
     last = own + 24 * dim
-    lengths = last + 8 * (PLACES + 2) * dim
-    kept_at = lengths + 8 * (PLACES + rows)
+    lengths = last + 8 * (CANDIDATES + 2) * dim
+    kept_at = lengths + 8 * (CANDIDATES + rows)
     begin = kept_at + 8 * size * dim
-    goal, kept = doubles_at(last + 8 * (PLACES + 1) * dim, (dim,)), matrix_at(kept_at, (size, dim))
+    goal, kept = doubles_at(last + 8 * (CANDIDATES + 1) * dim, (dim,)), matrix_at(kept_at, (size, dim))
     pairs, slides = (
         matrix_at(shares[0], (shares[1], 2)),
         Slides(
             matrix_at(sphere[0], (sphere[1], dim)),
-            matrix_at(last, (PLACES + 1, dim)),
-            doubles_at(lengths, (PLACES,)),
+            matrix_at(last, (CANDIDATES + 1, dim)),
+            doubles_at(lengths, (CANDIDATES,)),
         ),
     )
-    places, ends, way = (
-        doubles_at(lengths + 8 * PLACES, (rows,)),
+    positions, endpoints, difference = (
+        doubles_at(lengths + 8 * CANDIDATES, (rows,)),
         matrix_at(own, (2, dim)),
         doubles_at(own + 16 * dim, (dim,)),
     )
-    whole = Buffer(matrix_at(begin, (rows, dim)), places, ends, way)
+    whole = Buffer(matrix_at(begin, (rows, dim)), positions, endpoints, difference)
     points = whole.points
     for i in range(size):
         for k in range(dim):
@@ -160,22 +160,24 @@ def tighten_points(
     if size < 3:
         return size
     margin, plain = wider[0], look_at(wider[0], checks)
-    size, first, after = _left_behind(points, size, goal, way, checks)
+    size, first, after = _left_behind(points, size, goal, difference, checks)
     if size == 0:
         margin, size = wider[1], shape[1]
         for i in range(size):
             move_to(kept[i], points[i])
         look_at(margin, checks)
-        size, first, after = _left_behind(points, size, goal, way, checks)
+        size, first, after = _left_behind(points, size, goal, difference, checks)
     if size > 0:
-        buffer = Buffer(matrix_at(begin + 8 * dim * first, (rows - first, dim)), places, ends, way)
+        buffer = Buffer(
+            matrix_at(begin + 8 * dim * first, (rows - first, dim)), positions, endpoints, difference
+        )
         size = first + _smoothed(buffer, size - first, pairs, slides, most_batches, checks)
         if after:
             move_to(goal, points[size])
             size += 1
     look_at(plain, checks)
     if size > 0:
-        size = proved_or_bent(points, size, margin, slides.directions, slides.tried[0], way, checks)
+        size = proved_or_bent(points, size, margin, slides.directions, slides.tried[0], difference, checks)
     if size == 0:
         size = _shortened(whole, kept, pairs, most_batches, proved != 0, checks)
     return size + _BESIDE * checks.counts[MOTIONS]
@@ -186,15 +188,15 @@ def _smoothed(
     buffer: Buffer, size: int, pairs: Floats, slides: Slides, most_batches: int, checks: Checks
 ) -> int:
     """Let waypoints slide, and join places of the path, while that gains anything; return its new size."""
-    points, places = buffer.points, buffer.places
+    points, positions = buffer.points, buffer.positions
     size = pass_by(points, size, False, checks)
     measure(buffer, size, checks)
     little = pair = turn = 0
     while turn < MOST_ROUNDS and size > 2 and little < IN_A_ROW and _is_work_left(size, most_batches, checks):
-        length = places[size - 1]
+        length = positions[size - 1]
         for number in range(SLIDES * turn, SLIDES * (turn + 1)):
             if _is_work_left(size, most_batches, checks):
-                _slide(points, 1 + number % (size - 2), number, slides, buffer.way, checks)
+                _slide(points, 1 + number % (size - 2), number, slides, buffer.direction, checks)
         measure(buffer, size, checks)
         for _ in range(PAIRS):
             size = pair_joined(buffer, size, pairs[pair], False, checks)
@@ -202,9 +204,9 @@ def _smoothed(
         if turn % PASSED_BY == PASSED_BY - 1:
             size = pass_by(points, size, False, checks)
             measure(buffer, size, checks)
-        little = little + 1 if places[size - 1] > length * (1.0 - LEAST_GAIN) else 0
+        little = little + 1 if positions[size - 1] > length * (1.0 - LEAST_GAIN) else 0
         turn += 1
-    return cut_corners(buffer, size, MOST_CUTS, NO_LIMIT, False, checks)
+    return shortcut_corners(buffer, size, MOST_SHORTCUTS, NO_LIMIT, False, checks)
 
 
 @quick
@@ -222,7 +224,7 @@ def _shortened(
     measure(buffer, size, checks)
     for row in range(SPARE_PAIRS):
         size = pair_joined(buffer, size, pairs[row], True, checks)
-    size = cut_corners(buffer, size, MOST_CUTS, most, True, checks)
+    size = shortcut_corners(buffer, size, MOST_SHORTCUTS, most, True, checks)
     return size if proved or is_proved(buffer.points, size, checks) else 0
 
 
@@ -234,7 +236,7 @@ def _is_work_left(size: int, most_batches: int, checks: Checks) -> bool:
 
 @quick
 def _left_behind(
-    points: Floats, size: int, goal: Floats, way: Floats, checks: Checks
+    points: Floats, size: int, goal: Floats, difference: Floats, checks: Checks
 ) -> tuple[int, int, bool]:
     """Leave ends that nearly touch something as they are, and what leads away from them.
 
@@ -244,10 +246,10 @@ def _left_behind(
     dim = points.shape[1]
     for side in range(2):
         a, b = (points[0], points[1]) if side == 0 else (points[size - 1], points[size - 2])
-        distance_and_way(a, b, checks.bounds, way)
+        distance_and_direction(a, b, checks.bounds, difference)
         for lane in range(_HALF):
             for k in range(dim):
-                checks.states[k * LANES + _HALF * side + lane] = a[k] + lane / _HALF * way[k]
+                checks.states[k * LANES + _HALF * side + lane] = a[k] + lane / _HALF * difference[k]
     touching = blocked(checks)
     first, after = 0, False
     for side in range(2):
@@ -273,17 +275,17 @@ def _left_behind(
 
 
 @quick
-def _slide(points: Floats, i: int, number: int, slides: Slides, way: Floats, checks: Checks) -> None:
+def _slide(points: Floats, i: int, number: int, slides: Slides, difference: Floats, checks: Checks) -> None:
     """Move a waypoint to the best of some places around it by which the way is shorter, and free at its states."""
     dim = points.shape[1]
     directions, tried, lengths = slides.directions, slides.tried, slides.lengths
-    a, here, b, ahead = points[i - 1], points[i], points[i + 1], tried[PLACES]
-    before, after = _write_ahead(a, here, b, ahead, way, checks)
-    if distance_and_way(a, b, checks.bounds, way) > (before + after) * (1.0 - BEND):
+    a, here, b, ahead = points[i - 1], points[i], points[i + 1], tried[CANDIDATES]
+    before, after = _write_ahead(a, here, b, ahead, difference, checks)
+    if distance_and_direction(a, b, checks.bounds, difference) > (before + after) * (1.0 - BEND):
         return
     least, inside = (before + after) * (1.0 - SLIDE_WORTH_WHILE), 0
-    for place in range(PLACES):
-        there, turn = tried[place], PLACES * number + place
+    for index in range(CANDIDATES):
+        there, turn = tried[index], CANDIDATES * number + index
         direction, reach = directions[turn % len(directions)], SIZES[turn % len(SIZES)] * min(before, after)
         along = 0.0
         for k in range(dim):
@@ -295,12 +297,12 @@ def _slide(points: Floats, i: int, number: int, slides: Slides, way: Floats, che
             there[k] = here[k] + reach * (side * direction[k] + AHEAD * ahead[k])
         within = enter(there, checks.bounds, there)
         canonical(there, checks.bounds)
-        lengths[place] = distance_and_way(a, there, checks.bounds, way)
-        _write_states(a, there, way, STATES * place, checks)
-        lengths[place] += distance_and_way(b, there, checks.bounds, way)
+        lengths[index] = distance_and_direction(a, there, checks.bounds, difference)
+        _write_states(a, there, difference, STATES * index, checks)
+        lengths[index] += distance_and_direction(b, there, checks.bounds, difference)
         for k in range(dim):
-            checks.states[k * LANES + STATES * place + 2] = there[k] - BESIDE * way[k]
-        inside |= int(within and lengths[place] <= least) << place
+            checks.states[k * LANES + STATES * index + 2] = there[k] - BESIDE * difference[k]
+        inside |= int(within and lengths[index] <= least) << index
     if inside == 0:
         return
     touching = blocked(checks)
@@ -309,38 +311,38 @@ def _slide(points: Floats, i: int, number: int, slides: Slides, way: Floats, che
     checks.counts[MOTIONS] += 1
     for _ in range(TRIED):
         best = -1
-        for place in range(PLACES):
-            seen = (touching >> (STATES * place)) & ((1 << STATES) - 1)
-            if (inside >> place) & 1 and seen == 0 and (best < 0 or lengths[place] < lengths[best]):
-                best = place
+        for index in range(CANDIDATES):
+            seen = (touching >> (STATES * index)) & ((1 << STATES) - 1)
+            if (inside >> index) & 1 and seen == 0 and (best < 0 or lengths[index] < lengths[best]):
+                best = index
         if best < 0:
             return
         inside &= ~(1 << best)
         there = tried[best]
-        if motion_free(a, there, BOTH_ENDS, checks) and motion_free(there, b, BOTH_ENDS, checks):
+        if motion_free(a, there, BOTH_ENDPOINTS, checks) and motion_free(there, b, BOTH_ENDPOINTS, checks):
             move_to(there, here)
             return
 
 
 @quick
-def _write_states(a: Floats, there: Floats, way: Floats, lane: int, checks: Checks) -> None:
+def _write_states(a: Floats, there: Floats, difference: Floats, lane: int, checks: Checks) -> None:
     """Write a place, and a state towards the neighbour that a way comes from; lanes to spare repeat the place."""
     for k in range(len(a)):
         checks.states[k * LANES + lane] = checks.states[k * LANES + LANES - 1] = there[k]
-        checks.states[k * LANES + lane + 1] = there[k] - BESIDE * way[k]
+        checks.states[k * LANES + lane + 1] = there[k] - BESIDE * difference[k]
 
 
 @quick
 def _write_ahead(
-    a: Floats, here: Floats, b: Floats, ahead: Floats, way: Floats, checks: Checks
+    a: Floats, here: Floats, b: Floats, ahead: Floats, difference: Floats, checks: Checks
 ) -> tuple[float, float]:
     """Write the direction in which a waypoint shortens the path soonest; return how far its neighbours are."""
-    before = max(distance_and_way(here, a, checks.bounds, way), 1e-9)
+    before = max(distance_and_direction(here, a, checks.bounds, difference), 1e-9)
     for k in range(len(here)):
-        ahead[k] = way[k] / before
-    after, squared = max(distance_and_way(here, b, checks.bounds, way), 1e-9), 1e-18
+        ahead[k] = difference[k] / before
+    after, squared = max(distance_and_direction(here, b, checks.bounds, difference), 1e-9), 1e-18
     for k in range(len(here)):
-        ahead[k] += way[k] / after
+        ahead[k] += difference[k] / after
         squared += ahead[k] * ahead[k]
     for k in range(len(here)):
         ahead[k] /= np.sqrt(squared)

@@ -27,7 +27,7 @@ from evenroad.space import Space
 from evenroad.world import World
 
 
-class Prices(NamedTuple):
+class EdgeWeights(NamedTuple):
     """What the edges of a roadmap cost, as integers (m,) of a unit that is large enough for nearly all links."""
 
     longest: float
@@ -135,18 +135,18 @@ class PointRoadmap(Roadmap):
         return Surroundings(self.milestones, self.space)
 
     @cached_property
-    def prices(self) -> Prices:
+    def edge_weights(self) -> EdgeWeights:
         """The lengths as integers."""
-        return self.priced(self.lengths)
+        return self.weighted(self.lengths)
 
-    def priced(self, costs: Floats) -> Prices:
+    def weighted(self, costs: Floats) -> EdgeWeights:
         """Return such costs of the edges, (m,), as integers."""
         n = len(self.milestones)
         # Two milestones are at most so far apart.
         across = 2.0 * float(self.surroundings.distances(self.milestones[0]).max()) if n else 0.0
         longest = max(float(costs.max(initial=0.0)), across)
         unit = FixedPoint.of(longest, n + 2)
-        return Prices(longest, unit, unit.weights(costs))
+        return EdgeWeights(longest, unit, unit.weights(costs))
 
     def within(
         self, world: World, *, lazy_milestones: bool = False, edge_cost: EdgeCost | None = None

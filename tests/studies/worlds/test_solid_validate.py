@@ -11,7 +11,7 @@ from evenroad.planning import PRM, plan
 from evenroad.space import SE2, SE3, BoxSpace
 from evenroad.space.path import subdivide
 from evenroad.world import FunctionWorld
-from evenroad.world.protocol import Rechecks
+from evenroad.world.protocol import ValidatesPaths
 from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld
 from tests.studies.worlds.solids_oracle import gap
 from tests.studies.worlds.test_solid_world import WORLDS, deepest
@@ -43,7 +43,7 @@ def test_the_oracle_says_of_poses_what_a_linear_program_says(world):
 def test_a_proved_motion_is_free_at_a_twentieth_of_the_resolution_and_a_refused_one_touches(world):
     a, b = motions(world, 2_500)
     weak = world.motion_valid(a, b)
-    strict = np.array([world.recheck(np.stack(ends))[0] for ends in zip(a, b, strict=True)])
+    strict = np.array([world.validate(np.stack(ends))[0] for ends in zip(a, b, strict=True)])
     assert not (strict & ~weak).any()
     refused = np.flatnonzero(weak & ~strict)
     assert len(refused), "sampled verdicts have gaps that the proof finds"
@@ -78,7 +78,7 @@ def test_a_thin_post_between_two_states_is_found_and_one_beside_the_way_is_passe
     world = SolidWorld(space, [body], [post], (3.0, 1.0))
     path = np.array([[*[1.0, 5.0, 5.0][:dim], *turn], [*[9.0, 5.0, 5.0][:dim], *turn]])
     assert world.motion_valid(path[:1], path[1:])[0]
-    assert world.recheck(path).tolist() == [beside > 0.0]
+    assert world.validate(path).tolist() == [beside > 0.0]
 
 
 def test_a_turn_on_the_spot_that_grazes_a_post_is_refused():
@@ -87,14 +87,14 @@ def test_a_turn_on_the_spot_that_grazes_a_post_is_refused():
     world = SolidWorld(SE2([0, 0], [10, 10]), needle, [post], (0.5, 0.5))
     path = np.array([[5.0, 5.0, 0.0], [5.0, 5.0, 1.0], [5.0, 5.0, 2.0]])
     assert world.motion_valid(path[:-1], path[1:]).all()
-    assert world.recheck(path).tolist() == [False, True]
+    assert world.validate(path).tolist() == [False, True]
 
 
 def test_one_verdict_a_motion_and_none_outside_of_the_space():
     world = SolidWorld(BoxSpace([0, 0], [1, 1]), [OrientedBox([0, 0], [0.1, 0.1])], [], 0.1)
-    assert isinstance(world, Rechecks)
+    assert isinstance(world, ValidatesPaths)
     path = np.array([[0.1, 0.1], [0.9, 0.9], [0.9, 0.9], [1.5, 0.9]])
-    assert world.recheck(path).tolist() == [True, True, False]
-    assert world.recheck(np.array([[0.1, 0.1]])).shape == (0,)
+    assert world.validate(path).tolist() == [True, True, False]
+    assert world.validate(np.array([[0.1, 0.1]])).shape == (0,)
     with pytest.raises(InvalidValue, match="path must have shape"):
-        world.recheck([0.1, 0.1])
+        world.validate([0.1, 0.1])

@@ -13,7 +13,7 @@ from evenroad.points import draw
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.world import FunctionWorld
-from evenroad.world.protocol import Rechecks
+from evenroad.world.protocol import ValidatesPaths
 from tests.robot.kernel_arms import box_scene, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
 from tests.robot.test_kernel_certified import needle
@@ -25,7 +25,7 @@ ARMS = {"ur5": ur5(3.2), "seven": seven_joint_arm(), "tree 8": random_tree(8)}
 class Careless(FunctionWorld):
     """A world without a strict check: there is something to find then."""
 
-    recheck = None
+    validate = None
 
 
 def shortcut_paths(robot, scenes):
@@ -54,7 +54,7 @@ def nearest(world, a, b):
 def test_a_shortcut_motion_that_passes_is_free_for_the_oracle_at_a_twentieth_of_the_resolution(robot):
     passed, refused = [], []
     for world, path in shortcut_paths(robot, range(8)):
-        for a, b, free in zip(path[:-1], path[1:], world.recheck(path), strict=True):
+        for a, b, free in zip(path[:-1], path[1:], world.validate(path), strict=True):
             (passed if free else refused).append(nearest(world, a, b))
     assert len(passed) > 15
     assert min(passed) > 0.0
@@ -64,36 +64,36 @@ def test_a_shortcut_motion_that_passes_is_free_for_the_oracle_at_a_twentieth_of_
 def test_shortcut_paths_do_touch_so_that_the_check_has_something_to_find():
     paths = list(shortcut_paths(ARMS["ur5"], range(8)))
     assert all(world.motion_valid(path[:-1], path[1:]).all() for world, path in paths)
-    assert not all(world.recheck(path).all() for world, path in paths)
+    assert not all(world.validate(path).all() for world, path in paths)
 
 
 @pytest.mark.parametrize("world", [needle(gap=-1e-3), CertifiedWorld(needle(gap=-1e-3))])
 def test_a_post_between_two_states_is_found(world):
-    assert isinstance(world, Rechecks)
+    assert isinstance(world, ValidatesPaths)
     assert world.proof == "certified"
-    assert world.recheck(np.array([[0.0], [0.9], [1.1], [1.9]])).tolist() == [True, False, True]
+    assert world.validate(np.array([[0.0], [0.9], [1.1], [1.9]])).tolist() == [True, False, True]
 
 
 @pytest.mark.parametrize("gap", [1e-5, 1e-4, 1e-3])
 def test_a_post_beside_the_way_is_passed(gap):
-    assert needle(gap).recheck(np.array([[0.0], [1.9]]))[0]
+    assert needle(gap).validate(np.array([[0.0], [1.9]]))[0]
 
 
 def test_one_verdict_a_motion():
     world = ArmWorld(ur5(), box_scene())
     home = np.array([0.0, -math.pi / 2, 0.0, -math.pi / 2, 0.0, 0.0])
     path = np.array([home, home + 0.1, home + 0.1])
-    assert world.recheck(path).tolist() == [True, True]
-    assert world.recheck(path[:1]).shape == (0,)
+    assert world.validate(path).tolist() == [True, True]
+    assert world.validate(path[:1]).shape == (0,)
     with pytest.raises(InvalidValue, match="path must have shape"):
-        world.recheck(home)
+        world.validate(home)
 
 
 @pytest.mark.parametrize("backend", ["lanes", "scalar"])
 def test_what_states_call_blocked_is_not_passed(backend):
     world = ArmWorld(ur5(), box_scene(), backend=backend)
     path = world.space.from_cube(np.random.default_rng(3).random((200, 6)))
-    assert not (world.recheck(path) & ~world.motion_valid(path[:-1], path[1:])).any()
+    assert not (world.validate(path) & ~world.motion_valid(path[:-1], path[1:])).any()
 
 
 def test_a_motion_of_thirty_thousand_turns_is_refused_in_bounded_time():
@@ -103,7 +103,7 @@ def test_a_motion_of_thirty_thousand_turns_is_refused_in_bounded_time():
     world = ArmWorld(replace(wheel.robot, joints=(turn,)), wheel.scene, resolution=100.0)
     path = np.array([[-1e5], [1e5]])
     assert world.motion_valid(path[:1], path[1:])[0]
-    assert world.recheck(np.array([[-10.0], [10.0]]))[0]
+    assert world.validate(np.array([[-10.0], [10.0]]))[0]
     begin = time.process_time()
-    assert not world.recheck(path)[0]
+    assert not world.validate(path)[0]
     assert time.process_time() - begin < 2.0

@@ -11,7 +11,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._threads import in_order
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
-from evenroad.robot.kinematics import capsule_ends, link_poses
+from evenroad.robot.kinematics import capsule_endpoints, link_poses
 
 BOXES = (3, 30)
 """A random scene has so many boxes, the last number not included."""
@@ -44,15 +44,15 @@ class Surroundings(NamedTuple):
     def of(cls, robot: Robot, q: Floats) -> Surroundings:
         """Return them from configurations, (n, dim)."""
         some = q[:SEEN]
-        places = capsule_ends(robot, some).reshape(-1, 3)
+        points = capsule_endpoints(robot, some).reshape(-1, 3)
         moved_first = next(i for i, joint in enumerate(robot.joints) if joint.name == robot.group[0])
         base = link_poses(robot, some[:1])[0, moved_first + 1, :3, 3]
         thick = max(capsule.radius for capsule in robot.capsules)
-        low, high = places.min(axis=0) - thick, places.max(axis=0) + thick
-        return cls(base, low, high, thick + float(np.max(np.linalg.norm(places - base, axis=1))))
+        low, high = points.min(axis=0) - thick, points.max(axis=0) + thick
+        return cls(base, low, high, thick + float(np.max(np.linalg.norm(points - base, axis=1))))
 
 
-def chance_of_freedom(
+def free_probability(
     robot: Robot,
     q: Floats,
     scenes: int,
@@ -66,8 +66,8 @@ def chance_of_freedom(
     bare, around = replace(robot, pairs=()), Surroundings.of(robot, q)
     free = np.zeros(len(q))
     drawn = ((ArmWorld(bare, random_scene(*around, rng)), q) for _ in range(scenes))
-    for i, verdicts in enumerate(in_order(ArmWorld.valid, drawn)):
-        free += verdicts
+    for i, results in enumerate(in_order(ArmWorld.valid, drawn)):
+        free += results
         progress((i + 1) / scenes)
     return free / scenes
 

@@ -9,9 +9,9 @@ import pytest
 import evenroad as er
 from evenroad.errors import InvalidValue
 from evenroad.geometry import Pose
-from evenroad.robot import ArmWorld, Obstacle, Scene, Straight, link_poses, load_robot
+from evenroad.robot import ArmWorld, CartesianLine, Obstacle, Scene, link_poses, load_robot
+from evenroad.robot.cartesian_line import line_from
 from evenroad.robot.chain import chain_of
-from evenroad.robot.straight import line_from
 
 UR5, ARM7 = load_robot("ur5"), load_robot("arm7")
 BENT = {"ur5": [0.3, -1.2, 1.4, -0.8, 0.9, 0.2], "arm7": [0.3, 0.6, 0.1, 1.2, 0.3, 0.7, -0.4]}
@@ -30,10 +30,10 @@ def tips(robot, path, tip):
 @pytest.mark.parametrize("away", ["-z", "x", "up", (0.6, 0.0, -0.8)])
 def test_a_line_is_straight_keeps_the_rotation_and_is_proved_free(robot, tip, away):
     world, q = ArmWorld(robot, EMPTY), np.array(BENT[robot.name])
-    line = line_from(world, chain_of(robot, tip), Straight(0.05, away=away), q, 0.05)
+    line = line_from(world, chain_of(robot, tip), CartesianLine(0.05, away=away), q, 0.05)
     assert line.why == ""
     assert (line.path[0] == q).all()
-    assert world.recheck(line.path).all()
+    assert world.validate(line.path).all()
     at = tips(robot, line.path, tip)
     first = at[0]
     direction = {"up": np.array([0, 0, 1.0]), "-z": -first[:3, 2], "x": first[:3, 0]}.get(
@@ -55,7 +55,7 @@ def test_a_line_that_is_blocked_says_where_and_by_what():
     wall = Obstacle.of("wall", "sphere", (0.05,), tuple(at[:3, 3] + 0.2 * at[:3, 2]))
     world = ArmWorld(UR5, Scene((wall,), name="s"))
     assert world.valid(q[None])[0]
-    line = line_from(world, chain_of(UR5, "tool0"), Straight(0.15, away="z"), q, 0.15)
+    line = line_from(world, chain_of(UR5, "tool0"), CartesianLine(0.15, away="z"), q, 0.15)
     assert len(line.path) == 1
     assert "'wrist_3_link' touches 'wall'" in line.why
     after = float(line.why.split()[1])
@@ -64,7 +64,11 @@ def test_a_line_that_is_blocked_says_where_and_by_what():
 
 def test_a_line_out_of_reach_says_how_far_it_goes():
     line = line_from(
-        ArmWorld(UR5, EMPTY), chain_of(UR5, "tool0"), Straight(2.0, away="up"), np.array(BENT["ur5"]), 2.0
+        ArmWorld(UR5, EMPTY),
+        chain_of(UR5, "tool0"),
+        CartesianLine(2.0, away="up"),
+        np.array(BENT["ur5"]),
+        2.0,
     )
     assert "no joint angles go on" in line.why
     assert 0.05 < float(line.why.split()[1]) < 1.0
@@ -73,13 +77,13 @@ def test_a_line_out_of_reach_says_how_far_it_goes():
 @pytest.mark.parametrize("length", [3.0, 1e6, 1e300])
 def test_a_line_longer_than_the_arm_reaches_is_refused_before_it_is_laid_out(length):
     q = np.array(BENT["ur5"])
-    line = line_from(ArmWorld(UR5, EMPTY), chain_of(UR5, "tool0"), Straight(length), q, length)
+    line = line_from(ArmWorld(UR5, EMPTY), chain_of(UR5, "tool0"), CartesianLine(length), q, length)
     assert line.path.tolist() == [q.tolist()]
     assert "'tool0' moves no farther than 2.4" in line.why
 
 
 def test_a_line_that_is_missed_by_more_than_its_tolerance_is_refused():
-    straight = Straight(0.05, line_tolerance=1e-9)
+    straight = CartesianLine(0.05, line_tolerance=1e-9)
     line = line_from(ArmWorld(UR5, EMPTY), chain_of(UR5, "tool0"), straight, np.array(BENT["ur5"]), 0.05)
     assert "misses the straight line by" in line.why
 
@@ -87,7 +91,7 @@ def test_a_line_that_is_missed_by_more_than_its_tolerance_is_refused():
 def test_a_plan_goes_straight_from_its_start_and_to_its_goal():
     pose = Pose.from_rpy((0.62, 0.0, 0.2), (0.0, math.pi / 2, 0.0))
     start = START
-    result = er.plan("box-reach", start, pose, robot="ur5", straight=Straight(0.1, 0.05))
+    result = er.plan("box-reach", start, pose, robot="ur5", straight=CartesianLine(0.1, 0.05))
     assert result.solved
     assert result.path[0].tolist() == start
     assert result.cost == pytest.approx(np.linalg.norm(np.diff(result.path, axis=0), axis=1).sum())
@@ -106,27 +110,31 @@ def test_a_plan_goes_straight_from_its_start_and_to_its_goal():
 
 def test_points_plan_between_lines_too():
     pose = Pose.from_rpy((0.62, 0.0, 0.2), (0.0, math.pi / 2, 0.0))
-    result = er.plan("box-reach", START, pose, er.PRM(1024), robot="ur5", seconds=60, straight=Straight(0.05))
+    result = er.plan(
+        "box-reach", START, pose, er.PRM(1024), robot="ur5", seconds=60, straight=CartesianLine(0.05)
+    )
     assert result.solved
     assert result.planner == "prm lazy"
     assert "line_m" in result.deviation
 
 
 def test_where_there_is_no_straight_way_the_answer_says_so():
-    stretched = er.plan("box-reach", "home", "inside", robot="ur5", straight=Straight(retreat=0.2, away="up"))
+    stretched = er.plan(
+        "box-reach", "home", "inside", robot="ur5", straight=CartesianLine(retreat=0.2, away="up")
+    )
     assert stretched.status is er.Status.NOT_CONNECTED
     assert "no straight way from the start: after" in stretched.message
-    sideways = er.plan("box-reach", "home", "inside", robot="ur5", straight=Straight(0.3, away="x"))
+    sideways = er.plan("box-reach", "home", "inside", robot="ur5", straight=CartesianLine(0.3, away="x"))
     assert sideways.status is er.Status.NOT_CONNECTED
     assert "no straight way to the goal: after" in sideways.message
 
 
 def test_a_line_that_is_none_is_refused():
     with pytest.raises(InvalidValue, match="must have a length"):
-        Straight()
+        CartesianLine()
     with pytest.raises(InvalidValue, match="approach must be a finite number >= 0, got nan"):
-        Straight(math.nan)
+        CartesianLine(math.nan)
     with pytest.raises(InvalidValue, match="away must be a direction, got zeros"):
-        Straight(0.1, away=(0, 0, 0))
+        CartesianLine(0.1, away=(0, 0, 0))
     with pytest.raises(InvalidValue, match="away must be x, -x, .* or 3 finite numbers, got 'down'"):
-        Straight(0.1, away="down")
+        CartesianLine(0.1, away="down")

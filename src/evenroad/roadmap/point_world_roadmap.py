@@ -15,12 +15,12 @@ from evenroad.roadmap.answer import answer, connected, refusal, shown_apart
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Connector
-from evenroad.roadmap.kept import PointRoadmap, Prices, WorldRoadmap
 from evenroad.roadmap.neighbours import nearest_of
+from evenroad.roadmap.point_roadmap import EdgeWeights, PointRoadmap, WorldRoadmap
 from evenroad.roadmap.problem import Problem
-from evenroad.roadmap.query import BOUND, LINKS, EdgeCost, Query, edge_costs, read_places
+from evenroad.roadmap.query import BOUND, LINKS, EdgeCost, Query, as_start_and_goals, edge_costs
 from evenroad.roadmap.result import PlanResult
-from evenroad.roadmap.search import BLOCKED, FREE, UNKNOWN, EdgeStates, FixedPoint, Known, SearchProblem
+from evenroad.roadmap.search import BLOCKED, FREE, UNKNOWN, EdgeStates, FixedPoint, SearchProblem, StateCache
 from evenroad.world import World
 
 
@@ -45,20 +45,20 @@ class PointWorldRoadmap(WorldRoadmap):
         # Of milestones and edges first; behind them there is room for the start, the goals and their links.
         self._configurations, self._edges = roadmap.milestones, roadmap.edges
         self._weights: Ints | None = None
-        self._known = Known.nothing(len(self._configurations), len(self._edges))
+        self._cache = StateCache.nothing(len(self._configurations), len(self._edges))
         if edge_cost is not None:
             # Now, so that a cost that cannot be one is refused here.
             self._costs = edge_costs(world.space, self._configurations, self._edges, edge_cost)
         if not lazy_milestones:
-            states = EdgeStates(world, self._configurations, self._edges, known=self._known)
-            states.ask_nodes(np.arange(len(self._configurations)))
+            states = EdgeStates(world, self._configurations, self._edges, cache=self._cache)
+            states.evaluate_nodes(np.arange(len(self._configurations)))
 
     @property
-    def known(self) -> dict[str, int]:
+    def evaluated(self) -> dict[str, int]:
         """How many milestones and edges are known to be free or blocked so far."""
         with self._lock:
-            nodes = self._known.nodes[: len(self.roadmap.milestones)].copy()
-            edges = self._known.edges[: len(self.roadmap.edges)].copy()
+            nodes = self._cache.nodes[: len(self.roadmap.milestones)].copy()
+            edges = self._cache.edges[: len(self.roadmap.edges)].copy()
         return {
             f"{what}_{state}": int(np.count_nonzero(states == value))
             for what, states in (("milestones", nodes), ("edges", edges))
@@ -90,7 +90,7 @@ class PointWorldRoadmap(WorldRoadmap):
             Smooths the path, and looks for one where the roadmap has none; not with an `edge_cost`.
         """
         query = Query(
-            *read_places(start, goal, self.world.space),
+            *as_start_and_goals(start, goal, self.world.space),
             search=search,
             shorten=shorten,
             edge_cost=self._edge_cost,
@@ -133,35 +133,37 @@ class PointWorldRoadmap(WorldRoadmap):
 
     def _link(self, attempt: Attempt) -> tuple[EdgeStates, SearchProblem]:
         """Put start and goals behind the milestones, and their links behind the edges."""
-        roadmap, ends, space = self.roadmap, attempt.start_and_goals, self.world.space
-        distances = [roadmap.surroundings.distances(end) for end in ends]
+        roadmap, terminals, space = self.roadmap, attempt.start_and_goals, self.world.space
+        distances = [roadmap.surroundings.distances(end) for end in terminals]
         links = self._links(distances, attempt.query)
         n, m = len(roadmap.milestones), len(roadmap.edges)
-        nodes, edges = n + len(ends), m + len(links)
-        known = self._known = Known(
-            _with_room(self._known.nodes, n, len(ends)),
-            _with_room(self._known.edges, m, len(links)),
-            _with_room(self._known.confirmed, m, len(links)),
+        nodes, edges = n + len(terminals), m + len(links)
+        cache = self._cache = StateCache(
+            _with_capacity(self._cache.nodes, n, len(terminals)),
+            _with_capacity(self._cache.edges, m, len(links)),
+            _with_capacity(self._cache.confirmed, m, len(links)),
         )
-        self._configurations = _with_room(self._configurations, n, len(ends))
-        self._edges = _with_room(self._edges, m, len(links))
-        self._configurations[n:nodes], self._edges[m:edges] = ends, links
-        known.nodes[n:nodes], known.edges[m:edges], known.confirmed[m:edges] = FREE, UNKNOWN, False
+        self._configurations = _with_capacity(self._configurations, n, len(terminals))
+        self._edges = _with_capacity(self._edges, m, len(links))
+        self._configurations[n:nodes], self._edges[m:edges] = terminals, links
+        cache.nodes[n:nodes], cache.edges[m:edges], cache.confirmed[m:edges] = FREE, UNKNOWN, False
         q = self._configurations[:nodes]
         weights, unit = self._weigh(edge_costs(space, q, links, self._edge_cost), nodes)
-        between = [space.distance(ends, np.broadcast_to(goal, ends.shape)) for goal in ends[1:]]
+        between = [
+            space.distance(terminals, np.broadcast_to(goal, terminals.shape)) for goal in terminals[1:]
+        ]
         to_goal = np.min([np.append(*both) for both in zip(distances[1:], between, strict=True)], axis=0)
         bounds = unit.bounds(to_goal if self._edge_cost is None else BOUND * to_goal)
         graph = roadmap.graph.with_links(nodes, links, m)
-        known = Known(known.nodes[:nodes], known.edges[:edges], known.confirmed[:edges])
-        states = attempt.states(q, self._edges[:edges], known=known)
+        cache = StateCache(cache.nodes[:nodes], cache.edges[:edges], cache.confirmed[:edges])
+        states = attempt.states(q, self._edges[:edges], cache=cache)
         return states, SearchProblem(n, np.arange(n + 1, nodes), graph, weights, bounds)
 
     def _links(self, distances: list[Floats], query: Query) -> Ints32:
         """Return the links of the start and the goals, at such distances from the milestones, (l, 2)."""
         n = len(self.roadmap.milestones)
         reach = self.roadmap.rule.reach(n, self.world.space)
-        usable = np.ones(n, dtype=np.bool_) if self.lazy_milestones else self._known.nodes[:n] == FREE
+        usable = np.ones(n, dtype=np.bool_) if self.lazy_milestones else self._cache.nodes[:n] == FREE
         links, most = [], query.links_among(n)
         for node, away in enumerate(distances, start=n):
             near = nearest_of(away, usable, reach.k, reach.radius)
@@ -174,21 +176,23 @@ class PointWorldRoadmap(WorldRoadmap):
 
     def _weigh(self, links: Floats, nodes: int) -> tuple[Ints, FixedPoint]:
         """Return the costs of the edges and then of these links, (l,), as integers, and their unit."""
-        prices, m = self._prices, len(self.roadmap.edges)
-        unit = FixedPoint.of(max(prices.longest, float(links.max())), nodes)
-        if unit != prices.unit:
+        edge_weights, m = self._edge_weights, len(self.roadmap.edges)
+        unit = FixedPoint.of(max(edge_weights.longest, float(links.max())), nodes)
+        if unit != edge_weights.unit:
             costs = self.roadmap.lengths if self._edge_cost is None else self._costs
             return unit.weights(np.concatenate([costs, links])), unit
-        self._weights = _with_room(prices.weights if self._weights is None else self._weights, m, len(links))
+        self._weights = _with_capacity(
+            edge_weights.weights if self._weights is None else self._weights, m, len(links)
+        )
         self._weights[m : m + len(links)] = unit.weights(links)
         return self._weights[: m + len(links)], unit
 
     @cached_property
-    def _prices(self) -> Prices:
-        return self.roadmap.prices if self._edge_cost is None else self.roadmap.priced(self._costs)
+    def _edge_weights(self) -> EdgeWeights:
+        return self.roadmap.edge_weights if self._edge_cost is None else self.roadmap.weighted(self._costs)
 
 
-def _with_room(array: npt.NDArray[Any], kept: int, more: int) -> npt.NDArray[Any]:
+def _with_capacity(array: npt.NDArray[Any], kept: int, more: int) -> npt.NDArray[Any]:
     """Return an array with room for so many rows behind those that are kept: itself, or a longer copy."""
     if len(array) >= kept + more:
         return array

@@ -15,8 +15,8 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._threads import in_order
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
-from evenroad.robot.kinematics import capsule_ends, link_poses
-from evenroad.robot_roadmap.freedom import Surroundings
+from evenroad.robot.kinematics import capsule_endpoints, link_poses
+from evenroad.robot_roadmap.free_probability import Surroundings
 
 HALF_EXTENTS = ((0.12, 0.25), (0.1, 0.22), (0.1, 0.22))
 """Ranges of a pocket's depth, width and height, halved, as shares of the reach."""
@@ -67,7 +67,7 @@ STILL = 1e-3
 """A tip that does not move so far moves not at all [m]."""
 
 
-class Seen(NamedTuple):
+class Visibility(NamedTuple):
     """Which configurations ends can be joined to: the end ``own[e]`` to ``which[first[e]:first[e + 1]]``."""
 
     own: Ints
@@ -75,13 +75,13 @@ class Seen(NamedTuple):
     which: Ints
 
 
-def no_ends() -> Seen:
+def no_visibility() -> Visibility:
     """Return what no end sees."""
     nothing = np.empty(0, dtype=np.int64)
-    return Seen(nothing, np.zeros(1, dtype=np.int64), nothing)
+    return Visibility(nothing, np.zeros(1, dtype=np.int64), nothing)
 
 
-def ends_in_pockets(
+def hard_queries(
     robot: Robot,
     cell: Scene,
     pool: Floats,
@@ -89,13 +89,13 @@ def ends_in_pockets(
     count: int,
     rng: np.random.Generator,
     progress: Callable[[float], None] = lambda _: None,
-) -> Seen:
+) -> Visibility:
     """Return what `count` ends in pockets at random see of a pool, (n, dim); fewer where hardly any is free.
 
     `scaled` is the pool in the metric that tells which configurations are near.
     """
     if not count:
-        return no_ends()
+        return no_visibility()
     around = Surroundings.of(robot, pool)
     tips = tips_of(robot, pool)
     body, radii = body_of(robot, pool)
@@ -106,12 +106,12 @@ def ends_in_pockets(
     scaled = np.ascontiguousarray(scaled.T)
     own_of: list[int] = []
 
-    def ends() -> Iterator[tuple[ArmWorld, int]]:
+    def queries() -> Iterator[tuple[ArmWorld, int]]:
         drawn = TRIES * count if tips.shape[1] else 0
         while len(own_of) < count and drawn > 0:
             owns, which = rng.integers(len(pool), size=BATCH), rng.integers(tips.shape[1], size=BATCH)
             drawn -= BATCH
-            batch = pockets_around(tips[owns, which], around, rng)
+            batch = passages_around(tips[owns, which], around, rng)
             for i in np.flatnonzero(~batch.touched_by(body[owns], radii)).tolist():
                 if len(own_of) == count:
                     return
@@ -128,15 +128,15 @@ def ends_in_pockets(
 
     found: list[Ints] = []
     pairs = 0
-    for seen in in_order(lambda world, end: _seen(world, inside, pool, scaled, end), ends()):
+    for seen in in_order(lambda world, end: _seen(world, inside, pool, scaled, end), queries()):
         found.append(seen)
         pairs += len(seen) * len(robot.pairs)
         progress(min(max(len(found) / count, pairs / MOST_SEEN), 1.0))
         if pairs > MOST_SEEN and len(found) >= FEWEST:
             break
     if not found:
-        return no_ends()
-    return Seen(np.array(own_of[: len(found)]), np.cumsum([0, *map(len, found)]), np.concatenate(found))
+        return no_visibility()
+    return Visibility(np.array(own_of[: len(found)]), np.cumsum([0, *map(len, found)]), np.concatenate(found))
 
 
 def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: int) -> Ints:
@@ -147,8 +147,8 @@ def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: 
     later = np.arange(FIRST, len(pool))
     if len(later) > NEAR:
         squared = np.zeros(len(later))
-        for places in scaled:
-            apart = places[FIRST:] - places[end]
+        for positions in scaled:
+            apart = positions[FIRST:] - positions[end]
             apart *= apart
             squared += apart
         later = np.argpartition(squared, NEAR)[:NEAR] + FIRST
@@ -156,15 +156,15 @@ def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: 
     return joined_to(world, inside, pool, end, rows)
 
 
-def joined_to(pocket: ArmWorld, inside: ArmWorld, pool: Floats, end: int, rows: Ints) -> Ints:
+def joined_to(passage: ArmWorld, inside: ArmWorld, pool: Floats, end: int, rows: Ints) -> Ints:
     """Return which of some rows of a pool, (n, dim), a straight motion joins to the row `end`.
 
     The end is free of the pocket, all of the pool of what is `inside`, robot and static scene.
     """
     rows = rows[rows != end]
     here = np.broadcast_to(pool[end], (len(rows), pool.shape[1]))
-    free = pocket.valid(pocket.space.interpolate(here, pool[rows], EARLY))
-    for world in (pocket, inside):
+    free = passage.valid(passage.space.interpolate(here, pool[rows], EARLY))
+    for world in (passage, inside):
         free[free] = world.motion_valid(here[free], pool[rows[free]])
     return rows[free]
 
@@ -177,21 +177,23 @@ def last_links(robot: Robot) -> list[int]:
 
 def tips_of(robot: Robot, pool: Floats) -> Floats:
     """Return the places of the links that carry no other and move, (n, tips, 3) [m]."""
-    places = np.concatenate(
+    positions = np.concatenate(
         [link_poses(robot, q)[..., :3, 3] for q in np.array_split(pool, -(-len(pool) // 10_000))]
     )
-    return places[:, [i for i in last_links(robot) if np.ptp(places[:, i], axis=0).max() > STILL]]
+    return positions[:, [i for i in last_links(robot) if np.ptp(positions[:, i], axis=0).max() > STILL]]
 
 
 def body_of(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
     """Return places along the axes of all capsules, (n, places, 3), and their radii, (places,) [m]."""
-    ends = np.concatenate([capsule_ends(robot, q) for q in np.array_split(pool, -(-len(pool) // 10_000))])
+    endpoints = np.concatenate(
+        [capsule_endpoints(robot, q) for q in np.array_split(pool, -(-len(pool) // 10_000))]
+    )
     share = np.linspace(0.0, 1.0, ALONG)[:, np.newaxis]
-    places = ends[:, :, np.newaxis, 0] * (1.0 - share) + ends[:, :, np.newaxis, 1] * share
-    return places.reshape(len(pool), -1, 3), np.repeat([each.radius for each in robot.capsules], ALONG)
+    positions = endpoints[:, :, np.newaxis, 0] * (1.0 - share) + endpoints[:, :, np.newaxis, 1] * share
+    return positions.reshape(len(pool), -1, 3), np.repeat([each.radius for each in robot.capsules], ALONG)
 
 
-class Pockets(NamedTuple):
+class Passages(NamedTuple):
     """Boxes without their sides to -x: centres, (m, 3), axes, (m, 3, 3), half extents, (m, 3), places and half extents
     of their walls, (m, 5, 3) each.
     """
@@ -199,7 +201,7 @@ class Pockets(NamedTuple):
     centre: Floats
     turn: Floats
     half: Floats
-    places: Floats
+    positions: Floats
     sizes: Floats
 
     def touched_by(self, body: Floats, radii: Floats) -> Bools:
@@ -208,15 +210,15 @@ class Pockets(NamedTuple):
         What costs no world.
         """
         apart = np.einsum("mni,mij->mnj", body - self.centre[:, np.newaxis], self.turn)[:, :, np.newaxis]
-        apart = np.abs(apart - self.places[:, np.newaxis]) - self.sizes[:, np.newaxis]
+        apart = np.abs(apart - self.positions[:, np.newaxis]) - self.sizes[:, np.newaxis]
         apart = np.maximum(apart, 0.0, out=apart)
         squared = np.einsum("mnwk,mnwk->mnw", apart, apart).min(axis=2)
         touched: Bools = (squared < radii * radii).any(axis=1)
         return touched
 
-    def holds(self, i: int, places: Floats) -> Bools:
+    def holds(self, i: int, positions: Floats) -> Bools:
         """Return which places, (n, 3), are well inside of a pocket."""
-        x, y, z = (np.abs((places - self.centre[i]) @ self.turn[i]) < INSIDE * self.half[i]).T
+        x, y, z = (np.abs((positions - self.centre[i]) @ self.turn[i]) < INSIDE * self.half[i]).T
         inside: Bools = x & y & z
         return inside
 
@@ -228,14 +230,14 @@ class Pockets(NamedTuple):
                 f"wall {number} of a pocket",
                 "box",
                 (2.0 * size).tolist(),
-                (self.centre[i] + self.turn[i] @ place).tolist(),
+                (self.centre[i] + self.turn[i] @ position).tolist(),
                 axes,
             )
-            for number, (place, size) in enumerate(zip(self.places[i], self.sizes[i], strict=True))
+            for number, (position, size) in enumerate(zip(self.positions[i], self.sizes[i], strict=True))
         )
 
 
-def pockets_around(tips: Floats, around: Surroundings, rng: np.random.Generator) -> Pockets:
+def passages_around(tips: Floats, around: Surroundings, rng: np.random.Generator) -> Passages:
     """Return a pocket around each tip, (m, 3)."""
     x, y, _ = (tips - around.base).T
     angle = np.arctan2(y, x) + rng.uniform(-TURNED, TURNED, len(tips))
@@ -251,4 +253,4 @@ def pockets_around(tips: Floats, around: Surroundings, rng: np.random.Generator)
     centre = tips - np.einsum("mij,mj->mi", turn, off)
     half_walls = half[:, np.newaxis]
     sizes = np.where(_SIDES == 0.0, half_walls, WALL * around.reach)
-    return Pockets(centre, turn, half, _SIDES * half_walls, sizes)
+    return Passages(centre, turn, half, _SIDES * half_walls, sizes)

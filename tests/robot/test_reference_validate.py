@@ -5,7 +5,7 @@ import numpy as np
 from evenroad.errors import NotAvailable
 from evenroad.robot.load import load_model
 from evenroad.robot.reference import coal_world
-from evenroad.robot.reference.recheck import recheck, unseen_pairs
+from evenroad.robot.reference.validate import unseen_pairs, validate
 from evenroad.robot.scene import Scene
 from tests.robot.mesh_arms import write_plate_arm
 
@@ -23,7 +23,7 @@ def test_pairs_that_nobody_tests_without_coal_are_named(tmp_path, monkeypatch):
     # The collar is in the plate all the time; the tip, near it, is not, and every planner tests it.
     assert ("plate", "collar") in unseen
     assert ("plate", "tip") in model.robot.pairs
-    check = recheck(file, model.robot, Scene((), name="nothing"), np.zeros((2, 3)), unseen=unseen)
+    check = validate(file, model.robot, Scene((), name="nothing"), np.zeros((2, 3)), unseen=unseen)
     assert check.verdict == "not checked"
     assert "'plate' with 'collar'" in str(check)
     assert "needs evenroad[mesh]" in str(check)

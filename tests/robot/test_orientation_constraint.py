@@ -9,11 +9,11 @@ import pytest
 import evenroad as er
 from evenroad.errors import InvalidValue
 from evenroad.geometry import Pose
-from evenroad.robot import ArmWorld, Scene, Straight, Upright, link_poses, load_robot
+from evenroad.robot import ArmWorld, CartesianLine, OrientationConstraint, Scene, link_poses, load_robot
 from evenroad.robot.chain import chain_of
 from evenroad.robot.inverse_kinematics import reach
+from evenroad.robot.orientation_constraint import OrientationWorld, orientation_world
 from evenroad.robot.pose_goal import PoseGoal
-from evenroad.robot.upright import UprightWorld, upright_world
 from tests.robot.kernel_arms import random_scene
 
 ARM7 = load_robot("arm7")
@@ -44,14 +44,14 @@ def test_a_path_keeps_the_axis_upright_where_one_that_is_not_told_to_does_not(to
     plain = []
     for seed in (1, 2, 5, 6):
         scene, start, goal = problem(seed)
-        result = er.plan(scene, start, goal, robot=ARM7, upright=Upright(tolerance))
+        result = er.plan(scene, start, goal, robot=ARM7, upright=OrientationConstraint(tolerance))
         assert result.solved
         tilt = tilt_along(ARM7, result.path, "flange")
         assert tilt <= tolerance
         assert result.deviation["tilt_rad"] <= tolerance
         assert tilt <= result.deviation["tilt_rad"] + 0.1 * tolerance
         world = ArmWorld(ARM7, scene)
-        assert world.recheck(result.path).all()
+        assert world.validate(result.path).all()
         assert result.proof == "certified"
         assert result.path[0].tolist() == start.tolist()
         plain.append(tilt_along(ARM7, er.plan(scene, start, goal, robot=ARM7).path, "flange"))
@@ -62,7 +62,7 @@ def test_a_path_keeps_the_axis_upright_where_one_that_is_not_told_to_does_not(to
 def world():
     arm = ArmWorld(ARM7, Scene(name="empty"))
     start = reach(arm, PoseGoal(Pose.from_rpy((0.4, 0.1, 0.4), DOWN)), np.zeros(7)).configurations[0]
-    return upright_world(arm, chain_of(ARM7, "flange"), Upright(0.1), start)
+    return orientation_world(arm, chain_of(ARM7, "flange"), OrientationConstraint(0.1), start)
 
 
 def test_milestones_are_projected(world):
@@ -95,17 +95,26 @@ def test_a_start_or_goals_that_are_tilted_are_refused():
     _, start, _ = problem(1)
     tilted = start.copy()
     tilted[5] += 0.4
-    result = er.plan(Scene(name="empty"), tilted, start, robot=ARM7, upright=Upright(0.1, axis="z"))
+    result = er.plan(
+        Scene(name="empty"), tilted, start, robot=ARM7, upright=OrientationConstraint(0.1, axis="z")
+    )
     assert result.status is er.Status.START_INVALID
     assert "at the start axis z of 'flange' is tilted by" in result.message
-    result = er.plan(Scene(name="empty"), start, tilted, robot=ARM7, upright=Upright(0.1))
+    result = er.plan(Scene(name="empty"), start, tilted, robot=ARM7, upright=OrientationConstraint(0.1))
     assert result.status is er.Status.GOAL_INVALID
     assert "more than 0.1" in result.message
 
 
 def test_straight_and_upright_go_together():
     scene, start, goal = problem(6)
-    result = er.plan(scene, start, goal, robot=ARM7, upright=Upright(0.1), straight=Straight(0.05, away="up"))
+    result = er.plan(
+        scene,
+        start,
+        goal,
+        robot=ARM7,
+        upright=OrientationConstraint(0.1),
+        straight=CartesianLine(0.05, away="up"),
+    )
     assert result.solved
     assert set(result.deviation) == {"tilt_rad", "line_m", "line_rad"}
     assert tilt_along(ARM7, result.path, "flange") <= 0.1
@@ -119,8 +128,8 @@ def test_lines_keep_another_link_upright_too():
     axis = tuple(link_poses(robot, start[np.newaxis])[0, forearm, 2, :3].tolist())
 
     def plan(tolerance):
-        line = Straight(retreat=0.4, away=(1.6, -1.3, -0.6), tip="tool0")
-        upright = Upright(tolerance, axis, tip="forearm_link")
+        line = CartesianLine(retreat=0.4, away=(1.6, -1.3, -0.6), tip="tool0")
+        upright = OrientationConstraint(tolerance, axis, tip="forearm_link")
         return er.plan(Scene(name="empty"), start, goal, robot=robot, straight=line, upright=upright)
 
     refused = plan(0.1)
@@ -137,18 +146,20 @@ def test_lines_keep_another_link_upright_too():
 
 def test_a_tolerance_that_is_none_is_refused():
     with pytest.raises(InvalidValue, match="tolerance of upright must be a finite number > 0, got 0"):
-        Upright(0.0)
+        OrientationConstraint(0.0)
     with pytest.raises(InvalidValue, match="at most"):
-        Upright(4.0)
+        OrientationConstraint(4.0)
     with pytest.raises(InvalidValue, match="axis of upright must be"):
-        Upright(0.1, axis="up")
+        OrientationConstraint(0.1, axis="up")
 
 
 def test_a_path_that_is_tilted_by_too_much_on_the_finer_grid_is_not_handed_out(monkeypatch):
-    through = UprightWorld.path_through
-    monkeypatch.setattr(UprightWorld, "path_through", lambda *a, **options: (through(*a, **options)[0], 0.11))
+    through = OrientationWorld.path_through
+    monkeypatch.setattr(
+        OrientationWorld, "path_through", lambda *a, **options: (through(*a, **options)[0], 0.11)
+    )
     scene, start, goal = problem(6)
-    result = er.plan(scene, start, goal, robot=ARM7, upright=Upright(0.1))
+    result = er.plan(scene, start, goal, robot=ARM7, upright=OrientationConstraint(0.1))
     assert result.status is er.Status.NOT_CONNECTED
     assert "tilted by 0.11 rad, more than 0.1" in result.message
     assert result.path is None

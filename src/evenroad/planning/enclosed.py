@@ -16,7 +16,7 @@ DIRECTIONS = 128
 """Number of short motions that are tried from a configuration."""
 SHORT = 0.1
 """Length of these motions, as a share of the median distance to an even point of the space."""
-HEMMED = 0.1
+ENCLOSED = 0.1
 """Largest share of free motions from a configuration that is hemmed in."""
 _SHARES = np.linspace(0.05, 1.0, 20)
 """Shares along a short motion at which something may touch."""
@@ -33,32 +33,36 @@ def with_reasons(world: World, result: PlanResult) -> PlanResult:
     if result.message.startswith("proved"):
         return result
     several = len(result.goals) > 1
-    places = [("the start", result.start)] + [
+    named = [("the start", result.start)] + [
         (f"goal {i}" if several else "the goal", goal)
         for i, goal in enumerate(result.goals)
         if world.valid(goal[np.newaxis])[0]
     ]
-    reasons = [text for name, place in places if (text := why_hemmed(world, name, place)) is not None]
+    reasons = [
+        text
+        for name, configuration in named
+        if (text := why_enclosed(world, name, configuration)) is not None
+    ]
     sentences = [result.message, *(text[0].upper() + text[1:] for text in reasons)]
     return replace(result, message=". ".join(sentences)) if reasons else result
 
 
-def why_hemmed(world: World, name: str, place: Floats) -> str | None:
+def why_enclosed(world: World, name: str, configuration: Floats) -> str | None:
     """Return in words how few short motions leave a free place, (dim,), and what touches; None where enough do."""
     samples = world.space.from_cube(as_points(DIRECTIONS, world.space).points)
-    here = np.broadcast_to(place, samples.shape)
+    here = np.broadcast_to(configuration, samples.shape)
     distances = world.space.distance(here, samples)
     step = SHORT * float(np.median(distances))
-    ends = world.space.interpolate(here, samples, np.minimum(1.0, step / np.maximum(distances, step)))
-    free = world.motion_valid(here, ends)
+    reached = world.space.interpolate(here, samples, np.minimum(1.0, step / np.maximum(distances, step)))
+    free = world.motion_valid(here, reached)
     number = int(np.count_nonzero(free))
-    if number > HEMMED * DIRECTIONS:
+    if number > ENCLOSED * DIRECTIONS:
         return None
     away = distances[world.valid(samples)].min(initial=np.inf)
     can = "cannot leave its place" if number == 0 else "can hardly leave its place"
     text = (
         f"{name} {can}: {number} of {DIRECTIONS} motions of length {step:.2g} from it are free"
-        f"{_what_touches(world, here[~free], ends[~free])}"
+        f"{_what_touches(world, here[~free], reached[~free])}"
     )
     return f"{text}; the nearest free sample is {away:.3g} away" if np.isfinite(away) else text
 

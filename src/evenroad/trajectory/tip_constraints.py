@@ -8,14 +8,19 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats
 from evenroad.robot import ArmWorld
+from evenroad.robot.cartesian_line import STEP, CartesianLine, between, line_at, misses
 from evenroad.robot.chain import Chain, chain_of, default_tip
-from evenroad.robot.straight import STEP, Straight, between, line_at, misses
-from evenroad.robot.upright import FINE, Upright, UprightWorld, upright_world
+from evenroad.robot.orientation_constraint import (
+    FINE,
+    OrientationConstraint,
+    OrientationWorld,
+    orientation_world,
+)
 from evenroad.space import Space
 
 
 @dataclass(frozen=True, eq=False)
-class KeptWays:
+class ConstrainedWorld:
     """An arm's world whose strict check asks, too, whether a path keeps upright, and its ends straight.
 
     Attributes
@@ -29,8 +34,8 @@ class KeptWays:
 
     world: ArmWorld
     path: Floats
-    straight: Straight | None
-    upright: UprightWorld | None
+    straight: CartesianLine | None
+    upright: OrientationWorld | None
 
     @property
     def space(self) -> Space:
@@ -50,9 +55,9 @@ class KeptWays:
         """As the world's."""
         return self.world.motion_valid(a, b)
 
-    def recheck(self, path: Floats) -> Bools:
+    def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free and keep their ways on a fine grid: (p - 1,)."""
-        good = self.world.recheck(path)
+        good = self.world.validate(path)
         if self.upright is not None:
             tilted = self.upright.tilts(between(self.world, path, FINE)) > self.upright.tolerance
             good &= ~(tilted[1:].reshape(-1, FINE).any(axis=1) | tilted[0])
@@ -61,32 +66,32 @@ class KeptWays:
             for end, length in ((0, self.straight.retreat), (-1, self.straight.approach)):
                 # What begins elsewhere is a part of a path without its line.
                 if length and np.allclose(path[end], self.path[end], rtol=0.0, atol=1e-9):
-                    way = path if end == 0 else path[::-1]
-                    off = self._off_line(chain, self.straight, way, length)
+                    waypoints = path if end == 0 else path[::-1]
+                    off = self._off_line(chain, self.straight, waypoints, length)
                     good &= ~(off if end == 0 else off[::-1])
         return good
 
-    def _off_line(self, chain: Chain, straight: Straight, way: Floats, length: float) -> Bools:
+    def _off_line(self, chain: Chain, straight: CartesianLine, waypoints: Floats, length: float) -> Bools:
         """Return which motions of a path that begins with a line miss it: (p - 1,).
 
         The corner at its end may be rounded off within half a step of the line.
         """
-        turn, here, away = line_at(chain, straight, way[0])
-        off_m, off_rad, along = misses(chain, between(self.world, way, FINE)[1:], here, away, turn)
+        turn, here, away = line_at(chain, straight, waypoints[0])
+        off_m, off_rad, along = misses(chain, between(self.world, waypoints, FINE)[1:], here, away, turn)
         over = np.flatnonzero(along >= length - 0.5 * STEP)
         missed = (off_m > straight.line_tolerance) | (off_rad > straight.angle_tolerance)
         missed[over[0] if len(over) else len(missed) :] = False
         return np.asarray(missed.reshape(-1, FINE).any(axis=1))
 
 
-def kept_ways(
-    world: ArmWorld, path: Floats, straight: Straight | None, upright: Upright | None
-) -> KeptWays | ArmWorld:
+def constrained_world(
+    world: ArmWorld, path: Floats, straight: CartesianLine | None, upright: OrientationConstraint | None
+) -> ConstrainedWorld | ArmWorld:
     """Return the world in which a path, (p, dim), keeps the ways it was planned for, if any."""
     if straight is None and upright is None:
         return world
     within = None
     if upright is not None:
         chain = chain_of(world.robot, upright.tip or default_tip(world.robot))
-        within = upright_world(world, chain, upright, path[0])
-    return KeptWays(world, path, straight, within)
+        within = orientation_world(world, chain, upright, path[0])
+    return ConstrainedWorld(world, path, straight, within)

@@ -4,16 +4,16 @@ import pytest
 import evenroad as er
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.planning.arm_request import arm_request
+from evenroad.robot.cartesian_line import CartesianLine
+from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.robot.scene import Scene
-from evenroad.robot.straight import Straight
-from evenroad.robot.upright import Upright
 from evenroad.trajectory import arm_trajectory
-from evenroad.trajectory.kept import kept_ways
+from evenroad.trajectory.tip_constraints import constrained_world
 
 DOWN = np.array([0.0, -1.2, 1.2, -1.57, -1.57, 0.0])
 """Of a UR5 whose tool points down."""
 
-STRAIGHT = Straight(0.1)
+STRAIGHT = CartesianLine(0.1)
 
 TURNING = """<robot name="turning">
 <link name="base"/>
@@ -34,10 +34,13 @@ def test_what_is_driven_keeps_upright_as_the_path_was_asked_to(tilt, kept):
     world, goal = free_world(), DOWN + np.array([0.5, 0.0, 0.0, tilt, 0.0, 0.0])
     assert arm_trajectory(world, [DOWN, goal]).duration > 0.0
     if kept:
-        assert arm_trajectory(world, [DOWN, goal], ways=(None, Upright(0.05))).proof == "certified"
+        assert (
+            arm_trajectory(world, [DOWN, goal], constraints=(None, OrientationConstraint(0.05))).proof
+            == "certified"
+        )
         return
     with pytest.raises(NotAvailable, match="not proved"):
-        arm_trajectory(world, [DOWN, goal], ways=(None, Upright(0.05)))
+        arm_trajectory(world, [DOWN, goal], constraints=(None, OrientationConstraint(0.05)))
 
 
 @pytest.fixture(scope="module")
@@ -49,24 +52,24 @@ def straight_path():
 
 def test_what_is_driven_comes_straight(straight_path):
     world, path = straight_path
-    assert arm_trajectory(world, path, ways=(STRAIGHT, None), rounded_by_controller=True).stops == 0
+    assert arm_trajectory(world, path, constraints=(STRAIGHT, None), rounded_by_controller=True).stops == 0
 
 
 def test_a_way_that_is_not_straight_is_told(straight_path):
     world, path = straight_path
-    asked = kept_ways(world, path, STRAIGHT, None)
-    assert asked.recheck(path).all()
+    asked = constrained_world(world, path, STRAIGHT, None)
+    assert asked.validate(path).all()
     bent = path.copy()
     bent[-5, 0] += 0.01
-    np.testing.assert_array_equal(np.flatnonzero(~asked.recheck(bent)), len(path) - 6 + np.arange(2))
+    np.testing.assert_array_equal(np.flatnonzero(~asked.validate(bent)), len(path) - 6 + np.arange(2))
     # Backwards the line leaves the start.
-    back = kept_ways(world, path[::-1], Straight(0.0, 0.1), None)
-    np.testing.assert_array_equal(np.flatnonzero(~back.recheck(bent[::-1])), [3, 4])
+    back = constrained_world(world, path[::-1], CartesianLine(0.0, 0.1), None)
+    np.testing.assert_array_equal(np.flatnonzero(~back.validate(bent[::-1])), [3, 4])
 
 
 def test_a_path_without_places_is_named():
     with pytest.raises(InvalidValue, match="two different waypoints"):
-        arm_trajectory(free_world(), np.zeros((0, 6)), ways=(None, Upright(0.1)))
+        arm_trajectory(free_world(), np.zeros((0, 6)), constraints=(None, OrientationConstraint(0.1)))
 
 
 @pytest.mark.parametrize("blocked", [False, True])

@@ -27,7 +27,7 @@ _LONGEST = 0.2
 
 
 @dataclass(frozen=True)
-class Straight:
+class CartesianLine:
     """How far a tip moves in straight lines, its rotation kept.
 
     Parameters
@@ -74,15 +74,15 @@ class Line:
     off_rad: float = 0.0
 
 
-def line_at(chain: Chain, straight: Straight, q: Floats) -> tuple[Floats, Floats, Floats]:
+def line_at(chain: Chain, straight: CartesianLine, q: Floats) -> tuple[Floats, Floats, Floats]:
     """Return rotation, (3, 3), and place of the tip at a configuration, (dim,), and the direction of its line."""
-    tip = chain.places(q[np.newaxis])[0]
+    tip = chain.tip_poses(q[np.newaxis])[0]
     turn = tip[:9].reshape(3, 3)
     up = straight.away == "up"
     return turn, tip[9:], np.array([0.0, 0.0, 1.0]) if up else turn @ np.array(straight.away)
 
 
-def line_from(world: ArmWorld, chain: Chain, straight: Straight, q: Floats, length: float) -> Line:
+def line_from(world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float) -> Line:
     """Return the line on which the tip leaves a configuration, (dim,), which is free, by `length` [m]."""
     farthest = 2.0 * chain.reach()[1]
     if length > farthest:
@@ -95,28 +95,28 @@ def line_from(world: ArmWorld, chain: Chain, straight: Straight, q: Floats, leng
     shares = length * np.arange(count + 1) / count
     tasks = np.tile(task(Pose(tuple(here.tolist()), tuple(turn.ravel().tolist()))), (count + 1, 1))
     tasks[:, 9:12] = here + shares[:, np.newaxis] * away
-    way, done = followed_from(chain, tasks, q, _LONGEST, world.space.flat.wrapping)
+    path, done = followed_from(chain, tasks, q, _LONGEST, world.space.flat.wrapping)
     where = f"of the straight line of {length:g} m"
     if done <= count:
-        return Line(way[:1], f"after {shares[max(done - 1, 0)]:.3g} m {where} no joint angles go on")
-    free = world.recheck(way)
+        return Line(path[:1], f"after {shares[max(done - 1, 0)]:.3g} m {where} no joint angles go on")
+    free = world.validate(path)
     if not free.all():
         first = int(np.flatnonzero(~free)[0])
-        states = between(world, way[first : first + 2], FINE)
+        states = between(world, path[first : first + 2], FINE)
         blocked = states[~world.valid(states)]
         why = world.explain(blocked[0]) if len(blocked) else "it comes too near to contact to tell"
-        return Line(way[:1], f"after {length * first / count:.3g} m {where} {why}")
-    off_m, off_rad = _off(world, chain, way, here, away, turn)
+        return Line(path[:1], f"after {length * first / count:.3g} m {where} {why}")
+    off_m, off_rad = _off(world, chain, path, here, away, turn)
     if off_m > straight.line_tolerance or off_rad > straight.angle_tolerance:
-        return Line(way[:1], f"the tip misses the straight line by {off_m:.3g} m and {off_rad:.3g} rad")
-    return Line(way, "", off_m, off_rad)
+        return Line(path[:1], f"the tip misses the straight line by {off_m:.3g} m and {off_rad:.3g} rad")
+    return Line(path, "", off_m, off_rad)
 
 
 def _off(
-    world: ArmWorld, chain: Chain, way: Floats, here: Floats, away: Floats, turn: Floats
+    world: ArmWorld, chain: Chain, path: Floats, here: Floats, away: Floats, turn: Floats
 ) -> tuple[float, float]:
     """Return by how much the tip misses a line and its rotation on a fine grid [m, rad]."""
-    off_m, off_rad, _ = misses(chain, between(world, way, FINE), here, away, turn)
+    off_m, off_rad, _ = misses(chain, between(world, path, FINE), here, away, turn)
     return float(off_m.max()), float(off_rad.max())
 
 
@@ -124,7 +124,7 @@ def misses(
     chain: Chain, q: Floats, here: Floats, away: Floats, turn: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return by how much the tip misses a line and its rotation, and how far along it is, (n,) each, at (n, dim)."""
-    tips = chain.places(q)
+    tips = chain.tip_poses(q)
     gap = tips[:, 9:] - here
     along = gap @ away
     turns = np.einsum("nij,kj->nik", tips[:, :9].reshape(-1, 3, 3), turn)
@@ -133,15 +133,15 @@ def misses(
     return np.linalg.norm(gap - np.outer(along, away), axis=1), np.arctan2(sine, cosine), along
 
 
-def between(world: ArmWorld, way: Floats, count: int) -> Floats:
+def between(world: ArmWorld, path: Floats, count: int) -> Floats:
     """Return the states of a path at `count` equal parts of each of its motions, (n, dim)."""
-    shares = np.tile(np.arange(1, count + 1) / count, len(way) - 1)
-    first, last = (np.repeat(way[i : len(way) - 1 + i], count, axis=0) for i in (0, 1))
-    return np.concatenate([way[:1], world.space.interpolate(first, last, shares)])
+    shares = np.tile(np.arange(1, count + 1) / count, len(path) - 1)
+    first, last = (np.repeat(path[i : len(path) - 1 + i], count, axis=0) for i in (0, 1))
+    return np.concatenate([path[:1], world.space.interpolate(first, last, shares)])
 
 
 def tilts(chain: Chain, q: Floats, axis: Sequence[float], direction: Sequence[float]) -> Floats:
     """Return the angles, (n,) [rad], between a direction of the root's frame and an axis of the tip's, at (n, dim)."""
-    pointing = chain.places(q)[:, :9].reshape(-1, 3, 3) @ np.array(axis)
+    pointing = chain.tip_poses(q)[:, :9].reshape(-1, 3, 3) @ np.array(axis)
     across = np.linalg.norm(np.cross(pointing, np.array(direction)), axis=1)
     return np.arctan2(across, pointing @ np.array(direction))

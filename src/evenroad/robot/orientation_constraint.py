@@ -13,10 +13,10 @@ from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.geometry.pose import Vector
 from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.cartesian_line import between, tilts
 from evenroad.robot.chain import Chain
 from evenroad.robot.inverse_kinematics import solved_from
 from evenroad.robot.pose_goal import AXES, as_axis
-from evenroad.robot.straight import between, tilts
 from evenroad.robot.tree_sequences import share_pairs
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
@@ -38,7 +38,7 @@ _TOGETHER = 64
 
 
 @dataclass(frozen=True)
-class Upright:
+class OrientationConstraint:
     """An axis of a link that is to be upright along the whole path.
 
     Parameters
@@ -63,19 +63,21 @@ class Upright:
             set_fields(self, axis=as_axis("the axis of upright", self.axis))
 
 
-def upright_world(world: ArmWorld, chain: Chain, upright: Upright, start: Floats) -> UprightWorld:
+def orientation_world(
+    world: ArmWorld, chain: Chain, upright: OrientationConstraint, start: Floats
+) -> OrientationWorld:
     """Return the world in which a path from `start`, (dim,), keeps an axis upright."""
     axis = upright.axis
     if axis is None:
         every = [as_axis("axis", sign + name) for name in AXES for sign in ("", "-")]
         axis = min(every, key=lambda each: float(tilts(chain, start[np.newaxis], each, UP)[0]))
-    return UprightWorld(world, chain, axis, upright.tolerance)  # type: ignore[arg-type]
+    return OrientationWorld(world, chain, axis, upright.tolerance)  # type: ignore[arg-type]
 
 
 class ProjectedSpace(JointSpace):
     """The joints' space, with points of the cube moved to where the axis is upright, as far as that is found."""
 
-    def projected_by(self, world: UprightWorld) -> ProjectedSpace:
+    def projected_by(self, world: OrientationWorld) -> ProjectedSpace:
         """Return itself, knowing the world; frozen values have no other way."""
         object.__setattr__(self, "_world", world)
         return self
@@ -83,12 +85,12 @@ class ProjectedSpace(JointSpace):
     def from_cube(self, u: Floats) -> Floats:
         """Return configurations, (n, dim), of points of the cube, (n, dim); those not found stay tilted."""
         q = super().from_cube(u)
-        world: UprightWorld = self._world  # type: ignore[attr-defined]
+        world: OrientationWorld = self._world  # type: ignore[attr-defined]
         return self.wrapped(np.clip(world.projected(q)[0], *world.limits))
 
 
 @dataclass(frozen=True, eq=False)
-class UprightWorld:
+class OrientationWorld:
     """The configurations of an arm's world in which an axis of a link is upright, and motions that keep it so.
 
     Milestones are projected, and a motion is the straight one with its states projected, one by one: `along`.  It is
@@ -199,9 +201,9 @@ class UprightWorld:
         """Return a path through waypoints between which motions are free, (p, dim), made shorter if wanted, and its
         largest tilt on a grid twice as fine as the one that motions are checked on.
         """
-        ways = [self.along(a, b) for a, b in pairwise(waypoints)]
-        assert all(way is not None for way in ways), "a motion of a path was free and is not"
-        path = np.concatenate([waypoints[:1], *(way[1:] for way in ways if way is not None)])
+        pieces = [self.along(a, b) for a, b in pairwise(waypoints)]
+        assert all(followed is not None for followed in pieces), "a motion of a path was free and is not"
+        path = np.concatenate([waypoints[:1], *(followed[1:] for followed in pieces if followed is not None)])
         if shorten:
             path = self._shortened(path)
         return path, self.largest_tilt(path)
@@ -213,13 +215,13 @@ class UprightWorld:
     def _shortened(self, path: Floats) -> Floats:
         space = self.world.space
         for low, high in [(0.0, 1.0), *np.sort(share_pairs(), axis=1)]:
-            places = np.concatenate([[0.0], np.cumsum(space.distance(path[:-1], path[1:]))])
-            i, j = np.searchsorted(places, [low * places[-1], high * places[-1]])
+            travelled = np.concatenate([[0.0], np.cumsum(space.distance(path[:-1], path[1:]))])
+            i, j = np.searchsorted(travelled, [low * travelled[-1], high * travelled[-1]])
             if j - i < 2:
                 continue
-            way = self.along(path[i], path[j])
-            if way is not None and path_length(way, space) < places[j] - places[i] - 1e-9:
-                path = np.concatenate([path[:i], way, path[j + 1 :]])
+            followed = self.along(path[i], path[j])
+            if followed is not None and path_length(followed, space) < travelled[j] - travelled[i] - 1e-9:
+                path = np.concatenate([path[:i], followed, path[j + 1 :]])
         return path
 
     def fingerprint(self) -> str:

@@ -7,10 +7,10 @@ import pytest
 
 from evenroad import _threads
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, with_group, with_limits
-from evenroad.robot_roadmap import pockets
+from evenroad.robot_roadmap import narrow_passages
 from evenroad.robot_roadmap.build import arm_roadmap
-from evenroad.robot_roadmap.freedom import Surroundings, chance_of_freedom
-from evenroad.robot_roadmap.pockets import ends_in_pockets
+from evenroad.robot_roadmap.free_probability import Surroundings, free_probability
+from evenroad.robot_roadmap.narrow_passages import hard_queries
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.spread import spread_order
 from tests.robot.kernel_arms import ur5
@@ -37,8 +37,8 @@ def pool(arm):
 
 def test_a_pocket_holds_the_tip_between_five_walls_and_is_open_to_the_side_of_the_robot_or_above(arm, pool):
     around, rng = Surroundings.of(arm, pool), np.random.default_rng(0)
-    tips = pockets.tips_of(arm, pool)
-    open_above, drawn = 0, pockets.pockets_around(tips[:100, 0], around, rng)
+    tips = narrow_passages.tips_of(arm, pool)
+    open_above, drawn = 0, narrow_passages.passages_around(tips[:100, 0], around, rng)
     for i, tip in enumerate(tips[:100, 0]):
         walls, centre, turn, half = drawn.walls(i), drawn.centre[i], drawn.turn[i], drawn.half[i]
         assert len(walls) == 5
@@ -59,8 +59,8 @@ def test_a_pocket_holds_the_tip_between_five_walls_and_is_open_to_the_side_of_th
 
 def test_what_is_passed_over_before_a_world_is_made_touches_a_wall(arm, pool):
     around, rng = Surroundings.of(arm, pool), np.random.default_rng(4)
-    tips, (body, radii) = pockets.tips_of(arm, pool), pockets.body_of(arm, pool)
-    drawn = pockets.pockets_around(tips[:300, 0], around, rng)
+    tips, (body, radii) = narrow_passages.tips_of(arm, pool), narrow_passages.body_of(arm, pool)
+    drawn = narrow_passages.passages_around(tips[:300, 0], around, rng)
     passed = drawn.touched_by(body[:300], radii)
     free = np.array(
         [ArmWorld(arm, Scene(drawn.walls(i), name="pocket")).valid(pool[i : i + 1])[0] for i in range(300)]
@@ -71,32 +71,36 @@ def test_what_is_passed_over_before_a_world_is_made_touches_a_wall(arm, pool):
 
 
 def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, monkeypatch):
-    monkeypatch.setattr(pockets, "FIRST", 150)
-    monkeypatch.setattr(pockets, "NEAR", 60)
+    monkeypatch.setattr(narrow_passages, "FIRST", 150)
+    monkeypatch.setattr(narrow_passages, "NEAR", 60)
     cell = Scene((Obstacle.of("post", "box", (0.1, 0.1, 1.0), (0.5, 0.3, 0.5)),), name="post")
     pool = pool[ArmWorld(arm, cell).valid(pool)]
     kept = []
-    seen_of = pockets._seen
+    seen_of = narrow_passages._seen
 
     def noting(world, inside, pool, scaled, end):
         found = seen_of(world, inside, pool, scaled, end)
         kept.append((world.scene.obstacles, end, found))
         return found
 
-    monkeypatch.setattr(pockets, "_seen", noting)
+    monkeypatch.setattr(narrow_passages, "_seen", noting)
     monkeypatch.setattr(_threads, "processors", lambda: 1)
-    seen = ends_in_pockets(arm, cell, pool, 2.0 * pool, 30, np.random.default_rng(1))
+    seen = hard_queries(arm, cell, pool, 2.0 * pool, 30, np.random.default_rng(1))
     assert len(seen.first) == 31
     assert seen.first[-1] == len(seen.which) > 0
     for number, (walls, end, found) in enumerate(kept):
         assert seen.which[seen.first[number] : seen.first[number + 1]].tolist() == found.tolist()
         assert end not in found
-        world = ArmWorld(arm, replace(cell, obstacles=(*cell.obstacles, *walls)), resolution=pockets.STEP)
+        world = ArmWorld(
+            arm, replace(cell, obstacles=(*cell.obstacles, *walls)), resolution=narrow_passages.STEP
+        )
         assert world.valid(pool[end : end + 1])[0]
         assert world.motion_valid(np.broadcast_to(pool[end], (len(found), 4)), pool[found]).all()
         # Of the first ones whatever can be reached, of the others the nearest that can.
         reached = world.motion_valid(np.broadcast_to(pool[end], pool.shape), pool)
-        reached = np.flatnonzero(reached & world.valid(pool[end] + pockets.EARLY * (pool - pool[end])))
+        reached = np.flatnonzero(
+            reached & world.valid(pool[end] + narrow_passages.EARLY * (pool - pool[end]))
+        )
         apart = np.linalg.norm(pool - pool[end], axis=1)
         nearest = 150 + np.argsort(apart[150:])[:60]
         tried = np.append(np.arange(150), nearest)
@@ -104,7 +108,7 @@ def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, mo
 
 
 def test_the_same_generator_gives_the_same_ends(arm, pool):
-    first, again = (ends_in_pockets(arm, NOTHING, pool, pool, 10, np.random.default_rng(2)) for _ in range(2))
+    first, again = (hard_queries(arm, NOTHING, pool, pool, 10, np.random.default_rng(2)) for _ in range(2))
     assert first.which.tolist() == again.which.tolist()
 
 
@@ -112,8 +116,8 @@ def test_the_number_of_processors_changes_nothing(arm, pool, monkeypatch):
     seen, chances = [], []
     for count in (1, 3):
         monkeypatch.setattr(_threads, "processors", lambda count=count: count)
-        seen.append(ends_in_pockets(arm, NOTHING, pool, pool, 40, np.random.default_rng(2)))
-        chances.append(chance_of_freedom(arm, pool, 40, np.random.default_rng(2)))
+        seen.append(hard_queries(arm, NOTHING, pool, pool, 40, np.random.default_rng(2)))
+        chances.append(free_probability(arm, pool, 40, np.random.default_rng(2)))
     assert len(seen[0].own) == 40
     for one, several in zip(*seen, strict=True):
         assert one.tolist() == several.tolist()
@@ -123,7 +127,7 @@ def test_the_number_of_processors_changes_nothing(arm, pool, monkeypatch):
 def test_an_arm_whose_tip_stays_where_it_is_has_no_pockets(arm, pool):
     still = replace(arm, group=arm.group[:1])
     spun = np.zeros((50, 1))
-    seen = ends_in_pockets(still, NOTHING, spun, spun, 10, np.random.default_rng(0))
+    seen = hard_queries(still, NOTHING, spun, spun, 10, np.random.default_rng(0))
     assert seen.first.tolist() == [0]
 
 
@@ -158,7 +162,7 @@ def test_more_ends_see_a_roadmap_that_learned_from_others():
     q = world.space.from_cube(np.random.default_rng(99).random((2400, 5)))
     q = q[world.valid(q)][:700]
     everything = np.concatenate([q, learned, plain])
-    seen = ends_in_pockets(arm, TABLE, everything, everything, 300, np.random.default_rng(5))
+    seen = hard_queries(arm, TABLE, everything, everything, 300, np.random.default_rng(5))
     of_end = [
         each
         for own, each in zip(seen.own, np.split(seen.which, seen.first[1:-1]), strict=True)
