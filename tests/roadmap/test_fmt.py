@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import Radius, Status
-from evenroad.roadmap.search import EdgeStates, Graph, SearchProblem, march
+from evenroad.roadmap.search import EdgeStates, SearchProblem, graph_of, march
 from evenroad.world.gridmap.shipped import load_maze
 from tests.plan_on import fmt_on, plan_on
 from tests.roadmap.worlds import ChanceWorld
@@ -53,7 +53,7 @@ def test_the_tree_is_that_of_the_papers_algorithm(seed, n, share, steps):
     states = EdgeStates(ChanceWorld(0), np.zeros((n, 2)), edges)
     states.edge_states[:] = np.where(free, 1, 2)
     nodes, along, reached = march(
-        SearchProblem(n - 2, np.array([n - 1]), Graph.of(n, edges), weights, np.zeros(n, dtype=np.int64)),
+        SearchProblem(n - 2, np.array([n - 1]), graph_of(n, edges), weights, np.zeros(n, dtype=np.int64)),
         states,
     )
     expected, tree = _reading_of_the_paper(n, neighbours, length, is_free, n - 2, n - 1)

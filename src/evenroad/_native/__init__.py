@@ -14,6 +14,9 @@ VARIANT: str = kernel.VARIANT
 """The instruction set of the loaded module."""
 
 points = kernel.points
+roadmap = kernel.roadmap
+space = kernel.space
+trajectory = kernel.trajectory
 
-for _part in (points,):
+for _part in (points, roadmap, space, trajectory):
     sys.modules[f"{__name__}.{_part.__name__.rpartition('.')[2]}"] = _part

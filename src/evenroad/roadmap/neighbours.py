@@ -7,8 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad._njit import njit
-from evenroad.roadmap.kdtree import k_nearest, pairs_within
+from evenroad._native.roadmap import distances_from, k_nearest, k_smallest, pairs_within
 from evenroad.space import Space
 from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import all_distances
@@ -92,7 +91,7 @@ class Surroundings:
         if self._metric is None:
             return self._space.distance(np.broadcast_to(newcomer, self._q.shape), self._q)
         point, _ = in_metric(newcomer[np.newaxis], self._metric)
-        return _distances(self._points, self._period, point)
+        return distances_from(self._points, self._period, point[0])
 
 
 def nearest_of(distances: Floats, usable: Bools, k: int | None = None, radius: float | None = None) -> Ints32:
@@ -102,35 +101,4 @@ def nearest_of(distances: Floats, usable: Bools, k: int | None = None, radius: f
     """
     if k is None:
         return np.flatnonzero(usable if radius is None else usable & (distances <= radius)).astype(np.int32)
-    return _k_smallest(distances, usable, min(k, len(distances)), np.inf if radius is None else radius)
-
-
-@njit(cache=True, nogil=True)
-def _distances(points, period, point):  # type: ignore[no-untyped-def]
-    distance = np.empty(points.shape[0])
-    for i in range(points.shape[0]):
-        total = 0.0
-        for axis in range(points.shape[1]):
-            gap = abs(points[i, axis] - point[0, axis])
-            gap = min(gap, period[axis] - gap)
-            total += gap * gap
-        distance[i] = np.sqrt(total)
-    return distance
-
-
-@njit(cache=True, nogil=True)
-def _k_smallest(distances, usable, k, radius):  # type: ignore[no-untyped-def]
-    rows = np.empty(k, dtype=np.int32)
-    nearest = np.empty(k)
-    count = 0
-    for row in range(distances.shape[0]):
-        distance = distances[row]
-        if not usable[row] or distance > radius or k == 0 or (count == k and distance >= nearest[k - 1]):
-            continue
-        slot = min(count, k - 1)
-        while slot > 0 and nearest[slot - 1] > distance:
-            nearest[slot], rows[slot] = nearest[slot - 1], rows[slot - 1]
-            slot -= 1
-        nearest[slot], rows[slot] = distance, row
-        count = min(count + 1, k)
-    return rows[:count].copy()
+    return k_smallest(distances, usable, min(k, len(distances)), np.inf if radius is None else radius)

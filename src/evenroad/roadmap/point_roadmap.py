@@ -22,7 +22,7 @@ from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.query import EdgeCost, edge_costs
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import KNearest, Rule
-from evenroad.roadmap.search import FixedPoint, Graph
+from evenroad.roadmap.search import FixedPoint, Graph, graph_of
 from evenroad.space import Space
 from evenroad.world import World
 
@@ -123,10 +123,14 @@ class PointRoadmap(Roadmap):
         lengths.setflags(write=False)
         return lengths
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what is sent to another process, which makes a graph of its own."""
+        return {name: value for name, value in self.__dict__.items() if name != "graph"}
+
     @cached_property
     def graph(self) -> Graph:
         """The edges by node."""
-        return Graph.of(len(self.milestones), self.edges)
+        return graph_of(len(self.milestones), self.edges)
 
     @cached_property
     def surroundings(self) -> Surroundings:

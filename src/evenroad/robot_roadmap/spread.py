@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
-from evenroad._njit import njit
+from evenroad._native import roadmap as native
 from evenroad.robot.kinematics import KinematicTree, capsule_endpoints
 
 STEP = 1e-4
@@ -59,46 +59,5 @@ def spread_order(
     preference is also in proportion to LEAST_SEEN plus the share of ends that see a point, of which one counts
     (1 + m)^-SERVED as much after m of the points it sees were chosen.
     """
-    return _order(points, period, preference, count, first, which)
-
-
-@njit(cache=True, nogil=True)
-def _order(points, period, preference, count, first, which):  # type: ignore[no-untyped-def]
-    n, dim = points.shape
-    queries = max(len(first) - 1, 1)
-    seeing, times = np.zeros(n + 1, dtype=np.int64), np.ones(queries)
-    use = np.full(n, LEAST_SEEN)
-    for i in which:
-        seeing[i + 1] += 1
-        use[i] += 1.0 / queries
-    seeing = np.cumsum(seeing)
-    slot, by_point = seeing[:n].copy(), np.empty(len(which), dtype=np.int64)
-    for e in range(len(first) - 1):
-        for i in which[first[e] : first[e + 1]]:
-            by_point[slot[i]] = e
-            slot[i] += 1
-    order = np.empty(count, dtype=np.int64)
-    nearest = np.full(n, np.inf)
-    chosen = int(np.argmax(preference * use))
-    for i in range(count):
-        order[i] = chosen
-        for e in by_point[seeing[chosen] : seeing[chosen + 1]]:
-            lost = times[e] ** -SERVED - (times[e] + 1.0) ** -SERVED
-            times[e] += 1.0
-            for row in which[first[e] : first[e + 1]]:
-                use[row] -= lost / queries
-        best, following = -1.0, 0
-        for row in range(n):
-            squared = 0.0
-            for k in range(dim):
-                apart = abs(points[row, k] - points[chosen, k])
-                if period[k] != np.inf:
-                    apart = min(apart, period[k] - apart)
-                squared += apart * apart
-            if squared < nearest[row]:
-                nearest[row] = squared
-            value = np.sqrt(nearest[row]) * preference[row] * use[row]
-            if value > best:
-                best, following = value, row
-        chosen = following
-    return order
+    served = LEAST_SEEN, SERVED
+    return native.spread_order((points, period), preference, count, (first, which), served)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, set_fields
-from evenroad._njit import njit
+from evenroad._native.space import flat_distances
 from evenroad.errors import InvalidValue
 
 
@@ -78,19 +78,4 @@ class FlatMetric:
 
     def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows of two float64 arrays, (n, dim) and (m, dim), as (n, m)."""
-        return _all_distances(np.ascontiguousarray(a), np.ascontiguousarray(b), self.scale, self.period)
-
-
-@njit(cache=True, nogil=True)
-def _all_distances(a, b, scale, period):  # type: ignore[no-untyped-def]
-    distances = np.empty((len(a), len(b)))
-    for i in range(len(a)):
-        for j in range(len(b)):
-            squares = 0.0
-            for k in range(len(scale)):
-                difference = b[j, k] - a[i, k]
-                if period[k] != np.inf:
-                    difference -= period[k] * np.rint(difference / period[k])
-                squares += (scale[k] * difference) ** 2
-            distances[i, j] = np.sqrt(squares)
-    return distances
+        return flat_distances(np.ascontiguousarray(a), np.ascontiguousarray(b), self.scale, self.period)

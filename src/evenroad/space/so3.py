@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
-from evenroad._njit import njit
+from evenroad._native.space import quaternion_angles
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
 from evenroad.space.protocol import Space
@@ -67,7 +66,7 @@ class SO3(Space):
         """Return the distances of all pairs of rows, (n, 4) and (m, 4), as (n, m).  Errors as `distance`."""
         first, second = as_batch("a", a, 4), as_batch("b", b, 4)
         _require_units(a=first, b=second)
-        return _all_angles(first, second)
+        return quaternion_angles(first, second)
 
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the rotations a fraction `t`, scalar or (n,) in [0, 1], of the shortest turn from `a` to `b`.
@@ -115,17 +114,3 @@ def _on_one_side(a: Floats, b: Floats) -> tuple[Floats, Floats]:
 def _angle(a: Floats, b: Floats) -> Floats:
     """Return the angle between unit vectors; unlike arccos it keeps all digits of small angles (Kahan)."""
     return 2.0 * np.arctan2(_norm(a - b), _norm(a + b))
-
-
-@njit(cache=True, nogil=True)
-def _all_angles(a, b):  # type: ignore[no-untyped-def]
-    angles = np.empty((len(a), len(b)))
-    for i in range(len(a)):
-        for j in range(len(b)):
-            chord, together = 0.0, 0.0
-            for k in range(4):
-                chord += (a[i, k] - b[j, k]) ** 2
-                together += (a[i, k] + b[j, k]) ** 2
-            # The nearer of b and -b is the one with the shorter chord.
-            angles[i, j] = 2.0 * math.atan2(math.sqrt(min(chord, together)), math.sqrt(max(chord, together)))
-    return angles

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
-from evenroad._njit import njit
+from evenroad._native.trajectory import squared_speeds
 from evenroad.trajectory.blends import RoundedPath
 from evenroad.trajectory.limits import Limits
 
@@ -15,7 +15,6 @@ INTERVALS = 600
 """Number of intervals of a whole path, about: the acceleration along it is constant in each."""
 
 _PER_ARC, _PER_LINE = 8, 4
-_HALVINGS = 40
 _WITHIN = 1.0 - 1e-3
 """Share of the acceleration limits that is used: between two grid points a bend may take a little more."""
 
@@ -81,7 +80,7 @@ def fastest(path: RoundedPath, limits: Limits) -> TimeLaw:
         ceiling = np.minimum(ceiling, limits.along_path**2)
     ceiling[np.isin(grid, path.stops)] = 0.0
     curve = ahead, ahead_bend, behind, behind_bend, np.diff(grid)
-    squares = _squared_speeds(curve, ceiling, acceleration)
+    squares = squared_speeds(curve, ceiling, acceleration)
     speeds, steps = np.sqrt(squares), np.diff(grid)
     took = 2.0 * steps / (speeds[:-1] + speeds[1:])
     times = np.concatenate([[0.0], np.cumsum(took)])
@@ -114,57 +113,3 @@ def paused(law: TimeLaw, pause: float) -> TimeLaw:
 
 def _spans(starts: Floats, counts: Ints) -> list[tuple[float, float, int]]:
     return list(zip(starts[:-1].tolist(), starts[1:].tolist(), counts.tolist(), strict=True))
-
-
-@njit(cache=True)
-def _squared_speeds(curve, ceiling, acceleration):  # type: ignore[no-untyped-def]
-    """Return the squares of the speeds along a path at its grid, (m,): back for what can be stopped, then on."""
-    m, steps = len(ceiling), curve[4]
-    highest = np.empty(m)
-    highest[m - 1] = 0.0
-    for i in range(m - 2, -1, -1):
-        low, high = 0.0, ceiling[i]
-        least, most = _push(i, high, highest[i + 1], curve, acceleration)
-        if least <= most:
-            low = high
-        for _ in range(_HALVINGS):
-            if low == high:
-                break
-            middle = 0.5 * (low + high)
-            least, most = _push(i, middle, highest[i + 1], curve, acceleration)
-            if least <= most:
-                low = middle
-            else:
-                high = middle
-        highest[i] = low
-    squares = np.zeros(m)
-    for i in range(m - 1):
-        _, most = _push(i, squares[i], highest[i + 1], curve, acceleration)
-        squares[i + 1] = min(max(squares[i] + 2.0 * steps[i] * most, 0.0), highest[i + 1])
-    return squares
-
-
-@njit(cache=True)
-def _push(i, square, next_square, curve, acceleration):  # type: ignore[no-untyped-def]
-    """Return the least and the most acceleration along interval i from this squared speed that keep all limits.
-
-    Joint j accelerates by ``direction * push + bend * square`` at either end; at the far one the square is larger by
-    ``2 step push``, and is from 0 to `next_square`.
-    """
-    ahead, ahead_bend, behind, behind_bend, steps = curve
-    twice = 2.0 * steps[i]
-    least, most = -square / twice, (next_square - square) / twice
-    for j in range(len(acceleration)):
-        for end in range(2):
-            if end == 0:
-                slope, rest = ahead[i, j], ahead_bend[i, j] * square
-            else:
-                slope = behind[i, j] + behind_bend[i, j] * twice
-                rest = behind_bend[i, j] * square
-            if abs(slope) < 1e-12:
-                if abs(rest) > acceleration[j]:
-                    return 1.0, 0.0
-                continue
-            one, other = (-acceleration[j] - rest) / slope, (acceleration[j] - rest) / slope
-            least, most = max(least, min(one, other)), min(most, max(one, other))
-    return least, most

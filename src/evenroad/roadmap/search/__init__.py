@@ -15,6 +15,7 @@ from evenroad.roadmap.search.finders import march as march
 from evenroad.roadmap.search.finders import search_problem as search_problem
 from evenroad.roadmap.search.graph import Graph as Graph
 from evenroad.roadmap.search.graph import components as components
+from evenroad.roadmap.search.graph import graph_of as graph_of
 from evenroad.roadmap.search.graph import join as join
 from evenroad.roadmap.search.shortest import NOT_FOUND as NOT_FOUND
 from evenroad.roadmap.search.shortest import FixedPoint as FixedPoint

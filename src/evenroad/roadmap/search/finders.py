@@ -12,9 +12,9 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad._njit import njit
+from evenroad._native import roadmap as native
 from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates, States
-from evenroad.roadmap.search.graph import Graph
+from evenroad.roadmap.search.graph import graph_of
 from evenroad.roadmap.search.shortest import NOT_FOUND, FixedPoint, Found, SearchProblem, Terminals, best_path
 from evenroad.world import ValidatesPaths, World
 
@@ -32,7 +32,7 @@ def search_problem(states: EdgeStates, costs: Floats, goals: int = 1, *, bound: 
     unit = FixedPoint.of(float(costs.max(initial=0.0)), nodes)
     bounds = unit.bounds(bound * _away(states, terminals.goals))
     return SearchProblem(
-        terminals.start, terminals.goals, Graph.of(nodes, states.edges), unit.weights(costs), bounds
+        terminals.start, terminals.goals, graph_of(nodes, states.edges), unit.weights(costs), bounds
     )
 
 
@@ -91,9 +91,9 @@ def find_any(terminals: Terminals, states: EdgeStates) -> Found:
     parent_edge = np.full(len(tree), -1, dtype=np.int32)
     asked, most = np.empty(0, dtype=np.int32), _FIRST
     lazy_nodes = bool((states.node_states == UNKNOWN).any())
+    known, trees = (states.edge_states, states.node_states), (tree, parent_edge, away)
     while True:
-        grown = tree, parent_edge, away, asked, most
-        met, takers, asked = _grow(edges, states.edge_states, states.node_states, *grown)
+        met, takers, asked = native.grow(edges, known, trees, asked, most)
         if met >= 0:
             a, b = sorted(edges[met].tolist(), key=lambda node: tree[node])
             there, back = _path_back(parent_edge, edges, a), _path_back(parent_edge, edges, b)
@@ -113,61 +113,12 @@ _FIRST = 16
 """Edges that each tree of `find_any` asks about at first; later the more, the longer it takes."""
 
 
-@njit(cache=True, nogil=True)
-def _grow(edges, edge_states, node_states, tree, parent_edge, away, asked, most):  # type: ignore[no-untyped-def]
-    """Take into the trees where the edges that were asked about are free, and return where to go on.
-
-    An edge at which the trees meet, or -1; else nodes to go to and the edges, not known to be blocked, that lead there
-    from a tree, at most so many of a tree, nearest first; none when one of the two trees can grow no more.
-    """
-    for e in asked:
-        a, b = edges[e, 0], edges[e, 1]
-        if edge_states[e] != FREE:
-            continue
-        if tree[a] > 0 and tree[b] > 0:
-            return e, asked[:0], asked[:0]
-        if tree[a] == 0:
-            a, b = b, a
-        tree[b], parent_edge[b] = tree[a], e
-    offer, count = np.full(tree.shape[0], -1, dtype=np.int32), np.zeros(3, dtype=np.int64)
-    nearest, grows = np.empty((3, most), dtype=np.int32), np.zeros(3, dtype=np.bool_)
-    for e in range(edges.shape[0]):
-        a, b = edges[e, 0], edges[e, 1]
-        if tree[a] == tree[b] or edge_states[e] == BLOCKED:
-            continue
-        if tree[a] == 0 or tree[b] == 1:
-            a, b = b, a
-        if node_states[b] == BLOCKED:
-            continue
-        side = tree[a]
-        grows[side] = grows[tree[b]] = True
-        if offer[b] >= 0:
-            continue
-        offer[b] = e
-        row, far, slot = nearest[side], away[side - 1], min(count[side], most)
-        if slot == most:
-            # Rows stay sorted, and lose their last.
-            slot -= 1
-            if far[row[slot]] <= far[b]:
-                continue
-        while slot > 0 and far[row[slot - 1]] > far[b]:
-            row[slot] = row[slot - 1]
-            slot -= 1
-        row[slot] = b
-        count[side] += 1
-    takers = np.concatenate((nearest[1, : min(count[1], most)], nearest[2, : min(count[2], most)]))
-    if not (grows[1] and grows[2]):
-        takers = takers[:0]
-    return np.int32(-1), takers, offer[takers]
-
-
 def march(problem: SearchProblem, states: EdgeStates) -> Found:
     """Grow a fast marching tree until it takes up a goal; return the path, and how many nodes the tree has.
 
     Janson, Schmerling, Clark and Pavone 2015, Algorithm 2.  All nodes are free; ties go to the lower node.  An edge
     found to be blocked is not asked about again, but keeps its place as the best offer of its node, as in the original.
     """
-    graph, weights = problem.graph.fixed, problem.weights
     goals = set(problem.goals.tolist())
     stage = np.full(problem.graph.nodes, _UNVISITED)
     cost = np.zeros(problem.graph.nodes, dtype=np.int64)
@@ -178,14 +129,14 @@ def march(problem: SearchProblem, states: EdgeStates) -> Found:
         _, node = heapq.heappop(frontier)
         if node in goals:
             return _path_back(parent_edge, states.edges, node)._replace(reached=int(np.count_nonzero(stage)))
-        fresh, offers = _best_offers(node, graph, weights, cost, stage)
+        fresh, offers = native.best_offers(problem.graph, node, problem.weights, cost, stage)
         states.evaluate_edges(offers)
         free = states.edge_states[offers] == FREE
         fresh, offers = fresh[free], offers[free]
         # Taken up after all have been asked: none of the fresh ones is an offer to another one of them.
         pairs = states.edges[offers]
         giver = np.where(pairs[:, 0] == fresh, pairs[:, 1], pairs[:, 0])
-        cost[fresh] = cost[giver] + weights[offers]
+        cost[fresh] = cost[giver] + problem.weights[offers]
         parent_edge[fresh] = offers
         stage[fresh] = _OPEN
         stage[node] = _CLOSED
@@ -195,31 +146,6 @@ def march(problem: SearchProblem, states: EdgeStates) -> Found:
 
 
 _UNVISITED, _OPEN, _CLOSED = np.int8(0), np.int8(1), np.int8(2)
-
-
-@njit(cache=True, nogil=True)
-def _best_offers(node, rows, weights, cost, stage):  # type: ignore[no-untyped-def]
-    """Return the unvisited neighbours of a node, and the edge from the open node that is the best for each."""
-    first, other, edge = rows
-    fresh = np.empty(first[node + 1] - first[node], dtype=np.int32)
-    offers = np.empty_like(fresh)
-    count = 0
-    for slot in range(first[node], first[node + 1]):
-        neighbour = other[slot]
-        if stage[neighbour] != _UNVISITED:
-            continue
-        best = giver = -1
-        least = np.int64(0)
-        for back in range(first[neighbour], first[neighbour + 1]):
-            candidate = other[back]
-            if stage[candidate] != _OPEN:
-                continue
-            reached = cost[candidate] + weights[edge[back]]
-            if best < 0 or reached < least or (reached == least and candidate < giver):
-                best, least, giver = edge[back], reached, candidate
-        fresh[count], offers[count] = neighbour, best
-        count += 1
-    return fresh[:count].copy(), offers[:count].copy()
 
 
 def _path_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from evenroad._arrays import Floats, Ints, Ints32
-from evenroad._njit import njit
-from evenroad.roadmap.search.edge_states import BLOCKED, FREE, States
-from evenroad.roadmap.search.graph import Graph
+from evenroad._native import roadmap as native
+from evenroad.roadmap.search.edge_states import FREE, States
+from evenroad.roadmap.search.graph import Graph, graph_of
 
 
 class Found(NamedTuple):
@@ -97,9 +97,8 @@ def best_path(problem: SearchProblem, edge_states: States, node_states: States) 
     So it depends on the graph alone, and stays the answer when edges off it are removed: if all of a path
     found among unchecked edges turns out to be free, it is the path that a search of the free edges finds.
     """
-    graph, weights, bounds = problem.graph, problem.weights, problem.bounds
-    states, endpoints = (edge_states, node_states), (problem.start, problem.goals)
-    return Found(*_a_star(graph.fixed, graph.links, weights, *states, bounds, *endpoints))
+    costs, states = (problem.weights, problem.bounds), (edge_states, node_states)
+    return Found(*native.shortest_path(problem.graph, costs, states, problem.start, problem.goals))
 
 
 def shortest_path(
@@ -111,7 +110,7 @@ def shortest_path(
     be reached the path is empty and its length inf.
     """
     unit = FixedPoint.of(float(lengths.max(initial=0.0)), nodes)
-    graph, weights, to_goal = Graph.of(nodes, edges), unit.weights(lengths), unit.bounds(bounds)
+    graph, weights, to_goal = graph_of(nodes, edges), unit.weights(lengths), unit.bounds(bounds)
     problem = SearchProblem(start, np.array([goal]), graph, weights, to_goal)
     path, along, _ = best_path(problem, np.full(len(edges), FREE), np.full(nodes, FREE))
     return path, length_along(lengths[along]) if path.size else np.inf
@@ -123,86 +122,3 @@ def length_along(lengths: Floats) -> float:
     for length in lengths.tolist():
         total += length
     return total
-
-
-@njit(cache=True, nogil=True)
-def _a_star(fixed, links, weights, edge_states, node_states, bounds, start, goals):  # type: ignore[no-untyped-def]
-    nodes, unseen = bounds.shape[0], np.iinfo(np.int64).max
-    is_goal = np.zeros(nodes, dtype=np.bool_)
-    is_goal[goals] = True
-    end = -1
-    cost = np.full(nodes, unseen)
-    parent = np.full(nodes, -1, dtype=np.int32)
-    via = np.full(nodes, -1, dtype=np.int32)
-    # A binary heap of nodes by estimate, with the place of each node in it, -1 while it is not there: five times as
-    # fast as heapq.
-    heap = np.empty(nodes, dtype=np.int32)
-    keys = np.empty(nodes, dtype=np.int64)
-    heap_index = np.full(nodes, -1, dtype=np.int32)
-    cost[start] = 0
-    heap[0], keys[0], heap_index[start] = start, bounds[start], 0
-    size = 1
-    # Ties with the goal are looked at too: one of them may have the lower node.
-    while size > 0 and (end < 0 or keys[0] <= cost[end]):
-        node = heap[0]
-        heap_index[node] = -1
-        size -= 1
-        if size > 0:
-            _sink(heap, keys, heap_index, heap[size], keys[size], size)
-        if is_goal[node]:
-            if end < 0 or cost[node] < cost[end] or (cost[node] == cost[end] and node < end):
-                end = node
-            continue
-        for rows in (fixed, links):
-            if node + 1 >= rows.first.shape[0]:
-                continue
-            for slot in range(rows.first[node], rows.first[node + 1]):
-                e, neighbour = rows.edge[slot], rows.other[slot]
-                if edge_states[e] == BLOCKED or node_states[neighbour] == BLOCKED:
-                    continue
-                reached = cost[node] + weights[e]
-                if reached < cost[neighbour]:
-                    cost[neighbour], parent[neighbour], via[neighbour] = reached, node, e
-                    hole = heap_index[neighbour]
-                    if hole < 0:
-                        hole = size
-                        size += 1
-                    _rise(heap, keys, heap_index, neighbour, reached + bounds[neighbour], hole)
-                elif reached == cost[neighbour] and node < parent[neighbour]:
-                    parent[neighbour], via[neighbour] = node, e
-    if end < 0:
-        return np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32)
-    path, along = [end], [np.int32(0) for _ in range(0)]
-    while path[-1] != start:
-        along.append(via[path[-1]])
-        path.append(parent[path[-1]])
-    return np.array(path, dtype=np.int32)[::-1].copy(), np.array(along, dtype=np.int32)[::-1].copy()
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _rise(heap, keys, heap_index, node, key, hole):  # type: ignore[no-untyped-def]
-    """Put a node where it belongs at or above `hole`."""
-    while hole > 0:
-        above = (hole - 1) // 2
-        if keys[above] <= key:
-            break
-        heap[hole], keys[hole] = heap[above], keys[above]
-        heap_index[heap[hole]] = hole
-        hole = above
-    heap[hole], keys[hole], heap_index[node] = node, key, hole
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _sink(heap, keys, heap_index, node, key, size):  # type: ignore[no-untyped-def]
-    """Fill the hole at the top of a heap of so many entries with a node, and put it where it belongs."""
-    hole = 0
-    while 2 * hole + 1 < size:
-        child = 2 * hole + 1
-        if child + 1 < size and keys[child + 1] < keys[child]:
-            child += 1
-        if key <= keys[child]:
-            break
-        heap[hole], keys[hole] = heap[child], keys[child]
-        heap_index[heap[hole]] = hole
-        hole = child
-    heap[hole], keys[hole], heap_index[node] = node, key, hole

@@ -5,7 +5,9 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -30,6 +32,7 @@ constexpr const char* type_name() {
   if constexpr (std::is_same_v<Plain, bool>) return "bool";
   if constexpr (std::is_same_v<Plain, std::int64_t>) return "int64";
   if constexpr (std::is_same_v<Plain, std::int32_t>) return "int32";
+  if constexpr (std::is_same_v<Plain, std::int8_t>) return "int8";
   if constexpr (std::is_same_v<Plain, std::uint8_t>) return "uint8";
   if constexpr (std::is_same_v<Plain, std::uint64_t>) return "uint64";
   return "another type";
@@ -108,6 +111,18 @@ nb::object as_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> 
   nb::capsule owner(kept.get(), [](void* vector) noexcept { delete static_cast<std::vector<T>*>(vector); });
   kept.release();
   return nb::cast(nb::ndarray<nb::numpy, T>(data, shape, owner));
+}
+
+/// Refuse numbers of something unless all are from 0 to below `count`.
+template <class T>
+void require_below(std::span<const T> numbers, std::size_t count, const char* name) {
+  using Unsigned = std::make_unsigned_t<T>;
+  // Negative ones are large then.
+  Unsigned largest = 0;
+  for (const T number : numbers) largest = std::max(largest, static_cast<Unsigned>(number));
+  if (numbers.empty() || largest < count) return;
+  throw InvalidValue(std::string(name) + " must be from 0 to below " + std::to_string(count) + ", got " +
+                     std::to_string(static_cast<T>(largest)));
 }
 
 /// Call a function while other threads of Python run.

@@ -24,4 +24,7 @@ NB_MODULE(EVENROAD_MODULE, module) {
   nb::register_exception_translator(translate);
   module.attr("VARIANT") = EVENROAD_VARIANT;
   evenroad::bind::add_points(module);
+  evenroad::bind::add_roadmap(module);
+  evenroad::bind::add_space(module);
+  evenroad::bind::add_trajectory(module);
 }

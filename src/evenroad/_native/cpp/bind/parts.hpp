@@ -13,5 +13,8 @@ struct InvalidValue : std::invalid_argument {
 };
 
 void add_points(nanobind::module_& module);
+void add_roadmap(nanobind::module_& module);
+void add_space(nanobind::module_& module);
+void add_trajectory(nanobind::module_& module);
 
 }  // namespace evenroad::bind

@@ -37,4 +37,13 @@ struct OwnMatrix {
   operator Matrix<T>() { return {values.data(), rows, columns}; }
 };
 
+/// Return the columns of a matrix as rows: loops over many rows then run as vectors.
+inline OwnMatrix<double> transposed(Matrix<const double> matrix) {
+  OwnMatrix<double> columns(matrix.columns, matrix.rows);
+  for (std::size_t row = 0; row < matrix.rows; row++) {
+    for (std::size_t column = 0; column < matrix.columns; column++) columns(column, row) = matrix(row, column);
+  }
+  return columns;
+}
+
 }  // namespace evenroad

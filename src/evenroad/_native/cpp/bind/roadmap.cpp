@@ -1,0 +1,202 @@
+// evenroad._native.roadmap: neighbours, graphs and searches of roadmaps.
+#include <algorithm>
+#include <limits>
+
+#include "bind/arrays.hpp"
+#include "roadmap/graph.hpp"
+#include "roadmap/grow.hpp"
+#include "roadmap/kdtree.hpp"
+#include "roadmap/near_one.hpp"
+#include "roadmap/shortest_path.hpp"
+#include "roadmap/spread_order.hpp"
+
+namespace evenroad::bind {
+
+using namespace nb::literals;
+using Int32s = Array<const std::int32_t, 1>;
+using Int64s = Array<const std::int64_t, 1>;
+using Int8s = Array<const std::int8_t, 1>;
+using Floats = Array<const double, 1>;
+
+namespace {
+
+nb::object row(std::vector<std::int32_t>&& numbers) {
+  const std::size_t count = numbers.size();
+  return as_numpy(std::move(numbers), {count});
+}
+
+/// Edges, (m, 2), between nodes that there are.
+class Edges {
+ public:
+  Edges(nb::handle given, std::size_t nodes) : array_(given, "edges") {
+    array_.of_shape({array_.shape(0), 2});
+    require_below(array_.span(), nodes, "nodes of edges");
+  }
+  Matrix<const std::int32_t> matrix() const { return array_.matrix(); }
+  std::size_t count() const { return array_.shape(0); }
+
+ private:
+  Array<const std::int32_t, 2> array_;
+};
+
+/// Points, (n, d), and periods of their axes, (d,).
+class PeriodicPoints {
+ public:
+  PeriodicPoints(nb::handle points, nb::handle period) : points_(points, "points"), period_(period, "period") {
+    period_.of_shape({points_.shape(1)});
+    require(count() <= std::numeric_limits<std::int32_t>::max(), "points must be fewer than 2^31");
+  }
+  std::size_t count() const { return points_.shape(0); }
+  roadmap::Periodic set() const { return {points_.matrix(), period_.span()}; }
+
+ private:
+  Array<const double, 2> points_;
+  Floats period_;
+};
+
+nb::object k_nearest(nb::handle points, nb::handle period, std::size_t k, bool earlier) {
+  const PeriodicPoints given(points, period);
+  require(k >= 1 && k < given.count(), "k must be at least 1 and less than the number of points");
+  return as_numpy(without_gil([&] { return roadmap::k_nearest(given.set(), k, earlier); }), {given.count(), k});
+}
+
+nb::object pairs_within(nb::handle points, nb::handle period, double radius) {
+  const PeriodicPoints given(points, period);
+  require(given.count() >= 1, "points must be one or more");
+  auto pairs = without_gil([&] { return roadmap::pairs_within(given.set(), radius); });
+  const std::size_t count = pairs.size() / 2;
+  return as_numpy(std::move(pairs), {count, 2});
+}
+
+nb::object distances_from(nb::handle points, nb::handle period, nb::handle point) {
+  const PeriodicPoints given(points, period);
+  const Floats from(point, "point");
+  from.of_shape({given.set().period.size()});
+  return as_numpy(without_gil([&] { return roadmap::distances_from(given.set(), from.span()); }), {given.count()});
+}
+
+nb::object k_smallest(nb::handle distances, nb::handle usable, std::size_t k, double radius) {
+  const Floats away(distances, "distances");
+  const Array<const bool, 1> among(usable, "usable");
+  among.of_shape({away.size()});
+  return row(without_gil([&] { return roadmap::k_smallest(away.span(), among.span(), k, radius); }));
+}
+
+void make_graph(roadmap::Graph* self, std::size_t nodes, nb::handle edges) {
+  const Edges given(edges, nodes);
+  new (self) roadmap::Graph(without_gil([&] { return roadmap::Graph(nodes, given.matrix()); }));
+}
+
+roadmap::Graph with_links(const roadmap::Graph& graph, std::size_t nodes, nb::handle links,
+                          std::int32_t numbered_from) {
+  require(nodes >= graph.nodes(), "nodes must be at least those of the graph");
+  require(numbered_from >= 0, "numbered_from must be at least 0");
+  const Edges given(links, nodes);
+  return without_gil([&] { return graph.with_links(nodes, given.matrix(), numbered_from); });
+}
+
+/// What a search knows: weights and states for the numbers of all edges.
+void require_all_edges(const roadmap::Graph& graph, std::size_t given, const char* name) {
+  require(given >= graph.numbers(),
+          std::string(name) + " must be " + std::to_string(graph.numbers()) + " or more, got " + std::to_string(given));
+}
+
+nb::tuple shortest_path(const roadmap::Graph& graph, nb::tuple costs, nb::tuple states, std::int64_t start,
+                        nb::handle goals) {
+  require(costs.size() == 2 && states.size() == 2, "costs must be (weights, bounds), states those of (edges, nodes)");
+  const Int64s weights(costs[0], "weights"), bounds(costs[1], "bounds"), ends(goals, "goals");
+  const Int8s edges(states[0], "edge_states"), nodes(states[1], "node_states");
+  require_all_edges(graph, weights.size(), "weights"), require_all_edges(graph, edges.size(), "edge_states");
+  bounds.of_shape({graph.nodes()}), nodes.of_shape({graph.nodes()});
+  require_below(std::span<const std::int64_t>(&start, 1), graph.nodes(), "start");
+  require_below(ends.span(), graph.nodes(), "goals");
+  roadmap::Path path = without_gil([&] {
+    return roadmap::shortest_path(graph, {weights.span(), bounds.span()}, {edges.span(), nodes.span()},
+                                  static_cast<std::int32_t>(start), ends.span());
+  });
+  return nb::make_tuple(row(std::move(path.nodes)), row(std::move(path.edges)));
+}
+
+nb::tuple best_offers(const roadmap::Graph& graph, std::int64_t node, nb::handle edge_weights, nb::handle costs,
+                      nb::handle stages) {
+  const Int64s weights(edge_weights, "weights"), cost(costs, "cost");
+  const Int8s stage(stages, "stage");
+  require_all_edges(graph, weights.size(), "weights");
+  cost.of_shape({graph.nodes()}), stage.of_shape({graph.nodes()});
+  require_below(std::span<const std::int64_t>(&node, 1), graph.nodes(), "node");
+  roadmap::Offers offers = without_gil([&] {
+    const auto number = static_cast<std::int32_t>(node);
+    return roadmap::best_offers(graph.fixed(), number, weights.span(), cost.span(), stage.span());
+  });
+  return nb::make_tuple(row(std::move(offers.nodes)), row(std::move(offers.edges)));
+}
+
+void join(nb::handle labels, nb::handle edges) {
+  const Array<std::int32_t, 1> label(labels, "label");
+  const Edges given(edges, label.size());
+  bool lowest = true;
+  for (std::size_t node = 0; node < label.size(); node++) {
+    lowest &= static_cast<std::uint32_t>(label.span()[node]) <= node;
+  }
+  require(lowest, "label must hold lowest nodes of components");
+  without_gil([&] { roadmap::join(label.span(), given.matrix()); });
+}
+
+nb::tuple grow(nb::handle edges, nb::tuple states, nb::tuple trees, nb::handle asked, std::size_t most) {
+  require(states.size() == 2 && trees.size() == 3, "states must be (edges, nodes), trees (tree, parent_edge, away)");
+  const Array<std::int8_t, 1> tree(trees[0], "tree");
+  const Array<std::int32_t, 1> parent_edge(trees[1], "parent_edge");
+  const Array<const double, 2> away(trees[2], "away");
+  const std::size_t nodes = tree.size();
+  parent_edge.of_shape({nodes}), away.of_shape({2, nodes});
+  const Edges given(edges, nodes);
+  const Int8s edge_states(states[0], "edge_states"), node_states(states[1], "node_states");
+  edge_states.of_shape({given.count()}), node_states.of_shape({nodes});
+  const Int32s evaluated(asked, "asked");
+  require_below(evaluated.span(), given.count(), "asked");
+  require_below(std::span<const std::int8_t>(tree.span()), 3, "tree");
+  roadmap::Growth growth = without_gil([&] {
+    return roadmap::grow(given.matrix(), {edge_states.span(), node_states.span()},
+                         {tree.span(), parent_edge.span(), away.matrix()}, evaluated.span(), most);
+  });
+  return nb::make_tuple(growth.met, row(std::move(growth.takers)), row(std::move(growth.edges)));
+}
+
+nb::object spread_order(nb::tuple set, nb::handle preferences, std::size_t count, nb::tuple seen, nb::tuple serving) {
+  require(set.size() == 2 && seen.size() == 2 && serving.size() == 2, "set, seen and serving must be pairs");
+  const PeriodicPoints given(set[0], set[1]);
+  const Floats preference(preferences, "preference");
+  const Int64s first(seen[0], "first"), which(seen[1], "which");
+  preference.of_shape({given.count()});
+  require(count <= given.count(), "count must be at most the number of points");
+  require_below(which.span(), given.count(), "which");
+  require(std::is_sorted(first.span().begin(), first.span().end()), "first must not fall");
+  require_below(first.span(), which.size() + 1, "first");
+  const roadmap::Serving share{nb::cast<double>(serving[0]), nb::cast<double>(serving[1])};
+  return as_numpy(without_gil([&] {
+                    return roadmap::spread_order(given.set(), preference.span(), count, {first.span(), which.span()},
+                                                 share);
+                  }),
+                  {count});
+}
+
+}  // namespace
+
+void add_roadmap(nb::module_& module) {
+  nb::module_ part = module.def_submodule("roadmap", "Neighbours, graphs and searches of roadmaps.");
+  nb::class_<roadmap::Graph>(part, "Graph", "Undirected edges by node, and links of one query beside them.")
+      .def("__init__", &make_graph, "nodes"_a, "edges"_a.none())
+      .def_prop_ro("nodes", &roadmap::Graph::nodes)
+      .def("with_links", &with_links, "nodes"_a, "links"_a.none(), "numbered_from"_a);
+  part.def("shortest_path", &shortest_path, "graph"_a, "costs"_a, "states"_a, "start"_a, "goals"_a.none());
+  part.def("best_offers", &best_offers, "graph"_a, "node"_a, "weights"_a.none(), "cost"_a.none(), "stage"_a.none());
+  part.def("join", &join, "label"_a.none(), "edges"_a.none());
+  part.def("grow", &grow, "edges"_a.none(), "states"_a, "trees"_a, "asked"_a.none(), "most"_a);
+  part.def("k_nearest", &k_nearest, "points"_a.none(), "period"_a.none(), "k"_a, "earlier"_a);
+  part.def("pairs_within", &pairs_within, "points"_a.none(), "period"_a.none(), "radius"_a);
+  part.def("distances_from", &distances_from, "points"_a.none(), "period"_a.none(), "point"_a.none());
+  part.def("k_smallest", &k_smallest, "distances"_a.none(), "usable"_a.none(), "k"_a, "radius"_a);
+  part.def("spread_order", &spread_order, "set"_a, "preference"_a.none(), "count"_a, "seen"_a, "serving"_a);
+}
+
+}  // namespace evenroad::bind

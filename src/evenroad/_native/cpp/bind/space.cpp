@@ -1,0 +1,38 @@
+// evenroad._native.space: distances in spaces.
+#include "bind/arrays.hpp"
+#include "space/all_distances.hpp"
+
+namespace evenroad::bind {
+
+using namespace nb::literals;
+
+namespace {
+
+nb::object given_away(OwnMatrix<double>&& matrix) {
+  return as_numpy(std::move(matrix.values), {matrix.rows, matrix.columns});
+}
+
+nb::object flat_distances(nb::handle first, nb::handle second, nb::handle scales, nb::handle periods) {
+  const Array<const double, 2> a(first, "a"), b(second, "b");
+  const Array<const double, 1> scale(scales, "scale"), period(periods, "period");
+  const std::size_t dim = scale.size();
+  a.of_shape({a.shape(0), dim}), b.of_shape({b.shape(0), dim}), period.of_shape({dim});
+  return given_away(
+      without_gil([&] { return space::flat_distances(a.matrix(), b.matrix(), scale.span(), period.span()); }));
+}
+
+nb::object quaternion_angles(nb::handle first, nb::handle second) {
+  const Array<const double, 2> a(first, "a"), b(second, "b");
+  a.of_shape({a.shape(0), 4}), b.of_shape({b.shape(0), 4});
+  return given_away(without_gil([&] { return space::quaternion_angles(a.matrix(), b.matrix()); }));
+}
+
+}  // namespace
+
+void add_space(nb::module_& module) {
+  nb::module_ part = module.def_submodule("space", "Distances in spaces.");
+  part.def("flat_distances", &flat_distances, "a"_a.none(), "b"_a.none(), "scale"_a.none(), "period"_a.none());
+  part.def("quaternion_angles", &quaternion_angles, "a"_a.none(), "b"_a.none());
+}
+
+}  // namespace evenroad::bind

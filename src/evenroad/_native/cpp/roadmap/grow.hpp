@@ -1,0 +1,44 @@
+// How trees of a roadmap grow while the world is asked about edges: two that meet, and a marching one.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "roadmap/shortest_path.hpp"
+
+namespace evenroad::roadmap {
+
+/// Two trees in a graph, from the start (1) and from the goals (2); a node in neither is 0.
+struct TwoTrees {
+  std::span<std::int8_t> tree;
+  /// The edge by which each node was taken, -1 for roots.
+  std::span<std::int32_t> parent_edge;
+  /// Distances of all nodes from where the other tree began, (2, nodes).
+  Matrix<const double> away;
+};
+
+/// Where two trees go on: an edge at which they meet, or -1; else nodes to take, and the edge that leads to each.
+struct Growth {
+  std::int32_t met;
+  std::vector<std::int32_t> takers, edges;
+};
+
+/// Take into the trees what the edges that were asked about lead to, where they are free; offer at most so many nodes
+/// of each tree, nearest first, none when one of the two can grow no more.
+Growth grow(Matrix<const std::int32_t> edges, const States& states, const TwoTrees& trees,
+            std::span<const std::int32_t> asked, std::size_t most);
+
+/// What a marching tree knows of a node.
+enum Stage : std::int8_t { UNVISITED, OPEN, CLOSED };
+
+/// Unvisited nodes, and for each the edge from the open node that reaches it at the least cost, -1 for none.
+struct Offers {
+  std::vector<std::int32_t> nodes, edges;
+};
+
+/// Return the unvisited neighbours of a node of a marching tree, with the best offer for each; ties to the lower node.
+Offers best_offers(const Rows& rows, std::int32_t node, std::span<const std::int64_t> weights,
+                   std::span<const std::int64_t> cost, std::span<const std::int8_t> stage);
+
+}  // namespace evenroad::roadmap
