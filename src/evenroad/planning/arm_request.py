@@ -1,4 +1,4 @@
-"""What is asked for an arm: robot, scene, start and goals, read from names, files and values."""
+"""Reads a request for an arm: robot, scene, start and goals, from names, files and values."""
 
 from __future__ import annotations
 
@@ -46,9 +46,9 @@ def arm_request(
     clearance: float = 0.0,
     **options: Unpack[RobotOptions],
 ) -> Request:
-    """Read robot, scene and configurations, and put them together; parameters and errors as :func:`evenroad.plan`.
+    """Read robot, scene and configurations into one request; parameters and errors as :func:`evenroad.plan`.
 
-    Joints outside of the group are held at `reading.held`, else where the named states of start and goal have them.
+    Joints outside the group keep the values of `reading.held`, else those of the named states of start and goal.
     """
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     source, model = None, None
@@ -66,7 +66,7 @@ def arm_request(
     scene = scene_seen_by(robot, scene)
     first = _configuration(robot, scene, "start", start, reading)
     _refuse_what_is_none(robot, scene, goals, reading)
-    # Where a goal pose is reached is known only once it is: till then what is allowed near the ends is allowed.
+    # Where a goal pose is not reached, contacts near the endpoints stay allowed.
     world = ArmWorld(robot, open_everywhere(scene), resolution=resolution, clearance=clearance)
     given = _goals_in(world, first, goals, reading)
     if scene.near_ends and not given.unreached:
@@ -79,7 +79,7 @@ def arm_request(
 def request_in(
     world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[Goal], reading: Reading
 ) -> Request:
-    """Read start and goals of an arm whose world is there; parameters and errors as :func:`evenroad.plan`."""
+    """Read start and goals of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
     goals = _goal_list(goal)
     first = _configuration(world.robot, world.scene, "start", start, reading)
     _refuse_what_is_none(world.robot, world.scene, goals, reading)
@@ -88,7 +88,7 @@ def request_in(
 
 
 def mesh_check(request: Request, path: Floats) -> MeshCheck | None:
-    """Return what the meshes of the robot's file say of a path, (p, dim); None where there is nothing to ask."""
+    """Check a path, (p, dim), with the meshes of the robot's file; None where there are none to check."""
     world, source, model = request.world, request.source, request.model
     if source is None or model is None:
         return None
@@ -106,7 +106,7 @@ def _goals_in(world: ArmWorld, start: Floats, goals: list[Goal], reading: Readin
 
 
 def _refuse_what_is_none(robot: Robot, scene: Scene, goals: list[Goal], reading: Reading) -> None:
-    """Refuse what is no configuration, and no pose of a link, before a world is compiled."""
+    """Refuse values that are neither a configuration nor a pose, before a world is compiled."""
     for target in goals:
         if not isinstance(target, Pose | PoseGoal):
             _configuration(robot, scene, "goal", target, reading)
@@ -114,7 +114,6 @@ def _refuse_what_is_none(robot: Robot, scene: Scene, goals: list[Goal], reading:
 
 
 def _goal_list(goal: Goal | Sequence[Goal]) -> list[Goal]:
-    """Return one goal or several as a list."""
     if isinstance(goal, str | Mapping | Pose | PoseGoal):
         return [goal]
     if isinstance(goal, np.ndarray):
@@ -128,7 +127,7 @@ def _goal_list(goal: Goal | Sequence[Goal]) -> list[Goal]:
 def _configuration(
     robot: Robot, scene: Scene, name: str, target: ConfigurationLike, reading: Reading
 ) -> Floats:
-    """Return a configuration, (dim,), from a text, joint values or numbers; `name` says what it is in an error."""
+    """Return a configuration, (dim,), from a text, joint values or numbers; `name` names it in errors."""
     if isinstance(target, str):
         return configuration(robot, target, scene, degrees=reading.degrees)
     return as_configuration(robot, target, scene, name=name)

@@ -1,4 +1,4 @@
-"""Planning with trees for an arm: join a start to a goal, and shorten what was found, every motion proved free."""
+"""Tree planning for an arm: two trees join start and goal, then the path is shortened; every motion is proved free."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
 
 _CAPACITY = 1040
-"""Nodes of a tree there is room for at first; doubled when it is full.  Not a power of two: columns would then take
-each other's place in the processor's cache."""
+"""Initial capacity of a tree in nodes; it doubles when full.  It is no power of two, since columns would then evict
+each other from the processor's cache."""
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
 
 
 _TOLERANCE = 1e-4
-"""Of proofs where the lanes do not work [m]."""
+"""Tolerance of proofs where the lanes do not work [m]."""
 
 _WORTH_WHILE = 3e-3
-"""Motions that shorten a path by less than this share are not looked at there."""
+"""Smallest share by which a motion must shorten a path to be checked without lanes."""
 
 
 class PlansWithTrees(Protocol):
-    """What trees need of an arm's world; see ``ArmWorld``, which has these attributes."""
+    """What trees need of an arm's world; ``ArmWorld`` has these attributes."""
 
     @property
     def space(self) -> JointSpace: ...  # noqa: D102
@@ -59,8 +59,8 @@ class PlansWithTrees(Protocol):
 
 
 def prepare() -> None:
-    """Begin to compile what planning with trees takes, in processes beside this one, unless it is kept already."""
-    # The last needed, and the longest, first: this process begins at the other end.
+    """Compile what tree planning needs, in processes beside this one, unless it is cached."""
+    # The one that is needed last takes longest and goes first; this process begins at the other end.
     kernels = ("trees", "lane_check", "shorten", "motion_checks", "hull_lanes")
     compile_beside(*(f"evenroad.robot.kernel.{kernel}" for kernel in kernels))
 
@@ -78,11 +78,11 @@ def connect(
 
     Every motion of the path is proved free throughout, as by ``CertifiedWorld``.  The same arguments give the same
     path; the time [s] only decides whether there is one.  Goals that are not free are left out.  The trees grow towards
-    a `sequence` of points of the unit cube, (n, dim), the more evenly spread the better, by default 2048 of Halton's;
-    after the last one they come again, shifted.
+    a `sequence` of points of the unit cube, (n, dim), by default 2048 points of Halton's sequence; after the last point
+    it repeats, shifted.
 
-    The path is empty where there is none within the budget, start or goals are not free, or the world's backend is not
-    the lanes, in which trees grow.  InvalidValue if an argument is no such array or number.
+    The path is empty if the budget is spent, if start or goals are not free, or if the world's backend is not the
+    lanes. InvalidValue if an argument is no such array or number.
     """
     dim = world.space.dim
     limit = require_positive("seconds", seconds)
@@ -98,9 +98,9 @@ def connect(
 def grown_trees(
     world: PlansWithTrees, start: npt.ArrayLike, goals: npt.ArrayLike, *, seconds: float = SECONDS
 ) -> tuple[Floats, Ints]:
-    """Return the nodes, (n, dim), of the two trees that `connect` grows, and their links, (m, 2): what viewers show.
+    """Return the nodes, (n, dim), of the two trees of `connect` and their links, (m, 2), for viewers.
 
-    Raises as :func:`connect`; without lanes there are none.
+    Raises as :func:`connect`; without lanes both are empty.
     """
     dim = world.space.dim
     first, others = _start_and_goals(start, goals, dim)
@@ -126,12 +126,11 @@ def shorten(
     pairs: int = 1 << 30,
     shortcuts: int = 64,
 ) -> tuple[Floats, int]:
-    """Return a path, (p, dim), that is not longer, and how many motions were looked at.
+    """Return a path, (p, dim), that is not longer, and the number of motions checked.
 
-    A motion is put in only where it is proved free throughout.  Motions of the path as it was given, which are free in
-    the world, stay where nothing shorter was found, proved or not: :meth:`CertifiedWorld.motion_valid` tells.  So many
-    motions between `pairs` of places along the path are tried at most, and by the lanes so many `shortcuts` of corners.
-    InvalidValue if `path` is no such array.
+    A new motion enters only where it is proved free throughout.  Motions of the given path stay where nothing shorter
+    was found, proved or not: :meth:`CertifiedWorld.motion_valid` says which.  At most `pairs` motions between points
+    along the path are tried, and with lanes at most `shortcuts` corners.  InvalidValue if `path` is no such array.
     """
     path, dim = _as_path(world, path), world.space.dim
     if world.backend == "scalar":
@@ -146,16 +145,17 @@ def shorten(
 def smooth(
     world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: bool = True
 ) -> tuple[Floats, int]:
-    """Return a path drawn tight, and how many motions were looked at: shorter than `shorten`'s for the same checks.
+    """Return a smoothed path and the number of motions checked; it is shorter than that of `shorten` for the same
+    checks.
 
-    Its waypoints have slid along what they touch, and every motion is proved free, one or two after they were bent a
-    little.  Where that fails, too, the path is shortened as it was given, by straight motions alone, as `shorten` does.
-    Without lanes it is what that returns.  After so many `batches` of sixteen checks, of which some are left for the
-    proof, no waypoint slides any more; cuts of corners and the proof follow.
+    Waypoints slide along what they touch.  Every motion is proved free, and one or two are bent a little where they are
+    not.  Where that fails, the given path is shortened by straight motions alone, as in `shorten`; so it is without
+    lanes. After `batches` of sixteen checks, some of which are kept for the proof, no waypoint slides any more;
+    shortcuts of corners and the proof follow.
 
-    `proved` says whether the path is, as it was given; a single motion has to be, and all of them without lanes.  Where
-    it is not, and neither what was drawn tight nor what was shortened is, there are no waypoints: (0, dim).
-    InvalidValue if `path` is no such array.
+    `proved` says whether the given path is; a single motion has to be, and all of them without lanes.  Where neither
+    the given, nor the shortened, nor the smoothed path is proved, there are no waypoints: (0, dim).  InvalidValue if
+    `path` is no such array.
     """
     path = _as_path(world, path)
     if world.backend == "scalar":
@@ -168,7 +168,7 @@ def smooth(
 
 
 def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:
-    """Return a path, (p, dim); of an array as planners give it compiled code sees whether it is finite."""
+    """Return a path, (p, dim); compiled code checks that an array as planners give it is finite."""
     dim = world.space.dim
     if not (
         type(path) is np.ndarray and path.dtype == np.float64 and path.ndim == 2 and path.shape[1] == dim
@@ -180,7 +180,7 @@ def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:
 
 
 def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
-    """Return a path that is not longer, and how many motions were looked at, without lanes: each motion by itself."""
+    """Shorten a path without lanes, one motion at a time; return it and the number of motions checked."""
     space = world.space
     path = space.interpolate(path, path, 0.0)
     motions = 0
@@ -211,7 +211,7 @@ def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
 def _grown(
     world: PlansWithTrees, first: Floats, goals: Floats, samples: Floats | None, most: int, seconds: float
 ) -> tuple[Connection, tuple[Floats, int, int, int], tuple[int, int]]:
-    """Return what two trees found, where they are in memory, see `_trees`, and their sizes."""
+    """Grow two trees; return what they found, their address, see `_trees`, and their sizes."""
     kernel, grow = _tree_kernels()
     order = None
     if len(goals) > 1:
@@ -229,7 +229,7 @@ def _grown(
     sequence = _pointer_to(cube_points, dim) if samples is None else (address(samples), len(samples))
     driven_by = sequence, _pointer_to(ball_points, dim)
     if not grow.overloads:
-        # Compiled, or loaded, before the clock runs; no motion is looked at.
+        # Compile, or load, before the clock runs; no motion is checked.
         grow(pointer, count, capacity, *driven_by, (0, _SLICE), given)
     deadline = now() + seconds
     while True:
@@ -261,7 +261,7 @@ def _tree_kernels() -> tuple[Any, Any]:
 
 @cache
 def _sizes(count: int, dim: int, least: int) -> tuple[int, int, int]:
-    """Return the capacity of trees for so many ends, and how many doubles go before them, and with them."""
+    """Return the capacity of trees for this number of roots, and the numbers of doubles before them and with them."""
     from evenroad.robot.kernel import tree_steps, trees
 
     capacity, steps = -(-max(least, 2 * count + trees.EXTRA_NODES) // 16) * 16, tree_steps.memory_for(dim)
@@ -283,7 +283,7 @@ def _smooth_path() -> Callable[..., tuple[Floats, int]]:
 
 
 def _with_more_capacity(block: Floats, begin: int, capacity: int, dim: int) -> Floats:
-    """Return the memory of the trees, of which nodes, links and columns begin there, with room for twice as many."""
+    """Return a block of memory with twice the capacity, with nodes, links and columns copied."""
     larger = np.empty(begin + 2 * (4 * dim + 8) * capacity)
     larger[:begin] = block[:begin]
     nodes, links, columns = _trees(larger, begin, 2 * capacity, dim)
@@ -305,12 +305,12 @@ def _trees(
 
 @cache
 def _pointer_to(points: Callable[..., Floats], *dim: int) -> tuple[int, int]:
-    """Return the address of points that are kept for good, and how many they are."""
+    """Return the address and the number of points that stay in memory."""
     return address(points(*dim)), len(points(*dim))
 
 
 def _start_and_goals(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> tuple[Floats, Floats]:
-    """Return start, (dim,), and goals, (g, dim); that they are finite is left to compiled code."""
+    """Return start, (dim,), and goals, (g, dim); compiled code checks that they are finite."""
     try:
         first, others = np.asarray(start, dtype=np.float64), np.asarray(goals, dtype=np.float64)
     except (TypeError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""Which connector joins a start to a goal in which kind of world: an arm's trees, a map's cells, trees for the rest."""
+"""The connector of each kind of world: trees for an arm, a search of cells for a map, plain trees for the rest."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from evenroad.world.gridmap.gridmap import DiskWorld
 from evenroad.world.gridmap.search import find_path, straighten
 
 BEFORE_PROOF = 200_000
-"""Motions after which a world is asked whether there can be a path at all: more than hard queries take."""
+"""Number of motions after which the world tries to prove that there is no path: more than hard queries need."""
 BEFORE_QUICK_PROOF = 4_000
-"""Motions after which one is asked that can say so quickly: most queries take fewer."""
+"""Number of motions after which a world with a quick proof tries it: most queries need fewer."""
 
 _SPREADS = (32, 96)
-"""Points that a disk's path is offered to be straightened with, in the coarse rounds and in the fine ones."""
+"""Numbers of points along a disk's path that straightening may join, in coarse and in fine rounds."""
 
 
 @dataclass(frozen=True)
 class ArmTrees:
-    """Two trees in compiled code, every motion proved free; for arms, where sixteen lanes work.
+    """Two trees in compiled code, every motion proved free; for arms whose sixteen lanes work.
 
-    They grow in the arm's world `inside` where the world that is asked is another, as of the robot's own shapes.
+    They grow in the arm's world `inside` where another world is queried, such as one of the robot's meshes.
     """
 
     planner: ClassVar[str] = "trees"
@@ -79,11 +79,11 @@ class Cells:
         most_motions: int = 2**31 - 1,
         seconds: float = np.inf,
     ) -> Connection:
-        """Find a path from a free map point, (2,), to the one of several, (g, 2), that is nearest on the lattice.
+        """Find a path from a free map point, (2,), to the goal, of (g, 2), that is nearest on the lattice.
 
-        It leads over cell centres, and over half cells where it is narrow.  It is found wherever
-        `DiskWorld.may_connect` holds but for passages hardly wider than the disk.  `most_motions` are tested.  The size
-        of the map bounds the time: `seconds` is not looked at, and there are no variants.
+        It leads over cell centres, and over half cells in narrow passages.  It is found wherever
+        `DiskWorld.may_connect` holds, except through passages hardly wider than the disk.  At most `most_motions` are
+        checked.  The size of the map bounds the time: `seconds` is not used, and there are no variants.
         """
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)
@@ -91,14 +91,14 @@ class Cells:
         return Connection(path, int(goal), nodes, 0, motions)
 
     def smooth(self, world: DiskWorld, path: Floats) -> tuple[Floats, int]:
-        """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and how many were tested."""
+        """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and the number of checks."""
         points = as_batch("path", path, 2)
         return straighten(points, world.tables, _SPREADS) if len(points) > 1 else (points.copy(), 0)
 
 
 @dataclass(frozen=True)
 class PlainTrees:
-    """Two trees in Python that ask any world about batches of motions; for users' own functions."""
+    """Two trees in Python that check batches of motions in any world; for users' own functions."""
 
     planner: ClassVar[str] = "trees"
     varies: ClassVar[bool] = True
@@ -126,5 +126,5 @@ def connector_of(world: Any) -> Connector | None:
 
 
 def trees_for(world: Any) -> Connector:
-    """Return the trees that grow in this kind of world: compiled ones for an arm whose lanes work, else plain ones."""
+    """Return the trees for this kind of world: compiled ones for an arm whose lanes work, else plain ones."""
     return ARM_TREES if isinstance(world, ArmWorld) and world.backend == "lanes" else PLAIN_TREES

@@ -1,4 +1,4 @@
-"""Why there is no path: whether the start or a goal can hardly leave its place, and what is in the way."""
+"""Why there is no path: whether obstacles enclose the start or a goal, and which."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ DIRECTIONS = 128
 SHORT = 0.1
 """Length of these motions, as a share of the median distance to an even point of the space."""
 ENCLOSED = 0.1
-"""Largest share of free motions from a configuration that is hemmed in."""
+"""Share of free short motions up to which a configuration counts as enclosed."""
 _SHARES = np.linspace(0.05, 1.0, 20)
 """Shares along a short motion at which something may touch."""
 
 
 def with_reasons(world: World, result: PlanResult) -> PlanResult:
-    """Return a result without a path, its message with what is in the way of the start or the goals.
+    """Return a result without a path whose message also says what encloses the start or the goals.
 
-    Nothing is added where there is a path, a proof that there is none, or nothing to be said.  Costs some hundred
-    checks for the start and for each goal.
+    Nothing is added where there is a path or a proof that there is none.  It costs some hundred checks for the start
+    and for each goal.
     """
     if result.path is not None or result.status not in (Status.NOT_CONNECTED, Status.BUDGET_SPENT):
         return result
@@ -48,7 +48,7 @@ def with_reasons(world: World, result: PlanResult) -> PlanResult:
 
 
 def why_enclosed(world: World, name: str, configuration: Floats) -> str | None:
-    """Return in words how few short motions leave a free place, (dim,), and what touches; None where enough do."""
+    """Return how few short motions leave a free configuration, (dim,), and what blocks them; None where enough do."""
     samples = world.space.from_cube(as_points(DIRECTIONS, world.space).points)
     here = np.broadcast_to(configuration, samples.shape)
     distances = world.space.distance(here, samples)
@@ -68,7 +68,7 @@ def why_enclosed(world: World, name: str, configuration: Floats) -> str | None:
 
 
 def _what_touches(world: World, a: Floats, b: Floats) -> str:
-    """Return what most of the blocked motions meet first, where the world can tell."""
+    """Return what most of the blocked motions meet first, if the world can explain it."""
     if not isinstance(world, Explains):
         return ""
     met: Counter[str] = Counter()

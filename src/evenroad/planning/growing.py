@@ -1,4 +1,4 @@
-"""Anytime planning: more and more points of one sequence, on which every check made is used again."""
+"""Anytime planning: more and more points of one sequence; no check is made twice."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily
 
 UNTIL = ("solved", "settled", "budget")
 GROWING = 5
-"""Largest dimension in which a lattice that grows was compared with Sobol's points (studies/docs/sequences.md)."""
+"""Largest dimension in which `growing` was compared with Sobol's points (studies/docs/sequences.md)."""
 
 SETTLED = 0.01
-"""A path counts as settled when doubling the points has shortened it by no more than this share."""
+"""Share of shortening up to which a path counts as settled when the points were doubled."""
 
 
 @dataclass(frozen=True)
@@ -41,18 +41,18 @@ class GrowingPRM:
     Parameters
     ----------
     sampler : Sampler, optional
-        Whose sets of more points begin with those of fewer.  Default: ``growing``, which needs 6 % fewer checks of
-        motions than scrambled Sobol points, and these from six dimensions on, where it was not tried.
+        Sampler whose larger sets begin with its smaller ones.  Default: ``growing``, which needs 6 % fewer checks
+        of motions than scrambled Sobol points; from six dimensions on, where it was not tried, Sobol points.
     first : int
-        Points of the first stage.
+        Number of points of the first stage.
     until : {"solved", "settled", "budget"}
         Stop with the first path, or when a path has become at most 1 % shorter from one stage to the next, or only when
         the budget is spent.
     rule, edge_cost, links
         As in :class:`evenroad.PRM`.
 
-    Without a path the status is ``budget_spent``; ``stages`` tells how it went.  Counts are those of the last stage,
-    checks those of all.  Raises as :class:`evenroad.PRM`, and InvalidValue if the sampler's sets do not begin with the
+    Without a path the status is ``budget_spent``; ``stages`` lists the stages.  Counts are of the last stage, checks
+    of all.  Raises as :class:`evenroad.PRM`, and InvalidValue if the sampler's sets do not begin with the
     smaller ones.
     """
 
@@ -98,7 +98,7 @@ class GrowingPRM:
 
 
 class _Growth:
-    """A roadmap that grows point by point: the milestones so far, what is known of them, and the best path."""
+    """A roadmap that grows: the milestones so far, their checked states, and the best path."""
 
     def __init__(self, attempt: Attempt, rule: Rule) -> None:
         self.attempt, self.rule, self.pairs, self.drawn = attempt, rule, PairCache(), 0
@@ -109,7 +109,7 @@ class _Growth:
         self.last: Searched
 
     def take(self, points: PointSet) -> bool:
-        """Search with these points, of which the first are known; return whether the budget was enough."""
+        """Search with these points, whose first ones were searched before; return whether the budget was enough."""
         attempt, terminals = self.attempt, len(self.attempt.start_and_goals)
         samples = attempt.world.space.from_cube(points.points[self.drawn :])
         valid = attempt.valid(samples)
@@ -133,7 +133,7 @@ class _Growth:
         return not attempt.spent and now() < attempt.deadline
 
     def is_done(self, until: str) -> bool:
-        """Return whether the last stage ends the work."""
+        """Return whether the last stage was the final one."""
         if self.best is None or until == "budget":
             return False
         if until == "solved":
@@ -153,17 +153,17 @@ class _Growth:
 
 
 class PairCache:
-    """Verdicts on pairs of names below 2^31, which stay while the numbers of nodes change; memory O(pairs)."""
+    """States of pairs of nodes, by names below 2^31 that outlive the nodes' numbers; memory O(pairs)."""
 
     def __init__(self) -> None:
         self._states: dict[int, int] = {}
 
     def recall(self, pairs: npt.NDArray[np.int64]) -> npt.NDArray[np.int8]:
-        """Return what is known of each pair, (m, 2) -> (m,)."""
+        """Return the state of each pair, (m, 2) -> (m,)."""
         return np.array([self._states.get(key, UNKNOWN) for key in _keys(pairs)], dtype=np.int8)
 
     def store(self, pairs: npt.NDArray[np.int64], states: npt.NDArray[np.int8]) -> None:
-        """Take note of verdicts, the later one of two; those that are `UNKNOWN` are passed over."""
+        """Store states of pairs, the later one of two; `UNKNOWN` is ignored."""
         new = states != UNKNOWN
         self._states.update(zip(_keys(pairs[new]), states[new].tolist(), strict=True))
 
@@ -173,7 +173,7 @@ def _keys(pairs: npt.NDArray[np.int64]) -> list[int]:
 
 
 def _draw(sampler: Sampler, n: int, problem: Problem, before: PointSet | None) -> PointSet:
-    """Draw n points, and make sure that they go on where those `before` ended."""
+    """Draw n points; InvalidValue if they do not begin with those `before`."""
     space = problem.world.space
     points = as_points(sampler.draw(n, space.cube_dim, rng=problem.rng), space)
     if before is not None and not np.array_equal(points.points[: before.n], before.points):

@@ -1,8 +1,8 @@
-"""RRT-Connect for any world: two trees that ask it about batches of motions (Kuffner and LaValle 2000).
+"""RRT-Connect for any world: two trees that check batches of motions (Kuffner and LaValle 2000).
 
 Each step takes the next batch of an even sequence.  Every sample is joined to its nearest node of the tree whose turn
 it is, by at most one step, and the whole batch is checked at once.  The other tree then tries to reach each new node.
-Trees of robots are compiled, see `arm_trees`; these are for worlds that only answer in Python.
+Trees of robots are compiled, see `arm_trees`; these are for worlds in Python.
 """
 
 from __future__ import annotations
@@ -16,14 +16,13 @@ from evenroad.roadmap.connector import Connection
 from evenroad.world import World
 
 BATCH = 16
-"""Samples that a tree is grown by at once: a world in Python answers about a batch in little more time than about one.
-"""
+"""Number of samples per step of a tree: a world in Python checks a batch in little more time than one motion."""
 STEP = 0.2
 """Longest motion of a tree, as a share of the median distance between two samples."""
 FIRST, MOST_SAMPLES = 1 << 10, 1 << 18
-"""Samples that are drawn first, doubled as often as they are used up; after the last one the trees end."""
+"""Numbers of samples that are drawn first and at most; they double when used up, after the last one the trees stop."""
 MOST_STEPS = 64
-"""Steps that a tree takes towards a new node of the other one."""
+"""Largest number of steps of a tree towards a new node of the other one."""
 
 
 class _Tree:
@@ -93,7 +92,7 @@ def _samples(world: World, n: int, variant: int) -> Floats:
 
 
 def _reach(world: World, tree: _Tree, target: Floats, step: float, most: int) -> tuple[int, int]:
-    """Grow a tree towards a configuration, (dim,); return the node that is there, or -1, and the motions checked."""
+    """Grow a tree towards a configuration, (dim,); return its node there, or -1, and the number of checks."""
     node = int(tree.nearest(world, target[np.newaxis])[0])
     for asked in range(min(MOST_STEPS, max(most, 0))):
         here = tree.nodes[node : node + 1]
@@ -108,7 +107,7 @@ def _reach(world: World, tree: _Tree, target: Floats, step: float, most: int) ->
 
 
 def _towards(world: World, a: Floats, b: Floats, step: float) -> Floats:
-    """Return the places at most a step from rows of `a` towards those of `b`, (n, dim) each."""
+    """Return the configurations at most a step from rows of `a` towards those of `b`, (n, dim) each."""
     away = world.space.distance(a, b)
     share = np.minimum(1.0, step / np.maximum(away, 1e-300))
     new = world.space.interpolate(a, b, share)

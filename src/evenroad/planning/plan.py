@@ -35,7 +35,7 @@ from evenroad.world import ShowsApart, World
 
 @dataclass(frozen=True)
 class Options:
-    """What is wanted of a path, whoever plans it; see :func:`plan`."""
+    """The options of a path that hold for every planner; see :func:`plan`."""
 
     budget: Budget = field(default_factory=lambda: Budget(seconds=RRTConnect.seconds))
     smooth: bool = True
@@ -63,7 +63,7 @@ def plan(
     frame: str = "",
     **of_world: Any,
 ) -> PlanResult:
-    """Plan a path: until there is one, or a proof that there is none, or the budget is spent.
+    """Plan a path; stop with the path, with a proof that there is none, or when the budget is spent.
 
     Parameters
     ----------
@@ -75,21 +75,21 @@ def plan(
         state, ``0,-1.57,...`` or ``name=value``.  A value may exceed its joint's limits by 1e-5, as five printed
         decimals do, and stays what it is.
     goal : as `start`, Pose, PoseGoal, or a sequence of such
-        Of several, also of all configurations known to bring an arm's tip to a pose, the path ends at the nearest,
-        where that is soon reached; along a roadmap, or with ``improve``, at the cheapest.
+        A pose stands for all configurations found that reach it.  Of several goals the path ends at the nearest if it
+        is reached soon; along a roadmap, or with ``improve``, at the cheapest.
     planner : Planner, Roadmap, PointSet, str or path-like, optional
         Such as ``er.RRTConnect()``, ``er.PRM(512)`` or ``er.FMT(1024)``.  Default: trees for an arm, a search of cells
         for a disk on a map, points that grow for any other world.  A PointSet stands for ``er.PRM(points)``,
         a Roadmap, or its file, for that roadmap within the world.
     seconds : float, optional
-        Wall time to plan at most, > 0.  Default: 5; for planners on points that are drawn beforehand 60.
+        Largest wall time of planning, > 0.  Default: 5; for planners on points that are drawn beforehand 60.
     limits : mapping or Budget, optional
         Other limits: ``motions``, ``samples``, ``rounds``; integers >= 1.  With these the same call gives the same
-        answer on every machine, unless the time is over before.  A :class:`evenroad.roadmap.Budget` says the time, too.
+        answer on every machine, unless the time runs out first.  A :class:`evenroad.roadmap.Budget` says the time, too.
     smooth : bool
         Whether the path is made shorter once it is found.
     rng : int, SeedSequence or Generator
-        For what the planner draws; the same seed gives the same path.
+        Seed of what the planner draws; the same seed gives the same path.
     certified : bool
         Check once more that every motion is proved free throughout.  Where one is not, the status is
         ``not_certified``, and the message says which.
@@ -100,7 +100,7 @@ def plan(
     degrees : bool
         Angles in texts are degrees.
     tip, frame : str
-        Of which link goal poses are, and in the frame of which; default: the last link, and the root.
+        The link that goal poses place, and the link in whose frame; default: the last link, and the root.
     **of_world
         ``radius``, ``clearance``, ``unknown_is_free`` of a map; ``robot``, ``clearance``, ``resolution``, and what
         :func:`evenroad.load_robot` takes, of a scene.
@@ -115,7 +115,7 @@ def plan(
     Raises
     ------
     InvalidValue, UnknownName, BrokenFile, NotAvailable
-        If an argument is none of these.
+        If an argument is not one of these.
 
     Examples
     --------
@@ -148,7 +148,7 @@ def plan(
 def budget_of(
     planner: Planner | None, seconds: float | None, limits: Budget | Mapping[str, int] | None
 ) -> Budget:
-    """Return what a planner may spend: the given limits, else its own."""
+    """Return a planner's budget: the given limits, else its own."""
     if isinstance(limits, Budget):
         if seconds is not None:
             raise InvalidValue("give seconds, or limits that are a Budget, not both")
@@ -162,7 +162,7 @@ def budget_of(
 
 
 def solve(request: Request, planner: Planner | None, options: Options) -> PlanResult:
-    """Plan what is asked; the path is free in its world."""
+    """Plan a request; the path is free in its world."""
     straight, upright, given = options.straight, options.upright, request.given
     if given is not None and given.unreached:
         status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
@@ -185,10 +185,10 @@ def solve(request: Request, planner: Planner | None, options: Options) -> PlanRe
 def finished(
     request: Request, result: PlanResult, *, certified: bool = False
 ) -> tuple[PlanResult, MeshCheck | None]:
-    """Return a plan with the name of its goal and the status that its path has after the last checks.
+    """Return a plan with the name of its goal and its status after the last checks, and the check of the meshes.
 
-    The meshes of the robot's URDF are asked where it has some or where capsules always touch; what they say is None
-    where there is no path, or nothing to ask.
+    Meshes of the robot's URDF are checked where it has some or where capsules always touch.  Their check is None where
+    there is no path or nothing to check.
     """
     given, world = request.given, request.world
     if given is not None and given.poses and not given.unreached:
@@ -223,7 +223,7 @@ def finished(
 
 
 def _with_proof(request: Request, result: PlanResult) -> PlanResult:
-    """Return the result of points that did not lead to the goal, with the proof that no number of them would."""
+    """Return a result of points without a path, with the proof that more points would not find one."""
     world: Any = request.world
     if result.status is not Status.NOT_CONNECTED or not isinstance(request.world, ShowsApart):
         return result

@@ -23,14 +23,14 @@ from evenroad.space import Space
 
 @dataclass(frozen=True)
 class PRM:
-    """A roadmap of points that are drawn beforehand: Algorithm 1 of Chahine et al. (2025).
+    """A roadmap on points that are drawn beforehand: Algorithm 1 of Chahine et al. (2025).
 
     Parameters
     ----------
     points : int or PointSet
         Points of the unit cube, or how many even ones to draw; the space maps them to configurations.
     k : int, optional
-        Joins each milestone to its k nearest, symmetrised; in place of `rule`.
+        Join each milestone to its k nearest, symmetrised; instead of `rule`.
     rule : Rule, optional
         Which pairs of milestones to try.  Default: that of :func:`evenroad.roadmap.default_rule`.
     search : {"lazy", "full"}
@@ -47,8 +47,8 @@ class PRM:
         To how many of the nearest milestones start and goals are linked, besides those of the rule; to all up to 256.
         None: as the rule says, which is what published protocols do.
     certify : bool
-        Put a :class:`evenroad.roadmap.Certificate` into the result: how much longer than the best path the one along
-        the roadmap can be, and what clearance a path would have had to have that was not found.
+        Put a :class:`evenroad.roadmap.Certificate` into the result: how much longer than the best path this one can
+        be, and up to which clearance a path may have been missed.
 
     Raises
     ------
@@ -144,7 +144,7 @@ class FMT:
 
 
 class _OnPoints(Protocol):
-    """What PRM and FMT have in common."""
+    """What PRM and FMT share."""
 
     @property
     def points(self) -> PointSet | int: ...
@@ -197,7 +197,7 @@ def _query(planner: _OnPoints, problem: Problem, **more: object) -> Query:
 
 
 def _on_points(planner: _OnPoints, problem: Problem, query: Query, name: str, find: Finder) -> PlanResult:
-    """Map the points into the space, join them by the rule, and find a path along what the world calls free."""
+    """Map the points into the space, join them by the rule, and find a path along the free motions."""
     world = problem.world
     # The points are chosen for a rule that was given.
     given = rule_of(planner, world.space) if planner.rule is not None or planner.k is not None else None

@@ -1,4 +1,4 @@
-"""Request: a world, a start and goals, with what is known of how they were given."""
+"""Request: a world, a start and goals, and how they were given."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ConfigurationLike = str | Mapping[str, float] | npt.ArrayLike
 :func:`evenroad.robot.configuration` takes it."""
 
 Goal = ConfigurationLike | Pose | PoseGoal
-"""A configuration, or where a link is to be."""
+"""A configuration, or a pose of a link."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Reading:
     degrees : bool
         Angles in texts are degrees.
     tip, frame : str
-        Of which link goal poses are, and in the frame of which.  Default: the last link, and the root.
+        The link that goal poses place, and the link in whose frame.  Default: the last link, and the root.
     held : mapping, optional
         Values of joints that are not planned for, joint -> value [rad or m].
     """
@@ -47,11 +47,10 @@ class Reading:
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """A world with where to start, (dim,), and the goals, (g, dim).
+    """A world, a start, (dim,), and goals, (g, dim).
 
-    Of an arm, `given` says what the goals were made of.  Its robot is held where named states have the joints that are
-    not planned for.  `source`, where it was read, and `model`, how it was made, are None for a robot that was given as
-    a value.
+    For an arm, `given` says what the goals were made of, and its robot holds the joints that are not planned for at the
+    values of named states.  `source` is the file of the robot and `model` how it was read; both are None for a value.
     """
 
     world: Any
@@ -63,10 +62,10 @@ class Request:
 
     @property
     def goal_names(self) -> tuple[str, ...]:
-        """By which texts the caller called the goals, or nothing."""
+        """The texts by which the caller named the goals, or nothing."""
         return () if self.given is None else self.given.names
 
     @property
     def tip(self) -> str:
-        """The link that goal poses are of, or nothing."""
+        """The link that goal poses place, or nothing."""
         return self.given.poses[0][0].tip if self.given is not None and self.given.poses else ""

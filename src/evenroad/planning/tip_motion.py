@@ -1,4 +1,4 @@
-"""Ways that an arm's tip is told to take: straight to its goal and from its start, upright all along."""
+"""Constraints of an arm's tip: straight lines at its start and goal, and an upright axis all along."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from evenroad.space.path import path_length
 from evenroad.world import World
 
 LINES = 16
-"""Goals that are planned to, the nearest to which a straight line leads."""
+"""Largest number of goals, the nearest to which a straight line leads."""
 
 PlanOnce = Callable[[World, Floats, Floats, bool], PlanResult]
-"""Plans in a world from a start, (dim,), to goals, (g, dim), and shortens the path or not."""
+"""A function that plans in a world from a start, (dim,), to goals, (g, dim), and shortens the path or not."""
 
 
 def refused(request: Request, status: Status, message: str) -> PlanResult:
@@ -31,7 +31,7 @@ def refused(request: Request, status: Status, message: str) -> PlanResult:
 
 
 def _chain(request: Request, tip: str) -> Chain:
-    """Return the chain of a link: the one named, else that of the goal poses, else the last one."""
+    """Return the chain of a link: the named one, else that of the goal poses, else the last one."""
     robot = request.world.robot
     return chain_of(robot, tip or request.tip or default_tip(robot))
 
@@ -44,10 +44,10 @@ def plan_tip_motion(
     *,
     shorten: bool = True,
 ) -> PlanResult:
-    """Plan with `plan` so that the tip takes the ways it is told to, if any.
+    """Plan with `plan` under the constraints of the tip, if there are any.
 
-    Lines come first: the plan goes from the end of the one that leaves the start to the beginnings of those that lead
-    to goals.  The largest deviations, on fine grids, are in the result.
+    Lines come first: the plan leads from the end of the line that leaves the start to the beginnings of those that lead
+    to goals.  The result holds the largest deviations, measured on fine grids.
     """
     if upright is None:
         return _between_lines(request, straight, plan, request.world, shorten)
@@ -62,7 +62,7 @@ def plan_tip_motion(
 
 
 def _tilted(request: Request, world: OrientationWorld) -> PlanResult | None:
-    """Return the result where the start, or every goal, is tilted by too much."""
+    """Return a result if the start, or every goal, is tilted too much."""
     start, goals = world.tilts(request.start[np.newaxis])[0], world.tilts(request.goals)
     if start > world.tolerance:
         return refused(request, Status.START_INVALID, f"at the start {world.explain(request.start)}")
@@ -94,7 +94,7 @@ def _between_lines(
     chain = _chain(request, straight.tip)
     free = within.valid(np.concatenate([request.start[np.newaxis], request.goals]))
     if not free[0] or not free[1:].any():
-        # The planner says what is in the way.
+        # The planner says what blocks.
         return plan(request.world, request.start, request.goals, shorten)
     leaving = Line(request.start[np.newaxis])
     if straight.retreat:
@@ -141,7 +141,7 @@ def _between_lines(
 def _line(
     within: World, world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float
 ) -> Line:
-    """Return a straight line, also refused where it tilts what is to be upright: that may be another link."""
+    """Return a straight line, or refuse it where it tilts what has to stay upright, maybe another link."""
     line = line_from(world, chain, straight, q, length)
     if line.why or not isinstance(within, OrientationWorld):
         return line

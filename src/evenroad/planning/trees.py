@@ -1,4 +1,4 @@
-"""Planners without a number of points: trees, a search over cells, and which of them a kind of world is planned by.
+"""Planners without a number of points: trees and a search over cells, and the default of each kind of world.
 
 Each plans until there is a path, a proof that there is none, or the budget is spent.
 """
@@ -26,26 +26,26 @@ from evenroad.roadmap.result import NO_POINTS, PlanResult, Stage
 from evenroad.world.gridmap.gridmap import DiskWorld
 
 NO_BETTER = 1e-9
-"""Share by which a path may exceed the shortest possible one and not be improved on."""
+"""Share by which a path may exceed the shortest possible one before it is improved."""
 LEAST_MOTIONS, LONGER = 1000, 4
-"""Motions after which a round gives up: so many, or so many times those of the first path, whichever is more."""
+"""Largest number of motions of a round: the larger of a number and a multiple of the first path's motions."""
 TO_NEAREST = 300
-"""Most motions that are checked on the way to the nearest of several goals alone."""
+"""Largest number of motions checked towards the nearest of several goals alone."""
 
 
 @dataclass(frozen=True)
 class RRTConnect:
     """Two trees that grow from start and goals until they meet (Kuffner and LaValle 2000), along an even sequence.
 
-    Trees of arms are compiled, and every motion is proved free; trees in other worlds ask them about batches.  They are
-    led to the nearest of several goals first, for a short while, then to all.  Where they do not meet soon, a world
-    that can tell is asked whether there can be a path at all.
+    Trees of arms are compiled, and every motion is proved free; trees in other worlds check batches of motions.  They
+    grow to the nearest of several goals first, for a short while, then to all.  Where they do not meet soon, a world
+    that can prove that there is no path tries to.
 
     Parameters
     ----------
     improve : bool
-        Go on after the first path, until the budget is spent, and return the best of all.  The count ``rounds`` then
-        says how often it was planned anew, and `stages` when better paths were found.
+        Go on after the first path, until the budget is spent, and return the best of all.  The count ``rounds`` is
+        then the number of plans, and `stages` says when better paths were found.
 
     Examples
     --------
@@ -68,13 +68,13 @@ class RRTConnect:
 class GridSearch:
     """A search over the cells of a map for a disk: exact, and it proves where there is no path.
 
-    It leads to the goal that is nearest on the map, around what is in the way.  With `improve` a roadmap then grows
+    It leads to the goal that is nearest on the map, around obstacles.  With `improve` a roadmap then grows
     beside the path until the budget is spent.
 
     Raises
     ------
     InvalidValue
-        From :meth:`solve`, if the world is no disk on a map.
+        If the world of :meth:`solve` is no disk on a map.
     """
 
     seconds: ClassVar[float] = 5.0
@@ -89,7 +89,7 @@ class GridSearch:
 
 
 def default_planner(world: Any, *, improve: bool = False) -> Planner:
-    """Return what plans in this kind of world where no planner is named."""
+    """Return the default planner of this kind of world."""
     connector = connector_of(world)
     if connector is None:
         return _growing(improve)
@@ -137,13 +137,13 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
 
 
 def _variant(rng: RngLike) -> int:
-    """Return which sequence drives the trees: 0 is the one that was tuned, and each seed has another."""
+    """Return the variant of the sequence that drives the trees: 0 is the tuned one, and each seed has another."""
     seed, drawn = seed_of(rng), generator(rng)
     return int(drawn.integers(1, 2**31)) if seed is None else seed
 
 
 def _connection(attempt: Attempt, connector: Connector, most: int, variant: int) -> Connection:
-    """Join the start to a goal, by trees to the nearest one first: of many they may meet a far one."""
+    """Join the start to a goal, first by trees to the nearest one: trees to many may meet a far one."""
     start, goals = attempt.query.start, attempt.query.goals[attempt.goals]
     if len(goals) == 1 or not connector.varies:
         return attempt.connect(connector, variant, most)
@@ -161,7 +161,7 @@ def _connection(attempt: Attempt, connector: Connector, most: int, variant: int)
 
 
 def _improved(attempt: Attempt, connector: Connector, first: PlanResult, variant: int) -> PlanResult:
-    """Return the best path within what is left of the budget, or of its rounds; never a worse one than the first."""
+    """Return the best path within the rest of the budget or of its rounds; never a worse one than the first."""
     nodes = first.counts["nodes"]
     stage = Stage(nodes, nodes, attempt.motions_checked, first.cost, attempt.elapsed())
     if connector.varies:
@@ -172,9 +172,9 @@ def _improved(attempt: Attempt, connector: Connector, first: PlanResult, variant
 def _by_rounds(
     attempt: Attempt, connector: Connector, first: PlanResult, stage: Stage, variant: int
 ) -> PlanResult:
-    """Plan again and again, each time driven by another sequence."""
+    """Plan repeatedly, each time with another sequence."""
     best, stages, nodes, counts, done = first, [stage], stage.points, dict(first.counts), 0
-    # A round that is much longer than the first was takes the time of many others.
+    # A round that is much longer than the first costs the time of many others.
     most = max(LEAST_MOTIONS, LONGER * attempt.motions_checked)
     for number in count(1):
         if not _goes_on(attempt, best, number):
@@ -208,7 +208,7 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
 
 
 def _goes_on(attempt: Attempt, best: PlanResult, number: int) -> bool:
-    """Return whether the budget allows this round, and the path exceeds the distance to the nearest goal."""
+    """Return whether the budget allows this round and the path exceeds the distance to the nearest goal."""
     budget, start, goals = attempt.query.budget, attempt.query.start, attempt.query.goals[attempt.goals]
     least = float(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals).min())
     return (
