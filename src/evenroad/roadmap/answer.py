@@ -1,4 +1,4 @@
-"""From what an attempt found to the result that the caller gets."""
+"""Turns what an attempt found into the result that the caller gets."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from evenroad.world import Explains, ExplainsStarts, ShowsApart, ValidatesPaths,
 
 
 def refusal(attempt: Attempt) -> PlanResult | None:
-    """Return the result if the start or all goals are not free; else None, and the attempt knows the free goals."""
+    """Return the result if the start or all goals are in collision; else None, and the attempt keeps the free goals."""
     terminals, world = attempt.query.start_and_goals, attempt.world
     free = attempt.valid_terminals()
     if free[0] and attempt.goals.size:
@@ -52,9 +52,9 @@ def answer(
     best: Searched | None = None,
     keep_graph: bool = True,
 ) -> PlanResult:
-    """Return the result of a search over so many points, with its graph unless that is not to be kept.
+    """Return the result of a search over this number of points, with its graph unless it is to be left out.
 
-    Where another search had the `best` path, that is the answer.
+    Where another search found the `best` path, that one is the answer.
     """
     states = searched.states
     counts = dict(
@@ -70,7 +70,7 @@ def answer(
     if best.cost is not None:
         nodes, q = best.found.nodes, best.states.configurations
         goal = attempt.goals[nodes[-1] - len(q)]
-        # A disk's paths along a roadmap keep the bits that published rows have.
+        # A disk's paths along a roadmap stay equal to published rows.
         by_connector = attempt.query.edge_cost is None and isinstance(attempt.world, ValidatesPaths)
         result = _with_path(attempt, q[nodes], best.cost, int(goal), counts, by_connector=by_connector)
         return replace(result, roadmap=graph)
@@ -80,7 +80,7 @@ def answer(
         limits = attempt.query.budget.text(samples=attempt.grows)
         failed = _result(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
     else:
-        # Under ``complete`` nothing but more points helps.
+        # With ``complete`` only more points help.
         wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
         advice = (
             f"try n={2 * points}"
@@ -108,9 +108,9 @@ def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
 
 
 def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None:
-    """Return the result where the world can find no path from the start to any goal, for a reason it gives; else None.
+    """Return the result where the world finds that no path leads to any goal, with its reason; else None.
 
-    The status is ``not_connected`` where it is proved that there is none.
+    The status is ``not_connected`` where that is proved.
     """
     world, query = attempt.world, attempt.query
     with attempt.watch("proof"):
@@ -135,7 +135,7 @@ def _counts_of(attempt: Attempt, connection: Connection) -> dict[str, int]:
 def _with_path(
     attempt: Attempt, raw: Floats, raw_cost: float, goal: int, counts: dict[str, int], *, by_connector: bool
 ) -> PlanResult:
-    """Return the result with a path, smoothed if wanted: by the connector where it can and may."""
+    """Return the result with a path, smoothed if wanted: by the connector where there is one and costs are lengths."""
     world, query = attempt.world, attempt.query
     path, length, cost = raw, raw_cost, query.edge_cost
     if query.shorten:
@@ -163,7 +163,7 @@ def _with_path(
 
 
 def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tuple[str, str]:
-    """Return in words how far start and goals reach, and count it; and what is missing."""
+    """Return, in words, how far start and goals reach and what is missing, and add the counts."""
     states = searched.states
     if searched.found.reached is not None:
         counts["start_component"] = reached = searched.found.reached - 1
@@ -185,7 +185,7 @@ def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tupl
 
 
 def _few_directions(attempt: Attempt, points: int) -> str:
-    """Return what to say of a Korobov lattice whose points have neighbours in too few directions."""
+    """Return a hint for a Korobov lattice whose points have neighbours in too few directions."""
     space, d = attempt.world.space, attempt.world.space.cube_dim
     rule, method = re.match(r"k=(\d+) symmetrised", attempt.rule), attempt.origin.method
     lattice = re.match(r"rank-1 lattice (a|z)=([\d ]+), ", method)
@@ -194,18 +194,18 @@ def _few_directions(attempt: Attempt, points: int) -> str:
     k, scale = int(rule[1]), _axis_scales(space)
     if scale is None:
         return ""
-    # Nearest points come in opposite pairs: so many are needed at least.
+    # Nearest points come in opposite pairs: at least this number is needed.
     least, advice = 2 * d - 1, f"at least {2 * d - 1} are needed"
     if d <= MOST_AXES and not ("permuted" in method and np.ptp(scale) > 1e-9 * scale[0]):
         numbers = [int(each) for each in lattice[2].split()]
         vector = [pow(numbers[0], i, points) for i in range(d)] if lattice[1] == "a" else numbers
         try:
             if (np.abs(lattice_basis(points, vector, scale)) >= points).any():
-                # The box is so long, or the points so few, that neighbours would lie beyond it.
+                # The box is so long, or the points are so few, that neighbours would lie beyond it.
                 return ""
             needed = least_neighbours(points, vector, scale)
         except EvenroadError:
-            # Longer still; or the points are not all that the lattice had.
+            # Even longer, or the points are not all of the lattice's.
             return ""
         # Fewer are enough if equally near ones happen to be the right ones.
         least, advice = needed, f"{max(needed, least)} would not"
@@ -213,7 +213,7 @@ def _few_directions(attempt: Attempt, points: int) -> str:
 
 
 def _axis_scales(space: Space) -> Floats | None:
-    """Return what each axis of the cube counts in a flat space, (d,), or None."""
+    """Return the weight of each axis of the cube in a flat space, (d,), or None."""
     metric = flat_metric(space)
     if metric is None:
         return None
@@ -234,7 +234,7 @@ def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> Plan
 
 
 def _searched_graph(states: EdgeStates, terminals: int) -> SearchedGraph:
-    """Return what is not known to be invalid, with start and goals as the last `terminals`, and the free edges."""
+    """Return the graph without invalid nodes, start and goals as the last `terminals`, and with the free edges."""
     kept = states.node_states != BLOCKED
     number = np.cumsum(kept, dtype=np.int32) - 1
     edges = states.edges[states.edge_states == FREE]
@@ -244,15 +244,15 @@ def _searched_graph(states: EdgeStates, terminals: int) -> SearchedGraph:
 
 
 def proof_of(world: World) -> str:
-    """Return what is shown of every path in a world: ``exact``, ``certified``, or ``resolution`` if it does not say."""
-    # Not by `isinstance`, which takes as long as some checks.
+    """Return what a check of this world shows: ``exact``, ``certified``, or ``resolution`` if it does not say."""
+    # `isinstance` would take as long as some checks.
     return str(getattr(world, "proof", "resolution"))
 
 
 def require_certified(world: World, result: PlanResult) -> PlanResult:
-    """Return the plan if all motions of its path are proved free, by a check of its own, else ``not_certified``.
+    """Return the plan if a separate check proves all motions of its path free, else ``not_certified``.
 
-    The message then names the first motion that is not; the path stays in the result.
+    The message then names the first motion that is not proved; the path stays in the result.
     """
     if result.path is None or result.proof == "exact":
         return result

@@ -1,4 +1,4 @@
-"""The frame of all planners: what a query may spend, whom it asks, and what was counted."""
+"""The frame of all planners: the budget of a query, its world, and its counts."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ from evenroad.roadmap.search import (
 from evenroad.world import World
 
 NO_LIMIT = 2**31 - 1
-"""Motions that nobody asks for."""
+"""Number of motions that stands for no limit."""
 _LONG = 1e8
-"""Seconds that stand for no limit."""
+"""Number of seconds that stands for no limit."""
 
 
 @dataclass(frozen=True, eq=False)
 class Searched:
-    """What is known of a graph after a search of it, and the path with its cost, if there is one."""
+    """The states of a graph after a search of it, and the path with its cost, if there is one."""
 
     states: EdgeStates
     found: Found = NOT_FOUND
@@ -47,12 +47,12 @@ class Searched:
 
 @dataclass(eq=False)
 class Attempt:
-    """One query on its way to a result; of one thread.
+    """One query while it is answered, by one thread.
 
     `origin`, `rule` and `planner` are those of :class:`PlanResult`.  `grows` says whether the planner draws its points
-    itself, until the budget is spent.  `checked` configurations were checked outside of a graph, and `motions_checked`
-    motions in earlier graphs: they count for the budget.  `spent` says whether that was over too early.  `goals` are
-    the rows of the query's goals that are free, (g,), once `valid_terminals` was asked; the others are left out.
+    itself, until the budget is spent.  `checked` configurations were checked outside a graph, and `motions_checked`
+    motions in earlier graphs: both count for the budget.  `spent` says whether it ran out.  `goals` are the rows of the
+    query's goals, (g,), after `valid_terminals` only the free ones.
     """
 
     world: World
@@ -77,7 +77,7 @@ class Attempt:
         return self.query.start_and_goals[np.append(0, 1 + self.goals)]
 
     def valid_terminals(self) -> Bools:
-        """Return which of the start and all goals are free, (1 + g,); the others are no goals from now on."""
+        """Return which of the start and all goals are free, (1 + g,), and drop the other goals."""
         terminals = self.query.start_and_goals
         with self.watch("validity"):
             free = self.world.valid(terminals)
@@ -86,7 +86,7 @@ class Attempt:
         return free
 
     def valid(self, samples: Floats) -> Bools:
-        """Return which of the samples, (n, dim), are known to be free, as far as the time allows: (n,)."""
+        """Return which of the samples, (n, dim), are known to be free, as far as time allows: (n,)."""
         states = self.states(samples, np.empty((0, 2), dtype=np.int32))
         try:
             states.evaluate_nodes(np.arange(len(samples)))
@@ -110,7 +110,7 @@ class Attempt:
         return self.states(configurations, edges)
 
     def states(self, configurations: Floats, edges: Ints32, cache: StateCache | None = None) -> EdgeStates:
-        """Return what is known of a graph (default: nothing), with what is left of the budget for asking more."""
+        """Return the states of a graph, by default unknown, with the rest of the budget to evaluate more."""
         most = self.query.budget.motions
         most = None if most is None else most - self.motions_checked
         return EdgeStates(self.world, configurations, edges, self.watch, most, self.deadline, cache)
@@ -138,9 +138,9 @@ class Attempt:
     def connect(
         self, connector: Connector, variant: int = 0, most: int = NO_LIMIT, goal: int | None = None
     ) -> Connection:
-        """Join the start to one of the free goals, or to this one, within what is left of the budget.
+        """Join the start to one of the free goals, or to this one, within the rest of the budget.
 
-        A variant >= 1 does so in another way, where the connector `varies`.  It gives up after `most` motions.
+        A variant >= 1 searches differently, where the connector `varies`.  It stops after `most` motions.
         """
         start, goals, motions = self.query.start, self.query.goals[self.goals], self.query.budget.motions
         goals = goals if goal is None else goals[goal : goal + 1]
@@ -158,7 +158,7 @@ class Attempt:
         return now() - self.began
 
     def left(self) -> Budget | None:
-        """Return what is left of the budget, or None when nothing is."""
+        """Return the rest of the budget, or None if it is spent."""
         budget, motions = self.query.budget, self.query.budget.motions
         seconds = self.deadline - now()
         if seconds <= 0.0 or (motions is not None and motions <= self.motions_checked):

@@ -1,4 +1,4 @@
-"""How much a planner or a query may spend, and where the time went."""
+"""Budgets of planners and queries, and how long each phase took."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from evenroad._checks import require_count, require_positive
 from evenroad._clock import now
 
 _FIRST_BATCH = 32
-"""Rows asked about at first where time is limited."""
+"""Number of rows in the first batch of checks where time is limited."""
 _FAST = 0.02
-"""Seconds.  While batches take less, they grow; while they take more, they shrink."""
+"""Time that a batch of checks should take [s]; faster batches grow, slower ones shrink."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,14 +25,14 @@ class Budget:
     Attributes
     ----------
     seconds : float or None
-        Wall time, > 0, looked at before each call of the world; what a planner finds within it depends on the
-        machine.  The shortcut of a path that was found stops when it is over.  None: no limit.
+        Wall time, > 0, compared before each call of the world; what a planner finds within it depends on the
+        machine.  Shortcutting stops when it runs out.  None: no limit.
     motions : int or None
-        Motions checked, >= 1, without those of the shortcut.  None: no limit.
+        Largest number of motions checked, >= 1, without those of shortcutting.  None: no limit.
     samples : int
-        Points drawn by a planner that grows, valid or not, >= 1.
+        Largest number of points drawn by a planner that grows, valid or not, >= 1.
     rounds : int or None
-        How often a planner that improves plans again, >= 1; with it and without `seconds` the path is the same on
+        Number of plans of a planner that improves, >= 1; with it and without `seconds` the path is the same on
         every machine.  None: no limit.  InvalidValue for any other limit.
     """
 
@@ -58,11 +58,13 @@ class Budget:
         return ", ".join(limits)
 
     def deadline(self) -> float:
-        """Return when the time is over, on the clock of ``evenroad._clock``, if it begins now."""
+        """Return the deadline of a query that begins now, on the clock of ``evenroad._clock``."""
         return now() + (math.inf if self.seconds is None else self.seconds)
 
     def rest(self, deadline: float, motions: int) -> Budget:
-        """Return what is left until a deadline and after so many motions: at least a millisecond and one motion."""
+        """Return the rest of the budget until a deadline and after this number of motions: at least 1 ms and one
+        motion.
+        """
         return replace(
             self,
             seconds=None if self.seconds is None else max(deadline - now(), 1e-3),
@@ -71,11 +73,11 @@ class Budget:
 
 
 class BudgetSpent(Exception):
-    """Nothing more may be checked; caught where the budget was given."""
+    """The budget does not allow another check; caught where the budget was given."""
 
 
 class Pace:
-    """How many rows a world is asked about at once where time is limited: as many as take it some milliseconds."""
+    """The number of rows per check where time is limited: as many as take some milliseconds."""
 
     size: int = _FIRST_BATCH
 
@@ -85,8 +87,8 @@ def in_time(
 ) -> Iterator[npt.NDArray[np.integer]]:
     """Yield `rows` in batches, all at once if there is no deadline.
 
-    A pace is kept from call to call.  Raises BudgetSpent when the deadline (on the clock of ``evenroad._clock``) has
-    passed and there are rows left.
+    The pace carries over from call to call.  Raises BudgetSpent when the deadline (on the clock of ``evenroad._clock``)
+    has passed and rows are left.
     """
     pace = Pace() if pace is None else pace
     first, is_limited = 0, math.isfinite(deadline)
@@ -104,7 +106,7 @@ def in_time(
 
 
 class Stopwatch:
-    """Adds up the seconds spent inside ``with watch("phase"):``, also when the block leaves early.
+    """Adds up the seconds spent inside ``with watch("phase"):``, also when the block raises.
 
     A phase inside another one stops the clock of the outer one, so the phases add up to the whole.
     """
@@ -116,7 +118,7 @@ class Stopwatch:
         self._since = 0.0
 
     def __call__(self, phase: str) -> Stopwatch:
-        """Return what times a block under this name."""
+        """Return a context that times a block under this name."""
         self._next = phase
         return self
 
@@ -130,7 +132,7 @@ class Stopwatch:
         self._running.pop()
 
     def _turn(self) -> None:
-        """Give the time since the last turn to the phase that was running."""
+        """Add the time since the last change to the phase that was running."""
         turned = now()
         if self._running:
             self.seconds[self._running[-1]] += turned - self._since

@@ -1,23 +1,23 @@
 """What a roadmap guarantees for every world of its space, from a bound of the dispersion of its milestones alone.
 
-Let beta bound the distance of every place from the nearest milestone, and let all free motions between milestones up
-to R, and between an end and milestones up to E, be tried.  A path has clearance delta if all places nearer to it than
-delta are free.
+Let beta bound the distance of every point of the space from its nearest milestone.  All free motions are tried between
+milestones up to R, and between start or goal and milestones up to E.  A path has clearance delta if all points nearer
+to it than delta are free.
 
-1.  R >= 2 beta, delta >= beta: there is a path along the roadmap.  The milestones nearest to the places of the path,
-    in turn, are a chain; where it steps from x to y, some place p of the path is within beta of both, so the motion
+1.  R >= 2 beta, delta >= beta: there is a path along the roadmap.  The milestones nearest to the points of the path,
+    in turn, are a chain; where it steps from x to y, some point p of the path is within beta of both, so the motion
     from x to y is at most 2 beta long and stays in the ball around p, which is free.  So, if the roadmap fails, no
     path has clearance beta.
 2.  delta > beta: with l <= 2 sqrt(delta^2 - beta^2), l <= R - 2 beta, l <= E - beta, a path of length L leads to one
     of at most L + 2 beta (ceil(L / l) - 1) along the roadmap, so of at most (1 + 2 beta / l) L.  Cut the path into
-    ceil(L / l) equal pieces and take a milestone within beta of each of the inner ends p_i: consecutive ones are at
-    most l + 2 beta apart, so tried, and a motion between two stays within beta of the chord from p_i to p_i+1.  A
-    place q there, beside the chord's near half, is at most sqrt(beta^2 + (l / 2)^2) <= delta from p_i: free.  Each of
-    the inner ends adds at most 2 beta.  (The proof is that of Tsao, Solovey and Pavone 2020, for an l of one's own.)
-    An end that only its nearest milestone is tried with adds beta more, as does that milestone.
+    ceil(L / l) equal pieces and take a milestone within beta of each of the inner endpoints p_i: consecutive ones are
+    at most l + 2 beta apart, so tried, and a motion between two stays within beta of the chord from p_i to p_i+1.  A
+    point q there, beside the chord's near half, is at most sqrt(beta^2 + (l / 2)^2) <= delta from p_i: free.  Each of
+    the inner endpoints adds at most 2 beta.  (The proof is that of Tsao, Solovey and Pavone 2020, for any l.)
+    or goal that is tried with its nearest milestone only adds beta more, as does that milestone.
 
 The same holds on a torus while no motion is longer than half a turn.  Nothing is asked of the space's shape but that
-it is a box: the faces are no obstacles, and a chord of two places of it stays inside.
+it is a box: the faces are no obstacles, and a chord of two of its points stays inside.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from dataclasses import dataclass
 from evenroad._checks import require_positive
 
 SAFE = 1.0 - 1e-12
-"""Share of a distance that is surely less than it, whoever rounds."""
+"""Factor < 1 that covers the rounding of a distance."""
 
 
 @dataclass(frozen=True)
@@ -38,11 +38,11 @@ class Certificate:
     Attributes
     ----------
     dispersion : float
-        beta: every place of the space is surely so near to a milestone.
+        beta: the distance of every point of the space from its nearest milestone is at most this.
     at_least : float
-        Some place is surely that far from all of them: how sharp beta is.
+        A distance that some point surely has from all milestones: how sharp beta is.
     between : float
-        All free motions between milestones that are no longer are tried; inf: all.
+        Length up to which all free motions between milestones are tried; inf: all.
     to_terminals : float
         The same for motions between start or goal and a milestone; that to the nearest one always is.
     direct : bool
@@ -61,7 +61,8 @@ class Certificate:
         return SAFE * self.between >= 2.0 * self.dispersion
 
     def longest(self, length: float, clearance: float) -> float:
-        """Return how long the shortest path along the roadmap is at most, where one of such length and clearance is.
+        """Return the largest length of the shortest path along the roadmap, where a path of this length and clearance
+        exists.
 
         inf where nothing is guaranteed.  Both are finite and > 0, else InvalidValue.
         """
@@ -75,7 +76,9 @@ class Certificate:
         return bound
 
     def factor(self, clearance: float) -> float:
-        """Return how many times longer than a long path of such clearance the roadmap's is at most; inf if unknown."""
+        """Return the largest ratio of the roadmap's path to a long path of this clearance; inf if nothing is
+        guaranteed.
+        """
         step = self._step(require_positive("clearance", clearance))
         return 1.0 + 2.0 * self.dispersion / step if step > 0.0 else math.inf
 
@@ -88,7 +91,7 @@ class Certificate:
         return math.hypot(self.dispersion, 0.5 * step) / SAFE
 
     def _step(self, clearance: float) -> float:
-        """Return the largest l of the proof, without what is asked of the ends; <= 0 if there is none."""
+        """Return the largest l of the proof, without its condition on E; <= 0 if there is none."""
         remaining = (SAFE * clearance) ** 2 - self.dispersion**2
         if remaining <= 0.0:
             return 0.0

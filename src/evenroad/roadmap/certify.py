@@ -1,4 +1,4 @@
-"""Certificates of point sets with a rule, of kept roadmaps, and of one query's graph."""
+"""Certificates of point sets with a rule, of saved roadmaps, and of one query's graph."""
 
 from __future__ import annotations
 
@@ -30,13 +30,14 @@ def certify(
     Parameters
     ----------
     points : PointSet
-        Of the space's cube.
+        Points of the space's cube.
     rule : KNearest, Radius or Complete
-        Others promise nothing before the world is known; :func:`evenroad.plan` with ``certify=True`` then does.
+        Other rules guarantee nothing before the world is known; use :func:`evenroad.plan` with ``certify=True``.
     space : Space
-        With a flat metric.
+        A space with a flat metric.
     links, goals
-        As for :func:`evenroad.plan`: milestones that ends are linked to, and how many goals there may be.
+        The number of milestones that start and goals are linked to, as for :func:`evenroad.plan`, and the largest
+        number of goals.
 
     Raises
     ------
@@ -62,9 +63,9 @@ def certify(
 
 
 def certify_roadmap(roadmap: PointRoadmap, *, links: int | None = LINKS) -> Certificate:
-    """Return what the queries of a kept roadmap guarantee in every world; errors as :func:`certify`.
+    """Return what the queries of a saved roadmap guarantee in every world; errors as :func:`certify`.
 
-    InvalidValue also of a roadmap from a file that no world has said the space of yet.
+    InvalidValue also for a roadmap from a file whose space no world has said yet.
     """
     if (space := roadmap.space) is None:
         raise InvalidValue("the roadmap is from a file: certify that of roadmap.within(world).roadmap")
@@ -80,9 +81,9 @@ def certify_roadmap(roadmap: PointRoadmap, *, links: int | None = LINKS) -> Cert
 def certify_graph(
     points: PointSet, space: Space, configurations: Floats, edges: Ints32, terminals: int
 ) -> Certificate:
-    """Return what a graph guarantees for its own ends, the last rows of `configurations`, (n, dim).
+    """Return what a graph guarantees for its own start and goals, the last rows of `configurations`, (n, dim).
 
-    `points` are those that the milestones among the rows are the valid ones of, at least.
+    The other rows are at least the valid ones of `points`.
     """
     bounds, turn = bounds_in(points, space), _half_turn(space)
     n = len(configurations) - terminals
@@ -97,7 +98,7 @@ def certify_graph(
     )
     to_end = SAFE * float(np.min(away[~tried], initial=math.inf))
     if n and to_end < bounds.upper and not tried[np.arange(terminals), away.argmin(axis=1)].all():
-        # Another rule than those known here: an end may not even be joined to its nearest milestone.
+        # Under an unknown rule a terminal may not even be joined to its nearest milestone.
         between = 0.0
     return Certificate(bounds.upper, bounds.lower, min(between, turn), min(to_end, turn), bool(direct.all()))
 
@@ -116,7 +117,7 @@ def _bounds_once(points: PointSet, sides: tuple[float, ...], wrapping: tuple[boo
 
 
 def _box_of(space: Space) -> tuple[Floats, Bools]:
-    """Return the sides that the space's cube has in its metric, (d,), and which of them wrap; NotAvailable if none."""
+    """Return the sides of the space's cube in its metric, (d,), and which wrap; NotAvailable if it is not flat."""
     metric, d = flat_metric(space), space.cube_dim
     if metric is None or space.dim != d:
         raise NotAvailable(
@@ -124,7 +125,7 @@ def _box_of(space: Space) -> tuple[Floats, Bools]:
             " dispersion for others"
         )
     origin = space.from_cube(np.zeros((1, d)))
-    # Half of a side is the longest way where it wraps.
+    # Half a side is the longest distance where it wraps.
     sides = 2.0 * space.distance(np.repeat(origin, d, axis=0), space.from_cube(0.5 * np.eye(d)))
     some = 0.5 * np.random.default_rng(0).random((32, d))
     measured = space.distance(np.repeat(origin, len(some), axis=0), space.from_cube(some))
@@ -134,7 +135,7 @@ def _box_of(space: Space) -> tuple[Floats, Bools]:
 
 
 def _half_turn(space: Space) -> float:
-    """Return the length from which on a motion may go the other way round; inf where nothing wraps."""
+    """Return the length from which on a motion may lead the other way round; inf where nothing wraps."""
     sides, wrapping = _box_of(space)
     return 0.5 * SAFE * float(sides[wrapping].min(initial=math.inf))
 
@@ -151,8 +152,8 @@ def _by_neighbours(
     """Return the certificate of the k nearest, symmetrised, among whatever milestones are valid, start and goals.
 
     A milestone x has y among its k nearest if fewer than k others are as near: k - 2 - goals milestones, the start and
-    the goals.  So a pair is tried if it is nearer than the (k - goals)-th milestone is to one of the two.  For an end
-    beside x the others are k - 1 - goals milestones and the other ends: the same distance from x.
+    the goals.  So a pair is tried if it is nearer than the (k - goals)-th milestone is to one of the two.  For a
+    terminal beside x the others are k - 1 - goals milestones and the other terminals: the same distance from x.
     """
     q = space.from_cube(points.points)
     rank, n = k - goals, points.n
@@ -176,15 +177,15 @@ def _links_among(n: int, links: int | None) -> int:
 
 
 def linked_within(q: Floats, most: int, space: Space, dispersion: float) -> float:
-    """Return a length up to which every end is linked to milestones, if to its `most` nearest."""
+    """Return a length up to which every terminal is linked to milestones, if it is linked to its `most` nearest."""
     if not 0 < most < len(q):
         return 0.0 if most == 0 else math.inf
-    # The ball around an end lies in one that is larger by the dispersion around its nearest milestone.
+    # The ball around a terminal lies in one that is larger by the dispersion around its nearest milestone.
     return SAFE * float(_ranked(q, most, space).min()) - dispersion
 
 
 def _ranked(q: Floats, rank: int, space: Space) -> Floats:
-    """Return the distance of each row of `q` from its `rank`-th nearest other one, (n,); inf where there are fewer."""
+    """Return the distance of each row of `q` from its `rank`-th nearest other row, (n,); inf where there are fewer."""
     if rank >= len(q):
         return np.full(len(q), math.inf)
     # Copies: a column would keep all of its block.
@@ -194,7 +195,7 @@ def _ranked(q: Floats, rank: int, space: Space) -> Floats:
 
 
 def _nearest_untried(q: Floats, edges: Ints32, space: Space) -> float:
-    """Return a length that is less than that of every pair of rows of `q` that is no edge, (m, 2); inf if all are."""
+    """Return a length below that of every pair of rows of `q` that is no edge, (m, 2); inf if all are edges."""
     n = len(q)
     tried = np.sort(edges[:, 0].astype(np.int64) * n + edges[:, 1])
     tried = np.concatenate([tried, np.sort(edges[:, 1].astype(np.int64) * n + edges[:, 0])])

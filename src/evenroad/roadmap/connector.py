@@ -1,4 +1,4 @@
-"""Connector: what joins a start to a goal without a roadmap, as trees do, or a search of a map's cells."""
+"""Connector: joins a start to a goal without a roadmap, by trees or by a search of a map's cells."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ class Connection:
     path: Floats
     """Waypoints from the start to one goal, (p, dim), every motion free; (0, dim) when there is none."""
     goal: int
-    """Which of the goals the path ends at; -1 when there is none."""
+    """Row of the goal that the path ends at; -1 without a path."""
     nodes: int
-    """Grown."""
+    """Number of nodes of the trees."""
     configurations: int
-    """Checked."""
+    """Number of configurations checked."""
     motions: int
-    """Checked."""
+    """Number of motions checked."""
 
 
 class Connector(Protocol):
-    """A way to find a path in worlds of one kind, and to smooth it."""
+    """A search for paths in worlds of one kind, which also smooths them."""
 
     @property
     def planner(self) -> str:
-        """What results call it."""
+        """Its name in results."""
 
     @property
     def varies(self) -> bool:
-        """Whether each variant finds another path: a planner that improves then asks for many."""
+        """Whether each variant finds another path; a planner that improves then uses many."""
 
     @property
     def stages(self) -> tuple[tuple[int, bool], ...]:
-        """After how many motions the world is asked whether there can be a path, and whether quickly."""
+        """Numbers of motions after which the world tries to prove that there is no path, and whether quickly."""
 
     def connect(
         self, world: Any, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float

@@ -13,7 +13,7 @@ from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import all_distances
 
 BLOCK = 1 << 16
-"""Distances held at once."""
+"""Number of distances held at once."""
 
 
 def nearest(q: Floats, k: int, space: Space | None = None, *, earlier: bool = False) -> Ints32:
@@ -51,12 +51,12 @@ def within(q: Floats, radius: float, space: Space | None = None) -> Ints32:
 
 
 def flat_metric(space: Space | None) -> FlatMetric | None:
-    """Return the flat metric of a space, or None where it has none (or says nothing of it)."""
+    """Return the flat metric of a space, or None if it has none."""
     return getattr(space, "flat", None)
 
 
 def in_metric(q: Floats, metric: FlatMetric | None) -> tuple[Floats, Floats]:
-    """Return coordinates and periods in which the metric is Euclidean, wrapping ones in [0, period)."""
+    """Return coordinates and periods in which the metric is Euclidean; wrapping ones are in [0, period)."""
     points = np.array(q, dtype=np.float64, order="C")
     if metric is None:
         return points, np.full(points.shape[1], np.inf)
@@ -79,7 +79,7 @@ def _blocks(space: Space, q: Floats, *, earlier: bool = False) -> Iterator[tuple
 
 
 class Surroundings:
-    """Milestones, (n, dim), ready to be asked which of them are near a configuration, in O(n)."""
+    """Milestones, (n, dim), with a query for those near a configuration, in O(n)."""
 
     def __init__(self, q: Floats, space: Space) -> None:
         self._q, self._space = q, space

@@ -1,4 +1,4 @@
-"""What a plan shows of itself in a notebook: the answer, and each coordinate along the path."""
+"""The view of a plan in a notebook: the answer, and each coordinate along the path."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files of roadmaps: .npz with a digest, checked on load; and what those of points hold."""
+"""Files of roadmaps: .npz with a digest, checked on load."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ def save_point_roadmap(path: Path, roadmap: PointRoadmap) -> None:
 
 
 def write_roadmap(path: Path, arrays: Arrays) -> None:
-    """Write what a roadmap holds with its format and digest, atomically.
+    """Write the arrays of a roadmap with its format and digest, atomically.
 
-    Raises BrokenFile if the file cannot be written; whatever was at `path` is then untouched.
+    Raises BrokenFile if the file cannot be written; an earlier file at `path` is then untouched.
     """
     arrays = arrays | {"format": np.array(FORMAT), "version": np.array(__version__)}
     write_npz(path, arrays | {"digest": np.array(digest(arrays))}, compressed=True)
 
 
 def read_roadmap(path: Path, *others: set[str]) -> Arrays:
-    """Read what a roadmap of points, or one with other names, holds; raises BrokenFile for anything else."""
+    """Read the arrays of a roadmap of points, or of one with other names; raises BrokenFile for anything else."""
     arrays = read_npz(path, "roadmap", _OF_POINTS, *others)
     expected = str(arrays.pop("digest"))
     if digest(arrays) != expected:
@@ -64,7 +64,7 @@ def read_roadmap(path: Path, *others: set[str]) -> Arrays:
 
 
 def point_roadmap(path: Path, arrays: Arrays) -> PointRoadmap:
-    """Return the roadmap of points that a file holds; its first world has to have the space that it was built for."""
+    """Return the roadmap of points of a file; its first world must have the space that it was built for."""
     milestones, edges, lengths = arrays["milestones"], arrays["edges"], arrays["lengths"]
     require_array(path, "points", arrays["points"], np.float64, (len(milestones), None))
     require_array(path, "lengths", lengths, np.float64, (len(edges),))

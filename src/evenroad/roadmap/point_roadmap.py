@@ -1,4 +1,4 @@
-"""Roadmaps that are kept: built once, queried often; and those of points, for any world of a space."""
+"""Roadmaps that are built once and queried often; and roadmaps of points, for any world of a space."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from evenroad.world import World
 
 
 class EdgeWeights(NamedTuple):
-    """What the edges of a roadmap cost, as integers (m,) of a unit that is large enough for nearly all links."""
+    """Edge weights of a roadmap, as integers (m,) of a unit that is large enough for nearly all links."""
 
     longest: float
     unit: FixedPoint
@@ -51,7 +51,7 @@ class Roadmap(ABC):
 
     @abstractmethod
     def within(self, world: Any) -> WorldRoadmap:
-        """Return a planner in a world, which keeps what it has checked there and may be shared by threads."""
+        """Return a planner in a world.  It keeps the result of every check, and threads may share it."""
 
     @abstractmethod
     def save(self, file: Path) -> None:
@@ -59,14 +59,14 @@ class Roadmap(ABC):
 
     @abstractmethod
     def _of(self) -> str:
-        """Return of what it is, in a few words."""
+        """Return a few words for the repr."""
 
     def __repr__(self) -> str:
         return f"Roadmap({len(self.milestones)} milestones, {len(self.edges)} edges, of {self._of()})"
 
 
 class WorldRoadmap(ABC):
-    """A roadmap in one world: a planner that keeps what it has checked; made by :meth:`Roadmap.within`."""
+    """A roadmap in one world: a planner that keeps the result of every check; made by :meth:`Roadmap.within`."""
 
     roadmap: Roadmap
     world: World
@@ -75,7 +75,7 @@ class WorldRoadmap(ABC):
     def plan(
         self, start: Any, goal: Any, *, budget: Budget | None = None, shorten: bool = True
     ) -> PlanResult:
-        """Find a path from a start to a goal, or one of several; what is known is never checked again."""
+        """Find a path from a start to a goal, or one of several; nothing is checked twice."""
 
     @abstractmethod
     def solve(self, problem: Problem) -> PlanResult:
@@ -89,18 +89,18 @@ class WorldRoadmap(ABC):
 class PointRoadmap(Roadmap):
     """A roadmap of points, for any world of one space.
 
-    The rule joins all points, whether a world will find them valid or not; invalid ones fill some of the k places, so
-    that a larger k than in `plan` is wise: 20 rather than 10.
+    The rule joins all points, valid or not.  Invalid ones take some of the k neighbours, so a larger k than in `plan`
+    is wise: 20 rather than 10.
 
     Attributes
     ----------
     points : PointSet
-        In the unit cube of the space; `milestones` are their configurations.
+        Points of the unit cube of the space; `milestones` are their configurations.
     rule : Rule
     space : Space, optional
-        None where it was read from a file: the first world says it.
+        None in a roadmap from a file: the first world sets it.
     measured : ndarray, shape (m,), optional
-        Lengths of the edges, where they were read from a file.
+        Lengths of the edges, if they were read from a file.
     """
 
     points: PointSet
@@ -115,7 +115,7 @@ class PointRoadmap(Roadmap):
 
     @cached_property
     def lengths(self) -> Floats:
-        """Lengths of the edges in the metric of the space, (m,), measured when first needed; read-only."""
+        """Lengths of the edges in the metric of the space, (m,), measured on first use; read-only."""
         if self.measured is not None:
             return self.measured
         assert self.space is not None
@@ -134,19 +134,19 @@ class PointRoadmap(Roadmap):
 
     @cached_property
     def surroundings(self) -> Surroundings:
-        """The milestones, ready to be asked which of them are near a configuration."""
+        """The milestones, with a query for those near a configuration."""
         assert self.space is not None
         return Surroundings(self.milestones, self.space)
 
     @cached_property
     def edge_weights(self) -> EdgeWeights:
-        """The lengths as integers."""
+        """The edge weights where costs are lengths."""
         return self.weighted(self.lengths)
 
     def weighted(self, costs: Floats) -> EdgeWeights:
-        """Return such costs of the edges, (m,), as integers."""
+        """Return the edge weights for these costs, (m,)."""
         n = len(self.milestones)
-        # Two milestones are at most so far apart.
+        # Two milestones are at most this far apart.
         across = 2.0 * float(self.surroundings.distances(self.milestones[0]).max()) if n else 0.0
         longest = max(float(costs.max(initial=0.0)), across)
         unit = FixedPoint.of(longest, n + 2)
@@ -155,11 +155,11 @@ class PointRoadmap(Roadmap):
     def within(
         self, world: World, *, lazy_milestones: bool = False, edge_cost: EdgeCost | None = None
     ) -> WorldRoadmap:
-        """Return this roadmap in a world, to be asked many queries.
+        """Return this roadmap in a world, for many queries.
 
-        Nothing is checked for edges until a query needs them.  With `lazy_milestones` these are not checked now but
-        where they could lie on a path; starts and goals are then joined to the nearest of all milestones, else to the
-        nearest of the valid ones.  An `edge_cost` is as in :func:`plan`.
+        Edges are checked when a query needs them.  With `lazy_milestones` milestones are, too; starts and goals are
+        then joined to the nearest of all milestones, else to the nearest valid ones.  An `edge_cost` is as in
+        :func:`plan`.
 
         Raises InvalidValue if the world has another space: the points, or the distances, differ there.
         """
@@ -186,14 +186,14 @@ class PointRoadmap(Roadmap):
 
 
 def roadmap_of_points(space: Space, points: PointSet | int, rule: Rule | None = None) -> PointRoadmap:
-    """Join the points (or so many even ones) by the rule, by default ``KNearest(20)``, or 2 d; memory O(m).
+    """Join the points, or this number of even ones, by the rule, by default ``KNearest(20)``, or 2 d; memory O(m).
 
-    The graphs of the last 64 sets that came from a pool (the bank, or the user's cache) are kept for the process.
-    Raises InvalidValue if the points do not have the dimension of the space's cube.
+    The graphs of the last 64 sets of a pool (the bank, or the user's cache) stay in memory.  Raises InvalidValue if the
+    points do not have the dimension of the space's cube.
     """
     points = as_points(points, space, rule)
     rule = KNearest(max(20, 2 * space.cube_dim)) if rule is None else rule
-    # The sets of a pool come again and again, others hardly ever; a user's own space may not be hashable.
+    # Sets of a pool come again and again, others hardly ever; a user's own space may not be hashable.
     from_pool = points.origin.replica is not None and isinstance(space, Hashable)
     joined: Callable[..., Any] = _joined_once if from_pool and isinstance(rule, Hashable) else _joined
     milestones, edges = joined(space, points, rule)

@@ -1,4 +1,4 @@
-"""A roadmap of points in one world: what is known of its milestones and edges, and queries."""
+"""A roadmap of points in one world: a cache of the states of its milestones and edges, and queries."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from evenroad.world import World
 
 
 class PointWorldRoadmap(WorldRoadmap):
-    """A roadmap of points with what is known of it in one world; made by :meth:`PointRoadmap.within`.
+    """A roadmap of points with a cache of states in one world; made by :meth:`PointRoadmap.within`.
 
-    A query's answer depends on the roadmap, the world and the query alone, not on what was asked before: earlier
-    queries only save checks.  Threads may share it; their queries are answered one after the other.
+    A query's answer depends on the roadmap, the world and the query alone: earlier queries only save checks.  Threads
+    may share it; their queries are answered one after the other.
 
-    `roadmap` has the milestones and candidate edges, `world` is asked about them, and with `lazy_milestones` about
-    milestones only where they could lie on a path.
+    `roadmap` has the milestones and candidate edges, and `world` checks them.  With `lazy_milestones` milestones are
+    only checked where they could lie on a path.
     """
 
     roadmap: PointRoadmap
@@ -42,12 +42,12 @@ class PointWorldRoadmap(WorldRoadmap):
         self.roadmap, self.world, self.lazy_milestones = roadmap, world, lazy_milestones
         self._edge_cost = edge_cost
         self._lock = OwnLock()
-        # Of milestones and edges first; behind them there is room for the start, the goals and their links.
+        # Milestones and edges come first; start, goals and their links go behind them.
         self._configurations, self._edges = roadmap.milestones, roadmap.edges
         self._weights: Ints | None = None
         self._cache = StateCache.nothing(len(self._configurations), len(self._edges))
         if edge_cost is not None:
-            # Now, so that a cost that cannot be one is refused here.
+            # Now, so that an invalid cost is refused here.
             self._costs = edge_costs(world.space, self._configurations, self._edges, edge_cost)
         if not lazy_milestones:
             states = EdgeStates(world, self._configurations, self._edges, cache=self._cache)
@@ -55,7 +55,7 @@ class PointWorldRoadmap(WorldRoadmap):
 
     @property
     def evaluated(self) -> dict[str, int]:
-        """How many milestones and edges are known to be free or blocked so far."""
+        """Counts of the milestones and edges that are known to be free or blocked."""
         with self._lock:
             nodes = self._cache.nodes[: len(self.roadmap.milestones)].copy()
             edges = self._cache.edges[: len(self.roadmap.edges)].copy()
@@ -76,7 +76,7 @@ class PointWorldRoadmap(WorldRoadmap):
         links: int | None = LINKS,
         connector: Connector | None = None,
     ) -> PlanResult:
-        """Find a short free path from start to goal; what is known is never checked again.
+        """Find a short free path from start to goal; nothing is checked twice.
 
         Both are joined to one another, to milestones as the rule's :class:`Reach` says, and to as many as `links` says.
         Counts of checks are those of this query; `planner` says who found the path: ``prm lazy``, or ``prm lazy, then
@@ -87,7 +87,7 @@ class PointWorldRoadmap(WorldRoadmap):
         start, goal, search, shorten, links, budget
             As in :func:`plan`, whose errors these are; by default lazily.
         connector : Connector, optional
-            Smooths the path, and looks for one where the roadmap has none; not with an `edge_cost`.
+            Smooths the path, and searches where the roadmap has no path; not with an `edge_cost`.
         """
         query = Query(
             *as_start_and_goals(start, goal, self.world.space),
@@ -119,7 +119,7 @@ class PointWorldRoadmap(WorldRoadmap):
         return self.plan(start, goals, connector=problem.connector, **how)  # type: ignore[arg-type]
 
     def _connect(self, attempt: Attempt, states: EdgeStates, connector: Connector) -> PlanResult | None:
-        """Return the result of a connector, or None where it finds nothing."""
+        """Return the result of a connector, or None if it finds nothing."""
         if self._edge_cost is not None or shown_apart(attempt):
             return None
         attempt.motions_checked += states.motions_checked
@@ -132,7 +132,7 @@ class PointWorldRoadmap(WorldRoadmap):
         return replace(result, counts=result.counts | {"edges_checked": attempt.motions_checked})
 
     def _link(self, attempt: Attempt) -> tuple[EdgeStates, SearchProblem]:
-        """Put start and goals behind the milestones, and their links behind the edges."""
+        """Append start and goals to the milestones, and their links to the edges."""
         roadmap, terminals, space = self.roadmap, attempt.start_and_goals, self.world.space
         distances = [roadmap.surroundings.distances(end) for end in terminals]
         links = self._links(distances, attempt.query)
@@ -160,7 +160,7 @@ class PointWorldRoadmap(WorldRoadmap):
         return states, SearchProblem(n, np.arange(n + 1, nodes), graph, weights, bounds)
 
     def _links(self, distances: list[Floats], query: Query) -> Ints32:
-        """Return the links of the start and the goals, at such distances from the milestones, (l, 2)."""
+        """Return the links of start and goals, (l, 2), from their distances to the milestones."""
         n = len(self.roadmap.milestones)
         reach = self.roadmap.rule.reach(n, self.world.space)
         usable = np.ones(n, dtype=np.bool_) if self.lazy_milestones else self._cache.nodes[:n] == FREE
@@ -175,7 +175,7 @@ class PointWorldRoadmap(WorldRoadmap):
         return np.concatenate(links).astype(np.int32)
 
     def _weigh(self, links: Floats, nodes: int) -> tuple[Ints, FixedPoint]:
-        """Return the costs of the edges and then of these links, (l,), as integers, and their unit."""
+        """Return the weights of the edges and then of these links, (l,), and their unit."""
         edge_weights, m = self._edge_weights, len(self.roadmap.edges)
         unit = FixedPoint.of(max(edge_weights.longest, float(links.max())), nodes)
         if unit != edge_weights.unit:
@@ -193,10 +193,10 @@ class PointWorldRoadmap(WorldRoadmap):
 
 
 def _with_capacity(array: npt.NDArray[Any], kept: int, more: int) -> npt.NDArray[Any]:
-    """Return an array with room for so many rows behind those that are kept: itself, or a longer copy."""
+    """Return an array with capacity for more rows behind those that are kept: itself, or a longer copy."""
     if len(array) >= kept + more:
         return array
-    # Twice as many, so that few queries have to copy.
+    # Twice the rows, so that few queries have to copy.
     longer = np.zeros((kept + 2 * more, *array.shape[1:]), dtype=array.dtype)
     longer[:kept] = array[:kept]
     return longer

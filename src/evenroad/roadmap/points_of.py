@@ -1,4 +1,4 @@
-"""Which points a roadmap takes in a space, where only their number is given."""
+"""The points that a roadmap takes in a space if only their number is given."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from evenroad.roadmap.rules import Rule
 from evenroad.space import SO3, BoxSpace, Product, Space
 
 SPARSE = 6
-"""Neighbours up to which points are chosen for being connected, more than for reaching everywhere."""
+"""Number of neighbours up to which points are chosen for connectivity rather than for coverage."""
 
 
 def as_points(
     points: PointSet | int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0
 ) -> PointSet:
-    """Return points of the space's cube: those given, or so many for the rule; InvalidValue for anything else."""
+    """Return points of the space's cube: those given, or this many for the rule; InvalidValue for anything else."""
     if not isinstance(points, PointSet):
         if isinstance(points, bool) or not isinstance(points, int | np.integer):
             raise InvalidValue(
@@ -35,10 +35,11 @@ def as_points(
 
 
 def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0) -> PointSet:
-    """Return n points of the space's cube, as planners take them: `even`, but others in SE(3) and for sparse roadmaps.
+    """Return n points of the space's cube: `even`, but others in SE(3) and for sparse roadmaps.
 
-    In SE(3) evenness is worth nothing: there they are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
-    points.  In a box of seven dimensions and more, for a rule of at most 6 neighbours, they are drawn in to the middle.
+    In SE(3) evenness gains nothing: points there are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
+    points.  In a box of seven or more dimensions, for a rule of at most 6 neighbours, they are contracted to the
+    middle.
     """
     d = space.cube_dim
     k = None if rule is None else rule.reach(n, space).k

@@ -21,20 +21,20 @@ class Problem:
     Attributes
     ----------
     world : World
-        Says which configurations and motions are free.
+        Checks configurations and motions.
     start, goals : ndarrays, shapes (dim,) and (g, dim)
         Configurations.
     budget : Budget
-        What the search may spend.
+        Limits of the search.
     smooth : bool
         Whether the path is made shorter once it is found.
     rng : int, SeedSequence or Generator
-        For what a planner draws.
+        Seed of what a planner draws.
     apart : callable, optional
-        Asked in place of the world what keeps the start from the goals, where they are not all that would do: it is
-        given start, goals and whether to be quick, and returns an :class:`evenroad.world.Apart` or None.
+        Proves, instead of the world, that no path exists, where other goals would do, too.  It takes start, goals and
+        whether to be quick, and returns an :class:`evenroad.world.Apart` or None.
     connector : Connector, optional
-        What joins a start to a goal in this kind of world, and smooths paths, in compiled code.
+        Joins start and goal in this kind of world, and smooths paths, in compiled code.
     """
 
     world: World
@@ -50,7 +50,7 @@ class Problem:
 
 @runtime_checkable
 class Planner(Protocol):
-    """Solves problems; a frozen value that says all there is to be told of how."""
+    """Solves problems; a frozen value that says how."""
 
     def solve(self, problem: Problem) -> PlanResult:
         """Return a path, or why there is none."""

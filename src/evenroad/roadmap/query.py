@@ -1,4 +1,4 @@
-"""Query: what is asked of a planner, and what the edges of an answer cost: their length, or more."""
+"""Query: start, goals and options of one search along a roadmap, and the costs of edges."""
 
 from __future__ import annotations
 
@@ -20,32 +20,32 @@ from evenroad.space import Space
 from evenroad.world import Apart
 
 LINKS = 100
-"""Milestones that start and goals are linked to by default, besides those of the rule.
+"""Number of milestones that start and goals are linked to by default, besides those of the rule.
 
-A start in a narrow place sees few of its nearest milestones.  On shelves, 100 links instead of k = 10 to 20 are worth
-20 to 45 points of success with every sampler, for some checks a query.  The edges between milestones stay as they are.
+From a start in a narrow passage few of the nearest milestones are visible.  On shelves, 100 links instead of k = 10 to
+20 add 20 to 45 points of success with every sampler, for some checks a query.  Edges between milestones do not change.
 """
 
 FEW = 256
-"""Up to so many milestones, start and goals are linked to all."""
+"""Number of milestones up to which start and goals are linked to all."""
 
 
 EdgeCost: TypeAlias = Callable[[Floats, Floats], Floats]
 """Costs of the motions between the rows of two (m, dim) arrays, (m,); the same both ways, >= their lengths."""
 BOUND = 1.0 - 1e-9
-"""Costs are at least this share of the length: room for the rounding of a cost that should be the length."""
+"""Smallest ratio of a cost to the length: it leaves room for the rounding of a cost that should be the length."""
 
 ProvesApart: TypeAlias = Callable[[Floats, Floats, bool], Apart | None]
-"""Says of a start, (dim,), and goals, (g, dim), what keeps them apart, quickly or not: see ``world.ShowsApart``."""
+"""Proves, quickly or not, that a start, (dim,), and goals, (g, dim), are apart: see ``world.ShowsApart``."""
 
 
 @dataclass(frozen=True, eq=False)
 class Query:
-    """From where to where, and how; never changed.
+    """A start, goals and options; never changed.
 
-    `start`, (dim,), and `goals`, (g, dim), are what :func:`as_start_and_goals` gives.  `connector` plans and
-    smooths in this kind of world, where there is one; the others are as in :class:`evenroad.PRM`.
-    UnknownName if there is no such search.
+    `start`, (dim,), and `goals`, (g, dim), are results of :func:`as_start_and_goals`.  `connector` plans and smooths in
+    this kind of world, where there is one; the others are as in :class:`evenroad.PRM`.  UnknownName if there is no such
+    search.
     """
 
     start: Floats
@@ -73,7 +73,7 @@ class Query:
         return np.concatenate([self.start[np.newaxis], self.goals])
 
     def links_among(self, milestones: int) -> int:
-        """Return to how many of so many milestones start and goals are linked besides what the rule says."""
+        """Return the number of milestones that start and goals are linked to besides those of the rule."""
         if self.links is None:
             return 0
         return milestones if milestones <= FEW else min(self.links, milestones)
@@ -84,7 +84,7 @@ class Query:
         return find_any if self.success_only else FINDERS[self.search]
 
     def planner(self, lazy_milestones: bool) -> str:
-        """Return what results call the planner that searches so."""
+        """Return the name that results give the planner of this search."""
         name = "any" if self.success_only else self.search
         return f"prm {name}{' + lazy milestones' if lazy_milestones else ''}"
 
@@ -105,19 +105,19 @@ def as_start_and_goals(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) 
 
 
 def _finite(value: npt.ArrayLike) -> Floats:
-    """Return a copy as floats; of what is not finite numbers, an array whose shape nobody asks for."""
+    """Return a copy as floats; for anything but finite numbers an array of a shape that is refused."""
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
         return np.empty((0, 0))
-    # The squares of most are finite, too, which is known sooner.
+    # Squares of most are finite, too, and faster to test.
     if math.isfinite(np.vdot(array, array)) or np.isfinite(array).all():
         return array
     return np.empty((0, 0))
 
 
 def edge_costs(space: Space, q: Floats, edges: Ints32, cost: EdgeCost | None = None) -> Floats:
-    """Return what the edges between rows of `q` cost, (m,): by default their lengths.
+    """Return the costs of the edges between rows of `q`, (m,): by default their lengths.
 
     InvalidValue for a `cost` of another shape, not finite or below the length: the metric then is no bound.
     """

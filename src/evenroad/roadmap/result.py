@@ -1,4 +1,4 @@
-"""PlanResult: a path, or the reason why there is none, with everything that was counted."""
+"""PlanResult: a path, or the reason why there is none, with all counts."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from evenroad.space import Space
 from evenroad.world import MeasuresPaths, World
 
 NO_POINTS = Origin(family="none", method="no points")
-"""The origin of a result whose planner draws no points."""
+"""Origin of a result whose planner draws no points."""
 
 NEAR = 1e-6
-"""An end of a path that is no farther from what was asked than this, for numbers of 1, is there but for rounding."""
+"""Distance up to which an end of a path counts as the start or goal, for numbers of 1: rounding only."""
 
 
 class Status(StrEnum):
@@ -42,10 +42,10 @@ class Status(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class SearchedGraph:
-    """The milestones and motions known to be free in one query: what pictures show.
+    """The milestones and motions known to be free in one query, for pictures.
 
     `configurations`, (v, dim), are `milestones` ones not known to be invalid, then the start, then the goals; `edges`,
-    (m, 2), are motions found free, as pairs of rows, smaller first.
+    (m, 2), are free motions, as pairs of rows, smaller first.
     """
 
     configurations: Floats
@@ -57,9 +57,9 @@ class SearchedGraph:
 class Stage:
     """One stage of a plan that grows, or a round of one that improves in which a better path was found.
 
-    `points` are N so far, of which `valid` ones are; of a round, the nodes of all trees so far, all valid.
+    `points` is the number of points so far, of which `valid` are; of a round, the nodes of all trees so far, all valid.
     `edges_checked` motions were checked up to its end, `seconds` after the query began (not compared).  `cost` is that
-    of this stage's path along the roadmap, of a round's path after shortcutting; None when there was none.
+    of this stage's path along the roadmap, or of a round's path after shortcutting; None without a path.
     """
 
     points: int
@@ -83,9 +83,8 @@ class PlanResult(ResultMethods):
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start, goals : ndarrays, shapes (dim,) and (g, dim)
-        Of the query.
-    goal_index : int or None
-        Which of the goals the path ends at; None without a path.
+        Start and goals of the query.    goal_index : int or None
+        Row of the goal that the path ends at; None without a path.
     path : ndarray, shape (p, dim), or None
         Waypoints after shortcutting, from start to goal, in the units of the space.
     milestone_path : ndarray, shape (q, dim), or None
@@ -94,7 +93,7 @@ class PlanResult(ResultMethods):
         What is shown of the motions of `path`: ``exact`` (no gap, up to rounding), ``certified`` (no gap), or
         ``resolution`` (free at states close together); None without a path.
     cost, milestone_cost : float or None
-        Of the two: lengths in the metric of the space, or the user's edge costs.
+        Costs of the two paths: lengths in the metric of the space, or the user's edge costs.
     counts : dict of str to int
         ``points`` (N), ``valid`` (milestones known to be valid), ``configurations_checked`` (without those inside
         of motions), ``edges_considered``, ``edges_checked``, ``edges_free`` (known to be),
@@ -108,23 +107,23 @@ class PlanResult(ResultMethods):
     rule : str
         The connection rule, by name.
     links : int or None
-        As asked for; see :func:`plan`.
+        Number of links of the query; see :func:`plan`.
     planner : str
         Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
         ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``; or the world itself, with
         ``trees`` or ``cells``.
     deviation : dict of str to float
-        Of a path whose tip is told its way, the largest deviations on fine grids: ``line_m`` and ``line_rad`` from the
+        Largest deviations of a path under tip constraints, on fine grids: ``line_m`` and ``line_rad`` from the
         straight lines, ``tilt_rad`` from upright.
     stages : tuple of Stage
-        How a plan that grows or improves came about, its cost over time; empty for all others.
+        Stages of a plan that grows or improves, its cost over time; empty for all others.
     certificate : Certificate or None
-        What the roadmap guarantees, where :func:`plan` was told to certify.  Without a path, and if it is `complete`,
-        no path has a clearance of its `dispersion`.
+        What the roadmap guarantees, if :func:`plan` was called with ``certify``.  Without a path, and if it is
+        `complete`, no path has a clearance of its `dispersion`.
     roadmap : SearchedGraph or None
-        What was searched; None when start or goal is invalid, and where a reused roadmap was asked.
+        The searched graph; None if start or goal is invalid, and for a reused roadmap.
     world : World or None
-        Where it was planned; None in a plan that was read from a file.
+        World of the query; None in a plan that was read from a file.
 
     Examples
     --------
@@ -159,10 +158,10 @@ class PlanResult(ResultMethods):
 
     @cached_property
     def clearance(self) -> float | None:
-        """How far the path stays from all obstacles, never more than it does; None where nothing can tell.
+        """Lower bound of the path's distance from all obstacles; None where the world cannot measure it.
 
-        Of a disk in map units, exact within 1e-3 pixels; of an arm in metres, what is proved for its capsules, within
-        .1 mm, and 1 m at most.  It is found when it is asked for the first time: of an arm in some milliseconds.
+        For a disk in map units, exact within 1e-3 pixels; for an arm in metres, proved for its capsules, within 0.1 mm,
+        and 1 m at most.  It is computed on first use: for an arm in some milliseconds.
         """
         if self.path is None or not isinstance(self.world, MeasuresPaths):
             return None
@@ -190,7 +189,7 @@ class PlanResult(ResultMethods):
 def make_result(
     world: World | None, start: Floats, goals: Floats, status: Status, message: str, **more: Any
 ) -> PlanResult:
-    """Return the answer to a query: every result is made here, and a path leads from its start to its goal.
+    """Return the result of a query: every result is made here, and a path leads from its start to its goal.
 
     `more` are attributes of the result; by default there are no points, no rule and no planner.
     """
@@ -202,14 +201,14 @@ def make_result(
 def require_start_and_goal(space: Space, result: PlanResult) -> PlanResult:
     """Return a result whose paths lead from its start to its goal.
 
-    Coordinates that wrap may differ by whole turns.  AssertionError for anything else, which is evenroad's own fault:
-    whatever found the path, a robot is not to drive it.
+    Coordinates that wrap may differ by whole turns.  AssertionError for anything else, which is a bug of evenroad: no
+    robot must drive such a path.
     """
     for path in (result.path, result.milestone_path):
         if path is None:
             continue
         for name, configuration, asked in (("start", path[0], result.start), ("end", path[-1], result.goal)):
-            # Most are the same numbers, which is known in a tenth of the time.
+            # Most are equal numbers, which is ten times as fast to test.
             if configuration.tolist() == asked.tolist():
                 continue
             finite = np.isfinite(configuration).all()

@@ -1,4 +1,4 @@
-"""What one does with a plan: look at it, keep it, walk along it, drive it."""
+"""Methods of a plan: show it, save it, sample it, make a trajectory of it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class ResultMethods:
 
     @cached_property
     def length(self) -> float | None:
-        """Length of `path` in the metric of the space; None without a path, and where no world is known."""
+        """Length of `path` in the metric of the space; None without a path or a world."""
         if self.path is None or self.world is None:
             return None
         return path_length(self.path, self.world.space)
@@ -50,7 +50,7 @@ class ResultMethods:
         Returns
         -------
         ndarray, shape (s, dim)
-            Waypoints are among them.
+            States of the path, waypoints included.
 
         Raises
         ------
@@ -99,14 +99,14 @@ class ResultMethods:
         above("PlanResult.save")(self, path)
 
     def plot(self, path: str | os.PathLike[str] | None = None, *, world: World | None = None) -> Any:
-        """Return a picture of the plan, a PIL image, which a notebook shows; and save it where a file is named.
+        """Return a picture of the plan, a PIL image, which a notebook shows; save it if a file is named.
 
         Parameters
         ----------
         path : str or path-like, optional
             A ``.png``.
         world : World, optional
-            Default: the one that the plan was made in.  Disks on maps and arms can be drawn.
+            Default: the world of the plan.  Disks on maps and arms can be drawn.
 
         Returns
         -------
@@ -130,7 +130,7 @@ class ResultMethods:
         return above("PlanResult.plot")(self, path, world)
 
     def trajectory(self, limits: Any = None, *, speed: float = 1.0, **options: Any) -> Any:
-        """Return the path with times, checked as it is driven.
+        """Return the path with times; the motion as driven is checked.
 
         Parameters
         ----------
@@ -163,7 +163,7 @@ class ResultMethods:
         return above("PlanResult.trajectory")(world, path, limits, speed=speed, **options)
 
     def _required(self, how: str) -> tuple[Floats, World]:
-        """Return path and world, or raise InvalidValue: without them a plan cannot be `how`."""
+        """Return path and world, or raise InvalidValue that names the missing one."""
         if self.path is None:
             raise InvalidValue(f"there is no path that could be {how}: {self.message}")
         if self.world is None:

@@ -1,4 +1,4 @@
-"""Shortcutting: straighten a path with motions that the world itself calls free."""
+"""Shortcutting: straighten a path with motions that the world calls free."""
 
 from __future__ import annotations
 
@@ -19,31 +19,30 @@ from evenroad.world import World
 
 Indices: TypeAlias = npt.NDArray[np.integer]
 SPREADS = (32, 96)
-"""Waypoints offered to a round, first of the coarse rounds, then of the fine ones; all pairs of them are checked.
+"""Numbers of waypoints in a coarse and in a fine round; all pairs of them are checked.
 
-A coarse round asks for a tenth of the motions and finds most of what there is to gain.
-"""
+A coarse round needs a tenth of the motions and finds most of the gain."""
 MAX_ROUNDS = 8
 PATIENCE = 4
-"""After every so many motions that fail a strict check in a round, their neighbours are given up one step further."""
+"""Number of motions that fail a strict check in a round before their neighbours are dropped one step further."""
 WORTH_WHILE = 1e-2
-"""A round that shortens the path by less than this share is the last one with so many waypoints."""
+"""Share of shortening below which a round is the last one with its number of waypoints."""
 
 
 def shortcut(
     world: World, path: Floats, cost: EdgeCost | None = None, deadline: float = math.inf
 ) -> tuple[Floats, int]:
-    """Return a path that does not cost more, and whose every new motion was reported free by `world`.
+    """Return a path that does not cost more, all of whose new motions `world` calls free.
 
     Each round puts waypoints evenly along the path, few at first, joins every pair that `world` says can be joined,
-    and takes the shortest way through them; its own waypoints are always among those offered, so a round never makes
-    the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.  Where the
+    and takes the shortest path through them.  The path's own waypoints are always among them, so a round never makes it
+    longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.  Where the
     world has a strict check (`ValidatesPaths`), the motions of a round's path have to pass it, too.  Those that fail
     are removed, in time with those beside them, and the next shortest path is tried.
 
     `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  At the deadline, on the clock of
-    ``evenroad._clock``, what was reached so far is the answer.  The second number are the motions checked, rechecks
-    apart.
+    ``evenroad._clock``, the best path so far is the answer.  The second number is that of the motions checked,
+    without strict checks.
     """
     work = _Shortcut(path, world, world.space.distance if cost is None else cost, deadline)
     try:
@@ -61,7 +60,7 @@ def shortcut(
 
 
 class _Shortcut:
-    """A path that becomes shorter, and what was asked for it."""
+    """A path that becomes shorter, and the number of checks for it."""
 
     def __init__(self, path: Floats, world: World, cost: EdgeCost, deadline: float) -> None:
         self.path, self.world, self.cost, self.deadline = path, world, cost, deadline
@@ -69,10 +68,10 @@ class _Shortcut:
         self.checked = 0
 
     def round(self, most: int) -> None:
-        """Take the shortest way through so many waypoints along the path, if it is shorter."""
+        """Take the shortest path through this number of waypoints, if it is shorter."""
         space = self.world.space
         waypoints, own = _spread(self.path, space, most)
-        # The path's own motions are known to be free; with them there always is a way.
+        # The path's own motions are known to be free, so a path always exists.
         pairs = _Pairs(self._free_pairs(waypoints), own)
         lengths = self.cost(waypoints[pairs.edges[:, 0]], waypoints[pairs.edges[:, 1]])
         goal = len(waypoints) - 1
@@ -100,12 +99,12 @@ class _Shortcut:
                 kept.append(int(reach[kept[-1]]))
             if self._holds(path, np.array(kept), pairs):
                 break
-        # In a metric this never is longer; other costs may well prefer the waypoint.
+        # In a metric this never is longer; other costs may prefer the waypoint.
         if self._total(path[kept]) <= self.length * (1.0 + 1e-12):
             self.path = path[kept]
 
     def _holds(self, waypoints: Floats, kept: Indices, pairs: _Pairs) -> bool:
-        """Return whether the world confirms a way; if it does not, some of its pairs are not usable any more."""
+        """Return whether the world confirms a path; if it does not, some of its pairs are not usable any more."""
         if now() >= self.deadline:
             raise BudgetSpent
         along = pairs.along(kept)
@@ -130,7 +129,7 @@ class _Shortcut:
 
 
 class _Pairs:
-    """Pairs of waypoints that can be joined, among them the steps from each of a path's `own` ones to the next.
+    """Pairs of waypoints that can be joined, among them the steps between a path's `own` ones.
 
     Of the `edges`, (m, 2), smaller first, `trusted` ones have passed the strict check, and `usable` ones have not
     failed it, (m,) each.
@@ -148,13 +147,13 @@ class _Pairs:
         self._failures = 0
 
     def along(self, kept: Indices) -> Indices:
-        """Return the numbers of the pairs along a way."""
+        """Return the numbers of the pairs along a path."""
         return self._number[np.minimum(kept[:-1], kept[1:]), np.maximum(kept[:-1], kept[1:])]
 
     def give_up(self, failed: Indices) -> None:
-        """Use these pairs no more, nor those beside them that were not checked: the more, the more have failed.
+        """Drop these pairs and the unchecked ones beside them: the more have failed, the more.
 
-        What is in the way of one motion mostly is in that of its neighbours; one by one, thousands would be tried.
+        What blocks one motion mostly blocks its neighbours, too; one by one, thousands would be tried.
         """
         for pair in self.edges[failed]:
             beside = (np.abs(self.edges - pair) <= self._failures // PATIENCE).all(axis=1)

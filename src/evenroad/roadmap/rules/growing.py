@@ -24,17 +24,17 @@ from evenroad.space import Space
 
 
 class _Growing(Rule, Protocol):
-    """A rule that is another one for each number of configurations."""
+    """A rule that depends on the number of configurations."""
 
     def at(self, n: int, d: int) -> Rule:
         """Return the rule for n configurations in d dimensions."""
 
     def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
-        """Return the pairs of the rule for so many; see :class:`Rule`."""
+        """Return the pairs of the rule for this number of configurations; see :class:`Rule`."""
         return self.at(len(q), q.shape[1] if space is None else space.cube_dim).edges(q, space)
 
     def reach(self, milestones: int, space: Space) -> Reach:
-        """Return how that rule joins an end; see :class:`Rule`."""
+        """Return how that rule joins a terminal; see :class:`Rule`."""
         return self.at(milestones, space.cube_dim).reach(milestones, space)
 
 
@@ -124,7 +124,7 @@ class TheoryRadius(Rule):
         d = space.cube_dim
         name, value = self._bound()
         bound = value if name == "dispersion" else 2 * value ** (1 / d)
-        # The map from the cube is affine here; twice the way to the middle is a side, also where it wraps.
+        # The map from the cube is affine here; twice the distance to the middle is a side, also where it wraps.
         middle = 0.5 * np.eye(d)
         sides = 2 * space.distance(space.from_cube(np.zeros((d, d))), space.from_cube(middle))
         radius = 2 * self.alpha * bound * float(np.sqrt(np.sum(sides**2)))
@@ -143,7 +143,7 @@ class TheoryRadius(Rule):
         return Radius(self.radius(space)).edges(q, space)
 
     def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that an end is joined to all within the radius; see :class:`Rule`."""
+        """Return that a terminal is joined to all within the radius; see :class:`Rule`."""
         return Reach(radius=self.radius(space))
 
     def _bound(self) -> tuple[str, float]:

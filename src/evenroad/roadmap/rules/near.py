@@ -1,8 +1,7 @@
 """The protocol of connection rules, and rules by a number of neighbours or a distance.
 
-The rule is part of every result: the same points give 15 % or 62 % success under two different rules.  Candidates are
-all configurations but itself; ties go to the lower index, and start and goals come last, except for `KEarlier`, where
-they are the first.
+The rule is part of every result: the same points give 15 % or 62 % success under two rules.  Candidates are all other
+configurations; ties go to the lower index, and start and goals come last, except for `KEarlier`, where they come first.
 """
 
 from __future__ import annotations
@@ -21,9 +20,9 @@ from evenroad.space import Space
 
 @dataclass(frozen=True)
 class Reach:
-    """How one more configuration is joined to milestones: to its `k` nearest ones, or to those within `radius`.
+    """How a start or goal is joined to milestones: to its `k` nearest ones, or to those within `radius`.
 
-    With both None: to all.
+    If both are None: to all.
     """
 
     k: int | None = None
@@ -41,7 +40,7 @@ class Rule(Protocol):
         """
 
     def reach(self, milestones: int, space: Space) -> Reach:
-        """Return how a start or goal is joined to a finished roadmap of so many milestones."""
+        """Return how a start or goal is joined to a finished roadmap of this number of milestones."""
 
 
 def ascending(pairs: npt.NDArray[np.integer], n: int) -> Ints32:
@@ -70,13 +69,13 @@ class Complete(Rule):
         return np.stack(np.triu_indices(len(q), k=1), axis=1).astype(np.int32)
 
     def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that an end is joined to all milestones; see :class:`Rule`."""
+        """Return that a terminal is joined to all milestones; see :class:`Rule`."""
         return Reach()
 
 
 @dataclass(frozen=True)
 class _ByNumber(Rule):
-    """A rule of so many neighbours."""
+    """A rule with a number of neighbours."""
 
     k: int = 10
     which: ClassVar[str]
@@ -88,7 +87,7 @@ class _ByNumber(Rule):
         return f"k={self.k} {self.which}"
 
     def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that an end is joined to its k nearest; see :class:`Rule`."""
+        """Return that a terminal is joined to its k nearest; see :class:`Rule`."""
         return Reach(k=self.k)
 
 
@@ -160,5 +159,5 @@ class Radius(Rule):
         return ascending(within(q, self.r, space), len(q))
 
     def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that an end is joined to all within the radius; see :class:`Rule`."""
+        """Return that a terminal is joined to all within the radius; see :class:`Rule`."""
         return Reach(radius=self.r)

@@ -16,12 +16,12 @@ from evenroad.world import World
 States: TypeAlias = npt.NDArray[np.int8]
 
 UNKNOWN, FREE, BLOCKED = np.int8(0), np.int8(1), np.int8(2)
-"""What is known of an edge or a node."""
+"""State of an edge or a node."""
 
 
 @dataclass(frozen=True, eq=False)
 class StateCache:
-    """What is known of nodes and edges: `UNKNOWN`, `FREE` or `BLOCKED`, (nodes,) and (m,) int8.
+    """States of nodes and edges: `UNKNOWN`, `FREE` or `BLOCKED`, (nodes,) and (m,) int8.
 
     `confirmed`, (m,), says which free edges have passed the strict check of a world that has one.
     """
@@ -32,16 +32,17 @@ class StateCache:
 
     @classmethod
     def nothing(cls, nodes: int, edges: int) -> StateCache:
-        """Return that nothing is known yet."""
+        """Return a cache in which every state is unknown."""
         return cls(np.full(nodes, UNKNOWN), np.full(edges, UNKNOWN), np.zeros(edges, dtype=np.bool_))
 
 
 class EdgeStates:
-    """The states of nodes and edges, filled in as the world checks them; nothing is ever checked twice.
+    """The states of nodes and edges, filled in as the world checks them; nothing is checked twice.
 
-    Of `configurations`, (nodes, dim), and `edges`, (m, 2), whose motions are checked from the first node to the second.
-    What is `cache` already is added to in place.  At most so many motions are checked, before the deadline, and
-    `configurations_checked` and `motions_checked` count; `watch` gets the phases ``validity`` and ``motions``.
+    The nodes are `configurations`, (nodes, dim); the motions of `edges`, (m, 2), are checked from the first node to the
+    second.  `cache` holds earlier states and is updated in place.  At most `most_motions` are checked, before the
+    deadline. `configurations_checked` and `motions_checked` count; `watch` gets the phases ``validity`` and
+    ``motions``.
     """
 
     def __init__(
@@ -63,7 +64,7 @@ class EdgeStates:
         self._node_pace, self._edge_pace = Pace(), Pace()
 
     def evaluate_nodes(self, nodes: npt.NDArray[np.integer]) -> None:
-        """Ask the world about those of the nodes that are not known yet; BudgetSpent if time does not allow all."""
+        """Check those of the nodes whose state is unknown; BudgetSpent if time does not allow all."""
         unknown = nodes[self.node_states[nodes] == UNKNOWN]
         for rows in in_time(unknown, self.deadline, self._node_pace):
             with self.watch("validity"):
@@ -72,7 +73,7 @@ class EdgeStates:
             self.configurations_checked += len(rows)
 
     def evaluate_edges(self, edges: npt.NDArray[np.integer]) -> None:
-        """Ask the world about those of the edges that are not known yet; BudgetSpent if there are too many."""
+        """Check those of the edges whose state is unknown; BudgetSpent if there are too many."""
         unknown = edges[self.edge_states[edges] == UNKNOWN]
         wanted = len(unknown)
         if self.most_motions is not None:

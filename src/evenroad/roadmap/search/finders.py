@@ -1,6 +1,6 @@
-"""Finding a path while asking the world: everything first, only what matters, any path, or by a marching tree.
+"""Finding a path while edges are evaluated: all of them, lazily, any path, or a marching tree.
 
-And the last check of a path: no motion is handed out that its world does not confirm.
+And the last check of a path: its world confirms every motion.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from evenroad.roadmap.search.shortest import NOT_FOUND, FixedPoint, Found, Searc
 from evenroad.world import ValidatesPaths, World
 
 Finder: TypeAlias = Callable[[Any, EdgeStates], Found]
-"""A search: what it takes are `Terminals`, or all of a `SearchProblem`."""
+"""A search, which takes `Terminals`, or all of a `SearchProblem`."""
 
 
 def search_problem(states: EdgeStates, costs: Floats, goals: int = 1, *, bound: float = 1.0) -> SearchProblem:
-    """Return the search over all edges of `states`, whose last nodes are the start and then so many goals.
+    """Return the search over all edges of `states`, whose last nodes are the start and this number of goals.
 
     `costs`, (m,), are at least the share `bound` of the distances in the space.
     """
@@ -44,7 +44,7 @@ def _away(states: EdgeStates, nodes: Iterable[int]) -> Floats:
 
 
 def find_after_all(problem: SearchProblem, states: EdgeStates) -> Found:
-    """Ask about every node, then about every edge between free ones, and return the shortest path."""
+    """Evaluate every node, then every edge between free ones, and return the shortest path."""
     states.evaluate_nodes(np.arange(len(states.node_states)))
     open_edges = (states.node_states[states.edges] == FREE).all(axis=1)
     states.evaluate_edges(np.flatnonzero(open_edges))
@@ -52,10 +52,10 @@ def find_after_all(problem: SearchProblem, states: EdgeStates) -> Found:
 
 
 def find_lazily(problem: SearchProblem, states: EdgeStates) -> Found:
-    """Return the same path as `find_after_all`, asking only about what could lie on it.
+    """Return the same path as `find_after_all`, but evaluate only what could lie on it.
 
-    The shortest path over whatever is not known to be blocked is tested from its start on, up to the first thing
-    that is blocked; when all of it is free, no path of free edges is shorter (Bohlin and Kavraki 2000).
+    The shortest path over edges that are not blocked is evaluated from its start on, up to the first blocked one.  When
+    all of it is free, no path of free edges is shorter (Bohlin and Kavraki 2000).
     """
     while True:
         found = best_path(problem, states.edge_states, states.node_states)
@@ -69,7 +69,7 @@ FINDERS: dict[str, Finder] = {"full": find_after_all, "lazy": find_lazily}
 
 
 def _all_free(numbers: Ints32, states: States, evaluate: Callable[[Ints32], None]) -> bool:
-    """Ask about those nodes or edges of a path that are not known, until one is blocked; return whether none is."""
+    """Evaluate the unknown nodes or edges of a path, until one is blocked; return whether none is."""
     for number in numbers[states[numbers] == UNKNOWN]:
         evaluate(number[np.newaxis])
         if states[number] == BLOCKED:
@@ -78,11 +78,11 @@ def _all_free(numbers: Ints32, states: States, evaluate: Callable[[Ints32], None
 
 
 def find_any(terminals: Terminals, states: EdgeStates) -> Found:
-    """Return some path of free edges if there is one, asking about no more edges than the full search.
+    """Return some path of free edges if there is one; evaluate no more edges than the full search.
 
-    Two trees grow, from the start and from the goals: both ask about the edges that lead nearest to where the other
-    began, until they meet.  A search without an answer ends when one of the two can grow no more.
-    Edges between two nodes of one tree are not asked about.
+    Two trees grow, from the start and from the goals, until they meet: both evaluate the edges that lead nearest to the
+    root of the other.  A search without an answer ends when one of the two can grow no more.  Edges between two nodes
+    of one tree are not evaluated.
     """
     edges = states.edges
     away = np.stack([_away(states, terminals.goals), _away(states, [terminals.start])])
@@ -110,14 +110,14 @@ def find_any(terminals: Terminals, states: EdgeStates) -> Found:
 
 
 _FIRST = 16
-"""Edges that each tree of `find_any` asks about at first; later the more, the longer it takes."""
+"""Number of edges that each tree of `find_any` evaluates at first; it grows with time."""
 
 
 def march(problem: SearchProblem, states: EdgeStates) -> Found:
-    """Grow a fast marching tree until it takes up a goal; return the path, and how many nodes the tree has.
+    """Grow a fast marching tree until it reaches a goal; return the path and the number of nodes of the tree.
 
-    Janson, Schmerling, Clark and Pavone 2015, Algorithm 2.  All nodes are free; ties go to the lower node.  An edge
-    found to be blocked is not asked about again, but keeps its place as the best offer of its node, as in the original.
+    Janson, Schmerling, Clark and Pavone 2015, Algorithm 2.  All nodes are free; ties go to the lower node.  A blocked
+    edge is not evaluated again, but stays the best offer of its node, as in the original.
     """
     goals = set(problem.goals.tolist())
     stage = np.full(problem.graph.nodes, _UNVISITED)
@@ -133,7 +133,7 @@ def march(problem: SearchProblem, states: EdgeStates) -> Found:
         states.evaluate_edges(offers)
         free = states.edge_states[offers] == FREE
         fresh, offers = fresh[free], offers[free]
-        # Taken up after all have been asked: none of the fresh ones is an offer to another one of them.
+        # Added after all were evaluated: no fresh node offers an edge to another one.
         pairs = states.edges[offers]
         giver = np.where(pairs[:, 0] == fresh, pairs[:, 1], pairs[:, 0])
         cost[fresh] = cost[giver] + problem.weights[offers]
@@ -161,12 +161,12 @@ def _path_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
 def confirmed(world: World, path: Floats, uncertain: Bools) -> Bools:
     """Return which motions of a path, (p, dim), pass the world's strict check, (p - 1,); all where it has none.
 
-    Only the doubtful ones, (p - 1,), have to be checked: the others passed before.
+    Only the `uncertain` ones, (p - 1,), are checked: the others passed before.
     """
     passed = ~uncertain
     if not isinstance(world, ValidatesPaths):
         return np.ones_like(passed)
-    # Runs of motions that follow one another are one call.
+    # Runs of consecutive motions are one call.
     edges = np.flatnonzero(np.diff(np.concatenate([[False], uncertain, [False]])))
     for first, last in edges.reshape(-1, 2):
         passed[first:last] = world.validate(path[first : last + 1])
@@ -174,7 +174,7 @@ def confirmed(world: World, path: Floats, uncertain: Bools) -> Bools:
 
 
 def confirm(states: EdgeStates, found: Found) -> bool:
-    """Return whether the world confirms all motions of a path; those that fail are blocked from now on."""
+    """Return whether the world confirms all motions of a path; those that fail become blocked."""
     nodes, along, _ = found
     passed = confirmed(states.world, states.configurations[nodes], ~states.confirmed[along])
     states.confirmed[along] = passed

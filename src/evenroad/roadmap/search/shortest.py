@@ -21,7 +21,7 @@ from evenroad.roadmap.search.graph import Graph, graph_of
 class Found(NamedTuple):
     """The nodes of a path, start first, and its edges; both empty when there is none.
 
-    `reached` are the nodes of the tree, where one grew that says so.
+    `reached` are the nodes of the tree, for searches that grow one.
     """
 
     nodes: Ints32
@@ -31,17 +31,17 @@ class Found(NamedTuple):
 
 NOT_FOUND = Found(np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32))
 MOST = 1 << 61
-"""What bounds are cut to: the sum of one and any path is still a 64-bit integer."""
+"""Largest bound: the sum of one and any path is still a 64-bit integer."""
 _NEXT_TO_ZERO = 1e-280
-"""A quantum of a shorter length would lose its digits, or be 0."""
+"""Smallest longest length: a quantum of a shorter one would lose its digits, or be 0."""
 
 
 @dataclass(frozen=True)
 class FixedPoint:
-    """Lengths as integer multiples of a quantum of such a size that every path fits into 61 bits.
+    """Lengths as integer multiples of a quantum, such that every path fits into 61 bits.
 
-    The quantum is ``longest / 2^bits`` with up to 52 bits: as fine as floats are for the longest edge while a
-    graph has fewer than 512 nodes, a bit coarser with each doubling (2^-41 of it at a million).
+    The quantum is ``longest / 2^bits`` with up to 52 bits: as fine as floats are for the longest edge while a graph has
+    fewer than 512 nodes, a bit coarser with each doubling (2^-41 of it at a million).
     """
 
     quantum: float
@@ -66,22 +66,22 @@ class FixedPoint:
 
 @dataclass(frozen=True, eq=False)
 class Terminals:
-    """From which node to which goals, (g,)."""
+    """The node of the start and those of the goals, (g,)."""
 
     start: int
     goals: Ints
 
     @classmethod
     def last(cls, nodes: int, goals: int) -> Terminals:
-        """Return that of so many nodes the last ones are the start and then so many goals."""
+        """Return terminals that are the last nodes: the start and then this number of goals."""
         return cls(nodes - goals - 1, np.arange(nodes - goals, nodes))
 
 
 @dataclass(frozen=True, eq=False)
 class SearchProblem(Terminals):
-    """The ends in a graph: `weights`, (m,), are lengths of its edges, >= 1 (see `FixedPoint`).
+    """A search between terminals of a graph: `weights`, (m,), are lengths of its edges, >= 1 (see `FixedPoint`).
 
-    `bounds`, (nodes,), are lower ones of the path from each node to the nearest goal.
+    `bounds`, (nodes,), are lower bounds of the path from each node to the nearest goal.
     """
 
     graph: Graph
@@ -92,10 +92,10 @@ class SearchProblem(Terminals):
 def best_path(problem: SearchProblem, edge_states: States, node_states: States) -> Found:
     """Return the one shortest path from start to the nearest goal over nodes and edges that are not `BLOCKED`.
 
-    The goals are one virtual node: each has an edge of length 0 to it, and the path to it is the answer.  Among
-    equally short paths it is the one that, followed back from there, always goes to the lowest node.
-    So it depends on the graph alone, and stays the answer when edges off it are removed: if all of a path
-    found among unchecked edges turns out to be free, it is the path that a search of the free edges finds.
+    The goals are one virtual node: each has an edge of length 0 to it, and the path to it is the answer.  Among equally
+    short paths it is the one that, followed back from there, always goes to the lowest node.  So it depends on the
+    graph alone, and stays the answer when edges off it are removed: a path of unchecked edges that turns out to be free
+    is the path that a search of the free edges finds.
     """
     costs, states = (problem.weights, problem.bounds), (edge_states, node_states)
     return Found(*native.shortest_path(problem.graph, costs, states, problem.start, problem.goals))
