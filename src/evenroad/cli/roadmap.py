@@ -94,7 +94,7 @@ class MakeRoadmap(RobotOptions):
 _UNTIL = {
     "drawing configurations": 0.02,
     "random scenes": 0.1,
-    "pockets": 0.9,
+    "narrow passages": 0.9,
     "choosing and joining milestones": 1.0,
 }
 """Stage -> share of the time that is over when it ends, about; in order."""

@@ -1,1 +1,1 @@
-"""Roadmaps made for one robot and its fixed cell, once, and asked about the obstacles of each day."""
+"""Roadmaps of one robot in its static scene: built once, queried among the obstacles of dynamic scenes."""

@@ -25,19 +25,19 @@ class ArmRoadmap(Roadmap):
     Attributes
     ----------
     robot : Robot
-        Whose roadmap it is; its hands are empty.
+        The robot, with empty hands.
     scene : Scene
-        The static scene: what never moves around it.
+        The static scene: all that never moves.
     milestones : ndarray, shape (n, dim)
-        Free configurations, of which every beginning is well spread [rad or m]; read-only.
+        Free configurations, the first n of which are well spread for every n [rad or m]; read-only.
     edges : ndarray of int32, shape (m, 2)
         Motions that are proved free, smaller row first, ascending; read-only.
     turns : ndarray of int8, shape (m, dim)
-        By how many turns each edge leads past its second milestone; read-only.
+        Number of turns by which each edge leads past its second milestone; read-only.
     weights : ndarray, shape (dim,)
-        What a unit of each joint counts in the roadmap's metric.
+        Weight of each joint in the roadmap's metric.
     resolution, clearance : float
-        Of the world that it was built in [rad, m].
+        Those of the world that it was built in [rad, m].
     """
 
     robot: Robot
@@ -59,13 +59,13 @@ class ArmRoadmap(Roadmap):
 
     @cached_property
     def bare(self) -> Robot:
-        """The robot without the pairs of its own that are tested: what the roadmap knows."""
+        """The robot without self-collision pairs, which the roadmap has checked."""
         return replace(self.robot, pairs=())
 
     @cached_property
     def one_turn(self) -> OneTurn:
         """The ranges that the milestones are in."""
-        # Of the robot alone: for the world something has to be compiled.
+        # Of the robot alone: a world would have to be compiled.
         return one_turn(prepared(self.robot)[0], whole_turns(self.robot))
 
     @cached_property
@@ -74,19 +74,19 @@ class ArmRoadmap(Roadmap):
         return SceneGraph(self.milestones, self.edges, self.turns, self.one_turn)
 
     def within(self, world: Any) -> WorldRoadmap:
-        """Return a planner in a world of this arm, which keeps what it has checked.
+        """Return a planner in a world of this arm, which keeps the result of every check.
 
         Parameters
         ----------
         world : ArmWorld
-            The robot in a scene of other obstacles; also one that asks other bodies, such as ``OwnShapesWorld``, whose
-            ``capsules`` is an ArmWorld.  Limits may be narrower, and the robot may hold something.
+            The robot in a scene of other obstacles; also one that checks other bodies, such as ``OwnShapesWorld``,
+            whose ``capsules`` is an ArmWorld.  Limits may be narrower, and the robot may hold something.
 
         Raises
         ------
         InvalidValue
-            If the robot is another one, something of the static scene stands elsewhere, or the world's clearance is
-            more than the roadmap's; the text says what differs.
+            If the robot is another one, an object of the static scene stands elsewhere, or the world's clearance is
+            larger than the roadmap's; the text says what differs.
 
         Examples
         --------
@@ -101,13 +101,13 @@ class ArmRoadmap(Roadmap):
     def save(self, file: Path) -> None:
         """Write it with its robot and static scene, atomically; ``er.load_roadmap`` reads it.
 
-        Raises BrokenFile if the file cannot be written; whatever was there is then untouched.
+        Raises BrokenFile if the file cannot be written; an earlier file is then untouched.
         """
         above("ArmRoadmap.save")(file, self)
 
 
 def read_only(roadmap: ArmRoadmap) -> ArmRoadmap:
-    """Return a roadmap whose arrays nobody writes to any more."""
+    """Return a roadmap with read-only arrays."""
     for array in (roadmap.milestones, roadmap.edges, roadmap.turns, roadmap.weights):
         np.asarray(array).setflags(write=False)
     return roadmap

@@ -1,4 +1,4 @@
-"""Building roadmaps: of any world by points that are joined, of an arm also by milestones where scenes leave room."""
+"""Building roadmaps: of any world by joining points, of an arm by milestones that random scenes leave free."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from evenroad.space import JointSpace
 from evenroad.world import World
 
 MOST = 1 << 15
-"""Milestones: their order takes time with the square of their number."""
+"""Largest number of milestones: ordering them takes time with the square of their number."""
 
 TRIED = 60
-"""Nearest milestones that each is tried to be joined to."""
+"""Number of nearest milestones that each is tried to be joined to."""
 
 K = 16
-"""Neighbours of a milestone of an arm, where no rule is given."""
+"""Default number of neighbours of a milestone of an arm."""
 
 Progress = Callable[[str, float], None]
 
@@ -46,34 +46,34 @@ def build_roadmap(
 ) -> Roadmap:
     """Build a roadmap of a world once, for many queries in it and in worlds that have more obstacles.
 
-    Of an arm, milestones and edges are proved free of the arm and of the scene of `world`, which takes some seconds.
-    Of other worlds they are candidates, checked when a query needs them.
+    For an arm, milestones and edges are proved free of the arm and of the scene of `world`, which takes some seconds.
+    For other worlds they are candidates, checked when a query needs them.
 
     Parameters
     ----------
     world : World
-        Of an arm with what never moves around it: mount, fence, walls, a scan; and the ranges to plan in.
+        For an arm: the robot with all that never moves (mount, fence, walls, a scan) and the ranges to plan in.
     points : int or PointSet
-        The milestones, or how many.  Of an arm so many are chosen from scrambled Sobol points, each as far as possible
-        from those before in the metric of displacement, and denser where random scenes leave the arm free and where
-        queries start or end in narrow passages.  In other worlds they are even points.
+        The milestones, or their number.  For an arm they are chosen from scrambled Sobol points, each as far as
+        possible from the earlier ones in the metric of displacement.  They are denser where random scenes leave the arm
+        free and around narrow passages.  In other worlds they are even points.
     rule : Rule, optional
-        How milestones are joined.  Default: of an arm each to the 16 nearest that it can reach, ``KNearest(16)``, which
-        is the only kind of rule there; else to the 20 nearest, or 2 d.
+        How milestones are joined.  Default for an arm: each to the 16 nearest that it can reach, ``KNearest(16)``; no
+        other kind of rule is possible.  Default else: the 20 nearest, or 2 d.
     rng : int, SeedSequence or Generator
-        Of what is drawn for an arm.
+        Seed of what is drawn for an arm.
     progress : callable, optional
-        Called with what is being done for an arm and its share that is over.
+        Called with the name of the step and the share of it that is done; for an arm only.
 
     Returns
     -------
     Roadmap
-        ``roadmap.within(world)`` plans, ``roadmap.save(file)`` keeps it.
+        ``roadmap.within(world)`` plans, ``roadmap.save(file)`` writes it.
 
     Raises
     ------
     InvalidValue
-        If an argument is no such value, or the arm is never free; the text says what blocks.
+        If an argument is no such value, or the arm is never free; the text says what blocks it.
 
     Examples
     --------
@@ -123,14 +123,14 @@ def arm_roadmap(
 
 
 def require_size(n: int, k: int) -> None:
-    """Raise InvalidValue unless an arm's roadmap can be of n milestones, each joined to k."""
+    """Raise InvalidValue unless an arm's roadmap can have n milestones, each joined to k."""
     if require_count("n", n) > MOST:
         raise InvalidValue(f"n must be at most {MOST}, got {n}")
     require_count("k", k)
 
 
 def _static(world: ArmWorld) -> ArmWorld:
-    """Return the world of a robot with empty hands in the scene as it sees it."""
+    """Return the world of a robot with empty hands in its scene."""
     robot = in_scene(world.robot, world.scene)
     if robot.holds:
         raise InvalidValue(
@@ -155,7 +155,9 @@ def _empty(world: ArmWorld, weights: Floats) -> ArmRoadmap:
 
 
 def joined(roadmap: ArmRoadmap, milestones: Floats, k: int) -> ArmRoadmap:
-    """Return a roadmap with other milestones, (n, dim), each joined to the `k` nearest that it can reach freely."""
+    """Return a roadmap with other milestones, (n, dim), each joined to the `k` nearest that it reaches
+    by free motions.
+    """
     edges, turns = _free_edges(roadmap.world, roadmap.one_turn, milestones, roadmap.weights, k)
     return read_only(replace(roadmap, milestones=milestones, edges=edges, turns=turns))
 

@@ -1,4 +1,4 @@
-"""Files of roadmaps: those of arms know their robot and static scene; and reading one of any world."""
+"""Files of roadmaps; those of arms hold their robot and static scene.  And reading a roadmap of any world."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from evenroad.world.bisection import require_few_segments
 _SETTINGS = ("resolution", "clearance")
 _ARRAYS = ("milestones", "edges", "turns", "weights")
 _SURFACES = ("surface_points", "surface_triangles")
-"""Of the clouds and meshes of the static scene, one after the other."""
+"""Names of the arrays of clouds and meshes of the static scene, one after the other."""
 _OF_ARMS = OF_ALL | {"robot", "scene", "settings", *_ARRAYS, *_SURFACES}
 _SCENE = ("name", "obstacles", "allowed", "states", "limits")
 
@@ -50,12 +50,12 @@ def load_roadmap(file: Path) -> Roadmap:
     Parameters
     ----------
     file : path-like
-        Of an arm it holds the robot and its static scene, too.
+        A file of ``roadmap.save``; that of an arm holds the robot and its static scene, too.
 
     Returns
     -------
     Roadmap
-        ``roadmap.within(world)`` refuses a world that it was not built for, with what differs.
+        ``roadmap.within(world)`` refuses a world that it was not built for, and says what differs.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def load_roadmap(file: Path) -> Roadmap:
 
 
 def _check(path: Path, made: ArmRoadmap) -> None:
-    """Raise BrokenFile unless milestones, edges and turns are what a roadmap of the robot can have."""
+    """Raise BrokenFile unless milestones, edges and turns are possible for a roadmap of the robot."""
     dim, n, m = len(made.robot.group), len(made.milestones), len(made.edges)
     if not n:
         raise BrokenFile(f"{path}: it must have a milestone or more")
@@ -125,7 +125,7 @@ def _surface(obstacle: Obstacle) -> TriangleMesh | None:
 
 
 def _size(obstacle: Obstacle) -> tuple[float, ...]:
-    """Return the dimensions of a body; of a cloud its radius and number of points, of a mesh two numbers of rows."""
+    """Return the dimensions of a body: of a cloud its radius and number of points, of a mesh two numbers of rows."""
     if isinstance(obstacle.body, PointCloud):
         return obstacle.body.radius, len(obstacle.body.points)
     mesh = _surface(obstacle)

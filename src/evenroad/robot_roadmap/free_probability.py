@@ -1,4 +1,4 @@
-"""How likely a configuration is free in a scene that nobody knows yet: its share among random scenes."""
+"""The probability that a configuration is free in an unknown scene: its share among random scenes."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
 from evenroad.robot.kinematics import capsule_endpoints, link_poses
 
 BOXES = (3, 30)
-"""A random scene has so many boxes, the last number not included."""
+"""Range of the number of boxes in a random scene, the last number not included."""
 
 HALF_EXTENTS = (0.01, 0.03, 0.25, 0.5)
-"""Of a box, as shares of the reach: the least, the range that their typical size is drawn from, and the largest."""
+"""Half extents of boxes as shares of the reach: the least, the range of their typical size, and the largest."""
 
 CLEAR = 0.25
-"""Boxes stand at least so far from the axis of the base, as a share of the reach."""
+"""Least distance of boxes from the axis of the base, as a share of the reach."""
 
 FULL = 0.5
-"""Boxes are added up to this volume, as a share of the cube of the reach."""
+"""Largest volume of all boxes, as a share of the cube of the reach."""
 
 TRIES = 100
-"""Places that are tried for a box: a robot that goes straight up has none away from its axis."""
+"""Number of positions that are tried for a box: a robot that moves straight up has none away from its axis."""
 
 SEEN = 2000
-"""Configurations that tell how far the robot reaches."""
+"""Number of configurations that the reach is measured on."""
 
 
 class Surroundings(NamedTuple):
-    """Where a robot gets to: its base and two corners, (3,) each, and how far from the base [m]."""
+    """The reach of a robot: its base and two corners, (3,) each, and the largest distance from the base [m]."""
 
     base: Floats
     low: Floats
@@ -42,7 +42,7 @@ class Surroundings(NamedTuple):
 
     @classmethod
     def of(cls, robot: Robot, q: Floats) -> Surroundings:
-        """Return them from configurations, (n, dim)."""
+        """Measure it on configurations, (n, dim)."""
         some = q[:SEEN]
         points = capsule_endpoints(robot, some).reshape(-1, 3)
         moved_first = next(i for i, joint in enumerate(robot.joints) if joint.name == robot.group[0])
@@ -61,7 +61,7 @@ def free_probability(
 ) -> Floats:
     """Return for each configuration, (n, dim), the share of random scenes in which no box touches it: (n,).
 
-    The boxes stand anywhere within the robot's reach; they know of no task.
+    The boxes stand anywhere within the robot's reach; they depend on no task.
     """
     bare, around = replace(robot, pairs=()), Surroundings.of(robot, q)
     free = np.zeros(len(q))
@@ -73,7 +73,7 @@ def free_probability(
 
 
 def random_scene(base: Floats, low: Floats, high: Floats, reach: float, rng: np.random.Generator) -> Scene:
-    """Return boxes at random between two corners, (3,), of sizes in proportion to the reach [m]."""
+    """Return random boxes between two corners, (3,), of sizes in proportion to the reach [m]."""
     least, small, large, most = HALF_EXTENTS
     typical = rng.uniform(np.log(small), np.log(large))
     boxes: list[Obstacle] = []

@@ -1,4 +1,4 @@
-"""A query of a roadmap in one compiled program: the search needs edges evaluated, and the lanes do, sixteen at once."""
+"""A query of a roadmap in one compiled program: a search that evaluates edges in sixteen lanes."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ from evenroad.robot_roadmap.search import (
 Ints = npt.NDArray[np.int64]
 
 TOLERANCE, MOST_BATCHES = 1e-6, 1024
-"""Limits of the proof of a motion [m]."""
+"""Tolerance [m] and largest number of batches of the proof of a motion."""
 
 
 @program
@@ -70,10 +70,10 @@ def find_path(
     dynamic: int,
     full: int,
 ) -> int:
-    """Search until there is a path of which every motion is proved free, and return how the call ended.
+    """Search until there is a path all of whose motions are proved free, and return how the call ended.
 
     `header` is that of `search_at`; `fresh` is 1 for a new query, 0 to go on.  `full` and `dynamic` are addresses of
-    what `checks_of` takes, but for the resolution: of all, and of what the roadmap does not know to be free.
+    the arguments of `checks_of`, without the resolution: of the whole world, and of what the roadmap did not check.
     """
     everything, moved = _checks_at(full, resolution), _checks_at(dynamic, resolution)
     s = search_at(header)
@@ -103,7 +103,7 @@ def find_path(
 
 @quick
 def _checks_at(table: int, resolution: float) -> Checks:
-    """Return the checks of a world from the addresses in a table."""
+    """Return the checks of a world from a table of addresses."""
     at = integers_at(table, (5,))
     return checks_of(at[0], resolution, at[1], at[2], at[3], at[4])
 
@@ -114,7 +114,7 @@ def _terminals_free(s: Search, everything: Checks) -> bool:
     terminals, dim = s.header[TERMINALS], s.header[DIM]
     for first in range(0, terminals, LANES):
         for lane in range(LANES):
-            # Lanes to spare repeat the last row.
+            # Unused lanes repeat the last row.
             q = s.terminals[min(first + lane, terminals - 1)]
             if not enter(q, everything.bounds, q):
                 return False
@@ -137,7 +137,7 @@ def _evaluate(s: Search, check: int, moved: Checks, everything: Checks) -> None:
         free = blocked(moved) == 0
     else:
         s.header[MOTIONS] += 1
-        # Of motions between free configurations sixteen states do before the proof.
+        # Sixteen states of motions between free configurations are enough before the proof.
         known = START if check == LINK and s.nodes[s.header[BY]] == UNKNOWN else COARSE
         free = motion_free(a, b, known, moved if _is_old(s, check) else everything)
     record(s, check, FREE if free else BLOCKED)
@@ -151,7 +151,7 @@ def _is_old(s: Search, check: int) -> bool:
 
 @quick
 def _is_proved(s: Search, moved: Checks, everything: Checks) -> bool:
-    """Return whether the path that was found is proved; a motion that is not is blocked from now on."""
+    """Return whether the path is proved; a motion that is not becomes blocked."""
     entry = s.header[PENDING]
     while entry >= 0:
         check = check_of(s, entry)

@@ -1,4 +1,4 @@
-"""Which milestones start and goals are tried to be linked to, in compiled code."""
+"""The choice of milestones that start and goals are linked to, in compiled code."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
 ONWARD = 0.5
-"""Links are tried in the order of their length and this share of what is left beyond them."""
+"""Weight of the distance beyond a link, in the order in which links are tried."""
 
 HALVINGS = 12
-"""So often at most an interval is halved, until no more than twice the wanted ones are below: they are sorted."""
+"""Largest number of halvings of an interval, until it holds at most twice the wanted ones, which are then sorted."""
 
 
 @quick
 def choose_links(s: Search, terminal: int) -> None:
-    """Choose milestones that are near, or on the way to the others; a terminal that is a milestone needs no other."""
+    """Choose milestones that are near, or towards the other terminals; a terminal at a milestone needs no other."""
     h, n = s.header, s.header[NODES]
     away = s.away[terminal * h[CAPACITY] : terminal * h[CAPACITY] + n]
     same = _milestone_at(s, terminal, away)
@@ -50,7 +50,7 @@ def choose_links(s: Search, terminal: int) -> None:
 
 @quick
 def _milestone_at(s: Search, terminal: int, away: Singles) -> int:
-    """Return the first free milestone that a terminal is, or -1."""
+    """Return the first free milestone that equals a terminal, or -1."""
     some = False
     for i in range(len(away)):
         some |= away[i] == np.float32(0.0)
@@ -63,7 +63,7 @@ def _milestone_at(s: Search, terminal: int, away: Singles) -> int:
 
 @quick
 def _write_wants(s: Search, terminal: int, away: Singles, wants: Singles) -> None:
-    """Write keys, the less the sooner; inf for what is blocked."""
+    """Write the order of milestones as keys, lowest first; inf for blocked ones."""
     h, n, links = s.header, len(away), s.links[terminal]
     beyond = s.away[h[CAPACITY] : h[CAPACITY] + n] if terminal == 0 else s.away[:n]
     for i in range(n):
@@ -81,7 +81,7 @@ def _write_wants(s: Search, terminal: int, away: Singles, wants: Singles) -> Non
 
 @quick
 def _least(s: Search, wants: Singles, most: int, into: Ints) -> int:
-    """Write the milestones that are wanted most, in order, of equal ones the first; return how many."""
+    """Write the milestones with the lowest keys, in order, ties to the first; return their number."""
     limit, count = _limit(wants, most), 0
     for i in range(len(wants)):
         if wants[i] <= limit:
@@ -91,7 +91,7 @@ def _least(s: Search, wants: Singles, most: int, into: Ints) -> int:
 
 @quick
 def _limit(wants: Singles, most: int) -> np.float32:
-    """Return a number that so many wants, and few others, are not greater than; the largest where few are finite."""
+    """Return a limit that `count` keys, and few others, do not exceed; the largest key where few are finite."""
     low, high, found = np.float32(0.0), np.float32(0.0), 0
     for i in range(min(2 * most, len(wants))):
         if wants[i] < np.inf:

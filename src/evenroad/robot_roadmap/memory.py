@@ -1,4 +1,4 @@
-"""What the compiled search of a roadmap works in: a header of counts and addresses, and the arrays it tells of."""
+"""Memory of the compiled search of a roadmap: a header of counts and addresses, and the arrays."""
 
 from __future__ import annotations
 
@@ -26,47 +26,47 @@ Bytes = npt.NDArray[np.uint8]
 Singles = npt.NDArray[np.float32]
 
 UNKNOWN, BLOCKED, FREE, PROVED = range(4)
-"""What is known of a milestone or an edge: FREE is an edge at its states, PROVED one throughout."""
+"""States of a milestone or an edge: an edge is FREE if its states are, PROVED if it is free throughout."""
 
 CAPACITY, HALVES, EDGES, DIM, TERMINALS, LINKS, STATES, ENTRIES = range(8)
-"""Header: room for milestones, half edges and edges; coordinates; start and goals, and links of each; room for states
-and entries."""
+"""Header: capacities of milestones, half edges and edges; coordinates; start and goals, and links of each; capacities
+of states and entries."""
 
 NODES, HALVES_MADE, EDGES_MADE, BASE, ANY_MULTI_TURN = range(8, 13)
-"""Header: milestones, half edges and edges there are; how many edges are known to be free of robot and static scene; 1
-where joints are lifted by whole turns."""
+"""Header: numbers of milestones, half edges and edges; number of edges that are known to be free of robot and static
+scene; 1 where joints have more than one turn."""
 
 PHASE, SIZE, MADE, WAITING, PENDING, TO, BY = range(13, 20)
-"""Header: how far the search is: states, entries, those in the queue, the one at hand; of an edge to be evaluated the
-milestone or terminal, and the edge or the milestone that it is linked to."""
+"""Header: the phase of the search, its states, entries, those in the queue, the current one; of an edge to be evaluated
+the milestone or terminal, and the edge or the milestone that it is linked to."""
 
 ROWS, GOAL, CONFIGURATIONS, MOTIONS, BATCHES = range(20, 25)
-"""Header: waypoints of the path, the goal it leads to; configurations and motions that were checked, batches of sixteen
-checks."""
+"""Header: waypoints of the path, the goal it leads to; numbers of configurations, motions and batches checked."""
 
 CHECK_STRAIGHT, CHECK_GOALS, OPEN, SEARCH = range(4)
 """Phases of a search."""
 
 NODE, EDGE, LINK, STRAIGHT, FOUND, NONE, FULL, TAKEN, SPENT, PAUSED = range(10)
 """What a search needs evaluated: a milestone, an edge, a link of a start or goal, the motion straight to a goal.  And
-how it ends: a path, none, no room, start or goals not free, budget spent, its slice of checks used up."""
+how it ends: a path, none, memory full, start or goals in collision, budget spent, its slice of checks used up."""
 
 OTHER, NEXT, NUMBER, HALF = range(4)
-"""Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
+"""Columns of a half edge: where it leads, the next one of the same milestone or -1, its edge; their number."""
 
 LOW, HIGH, MULTI_TURN, ENDLESS, MIDDLE, GREED, CHECK_COST, RULE_ROWS = range(8)
-"""Rows of the rules: limits; 1 for joints that are lifted by whole turns, or turn on for ever; the middle of the range
-of milestones; what the bound is multiplied by, 1 for the shortest path; what a unit of length counts of an edge that is
-not evaluated yet, 1 where evaluations are cheap.  And how many rows that is."""
+"""Rows of the rules: limits; 1 for joints of more than one turn, or endless ones; the middle of the range of
+milestones; the factor of the bound, 1 for the shortest path; the cost of a unit of length of an edge that is not
+evaluated yet, 1 where evaluations are cheap.  And the number of rows."""
 
 OF, WINDINGS, SIBLING, REACHED = range(4)
-"""Of a state: milestone, packed turns, the next state of the same milestone or -1, the entry it was reached by."""
+"""Columns of a state: milestone, packed turns, the next state of the same milestone or -1, the entry
+that reached it."""
 
 LEFT, LEAST = range(2)
-"""Of a state: how far it is to a goal by the bound, and the least cost it was offered."""
+"""Columns of a state's bounds: its distance to a goal by the bound, and the least cost it was offered."""
 
 STATE, PARENT, VIA = range(3)
-"""Of an entry: a state, or a goal as minus its row; the entry before, or -1; and the edge, or -1 of a link."""
+"""Columns of an entry: a state, or a goal as minus its row; the entry before, or -1; and the edge, or -1 of a link."""
 
 
 class Search(NamedTuple):
@@ -128,14 +128,14 @@ class Search(NamedTuple):
 
 
 HEADER_INDEX = {name: i for i, name in enumerate(Search._fields[1:], start=BATCHES + 1)}
-"""Array -> where its address is in the header."""
+"""Position of each array's address in the header."""
 
 FIRST_INDEX, HEADER = BATCHES + 1, BATCHES + 1 + len(HEADER_INDEX)
 
 
 @quick
 def search_at(header: int) -> Search:
-    """Return what lies at the addresses of a header."""
+    """Return the arrays at the addresses of a header."""
     h = integers_at(header, (HEADER,))
     capacity, dim, rows, states, entries = h[CAPACITY], h[DIM], h[TERMINALS] + 1, h[STATES], h[ENTRIES]
     at = h[FIRST_INDEX:]
@@ -171,7 +171,7 @@ def search_at(header: int) -> Search:
 
 @quick
 def kept_in_order(keys: Floats, items: Ints, count: int, most: int, key: float, item: int) -> int:
-    """Put an item among the so many with the least keys, if it is one of these, and return how many there are now."""
+    """Insert an item among the `count` least keys, if it belongs there, and return their number."""
     if count == most and key >= keys[count - 1]:
         return count
     count = min(count + 1, most)

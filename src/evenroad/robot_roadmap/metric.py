@@ -1,4 +1,4 @@
-"""Milestones after whole turns, and how far they are from each other and from start and goals; compiled."""
+"""Distances of milestones after whole turns from each other and from start and goals; compiled."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from evenroad.robot_roadmap.turns import MOST_MULTI_TURN, TURN
 Floats = npt.NDArray[np.float64]
 
 BITS = 4
-"""Turns of all joints are packed into one number, ``sum_k turn_k 16^k``."""
+"""Bits of one joint's turns in the packed number of all, ``sum_k turn_k 16^k``."""
 
 _OFFSETS = sum(2 ** (BITS - 1) << (BITS * k) for k in range(MOST_MULTI_TURN))
 
 
 @quick
 def measure(s: Search, terminal: int) -> None:
-    """Write how far each milestone is from a terminal, after the turns that bring it nearest."""
+    """Write the distance of each milestone from a terminal, after the turns that bring it nearest."""
     n, capacity = s.header[NODES], s.header[CAPACITY]
     away, turns = s.away[terminal * capacity :][:n], s.turns[terminal, :n]
     for i in range(len(away)):
@@ -62,7 +62,9 @@ def write(s: Search, node: int, packed: int, q: Floats) -> None:
 
 @quick
 def is_at(s: Search, terminal: int, node: int) -> bool:
-    """Return whether a terminal is a milestone after its turns: a distance of 0 in single precision does not say so."""
+    """Return whether a terminal equals a milestone after its turns; a distance of 0 in single precision may not mean
+    it.
+    """
     write(s, node, s.turns[terminal, node], s.motion[0])
     same = True
     for k in range(s.header[DIM]):
@@ -72,7 +74,7 @@ def is_at(s: Search, terminal: int, node: int) -> bool:
 
 @quick
 def length_of_edge(s: Search, a: int, b: int, turns: int) -> float:
-    """Return how long the motion between two milestones is that leads past the second by packed turns."""
+    """Return the length of the motion between two milestones that leads past the second by packed turns."""
     write(s, a, 0, s.motion[0])
     write(s, b, turns, s.motion[1])
     return distance(s, s.motion[0], s.motion[1])
@@ -80,7 +82,7 @@ def length_of_edge(s: Search, a: int, b: int, turns: int) -> float:
 
 @quick
 def distance(s: Search, a: Floats, b: Floats) -> float:
-    """Return how far two configurations are apart in the metric of the space."""
+    """Return the distance of two configurations in the metric of the space."""
     squared = 0.0
     for k in range(s.header[DIM]):
         squared += apart_in(s, k, b[k] - a[k]) ** 2
@@ -89,12 +91,12 @@ def distance(s: Search, a: Floats, b: Floats) -> float:
 
 @quick
 def apart_in(s: Search, k: int, apart: float) -> float:
-    """Return how far two values of a joint are apart the short way."""
+    """Return the difference of two values of a joint, the shorter one for an endless joint."""
     return apart - TURN * np.rint(apart / TURN) if s.rules[ENDLESS, k] > 0.0 else apart
 
 
 @quick
 def _turn(packed: int, k: int) -> int:
-    """Return the turns of one joint from those of all, whose sum ``sum_k turn_k 16^k`` is their packed form."""
+    """Return the turns of one joint from the packed number of all, ``sum_k turn_k 16^k``."""
     # Each is brought to 0 .. 15 first, so that a negative one does not borrow from the next.
     return (((packed + _OFFSETS) >> (BITS * k)) & (2**BITS - 1)) - 2 ** (BITS - 1)

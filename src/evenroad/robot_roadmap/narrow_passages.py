@@ -1,7 +1,7 @@
 """Hard queries in random narrow passages, and the configurations that can be joined to them.
 
-Where a roadmap fails, a start or goal sees none of its milestones.  So milestones learn from ends that no task has
-shown: the tip of the robot in boxes of five walls, anywhere that it gets to.
+Where a roadmap fails, none of its milestones is visible from a start or goal.  So milestones are chosen for hard
+queries of no particular task: the tip of the robot is inside random boxes of five walls, anywhere within its reach.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from evenroad.robot.kinematics import capsule_endpoints, link_poses
 from evenroad.robot_roadmap.free_probability import Surroundings
 
 HALF_EXTENTS = ((0.12, 0.25), (0.1, 0.22), (0.1, 0.22))
-"""Ranges of a pocket's depth, width and height, halved, as shares of the reach."""
+"""Ranges of a passage's half depth, half width and half height, as shares of the reach."""
 
 _LEAST, _MOST = np.transpose(HALF_EXTENTS)
 _SIDES = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])
@@ -28,47 +28,47 @@ WALL = 0.01
 """Half of the thickness of a wall, as a share of the reach."""
 
 UPWARDS = 0.3
-"""Share of the pockets that are open above; the others open towards the robot, turned by up to TURNED [rad]."""
+"""Share of the passages that are open above; the others open towards the robot, turned by up to TURNED [rad]."""
 
 TURNED = 0.7
 
 INSIDE = 0.7
-"""How far inside of a pocket the tip is, as a share of its half extents."""
+"""Largest distance of the tip from a passage's centre, as a share of its half extents."""
 
 IN_ONE = 4
-"""Ends in one pocket at most."""
+"""Largest number of queries in one passage."""
 
 FIRST = 4096
-"""Configurations that each end is tried to be joined to: the first ones, wherever they are, so that what is seen from
-afar counts as well."""
+"""Number of configurations that each query is tried to be joined to wherever they are: the first ones."""
 
 NEAR = 1500
-"""And the nearest of those that follow."""
+"""Number of nearest configurations, of those that follow, that each query is tried to be joined to, too."""
 
 STEP = 0.2
-"""Of the motions that are tried; nothing is proved here [rad]."""
+"""Resolution of the motions that are tried; nothing is proved here [rad]."""
 
 EARLY = 0.1
-"""How far along a motion it is checked first: most that leave a pocket touch its walls at once."""
+"""Share of a motion at which it is checked first: most that leave a passage touch its walls at once."""
 
 BATCH = 64
-"""Pockets that are drawn at once."""
+"""Number of passages that are drawn at once."""
 
 MOST_SEEN, FEWEST = 6 * 10**7, 50
-"""Pairs of capsules on all motions to what ends see: no more ends follow then, if there are that many."""
+"""Number of pairs of capsules on all visible motions after which no more queries follow, if there are at
+least FEWEST."""
 
 TRIES = 40
-"""Pockets for each end that is wanted, at most."""
+"""Largest number of passages for each wanted query."""
 
 ALONG = 3
-"""Places along a capsule's axis that tell most pockets that it touches."""
+"""Number of points along a capsule's axis that find most passages that it touches."""
 
 STILL = 1e-3
-"""A tip that does not move so far moves not at all [m]."""
+"""Distance up to which a tip counts as not moving [m]."""
 
 
 class Visibility(NamedTuple):
-    """Which configurations ends can be joined to: the end ``own[e]`` to ``which[first[e]:first[e + 1]]``."""
+    """Visibility of configurations from queries: that of row ``own[e]`` sees ``which[first[e]:first[e + 1]]``."""
 
     own: Ints
     first: Ints
@@ -76,7 +76,7 @@ class Visibility(NamedTuple):
 
 
 def no_visibility() -> Visibility:
-    """Return what no end sees."""
+    """Return the visibility of no query."""
     nothing = np.empty(0, dtype=np.int64)
     return Visibility(nothing, np.zeros(1, dtype=np.int64), nothing)
 
@@ -90,9 +90,9 @@ def hard_queries(
     rng: np.random.Generator,
     progress: Callable[[float], None] = lambda _: None,
 ) -> Visibility:
-    """Return what `count` ends in pockets at random see of a pool, (n, dim); fewer where hardly any is free.
+    """Return what is visible from `count` random hard queries of a pool, (n, dim); fewer where hardly any is free.
 
-    `scaled` is the pool in the metric that tells which configurations are near.
+    `scaled` is the pool in the metric that decides which configurations are near.
     """
     if not count:
         return no_visibility()
@@ -101,7 +101,7 @@ def hard_queries(
     body, radii = body_of(robot, pool)
     bare, inside = replace(robot, pairs=()), ArmWorld(robot, cell, resolution=STEP)
     pool = inside.space.wrapped(pool)
-    # What threads share is made before there are any.
+    # Threads share this: it is made before they start.
     inside.valid(pool[:1])
     scaled = np.ascontiguousarray(scaled.T)
     own_of: list[int] = []
@@ -116,7 +116,7 @@ def hard_queries(
                 if len(own_of) == count:
                     return
                 own = int(owns[i])
-                # What the pool is free of already is not asked about again.
+                # The pool is free of these already.
                 world = ArmWorld(bare, Scene(batch.walls(i), name="pocket"), resolution=STEP)
                 if not world.valid(pool[own : own + 1])[0]:
                     continue
@@ -140,9 +140,10 @@ def hard_queries(
 
 
 def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: int) -> Ints:
-    """Return which configurations a straight motion joins to an end, itself left out: of the first ones and those near.
+    """Return which configurations a straight motion joins to a query, except itself: of the first ones and the near
+    ones.
 
-    `world` has the pocket alone, `inside` robot and cell; `scaled` is (dim, n).
+    `world` has the passage alone, `inside` robot and static scene; `scaled` is (dim, n).
     """
     later = np.arange(FIRST, len(pool))
     if len(later) > NEAR:
@@ -159,7 +160,7 @@ def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: 
 def joined_to(passage: ArmWorld, inside: ArmWorld, pool: Floats, end: int, rows: Ints) -> Ints:
     """Return which of some rows of a pool, (n, dim), a straight motion joins to the row `end`.
 
-    The end is free of the pocket, all of the pool of what is `inside`, robot and static scene.
+    The query is free of the passage, and the whole pool is free in `inside`, with robot and static scene.
     """
     rows = rows[rows != end]
     here = np.broadcast_to(pool[end], (len(rows), pool.shape[1]))
@@ -176,7 +177,7 @@ def last_links(robot: Robot) -> list[int]:
 
 
 def tips_of(robot: Robot, pool: Floats) -> Floats:
-    """Return the places of the links that carry no other and move, (n, tips, 3) [m]."""
+    """Return the positions of the moving last links, (n, tips, 3) [m]."""
     positions = np.concatenate(
         [link_poses(robot, q)[..., :3, 3] for q in np.array_split(pool, -(-len(pool) // 10_000))]
     )
@@ -184,7 +185,7 @@ def tips_of(robot: Robot, pool: Floats) -> Floats:
 
 
 def body_of(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
-    """Return places along the axes of all capsules, (n, places, 3), and their radii, (places,) [m]."""
+    """Return points along the axes of all capsules, (n, points, 3), and their radii, (points,) [m]."""
     endpoints = np.concatenate(
         [capsule_endpoints(robot, q) for q in np.array_split(pool, -(-len(pool) // 10_000))]
     )
@@ -194,8 +195,8 @@ def body_of(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
 
 
 class Passages(NamedTuple):
-    """Boxes without their sides to -x: centres, (m, 3), axes, (m, 3, 3), half extents, (m, 3), places and half extents
-    of their walls, (m, 5, 3) each.
+    """Boxes without their sides to -x: centres, (m, 3), axes, (m, 3, 3), half extents, (m, 3), positions and half
+    extents of their walls, (m, 5, 3) each.
     """
 
     centre: Floats
@@ -205,9 +206,9 @@ class Passages(NamedTuple):
     sizes: Floats
 
     def touched_by(self, body: Floats, radii: Floats) -> Bools:
-        """Return of which pockets a wall is nearer to one of some places, (m, n, 3), than its radius, (n,): (m,).
+        """Return which passages have a wall nearer to one of some points, (m, n, 3), than its radius, (n,): (m,).
 
-        What costs no world.
+        It needs no world.
         """
         apart = np.einsum("mni,mij->mnj", body - self.centre[:, np.newaxis], self.turn)[:, :, np.newaxis]
         apart = np.abs(apart - self.positions[:, np.newaxis]) - self.sizes[:, np.newaxis]
@@ -217,13 +218,13 @@ class Passages(NamedTuple):
         return touched
 
     def holds(self, i: int, positions: Floats) -> Bools:
-        """Return which places, (n, 3), are well inside of a pocket."""
+        """Return which points, (n, 3), are well inside a passage."""
         x, y, z = (np.abs((positions - self.centre[i]) @ self.turn[i]) < INSIDE * self.half[i]).T
         inside: Bools = x & y & z
         return inside
 
     def walls(self, i: int) -> tuple[Obstacle, ...]:
-        """Return the walls of a pocket as obstacles."""
+        """Return the walls of a passage as obstacles."""
         axes = tuple(self.turn[i].ravel().tolist())
         return tuple(
             Obstacle.of(
@@ -238,7 +239,7 @@ class Passages(NamedTuple):
 
 
 def passages_around(tips: Floats, around: Surroundings, rng: np.random.Generator) -> Passages:
-    """Return a pocket around each tip, (m, 3)."""
+    """Return a passage around each tip, (m, 3)."""
     x, y, _ = (tips - around.base).T
     angle = np.arctan2(y, x) + rng.uniform(-TURNED, TURNED, len(tips))
     turn = np.zeros((len(tips), 3, 3))

@@ -1,4 +1,4 @@
-"""The robot's own shapes, asked by coal where its capsules touch: they contain the shapes, and so refuse more."""
+"""The robot's own shapes, checked by coal where its capsules touch: capsules contain the shapes and refuse more."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from evenroad.robot.reference.validate import FINER
 from evenroad.space import JointSpace
 
 RAY = np.array([0.35921, 0.48217, 0.79904])
-"""A direction along which no one draws."""
+"""Direction of rays, which no edge of a drawing has."""
 
 
 @dataclass(frozen=True, eq=False)
 class OwnShapesWorld:
     """A robot that is free where its capsules are or, else, its own shapes are.
 
-    What the capsules prove is free without a question to coal; other motions are checked at states a tenth of the
-    resolution apart, by coal where the capsules touch.  What is wholly inside of a mesh touches it.  `shapes` are as of
+    Motions that the capsules prove free need no coal.  Other motions are checked at states a tenth of the resolution
+    apart, by coal where the capsules touch.  A body wholly inside a mesh touches it.  `shapes` are as of
     :func:`evenroad.robot.reference.coal_world.original_shapes`.  Raises what CoalWorld does.  Clouds block as they do
     for capsules alone: coal knows none.
     """
 
     backend: ClassVar[str] = "coal"
     proof: ClassVar[str] = "resolution"
-    """Of a path whose motions the capsules do not all prove."""
+    """The proof of a path whose motions the capsules do not all prove."""
 
     capsules: ArmWorld
     shapes: Sequence[Shape]
@@ -45,7 +45,7 @@ class OwnShapesWorld:
         scene, resolution = world.scene, world.resolution
         names = [each.name for each in scene.obstacles if isinstance(each.body, PointCloud)]
         others = [each.name for each in scene.obstacles if each.name not in names]
-        # Of the robot against itself the shapes are the judge.
+        # Self-collision is decided by the shapes.
         bare = replace(world.robot, pairs=())
         clouds = ArmWorld(bare, scene.without(*others), resolution=resolution) if names else None
         capsules = ArmWorld(world.robot, scene.without(*names), resolution=resolution) if names else world
@@ -73,7 +73,7 @@ class OwnShapesWorld:
         return self.capsules.valid(q)
 
     def motion_proved(self, a: Floats, b: Floats) -> Bools:
-        """Return which motions, (m, dim) each, the capsules prove free: (m,); that asks coal nothing."""
+        """Return which motions, (m, dim) each, the capsules prove free: (m,); coal is not called."""
         return self.capsules.motion_certified(a, b, VALIDATION_TOLERANCE)
 
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
@@ -97,7 +97,7 @@ class OwnShapesWorld:
 
 
 class SolidMeshes(CoalWorld):
-    """As CoalWorld, but what is wholly inside of a mesh touches it: a link in an obstacle, or the other way round."""
+    """A CoalWorld in which a body wholly inside a mesh touches it: a link in an obstacle, or the other way round."""
 
     def _contacts(self, poses: Floats, near: Bools) -> Iterator[tuple[str, str]]:
         yield from super()._contacts(poses, near)
@@ -129,7 +129,7 @@ class SolidMeshes(CoalWorld):
             other = number + len(self._shapes)
             for mesh, body in ((shape, other), (other, shape)) if is_obstacle else ():
                 if mesh in self._corners:
-                    # Surfaces that do not meet are inside of each other piece by piece: one place of each tells.
+                    # Surfaces that do not meet are inside each other piece by piece: one point of each decides.
                     points = (
                         points_in_pieces(self._corners[body]) if body in self._corners else np.zeros((1, 3))
                     )
@@ -143,7 +143,9 @@ class SolidMeshes(CoalWorld):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class WithinCapsules(SolidMeshes):
-    """As SolidMeshes, of shapes that lie within a robot's capsules: where these touch nothing, nobody else is asked."""
+    """SolidMeshes of shapes that lie within a robot's capsules: where these touch nothing, the shapes
+    are not checked.
+    """
 
     capsules: ArmWorld
 
@@ -156,8 +158,8 @@ class WithinCapsules(SolidMeshes):
 
 
 class _Inner(NamedTuple):
-    """What may be inside of which mesh, and the number of the test of both, (m,) each; a place of it, in its frame; the
-    mesh's box in its own, (m, 3).
+    """What may be inside which mesh, and the number of the test of both, (m,) each; a point of it, in its frame; the
+    mesh's box in its own frame, (m, 3).
     """
 
     test: Ints
@@ -170,7 +172,7 @@ class _Inner(NamedTuple):
 
 def points_in_pieces(corners: Floats) -> Floats:
     """Return a corner of each connected piece of a surface of triangles, (t, 3, 3): (p, 3)."""
-    # Imported late: linear algebra comes with it, which a plan without meshes does not need.
+    # Imported late: it loads linear algebra, which a plan without meshes does not need.
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -183,10 +185,10 @@ def points_in_pieces(corners: Floats) -> Floats:
 
 
 def is_inside(corners: Floats, point: Floats) -> bool:
-    """Return whether a place, (3,), is inside of the surface of triangles, (t, 3, 3), as nearly as it is closed.
+    """Return whether a point, (3,), is inside the surface of triangles, (t, 3, 3), as nearly as it is closed.
 
-    The solid angles of its triangles tell (van Oosterom and Strackee 1983), or the parity of a ray, which does not
-    mind triangles that are seen from the wrong side.
+    The solid angles of its triangles decide (van Oosterom and Strackee 1983), or the parity of a ray, which does not
+    depend on the orientation of triangles.
     """
     a, b, c = np.moveaxis(corners - point, 1, 0)
     one, two, three = (np.linalg.norm(each, axis=1) for each in (a, b, c))

@@ -1,4 +1,4 @@
-"""A query of a roadmap in a scene: by one compiled program, or motion by motion where the lanes do not check."""
+"""A query of a roadmap in a scene: by one compiled program, or motion by motion where lanes do not work."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ _SLICE = 1000
 
 
 class Checks(World, Protocol):
-    """A world that proves motions, and says who does: ``lanes`` are called by compiled code."""
+    """A world that proves motions; compiled code calls its ``lanes`` where they work."""
 
     @property
     def backend(self) -> str:
-        """Who checks."""
+        """The kind of compiled check."""
 
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions, (m, dim) each, are free: (m,)."""
 
 
 class SearchResult(NamedTuple):
-    """How a search ended: a path, (p, dim), and its goal or -1; configurations and motions that were checked, and how
-    many batches of sixteen checks that took, where it is known.
+    """How a search ended: a path, (p, dim), and its goal or -1; numbers of configurations, motions and, where known,
+    batches of sixteen checks.
     """
 
     ended: int
@@ -59,8 +59,8 @@ class SearchResult(NamedTuple):
 
 
 def prepare() -> None:
-    """Begin to compile what a plan along a roadmap takes, in processes beside this one, unless it is kept already."""
-    # The last needed, and the longest, first: this process begins at the other end.
+    """Compile what a plan along a roadmap needs, in processes beside this one, unless it is cached."""
+    # The one that is needed last takes longest and goes first; this process begins at the other end.
     compile_beside(
         "evenroad.robot.kernel.smoothing",
         "evenroad.robot_roadmap.lane_search",
@@ -74,13 +74,13 @@ def prepare() -> None:
 def search(
     graph: SceneGraph, worlds: tuple[Checks, Checks], query: Query, most_motions: int, deadline: float
 ) -> SearchResult:
-    """Search for a path of which all motions are proved.
+    """Search for a path all of whose motions are proved.
 
-    The second of the worlds has what the roadmap does not know to be free; the first has everything.
+    The first world has everything; the second has what the roadmap did not check.
     """
     world, growth = worlds[0], 1
     if isinstance(world, ArmWorld) and world.fixed_contact is not None:
-        # Of what no joint moves compiled code is told nothing.
+        # Compiled code gets no capsules that no joint moves.
         return SearchResult(TAKEN, np.empty((0, len(query.start))), -1, 0, 0)
     while True:
         graph.prepare(query, growth)
@@ -113,7 +113,7 @@ def _by_lanes(
 
     world, dynamic = (each.lanes for each in worlds)
     moved, (checks, resolution, *rest) = dynamic.addresses, world.arguments(COUNTS + dynamic.addresses[3])[1]
-    # Both work in this thread's memory, one behind the other.
+    # Both use this thread's memory, one behind the other.
     behind = rest[-1] + 8 * COUNTS
     full = np.array([checks, *rest])
     part = np.array([*moved[:3], behind, rest[-1]])

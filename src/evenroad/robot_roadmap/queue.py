@@ -1,4 +1,4 @@
-"""The queue of a search in compiled code, and the states that it has got to."""
+"""The queue of a search in compiled code, and the states that it has reached."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from evenroad.robot_roadmap.metric import distance, write
 
 @quick
 def state_of(s: Search, node: int, packed: int) -> int:
-    """Return the state of a milestone after turns, a new one where there was none; -1 where limits forbid it."""
+    """Return the state of a milestone after turns, a new one if there was none; -1 where limits forbid it."""
     state = s.heads[node]
     while state >= 0:
         if s.states[state, WINDINGS] == packed:
@@ -54,7 +54,7 @@ def state_of(s: Search, node: int, packed: int) -> int:
         if h[ANY_MULTI_TURN] != 0 and packed != s.turns[terminal, node]:
             least = min(least, distance(s, s.motion[1], s.terminals[terminal]))
         else:
-            # Where the goal's link would be, as it was measured.
+            # As the goal's link was measured.
             least = min(least, s.away[terminal * h[CAPACITY] + node])
     s.bounds[state, LEFT], s.bounds[state, LEAST] = s.rules[GREED, 0] * least, np.inf
     if not inside:

@@ -1,4 +1,4 @@
-"""What milestones are chosen by: a recipe, and what it needs to know of robot and cell."""
+"""The recipe by which milestones are chosen, and what it precomputes for robot and static scene."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ from evenroad.robot_roadmap.spread import displacement_weights, spread_order
 from evenroad.robot_roadmap.turns import TURN, OneTurn
 
 CHOICE = 16
-"""Free configurations that one milestone is chosen from; of few milestones FIRST in all."""
+"""Number of free configurations per milestone to choose from; at least FIRST in all."""
 
 MOST_DRAWN = 1 << 20
-"""Where fewer than the wanted ones are free among so many, the robot is said to be hardly ever free."""
+"""Number of configurations after which no more are drawn; fewer free ones than wanted are then enough."""
 
 EXPLAINED = 100
-"""Of these it is found out what blocks them, and what blocks most is named."""
+"""Number of configurations for which an error finds out what blocks most."""
 
 GAMMA = 4.0
-"""Power of the chance of being free that milestones are as dense as, before the ends count."""
+"""Power of the probability of being free in the density of milestones, before hard queries count."""
 
 HARD_QUERIES = 3000
-"""Ends in pockets at random that milestones learn from."""
+"""Number of random hard queries that milestones are chosen for."""
 
 PAIRS, FEWEST_HARD_QUERIES = 60, 300
-"""Of robots with more pairs of capsules than that fewer in proportion, since each costs more, but so many at least."""
+"""Number of capsule pairs above which a robot gets fewer hard queries in proportion, and their least number."""
 
 SCENES = 400
-"""Random scenes by which the chance of being free is measured."""
+"""Number of random scenes by which the probability of being free is measured."""
 
 MEASURED = 1500
-"""Configurations that the weights of the metric are measured on."""
+"""Number of configurations that the weights of the metric are measured on."""
 
 
 class Recipe(NamedTuple):
-    """The power of the chance of being free, >= 0, and how many ends in pockets are learned from."""
+    """The power of the probability of being free, >= 0, and the number of hard queries."""
 
     gamma: float = GAMMA
     hard_queries: int = HARD_QUERIES
@@ -51,7 +51,7 @@ class Recipe(NamedTuple):
 
 class Precomputed(NamedTuple):
     """What milestones are chosen by: free configurations, (n, dim), the weights and periods of the metric, (dim,) each,
-    the chance of each to be free among random boxes, (n,), and which of them ends in pockets see.
+    the probability of each to be free among random boxes, (n,), and which are visible from hard queries.
     """
 
     pool: Floats
@@ -62,7 +62,7 @@ class Precomputed(NamedTuple):
 
 
 def recipe_for(robot: Robot) -> Recipe:
-    """Return the recipe for a robot: the more pairs it has, the fewer ends in pockets are tried."""
+    """Return the recipe for a robot: the more pairs it has, the fewer hard queries are tried."""
     return Recipe(
         GAMMA, min(HARD_QUERIES, max(FEWEST_HARD_QUERIES, HARD_QUERIES * PAIRS // max(len(robot.pairs), 1)))
     )
@@ -76,7 +76,7 @@ def precomputed(
     streams: Sequence[np.random.Generator],
     progress: Callable[[str, float], None],
 ) -> Precomputed:
-    """Find out what a recipe for n milestones needs; the streams draw pool, scenes and pockets."""
+    """Precompute what a recipe for n milestones needs; the streams draw pool, scenes and passages."""
     pool_rng, scene_rng, passage_rng = streams
     progress("drawing configurations", 0.0)
     pool = _free_pool(world, one, max(CHOICE * n, FIRST), pool_rng)
@@ -93,9 +93,9 @@ def precomputed(
         weights * pool,
         recipe.hard_queries,
         passage_rng,
-        lambda share: progress("pockets", share),
+        lambda share: progress("narrow passages", share),
     )
-    # A joint with stops repeats after its range.
+    # A joint with limits repeats after its range.
     periods = np.where(one.wraps, TURN, one.high - one.low)
     return Precomputed(pool, weights, periods, chance, seen)
 
@@ -111,7 +111,7 @@ def chosen(data: Precomputed, recipe: Recipe, n: int) -> Ints:
 
 
 def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generator) -> Floats:
-    """Return the first free ones of a low-discrepancy sequence, (count, dim), or the fewer that MOST_DRAWN hold."""
+    """Return the first free ones of a low-discrepancy sequence, (count, dim), or fewer if MOST_DRAWN hold no more."""
     drawn = 2 * count
     while True:
         cube = draw("sobol", drawn, world.space.dim, rng=rng.spawn(1)[0]).points

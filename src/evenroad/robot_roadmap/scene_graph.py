@@ -1,4 +1,4 @@
-"""SceneGraph: a roadmap in one scene with what was found out there, in memory that compiled code works in."""
+"""SceneGraph: a roadmap in one scene with the states of its milestones and edges, in memory of compiled code."""
 
 from __future__ import annotations
 
@@ -24,33 +24,36 @@ from evenroad.robot_roadmap.metric import BITS, length_of_edge, measure
 from evenroad.robot_roadmap.turns import MOST_TURNS, TURN, OneTurn
 
 JOINED = 8
-"""Nearest milestones that an inserted one may be joined to; these edges are evaluated when a search comes by."""
+"""Number of nearest milestones that an inserted one may be joined to; a search evaluates these edges
+when it needs to."""
 
 AT_ONCE = 2 ** (BITS - 1) + 1 - MOST_TURNS
-"""An inserted motion of more turns would lead from turns that are followed over all that the packed form knows."""
+"""Largest number of turns of an inserted motion, so that the packed form still holds the sum."""
 
 GROWTH = 256
-"""Milestones that room is made for when it is used up."""
+"""Number of milestones by which memory grows when it is full."""
 
 GREED = 3.0
-"""What the bound of the search is multiplied by: a third of the checks of a shortest path, and once they are shortened
-its paths are no longer."""
+"""Factor of the bound of the search: it needs a third of the checks of a shortest path, and after shortening its paths
+are not longer."""
 
 EXPENSIVE = 5.0
-"""What a unit of length counts of an edge that is not evaluated yet where evaluations are expensive."""
+"""Cost of a unit of length of an edge that is not evaluated yet, where evaluations are expensive."""
 
 OF_ROADMAP = ("milestones", "columns", "first", "halves", "leads", "lengths")
 """Arrays that scenes share until the first milestone is inserted in one of them."""
 
 OF_SCENE = ("nodes", "edges", "rules")
-"""Arrays that each scene has of its own."""
+"""Arrays of each scene."""
 
 OF_QUERY = ("links", "straight")
-"""Arrays of what is known of a query's own motions."""
+"""Arrays of the states of a query's own motions."""
 
 
 class Query(NamedTuple):
-    """A start, (dim,), and goals, (g, dim), each to be linked to so many milestones at most; GREED and PRICE."""
+    """A start, (dim,), and goals, (g, dim), the largest number of links of each, the factor of the bound, and the cost
+    of a unit of length that is not evaluated yet.
+    """
 
     start: Floats
     goals: Floats
@@ -60,13 +63,12 @@ class Query(NamedTuple):
 
 
 class SceneGraph:
-    """Milestones and edges of a roadmap, what is known of them in a scene, and those inserted there; of one thread.
+    """Milestones and edges of a roadmap, their states in a scene, and those inserted there; for one thread.
 
     Parameters
     ----------
     milestones, edges, turns : arrays, (n, dim), (m, 2), (m, dim)
-        Of the roadmap.
-    one : OneTurn
+        Arrays of the roadmap.    one : OneTurn
         The ranges of its joints.
     """
 
@@ -106,7 +108,7 @@ class SceneGraph:
         )
 
     def within(self, low: Floats, high: Floats) -> SceneGraph:
-        """Return a graph of which nothing is known, for narrower ranges, (dim,)."""
+        """Return a graph with unknown states, for narrower ranges, (dim,)."""
         fresh, q, rules = object.__new__(SceneGraph), self.arrays["milestones"], self.arrays["rules"].copy()
         fresh.header, fresh._shape = self.header.copy(), (0, 0)
         fresh.arrays = {name: self.arrays[name] for name in OF_ROADMAP}
@@ -117,22 +119,22 @@ class SceneGraph:
         return fresh
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what a copy is made of, here or in another process: it finds out for itself where its arrays are."""
+        """Return the parts of a copy, here or in another process, which sets its own addresses."""
         return {"header": self.header, "arrays": {n: self.arrays[n] for n in (*OF_ROADMAP, *OF_SCENE)}}
 
     def __setstate__(self, kept: dict[str, Any]) -> None:
-        """Make a copy, in which no query is written yet."""
+        """Restore a copy; it holds no query."""
         self.header, self.arrays, self._shape = kept["header"], {}, (0, 0)
         self._bind(**kept["arrays"])
 
     def _bind(self, **arrays: npt.NDArray[Any]) -> None:
-        """Take these arrays, and write where they are."""
+        """Set arrays, and write their addresses."""
         self.arrays |= arrays
         for name, array in arrays.items():
             self.header[at.HEADER_INDEX[name]] = address(array)
 
     def _grow(self) -> None:
-        """Take more memory for milestones and edges, and copy what there is."""
+        """Extend the memory of milestones and edges, and copy them."""
         header, more = self.header, GROWTH * (JOINED + 2)
         added = np.array([GROWTH, 2 * more, more])
         header[[at.CAPACITY, at.HALVES, at.EDGES]] += added
@@ -145,7 +147,7 @@ class SceneGraph:
             longer[name] = np.concatenate([array, np.zeros((count, *array.shape[1:]), array.dtype)])
         longer["columns"] = longer["milestones"].T.astype(np.float32, order="C")
         self._bind(**longer)
-        # What there is of a query has another shape now.
+        # The arrays of a query have another shape now.
         self._shape = (0, 0)
 
     def prepare(self, query: Query, growth: int = 1) -> None:
@@ -166,7 +168,7 @@ class SceneGraph:
             self.arrays[name][:] = before
 
     def _allocate(self, terminals: int, growth: int) -> None:
-        """Take memory for a query of so many start and goals, in which nothing is written yet."""
+        """Allocate memory for a query with this number of terminals."""
         header, dim, capacity = self.header, int(self.header[at.DIM]), int(self.header[at.CAPACITY])
         self._shape = terminals, growth
         # The last row is a configuration to be inserted.
@@ -199,13 +201,13 @@ class SceneGraph:
 
     @property
     def size(self) -> int:
-        """How many milestones there are, those that were inserted among them."""
+        """Number of milestones, inserted ones included."""
         return int(self.header[at.NODES])
 
     def insert(self, path: Floats) -> None:
-        """Take the waypoints of a path, (p, dim), for milestones; its motions are proved free in the scene.
+        """Insert the waypoints of a path, (p, dim), as milestones; its motions are proved free in the scene.
 
-        Nothing is inserted where joints turn so far that packed turns would be read as others.
+        Nothing is inserted where joints turn so far that packed turns would overflow.
         """
         path, rules = np.ascontiguousarray(path), self.arrays["rules"]
         turns = np.rint((path - rules[at.MIDDLE]) / TURN)[:, rules[at.MULTI_TURN] > 0.0]
@@ -214,7 +216,7 @@ class SceneGraph:
             return
         while True:
             if self._shape == (0, 0):
-                # Room that is worked in.
+                # Working memory.
                 self._allocate(2, 1)
             if _insert(address(self.header), address(path), len(path)):
                 return
@@ -223,7 +225,7 @@ class SceneGraph:
 
 @program
 def _insert(header: int, path: int, rows: int) -> bool:
-    """Add the waypoints of a path; return whether there was room."""
+    """Add the waypoints of a path; return whether memory was enough."""
     s = search_at(header)
     h, waypoints, edges = s.header, matrix_at(path, (rows, s.header[at.DIM])), rows * (JOINED + 1)
     if rows > 0 and (
@@ -243,7 +245,7 @@ def _insert(header: int, path: int, rows: int) -> bool:
 
 @quick
 def _add_milestone(s: Search, q: Floats) -> tuple[int, int]:
-    """Return the milestone at a free configuration, a new one where there is none, and after which turns it is there.
+    """Return the milestone at a free configuration, a new one if there is none, and its turns.
 
     A new one may be joined to its nearest ones by edges that are not evaluated yet.
     """

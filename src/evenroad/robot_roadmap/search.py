@@ -1,9 +1,9 @@
 """The search of a roadmap, in compiled code that stops where an edge has to be evaluated.
 
 A lazy A* (Cohen, Phillips and Likhachev 2015): an edge is evaluated when the search would go along it, a milestone
-before the first edge to it.  An edge that is not evaluated yet counts PRICE times its length.  Where that is above 1,
-evaluations are expensive: then a whole path is planned first, and only what is unknown of it is evaluated (Dellin and
-Srinivasa 2016).
+before the first edge to it.  The weight of an edge that is not evaluated yet is CHECK_COST times its length.  Where
+that is above 1, evaluations are expensive: a whole path is planned first, and only its unknown edges are evaluated
+(Dellin and Srinivasa 2016).
 """
 
 from __future__ import annotations
@@ -66,13 +66,15 @@ from evenroad.robot_roadmap.queue import pop, push, state_of
 Floats = npt.NDArray[np.float64]
 
 NEARBY = 2.0
-"""Links of the start count so many times their length more in the queue, but for a shortest path: near ones are tried
-first, which takes half of the checks."""
+"""Factor of the length of the start's links in the queue, except for a shortest path: near ones are tried first, which
+halves the number of checks."""
 
 
 @program
 def next_check(header: int, checked: int, result: int) -> int:
-    """Take the result of a check, or begin where `checked` is negative; return the next check, or how it ended."""
+    """Record the result of a check, or begin if `checked` is negative; return the next check, or how the
+    search ended.
+    """
     s = search_at(header)
     if checked < 0:
         begin(s)
@@ -86,7 +88,7 @@ def next_check(header: int, checked: int, result: int) -> int:
 
 @quick
 def begin(s: Search) -> None:
-    """Measure how far milestones are from start and goals, and choose those that each is tried to be linked to."""
+    """Measure the distances of milestones from start and goals, and choose the links to try."""
     for terminal in range(s.header[TERMINALS]):
         measure(s, terminal)
     for terminal in range(s.header[TERMINALS]):
@@ -96,14 +98,14 @@ def begin(s: Search) -> None:
 
 @quick
 def begin_again(s: Search) -> None:
-    """Search anew, with all that is known by now."""
+    """Search again, with all states that are known by now."""
     _clear(s)
     s.header[PHASE] = CHECK_STRAIGHT
 
 
 @quick
 def _clear(s: Search) -> None:
-    """Forget what the search has reached."""
+    """Delete what the search has reached."""
     h = s.header
     for state in range(h[SIZE]):
         s.heads[s.states[state, OF]] = -1
@@ -112,7 +114,7 @@ def _clear(s: Search) -> None:
 
 @quick
 def step(s: Search) -> int:
-    """Go on until something has to be evaluated, there is a path, or there is none."""
+    """Search until something has to be evaluated, there is a path, or there is none."""
     h, cheap = s.header, s.rules[CHECK_COST, 0] <= 1.0
     if h[PHASE] == CHECK_STRAIGHT:
         h[PHASE] = CHECK_GOALS
@@ -188,13 +190,13 @@ def _goal_link(s: Search) -> int:
 
 @quick
 def _weight(s: Search, result: int) -> float:
-    """Return what a unit of length of an edge counts of which this is known."""
+    """Return the weight of a unit of length of an edge in this state."""
     return 1.0 if result >= FREE else np.inf if result == BLOCKED else s.rules[CHECK_COST, 0]
 
 
 @quick
 def _open(s: Search) -> None:
-    """Put the motions straight to goals and the links of the start into the queue."""
+    """Push the motions straight to goals and the links of the start."""
     h, nearby = s.header, NEARBY if s.rules[GREED, 0] > 1.0 else 0.0
     for goal in range(1, h[TERMINALS]):
         if s.straight[goal] != BLOCKED:
@@ -211,7 +213,7 @@ def _open(s: Search) -> None:
 
 @quick
 def _expand(s: Search, state: int, entry: int, cheap: bool) -> bool:
-    """Put all that a state leads to into the queue; return whether there was room."""
+    """Push all successors of a state; return whether memory was enough."""
     h, node, packed, cost = s.header, s.states[state, OF], s.states[state, WINDINGS], s.costs[entry]
     if h[MADE] + h[TERMINALS] > h[ENTRIES]:
         return False
@@ -240,7 +242,9 @@ def _expand(s: Search, state: int, entry: int, cheap: bool) -> bool:
 
 @quick
 def _first_unknown(s: Search, goal: int) -> int:
-    """Return the check of what is unknown of a path: its milestones first, then its links and edges; else FOUND."""
+    """Return the check of the first unknown part of a path: its milestones first, then its links and
+    edges; else FOUND.
+    """
     here, chosen, is_edge = goal, -1, True
     while here >= 0:
         state, check = s.entries[here, STATE], check_of(s, here)
@@ -258,7 +262,7 @@ def _first_unknown(s: Search, goal: int) -> int:
 
 @quick
 def check_of(s: Search, entry: int) -> int:
-    """Return what kind of motion an entry came by, and write which one."""
+    """Return the kind of motion that led to an entry, and write which one."""
     h, state, parent = s.header, s.entries[entry, STATE], s.entries[entry, PARENT]
     if parent >= 0 and state >= 0:
         h[BY] = s.entries[entry, VIA]
@@ -275,7 +279,7 @@ def check_of(s: Search, entry: int) -> int:
 
 @quick
 def result_of(s: Search, check: int) -> int:
-    """Return what is known of what `check_of` wrote."""
+    """Return the state of what `check_of` wrote."""
     if check == EDGE:
         return s.edges[s.header[BY]]
     return s.straight[s.header[TO]] if check == STRAIGHT else s.links[s.header[TO], s.header[BY]]
@@ -283,7 +287,7 @@ def result_of(s: Search, check: int) -> int:
 
 @quick
 def write_motion(s: Search, entry: int, check: int) -> None:
-    """Write both ends of the motion that an entry came by; of a link the start or goal first."""
+    """Write both endpoints of the motion that led to an entry; of a link the terminal first."""
     from_goal = check == LINK and s.entries[entry, STATE] < 0
     _write_configuration(s, s.entries[entry, PARENT], s.motion[1 if from_goal else 0])
     _write_configuration(s, entry, s.motion[0 if from_goal else 1])
@@ -291,7 +295,7 @@ def write_motion(s: Search, entry: int, check: int) -> None:
 
 @quick
 def _write_configuration(s: Search, entry: int, q: Floats) -> None:
-    """Write where an entry leads to; -1 is the start."""
+    """Write the configuration of an entry; -1 is the start."""
     state = s.entries[entry, STATE] if entry >= 0 else 0
     if entry < 0 or state < 0:
         for k in range(s.header[DIM]):
@@ -318,7 +322,7 @@ def record(s: Search, check: int, result: int) -> None:
 
 @quick
 def write_path(s: Search) -> None:
-    """Write the path that was found, from the goal back to the start."""
+    """Write the path, from the goal back to the start."""
     entry, rows = s.header[PENDING], 0
     s.header[GOAL] = -s.entries[entry, STATE] - 1
     while entry >= 0:

@@ -1,4 +1,4 @@
-"""Places that a roadmap is asked to lead to: numbers, texts, and poses, which postures reach."""
+"""Reading start and goals of a query: numbers, texts, and poses, which postures reach."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ ConfigurationLike = str | npt.ArrayLike
 
 POSES = (Pose, PoseGoal)
 Goal = ConfigurationLike | Pose | PoseGoal
-"""A configuration, or where a link is to be."""
+"""A configuration, or a pose of a link."""
 
 
 def read_start_and_goals(
     world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[Goal]
 ) -> tuple[Floats, Goals] | PlanResult:
-    """Return start, (dim,), and goals, with all postures found that reach poses; else why a pose is not reached."""
+    """Return start, (dim,), and goals, with all postures found for poses; or the result if a pose is not reached."""
     if not any(isinstance(each, POSES) for each in (goal if isinstance(goal, list | tuple) else (goal,))):
         first, goals = as_start_and_goals(
             _configuration(world, start), _configurations(world, goal), world.space
@@ -55,7 +55,7 @@ def start_and_goals_free(world: ArmWorld, start: Floats, goals: Floats) -> bool:
 
 
 def _configuration(world: ArmWorld, given: ConfigurationLike) -> npt.ArrayLike:
-    """Return a configuration of a text; of numbers themselves."""
+    """Return the configuration of a text; numbers stay as they are."""
     return configuration(world.robot, given, world.scene) if isinstance(given, str) else given
 
 

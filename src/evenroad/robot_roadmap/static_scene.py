@@ -1,4 +1,4 @@
-"""What a roadmap was made for, and whether the robot and the scene of a world still are that."""
+"""The robot and static scene of a roadmap, and whether a world still has them."""
 
 from __future__ import annotations
 
@@ -12,15 +12,14 @@ from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, held_values, in_sce
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 
 LONG = 120
-"""Characters that tell a body."""
+"""Largest number of characters that describe a body."""
 
 
 def require_within(roadmap: ArmRoadmap, world: ArmWorld) -> Scene:
-    """Return the dynamic scene: what of a world's is not in the static scene of a roadmap.
+    """Return the dynamic scene: obstacles of a world that are not in the static scene of a roadmap.
 
-    Raises InvalidValue if the robot is another one, keeps farther away, has an obstacle of the static scene elsewhere
-    or of another shape, or lacks a contact with it that is allowed there: the milestones would touch what is not to be
-    touched.
+    Raises InvalidValue if the robot is another one, if its clearance is larger, or if an obstacle of the static scene
+    stands elsewhere, has another shape, or lacks an allowed contact: the milestones would be in collision.
     """
     scene = require_agrees(roadmap.scene, world.scene)
     require_same_robot(roadmap.robot, roadmap.scene, world.robot.empty_handed())
@@ -52,7 +51,7 @@ def require_agrees(static: Scene, scene: Scene) -> Scene:
 
 
 def joined_scenes(static: Scene, scene: Scene) -> Scene:
-    """Return a scene with all of the static one, named in it or not; raises as `require_agrees`."""
+    """Return a scene with all of the static one, repeated in it or not; raises as `require_agrees`."""
     require_agrees(static, scene)
     named = {obstacle.name for obstacle in scene.obstacles}
     return replace(
@@ -65,9 +64,9 @@ def joined_scenes(static: Scene, scene: Scene) -> Scene:
 
 
 def left_to_check(robot: Robot, static: Scene, moving: Scene, everything: Scene) -> tuple[Robot, Scene]:
-    """Return robot and scene of what a roadmap, free of the empty-handed robot and its static scene, does not know.
+    """Return robot and scene with what a roadmap of the empty-handed robot in its static scene did not check.
 
-    That is the moving obstacles; and of what the robot holds all obstacles and the robot itself.
+    That is the moving obstacles; and for what the robot holds all obstacles and the robot itself.
     """
     held = set(robot.holds)
     if not held:
@@ -114,7 +113,7 @@ def require_same_robot(made: Robot, static: Scene, given: Robot) -> None:
 
 
 def _differences(made: Robot, given: Robot) -> Iterator[str]:
-    """Yield in words how two robots differ in what decides a verdict, except for limits."""
+    """Yield, in words, the differences of two robots that decide a check, except for limits."""
     for what, ours, theirs in (
         ("joints of the group", made.group, given.group),
         ("links", made.links, given.links),
@@ -151,7 +150,7 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
 
 
 def _bodies(robot: Robot, link: str) -> list[str]:
-    """Return the capsules and hulls of a link as texts in which no two different ones look the same."""
+    """Return the capsules and hulls of a link as texts; different bodies have different texts."""
     capsules = [
         f"a capsule of radius {c.radius!r} from {c.a!r} to {c.b!r}" for c in robot.capsules if c.link == link
     ]
@@ -164,13 +163,13 @@ def _bodies(robot: Robot, link: str) -> list[str]:
 
 
 def _lost(of: Robot, other: Robot, link: str) -> str:
-    """Return how many bodies of a link another robot does not have, and the first of them."""
+    """Return the number of bodies of a link that another robot does not have, and the first of them."""
     lost = [body for body in _bodies(of, link) if body not in _bodies(other, link)]
     return f"{len(lost)}, {lost[0][:LONG]}" if lost else "none"
 
 
 def _lists(what: str, ours: object, theirs: object) -> str:
-    """Return in words what one list has and the other has not."""
+    """Return, in words, the differences of two lists."""
     first, second = list(ours), list(theirs)  # type: ignore[call-overload]
     lost = [str(name) for name in first if name not in second]
     new = [str(name) for name in second if name not in first]

@@ -1,4 +1,4 @@
-"""Whole turns: joints that span more than one are planned in one, and the search follows how often they turned."""
+"""Whole turns: joints that span more than one turn are planned in one, and the search counts the turns."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from evenroad.space import JointSpace
 TURN = 2.0 * np.pi
 
 MOST_TURNS = 6
-"""So many turns to either side are followed; the packed form of the search has room for one more."""
+"""Largest number of turns to either side; the packed form of the search has space for one more."""
 
 MOST_MULTI_TURN = 14
-"""And of so many joints, the first ones."""
+"""Largest number of joints with more than one turn: the first ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,13 +27,13 @@ class OneTurn:
     Attributes
     ----------
     low, high : ndarrays, shape (dim,)
-        What milestones are drawn in [rad or m]; a joint of more than one turn has the turn in the middle of its range.
+        Ranges of milestones [rad or m]; a joint of more than one turn has the turn in the middle of its range.
     limits : ndarray, shape (2, dim)
         The joints' own ranges; of `multi_turn` joints at most MOST_TURNS to either side of `low` and `high` [rad or m].
     wraps : ndarray of bool, shape (dim,)
-        Joints whose edges may lead over the end of the range: those that turn on for ever, or more than once.
+        Joints whose edges may lead over the end of the range: endless ones, and those of more than one turn.
     multi_turn : ndarray of bool, shape (dim,)
-        Of these, the ones with limits: their number of turns is counted along a path.
+        The ones of these with limits; their number of turns is counted along a path.
     """
 
     low: Floats
@@ -46,7 +46,7 @@ class OneTurn:
 def one_turn(space: JointSpace, whole: Bools) -> OneTurn:
     """Return the ranges of a space's joints, cut to one turn where they have more and a turn is `whole`, (dim,).
 
-    Joints beyond the first MOST_LIFTED keep theirs.
+    Joints beyond the first MOST_MULTI_TURN keep theirs.
     """
     limits = np.array([space.low, space.high])
     endless = np.array(space.wrapping)
@@ -61,19 +61,21 @@ def one_turn(space: JointSpace, whole: Bools) -> OneTurn:
 
 
 def shifts(one: OneTurn, a: Floats, b: Floats) -> Ints:
-    """Return by how many turns the shortest way from each row of `a` leads past `b`, (m, dim)."""
+    """Return by how many turns the shortest motion from each row of `a` leads past `b`, (m, dim)."""
     return np.where(one.wraps, np.rint((a - b) / TURN), 0.0).astype(np.int64)
 
 
 def whole_turns(robot: Robot) -> Bools:
-    """Return for which joints of the group a turn changes nothing, (dim,): not for one that slides, or leads others."""
+    """Return for which joints of the group a turn changes nothing, (dim,): not for sliding ones, nor those others
+    follow.
+    """
     kinds = {joint.name: joint.kind for joint in robot.joints}
     leaders = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
     return np.array([kinds[name] != "prismatic" and name not in leaders for name in robot.group])
 
 
 def winding_motions_free(world: ArmWorld, one: OneTurn, a: Floats, b: Floats, turns: Ints) -> Bools:
-    """Return which motions are proved free, with both ends turned so that they are within the limits: (m,)."""
+    """Return which motions are proved free, with both endpoints turned to be within the limits: (m,)."""
     b = np.where(one.multi_turn, b + TURN * turns, b)
     low, high = np.minimum(a, b), np.maximum(a, b)
     least, most = np.ceil((one.limits[0] - low) / TURN), np.floor((one.limits[1] - high) / TURN)

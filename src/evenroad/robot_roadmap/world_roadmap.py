@@ -1,4 +1,4 @@
-"""An arm's roadmap in one world: a planner that keeps what it has checked, and the paths that trees found for it."""
+"""An arm's roadmap in one world: a planner that keeps the results of checks, and the paths that trees found."""
 
 from __future__ import annotations
 
@@ -41,44 +41,45 @@ from evenroad.space.path import path_length
 PLANNER = "roadmap"
 
 SECONDS = RRTConnect.seconds
-"""Wall time of a query whose budget is not given [s]."""
+"""Default wall time of a query [s]."""
 
 SHARE = 0.5
-"""Fraction of the time given to the roadmap; trees get the rest, where it does not lead to the goal."""
+"""Fraction of the time given to the roadmap; trees get the rest."""
 
 TRIED_LINKS, TRIED_MOTIONS = 40, 90
-"""Links of start and goal, and motions, that are tried where trees may follow: they leave narrow passages with fewer
-checks than long links do."""
+"""Largest numbers of links of start and goal, and of motions, where trees may follow: trees leave narrow passages with
+fewer checks than long links do."""
 
 WORK, AMONG_SURFACES, LEAST_WORK = 170, 50, 30
-"""Batches of sixteen checks after which a path is not drawn tighter, those of the search among them; the same among
-clouds and triangles, where each takes longer; and what is always left for it."""
+"""Number of batches of sixteen checks of a query, search included, after which smoothing stops; the same among clouds
+and triangles, where checks take longer; and the least number for smoothing."""
 
 EXPENSIVE_LINKS, EXPENSIVE_WORK, MOST_INSERTED = 100, 800, 2000
-"""Where evaluations are expensive: links of start and goal, batches for drawing tight along the capsules, and
-milestones that queries add until no more of their starts and goals are."""
+"""Where evaluations are expensive: links of start and goal, batches of smoothing along the capsules, and the largest
+number of milestones that queries insert."""
 
 BY_CAPSULES = 5000
-"""Motions that a plan along the capsules may take before a more expensive world is asked: some milliseconds."""
+"""Largest number of motions of a plan along the capsules before a more expensive world is queried: some
+milliseconds."""
 
 _LONG = 1e8
-"""Seconds that stand for no limit."""
+"""Number of seconds that stands for no limit."""
 
 _SOME = 64
-"""Milestones among which a free one is looked for, to compile with."""
+"""Number of milestones among which a free one is searched, to compile with."""
 
 _ready: set[str] = set()
 """Backends whose programs are compiled."""
 
 
 def links_of(n: int) -> int:
-    """Return to how many of n milestones start and goal are linked: of up to 256 to all, of 1024 to half."""
+    """Return the number of n milestones that start and goal are linked to: of up to 256 all, of 1024 half."""
     return min(n, round(16.0 * np.sqrt(n)))
 
 
 @runtime_checkable
 class ExpensiveWorld(Protocol):
-    """A world of an arm that asks other bodies where its capsules touch; a dataclass with a field `capsules`."""
+    """A world of an arm that checks other bodies where its capsules touch; a dataclass with a field `capsules`."""
 
     @property
     def capsules(self) -> ArmWorld:
@@ -86,26 +87,26 @@ class ExpensiveWorld(Protocol):
 
 
 class ArmWorldRoadmap(WorldRoadmap):
-    """An arm's roadmap in one world, with what earlier queries found out there; made by :meth:`ArmRoadmap.within`.
+    """An arm's roadmap in one world, with the results of earlier checks; made by :meth:`ArmRoadmap.within`.
 
-    Threads may share it: their queries are answered one after the other, each with what those before it found out.  So
-    the same queries in the same order have the same answers; in another order paths may differ, each proved as ever.
-    Threads with one each, or a copy of one, wait for nobody, and their answers depend on their own queries alone.
+    Threads may share it: their queries are answered one after the other, each with the results of earlier checks.  So
+    the same queries in the same order have the same answers; in another order paths may differ, each proved.  Threads
+    with one each, or a copy of one, do not wait, and their answers depend on their own queries alone.
 
     Attributes
     ----------
     roadmap : ArmRoadmap
     world : ArmWorld
-        What is planned in; or a world that asks more than the capsules.
+        The world of the queries; it may check more than the capsules.
     """
 
     def __init__(self, roadmap: ArmRoadmap, world: Checks) -> None:
         self.roadmap, self.world = roadmap, world
         self.capsules = capsules = world if isinstance(world, ArmWorld) else world.capsules  # type: ignore[attr-defined]
         moving = require_within(roadmap, capsules)
-        # What the roadmap knows to be free of robot and static scene is checked against the other obstacles alone.
+        # What the roadmap has proved free of robot and static scene is only checked against the other obstacles.
         bare, left = left_to_check(capsules.robot, roadmap.scene, moving, capsules.scene)
-        # One and the same where it can be: what is known of it need not be looked up by all of its values.
+        # The same object where possible: its cached tables are then found without comparing all values.
         bare = roadmap.bare if capsules.robot is roadmap.robot else bare
         dynamic = ArmWorld(bare, left, resolution=capsules.resolution, clearance=capsules.clearance)
         self._worlds: tuple[Checks, Checks] = capsules, dynamic
@@ -114,13 +115,13 @@ class ArmWorldRoadmap(WorldRoadmap):
         self._graph = roadmap.graph.within(np.array(capsules.space.low), np.array(capsules.space.high))
         self._lock = OwnLock()
         if self._expensive:
-            # Of its own: what blocks the capsules need not block the other bodies.
+            # Its own states: what blocks the capsules may not block the other bodies.
             self._first = ArmWorldRoadmap(roadmap, capsules)
             self._worlds = world, replace(world, capsules=dynamic)  # type: ignore[type-var]
         self._make_ready()
 
     def _make_ready(self) -> None:
-        """Compile, or load, what a query takes before a clock runs; nothing is checked but start and goal."""
+        """Compile, or load, what a query needs before a clock runs; only start and goal are checked."""
         world, milestones = self._worlds[0], self.roadmap.milestones
         if world.backend in _ready:
             return
@@ -154,8 +155,8 @@ class ArmWorldRoadmap(WorldRoadmap):
     ) -> Connection:
         """Join a start, (dim,), to the goal, (g, dim), that the roadmap leads to; the path is not shortened.
 
-        Each is tried to be linked to `links` milestones, by default as :func:`links_of` says; the path is the shortest
-        one along the roadmap where `greed` is 1.
+        Each terminal is tried to be linked to `links` milestones, by default as :func:`links_of` says; the path is the
+        shortest one along the roadmap if `greed` is 1.
         """
         links = links_of(self._size) if links is None else require_count("links", links)
         found = self._search(start, goals, most_motions, now() + seconds, links, greed)
@@ -177,7 +178,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         shorten: bool = True,
         trees: bool = True,
     ) -> PlanResult:
-        """Plan from a start to one of the goals: along the roadmap and, where it does not lead there soon, with trees.
+        """Plan from a start to one of the goals: along the roadmap, and with trees if it does not find a path soon.
 
         Parameters
         ----------
@@ -185,7 +186,7 @@ class ArmWorldRoadmap(WorldRoadmap):
             Numbers in the order of the group [rad or m], or a text as :func:`evenroad.robot.configuration` takes it.
             A goal may be a Pose or PoseGoal, too: then all postures that are found for it are goals.
         budget : Budget, optional
-            Default: 5 s.  Half of the time is the roadmap's, the rest the trees'.
+            Default: 5 s.  Half of the time is for the roadmap, the rest for trees.
         shorten : bool
             Whether the path is made shorter.
         trees : bool
@@ -194,13 +195,12 @@ class ArmWorldRoadmap(WorldRoadmap):
         Returns
         -------
         PlanResult
-            Every motion of `path` is proved free; of other bodies than the capsules free at states where `proof` says
-            so.
+            Every motion of `path` is proved free; other bodies than the capsules are free at states if `proof` says so.
 
         Raises
         ------
         InvalidValue, UnknownName
-            If start or goal is no configuration of the robot.
+            If start or goal is not a configuration of the robot.
         """
         read = read_start_and_goals(self.capsules, start, goal)
         if isinstance(read, PlanResult):
@@ -223,7 +223,7 @@ class ArmWorldRoadmap(WorldRoadmap):
     def _planned(self, attempt: Attempt, trees: bool) -> PlanResult:
         """Return the result of a query."""
         first, goals, budget = attempt.query.start, attempt.query.goals, attempt.query.budget
-        # Trees grow among what is free for the capsules.
+        # Trees grow where the capsules are free.
         follow = trees and (not self._expensive or start_and_goals_free(self.capsules, first, goals))
         links = links_of(self._size) if not follow else EXPENSIVE_LINKS if self._expensive else TRIED_LINKS
         most = NO_LIMIT if budget.motions is None else max(budget.motions - attempt.motions_checked, 0)
@@ -234,7 +234,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         if found.goal < 0 and (refused := refusal(attempt)) is not None:
             return refused
         if found.ended == TAKEN:
-            # Without the goals that are not free.
+            # Only the free goals.
             found = self._search(first, goals[attempt.goals], most, deadline, links)
             found = found._replace(goal=int(attempt.goals[found.goal]) if found.goal >= 0 else -1)
         attempt.motions_checked += found.motions
@@ -255,7 +255,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         return failed
 
     def _by_trees(self, attempt: Attempt, found: SearchResult) -> Connection:
-        """Return what trees find, and insert it into the roadmap."""
+        """Plan with trees, and insert their path into the roadmap."""
         attempt.planner = f"{PLANNER}, then trees"
         grown = attempt.connect(ArmTrees(self.capsules))
         if grown.goal >= 0:
@@ -264,7 +264,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         return replace(grown, configurations=checked[0], motions=checked[1])
 
     def _solved(self, attempt: Attempt, found: SearchResult) -> PlanResult:
-        """Return the result of a query that the roadmap answered."""
+        """Return the result of a path along the roadmap."""
         capsules, path, began, goals = self.capsules, found.path, now(), attempt.query.goals
         if self._expensive and len(path) > 2 and self._graph.size < self._size + MOST_INSERTED:
             # Links of later queries are shorter.
@@ -300,7 +300,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         )
 
     def _proof(self, path: Floats) -> str:
-        """Return what a path is known by: states alone where the capsules do not prove all of it."""
+        """Return the proof of a path: ``resolution`` where the capsules do not prove all of it."""
         proved = not self._expensive or self.capsules.validate(path).all()
         return self.capsules.proof if proved else "resolution"
 
@@ -315,7 +315,7 @@ class ArmWorldRoadmap(WorldRoadmap):
 
 
 def _by_capsules(budget: Budget) -> Budget:
-    """Return what a plan along the capsules may take of a budget."""
+    """Return the budget of a plan along the capsules."""
     seconds = None if budget.seconds is None else SHARE * budget.seconds
     motions = BY_CAPSULES if budget.motions is None else min(BY_CAPSULES, budget.motions)
     return replace(budget, seconds=seconds, motions=motions)
