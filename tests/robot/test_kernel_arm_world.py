@@ -233,7 +233,7 @@ def test_what_goes_wrong_in_compiling_the_lanes_is_kept(monkeypatch):
 
 
 def test_wrong_verdicts_of_the_lanes_are_found_out(monkeypatch):
-    monkeypatch.setattr(selftest, "expected_verdicts", lambda: np.zeros(64, dtype=bool))
+    monkeypatch.setattr(selftest, "expected_results", lambda: np.zeros(64, dtype=bool))
     assert "wrong" in selftest.lanes_failure.__wrapped__()
 
 

@@ -271,6 +271,6 @@ def test_the_grid_says_no_more_than_is_true_and_no_less_than_it_should():
     told = array.view(np.uint8)[array[surface_tree.GRID] + number] * table[surface_tree.STEP]
     apart = np.array([np.sqrt(((points - row) ** 2).sum(axis=1).min()) for row in x])
     assert (told <= apart).all()
-    assert (apart <= told + table[surface_tree.TOLD]).all()
+    assert (apart <= told + table[surface_tree.EXCESS]).all()
     assert (points > low).all()
     assert (points < low + size).all()

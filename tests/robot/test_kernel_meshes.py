@@ -203,4 +203,4 @@ def test_the_grid_of_triangles_says_no_more_than_is_true_and_no_less_than_it_sho
     near = apart < 0.6 - np.abs(x).max(axis=1)
     assert near.sum() > 1000
     assert (told <= apart)[near].all()
-    assert (apart <= told + grid.told)[near].all()
+    assert (apart <= told + grid.excess)[near].all()

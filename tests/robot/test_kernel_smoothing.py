@@ -191,7 +191,7 @@ def test_a_path_that_cannot_be_proved_is_shortened(detour):
     through = np.stack([START, 0.5 * (START + GOAL), GOAL])
     assert not world.motion_certified(through[:-1], through[1:], 1e-6).all()
     tight, _ = smooth(world, through, batches=BATCHES)
-    np.testing.assert_array_equal(tight, shorten(world, through, pairs=20, cuts=16)[0])
+    np.testing.assert_array_equal(tight, shorten(world, through, pairs=20, shortcuts=16)[0])
 
 
 def test_where_a_given_motion_cannot_be_proved_no_other_is_put_in_unproved(detour):

@@ -69,9 +69,9 @@ def contract_of(world):
 @pytest.mark.parametrize(
     ("world", "test"),
     [
-        (OnlyTheFirstEnd(), "test_a_motion_and_its_reverse_get_one_verdict"),
-        (OnlyTheFirstEnd(), "test_a_free_motion_has_free_ends"),
-        (OnlyTheEnds(), "test_a_free_motion_is_free_along_its_way"),
+        (OnlyTheFirstEnd(), "test_a_motion_and_its_reverse_get_one_result"),
+        (OnlyTheFirstEnd(), "test_a_free_motion_has_free_endpoints"),
+        (OnlyTheEnds(), "test_a_free_motion_is_free_along_its_length"),
         (ByTheWholeBatch(), "test_a_batch_gives_what_its_rows_give"),
         (EverythingFree(), "test_answers_are_booleans_one_a_row"),
         (Numbers(), "test_answers_are_booleans_one_a_row"),

@@ -83,7 +83,8 @@ class PlanResult(ResultMethods):
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start, goals : ndarrays, shapes (dim,) and (g, dim)
-        Start and goals of the query.    goal_index : int or None
+        Start and goals of the query.
+    goal_index : int or None
         Row of the goal that the path ends at; None without a path.
     path : ndarray, shape (p, dim), or None
         Waypoints after shortcutting, from start to goal, in the units of the space.

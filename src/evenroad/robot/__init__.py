@@ -1,4 +1,4 @@
-"""Robots: kinematic trees with capsules for bodies, scenes, and a world that checks them by the batch."""
+"""Robots: kinematic trees with capsules as bodies, scenes, and a world that checks them in batches."""
 
 from evenroad.geometry.shapes import Capsule as Capsule
 from evenroad.robot.arm_world import ArmWorld as ArmWorld

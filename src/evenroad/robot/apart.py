@@ -1,4 +1,4 @@
-"""Values of the joints outside of the group, at which the bodies they carry do not touch."""
+"""Values of the joints outside the group at which the bodies they carry do not touch."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from evenroad.robot.kinematics import KinematicTree, held_values, poses_at, with
 from evenroad.robot.pairs import Pieces
 
 _SHARES = (0.5, 0.25, 0.75, 1.0)
-"""How far joints are tried to go from where they are to either limit, as shares; half open first."""
+"""Shares of the range to either limit that joints are tried at; half open first."""
 _SAMPLES = 200
-"""So many places of all of them at random are tried then."""
+"""Number of random values of all of them that are tried next."""
 
 
 def held_apart(robot: KinematicTree, pieces: Pieces, pairs: Collection[tuple[str, str]]) -> dict[str, float]:
-    """Return where held joints are to stand for fewest of these pairs to touch, joint -> value [rad or m].
+    """Return values of held joints at which the fewest of these pairs touch, joint -> value [rad or m].
 
-    Only joints between bodies that touch where the robot holds them are named: a gripper closed at 0 is opened half.
-    What touches wherever the held joints stand, or depends on joints of the group, changes nothing.
+    Only joints between bodies that touch where the robot holds them are returned: a gripper closed at 0 is half opened.
+    Pairs that touch at all values of the held joints, or depend on joints of the group, change nothing.
     """
     movable = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
     held = held_values(robot)
@@ -68,7 +68,7 @@ def _joints_between(robot: KinematicTree, first: str, second: str) -> set[str]:
 
 
 def _sampled_values(joints: Sequence[Joint], values: Sequence[float]) -> Floats:
-    """Return where joints may stand, (n, joints): where they are first, then farther, then anywhere."""
+    """Return values of joints to try, (n, joints): the current ones first, then farther ones, then random ones."""
     now = np.array(values)
     circle = np.where([joint.kind == "continuous" for joint in joints], np.pi, np.inf)
     low = np.maximum([joint.lower for joint in joints], -circle)
@@ -80,7 +80,7 @@ def _sampled_values(joints: Sequence[Joint], values: Sequence[float]) -> Floats:
 def _touching(
     robot: KinematicTree, pieces: Pieces, pairs: Sequence[tuple[str, str]], values: dict[str, Floats]
 ) -> Bools:
-    """Return which pairs touch, (n, pairs), where the joints have these values, joint -> (n,); others are at 0."""
+    """Return which pairs touch, (n, pairs), at these values, joint -> (n,); other joints are at 0."""
     count = len(next(iter(values.values())))
     others = {name: np.zeros(count) for name in robot.group}
     poses = poses_at(robot, with_mimics(robot, others | values), count)

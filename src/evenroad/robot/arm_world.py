@@ -40,11 +40,11 @@ from evenroad.world.one_or_many import OneOrMany, one_or_many
 from evenroad.world.protocol import Apart
 
 MOST_CLEARANCE = 1.0
-"""No robot of this world is asked to keep farther from obstacles [m]."""
+"""Largest clearance that a world can have [m]."""
 
 VALIDATION_TOLERANCE = 1e-6
-"""How near to contact `ArmWorld.validate` still proves a motion free [m]; verdicts of single precision keep about
-twice that clear of contact, so that it refuses hardly a motion that touches nothing.
+"""Distance from contact down to which `ArmWorld.validate` proves a motion free [m].  Checks in single precision keep
+about twice that distance, so it refuses hardly any motion that touches nothing.
 """
 
 
@@ -55,41 +55,40 @@ class ArmWorld(OneOrMany):
 
     Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested against each other
     as capsules, in the robot's pairs, and where these touch as the robot's convex hulls, if it has any; against
-    obstacles a capsule is replaced by spheres that cover it, of at most 1.10 times its radius (`excess`), so that a
-    verdict is never free where the capsule touches.
+    obstacles a capsule is replaced by spheres that cover it, of at most 1.10 times its radius (`excess`), so nothing is
+    called free where the capsule touches.
 
     A motion is divided into ``n = ceil(distance / resolution)`` segments and free if all n + 1 ends of segments are.
-    What lies between two states is not seen: `validate` proves the motions of a path with no gap.
+    What lies between two states is not checked: `validate` proves the motions of a path with no gap.
 
     Parameters
     ----------
     robot, scene : Robot, Scene; or the names or files that `load_robot` and `load_scene` take
-        The robot, and what stands around it, by default nothing; where the scene has narrower ranges to plan in, the
-        robot keeps to these.
+        The robot, and the obstacles around it, by default none.  Where the scene has narrower ranges to plan in, they
+        hold for the robot.
     resolution : float
         Largest Euclidean distance between neighbouring states of a motion, > 0 [rad].
     clearance : float
-        How far bodies are to keep from obstacles, >= 0 [m]: they are larger by that against these, not against each
-        other.
+        Least distance from obstacles, >= 0 [m]: bodies are larger by it against obstacles, not against each other.
     backend : {"auto", "lanes", "scalar"}
-        Sixteen verdicts at once in single precision, with radii enlarged by some micrometres to stay on the safe
-        side, or one after the other in double precision; "auto" is the lanes where a test finds that they work.
+        Sixteen checks at once in single precision, with radii enlarged by some micrometres to be safe, or one after the
+        other in double precision; "auto" is the lanes where a test finds that they work.
 
     Attributes
     ----------
     bounds : float64 ndarray, shape (3, dim)
         Low, high and period of each joint; a period of inf where it does not wrap.
     robot_tables, tables, lanes : RobotTables, ArmTables, LaneWorld
-        What compiled code knows of the robot alone, and of the robot in this scene.
+        Tables for compiled code: of the robot alone, and of the robot in this scene.
 
     Raises
     ------
     InvalidValue
-        If a number is none, a joint of the group has no finite range, or robot or scene is not sound.
+        If a number is invalid, a joint of the group has no finite range, or robot or scene is inconsistent.
     UnknownName
-        If the robot or the scene names something that is not there, or there is no such backend.
+        If the robot or the scene names something that does not exist, or there is no such backend.
     NotAvailable
-        If the lanes are asked for where they do not work.
+        If the lanes are requested where they do not work.
 
     Examples
     --------
@@ -157,18 +156,18 @@ class ArmWorld(OneOrMany):
 
     @property
     def checked_with(self) -> str:
-        """The backend, and where it is the slow one because the lanes do not work here, why they do not."""
+        """The backend, and why the lanes do not work where it is the slow one."""
         failure = lanes_failure() if self.backend == "scalar" else None
         return self.backend if failure is None else f"{self.backend} (lanes do not work here: {failure})"
 
     @property
     def excess(self) -> float:
-        """By how much the spheres that obstacles are tested with exceed their capsules at most [m]."""
+        """Largest difference of the radii of spheres against obstacles and of their capsules [m]."""
         return max(capsule.cover.radius - capsule.radius for capsule in self.robot_tables.capsules)
 
     @property
     def spheres(self) -> int:
-        """How many spheres stand for the capsules where obstacles are concerned."""
+        """Number of spheres that replace the capsules against obstacles."""
         return sum(len(capsule.cover.positions) for capsule in self.robot_tables.capsules)
 
     def _row(self, q: object) -> Floats:
@@ -218,14 +217,14 @@ class ArmWorld(OneOrMany):
 
     @property
     def proof(self) -> str:
-        """``certified``: what `validate` calls free is proved to be, everywhere between its ends."""
+        """``certified``: what `validate` calls free is proved free everywhere between its endpoints."""
         return "certified"
 
     def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,).
 
-        The method is that of :mod:`evenroad.robot.certified`: no stretch of a motion is left open.  Refused is, too,
-        what comes within some micrometres of contact, or needs more than 2^15 intervals.  Raises as `valid`.
+        The method is that of :mod:`evenroad.robot.certified`, without gaps.  Motions within some micrometres of
+        contact, or that need more than 2^15 intervals, are refused, too.  Raises as `valid`.
         """
         waypoints = as_batch("path", path, self._space.dim)
         return self.motion_certified(waypoints[:-1], waypoints[1:], VALIDATION_TOLERANCE)
@@ -233,7 +232,7 @@ class ArmWorld(OneOrMany):
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,).
 
-        What comes nearer than about `tolerance` to contact is not called free, > 0 [m].  Raises as `motion_valid`.
+        Motions nearer than about `tolerance` to contact are not proved, > 0 [m].  Raises as `motion_valid`.
         """
         tolerance = require_positive("tolerance", tolerance)
         if self.backend == "lanes":
@@ -255,10 +254,10 @@ class ArmWorld(OneOrMany):
         return proved
 
     def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
-        """Return what keeps the start, (dim,), from all goals, (g, dim); None says nothing.
+        """Return a proof that no path leads from the start, (dim,), to any goal, (g, dim), or None.
 
-        The first joints alone show it, in tenths of a second, `quickly` in some milliseconds.  It is proved for bodies
-        inside of the robot's true shapes, see :mod:`evenroad.robot.separated`.
+        The first joints alone prove it, in tenths of a second, `quickly` in some milliseconds.  The proof holds for
+        bodies inside the robot's true shapes, see :mod:`evenroad.robot.separated`.
         """
         terminals = as_batch(
             "start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim
@@ -266,7 +265,7 @@ class ArmWorld(OneOrMany):
         return apart(self, terminals[0], terminals[1:], quickly=quickly)
 
     def path_clearance(self, path: Floats) -> float | None:
-        """Return what distance from obstacles a path, (p, dim), is proved to keep, to .1 mm; None if none [m]."""
+        """Return the distance from obstacles that a path, (p, dim), is proved to keep, to 0.1 mm; None if none [m]."""
 
         def keeps(distance: float) -> bool:
             return bool(replace(self, clearance=distance).validate(path).all())
@@ -275,23 +274,25 @@ class ArmWorld(OneOrMany):
 
     @property
     def margin(self) -> float:
-        """Bodies nearer to each other than this may touch by single precision [m]."""
+        """Largest distance at which bodies may touch in single precision [m]."""
         clouds = [each.body.radius for each in self.scene.obstacles if isinstance(each.body, PointCloud)]
         pairs = float(self.robot_tables.pair_margins.max(initial=0.0))
         return max(self.tables.margin, pairs, 1e-6 * max(clouds, default=0.0))
 
     def with_bodies(self, robot: Robot) -> Callable[[Floats], Bools]:
-        """Return what tells of configurations, (n, dim), which are free for a robot with other bodies, or a group."""
+        """Return a function that checks configurations, (n, dim), of a robot with other bodies or another group."""
         # Ranges are those of the robot.
         return replace(self, robot=robot, scene=replace(self.scene, limits={})).valid
 
     def fingerprint(self) -> str:
-        """Return a text that two worlds share whose robot, scene, resolution and clearance are the same."""
+        """Return a text that is equal for worlds of equal robot, scene, resolution and clearance."""
         more = (self.clearance,) if self.clearance else ()
         return fingerprint_of("arm", self.robot, self.scene, self.resolution, *more)
 
     def explain(self, q: Floats) -> str:
-        """Return in words why one configuration, (dim,), is not free: a joint outside its limits, or what touches."""
+        """Return, in words, why one configuration, (dim,), is not free: a joint outside its limits, or which bodies
+        touch.
+        """
         batch = as_batch("q", self._row(q)[np.newaxis], self._space.dim)
         # To itself: brings wrapping joints into their ranges.
         row = self._space.interpolate(batch, batch, 0.0)[0]
@@ -311,7 +312,7 @@ class ArmWorld(OneOrMany):
         return f"{bodies[0]!r} touches {bodies[1]!r}"
 
     def explain_start(self, q: Floats) -> str:
-        """Return as `explain` why a robot cannot start from one configuration, (dim,); of a scan what helps."""
+        """Return, as `explain`, why a robot cannot start from a configuration, (dim,), and for a scan what helps."""
         reason = self.explain(q)
         clouds = (each.name for each in self.scene.obstacles if isinstance(each.body, PointCloud))
         if not any(reason.endswith(f" touches {name!r}") for name in clouds):
@@ -323,7 +324,7 @@ class ArmWorld(OneOrMany):
 
     @cached_property
     def fixed_contact(self) -> tuple[str, str] | None:
-        """Two bodies that touch whatever the joints do, or None."""
+        """Two bodies that touch at all values of the joints, or None."""
         surfaces, of_capsules = self.lanes.surfaces, self.robot_tables.capsules
         if self.tables.fixed_contact is not None:
             capsule, obstacle = self.tables.fixed_contact
@@ -338,14 +339,14 @@ class ArmWorld(OneOrMany):
 
     @property
     def _ints(self) -> Ints:
-        """The integers of the tables, with the addresses of clouds and meshes where there are any."""
+        """The integers of the tables, with the addresses of clouds and meshes, if any."""
         surfaces, ints = self.lanes.surfaces, self.tables.ints
         return ints if surfaces is None else surfaces.added_to(ints, scalar_check_address())
 
     def _touching(self, q: Floats) -> tuple[str, str] | None:
-        """Return two bodies that touch, or come as near as what single precision may call touching."""
+        """Return two bodies that touch, or are as near as single precision may call touching."""
         of_robot, tables, of_capsules = self.robot_tables, self.tables, self.robot_tables.capsules
-        # A copy: code would be compiled anew for an array that cannot be written to.
+        # A copy: an array that cannot be written to would be another type for compiled code.
         margins, pair_margins = np.full(len(of_capsules), tables.margin), of_robot.pair_margins.copy()
         frames, capsules = np.empty((len(of_robot.tree.frames) + 1, 12)), np.empty((len(of_capsules), 6))
         kind, capsule, other = scalar.first_contact(

@@ -1,6 +1,6 @@
 """A cache of robots between runs: fitting capsules to meshes and sampling contacts takes seconds.
 
-What is kept is sealed by a digest, as a flipped bit is as likely in a radius as in a bracket.
+A digest seals each file, as a flipped bit is as likely in a radius as in a bracket.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.urdf import Urdf
 
 _FORMAT = 17
-"""Counted up when the same files would give another robot, or the files of this cache look different."""
+"""Version of the cache: it counts up when the same files give another robot, or the format changes."""
 
 
 def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | Sequence[str] | None) -> str:
@@ -54,23 +54,23 @@ def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | S
 
 
 def _said(shape: Shape) -> object:
-    """Return what decides a shape, in full: what it shows of itself is rounded."""
+    """Return all values of a shape in full; its repr is rounded."""
     if not isinstance(shape, Mesh) or isinstance(shape.source, TriangleMesh):
         return shape
     return shape.kind, str(shape.source), shape.scale, shape.pose, shape.link
 
 
 def cached(key: str) -> RobotModel | None:
-    """Return the robot kept under this key; None when there is none, or it is damaged and to be made again.
+    """Return the cached robot of this key; None when there is none, or its file is damaged.
 
-    Of a damaged one it is said so, in one line of the log.
+    A damaged file is logged in one line.
     """
     content = read_sealed(_file(key), key, "the robot")
     return None if content is None else _model(json.loads(content))
 
 
 def keep(key: str, model: RobotModel) -> None:
-    """Put a robot into the cache; where that cannot be written, the next run takes longer and that is all."""
+    """Write a robot into the cache; where that fails, the next run takes longer."""
     file = _file(key)
     with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -93,7 +93,7 @@ def robot_of(record: dict[str, Any]) -> Robot:
     joints = [joint | {"mimic": joint["mimic"] and Mimic(**joint["mimic"])} for joint in record.pop("joints")]
     hulls = [Hull(**each) for each in record.pop("hulls")]
     planes = [Plane(**_with_tuples(each)) for each in record.pop("planes", ())]
-    # Where a file does not know what lies within the shapes, nothing does.
+    # Where a file does not say what lies within the shapes, nothing does.
     inner = record.pop("inner", [])
     return Robot(
         joints=tuple(Joint(**_with_tuples(joint)) for joint in joints),

@@ -17,30 +17,30 @@ from evenroad.robot.inverse_kinematics import followed_from, task
 from evenroad.robot.pose_goal import as_axis
 
 STEP = 0.005
-"""Between configurations of a line [m]."""
+"""Distance between configurations of a line [m]."""
 
 FINE = 16
-"""States, between two of these, at which it is measured how far the tip is from the line."""
+"""Number of states between two of these, at which the distance of the tip from the line is measured."""
 
 _LONGEST = 0.2
-"""No joint moves by more in such a step [rad or m]."""
+"""Largest movement of a joint in such a step [rad or m]."""
 
 
 @dataclass(frozen=True)
 class CartesianLine:
-    """How far a tip moves in straight lines, its rotation kept.
+    """Straight lines of a tip at constant rotation.
 
     Parameters
     ----------
     approach, retreat : float
-        How far before the goal, and from the start, >= 0 [m].
+        Lengths of the lines to the goal and from the start, >= 0 [m].
     away : sequence of 3 floats, "x", "-x", ..., or "up"
-        The direction in which it leaves its start, and from which it comes to its goal: in the frame of the tip, or
+        Direction in which the tip leaves its start, and from which it approaches its goal: in the frame of the tip, or
         along the root's z axis.
     tip : str
-        The link; default: that of the goal poses, or the last one.
+        The link of the tip; default: that of the goal poses, or the last one.
     line_tolerance, angle_tolerance : float
-        A line that is missed by more is refused, > 0 [m, rad].
+        Largest deviations from the line and the rotation, > 0 [m, rad].
     """
 
     approach: float = 0.0
@@ -63,9 +63,9 @@ class CartesianLine:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A straight line as configurations, (n, dim), from where it begins; or why there is none.
+    """A straight line as configurations, (n, dim), from its beginning; or why there is none.
 
-    `off_m` and `off_rad` are by how much the tip misses line and rotation at most on a fine grid.
+    `off_m` and `off_rad` are the largest deviations of the tip from line and rotation on a fine grid.
     """
 
     path: Floats
@@ -75,7 +75,7 @@ class Line:
 
 
 def line_at(chain: Chain, straight: CartesianLine, q: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return rotation, (3, 3), and place of the tip at a configuration, (dim,), and the direction of its line."""
+    """Return rotation, (3, 3), and position of the tip at a configuration, (dim,), and the direction of its line."""
     tip = chain.tip_poses(q[np.newaxis])[0]
     turn = tip[:9].reshape(3, 3)
     up = straight.away == "up"
@@ -83,10 +83,10 @@ def line_at(chain: Chain, straight: CartesianLine, q: Floats) -> tuple[Floats, F
 
 
 def line_from(world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float) -> Line:
-    """Return the line on which the tip leaves a configuration, (dim,), which is free, by `length` [m]."""
+    """Return the line of length `length` [m] on which the tip leaves a free configuration, (dim,)."""
     farthest = 2.0 * chain.reach()[1]
     if length > farthest:
-        # Said before such a line is laid out: of a kilometre there would be no memory for it.
+        # Before such a line is laid out: a kilometre would need too much memory.
         return Line(
             q[np.newaxis], f"it is {length:g} m long, {chain.tip!r} moves no farther than {farthest:.3g} m"
         )
@@ -115,7 +115,7 @@ def line_from(world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats,
 def _off(
     world: ArmWorld, chain: Chain, path: Floats, here: Floats, away: Floats, turn: Floats
 ) -> tuple[float, float]:
-    """Return by how much the tip misses a line and its rotation on a fine grid [m, rad]."""
+    """Return the largest deviations of the tip from a line and its rotation on a fine grid [m, rad]."""
     off_m, off_rad, _ = misses(chain, between(world, path, FINE), here, away, turn)
     return float(off_m.max()), float(off_rad.max())
 
@@ -123,7 +123,9 @@ def _off(
 def misses(
     chain: Chain, q: Floats, here: Floats, away: Floats, turn: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Return by how much the tip misses a line and its rotation, and how far along it is, (n,) each, at (n, dim)."""
+    """Return the deviations of the tip from a line and its rotation, and the length along it, (n,) each,
+    at (n, dim).
+    """
     tips = chain.tip_poses(q)
     gap = tips[:, 9:] - here
     along = gap @ away

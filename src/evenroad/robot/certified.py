@@ -13,7 +13,7 @@ half; where that fails the motion is halved, and so on, into 2^15 pieces at most
 Latombe, Adaptive Dynamic Collision Checking, 2005).  Distances are those of the model: exact between capsules, and
 hulls, and to obstacles from spheres that cover them.  The lanes prove sixteen pieces at once in single precision, with
 bodies larger by what that may lose; the backend "scalar" works in double precision.  "No" means blocked, or that
-somewhere the clearance is too small to tell.
+somewhere the clearance is too small for a proof.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from evenroad.space.batch import as_batch
 
 @dataclass(frozen=True, eq=False)
 class CertifiedWorld:
-    """An arm's world whose motions are free only where that is proved: for roadmaps whose every edge is.
+    """An arm's world whose motions are free only where that is proved: for roadmaps with proved edges.
 
-    What comes nearer to contact than about `tolerance` is not called free, > 0 [m]; smaller ones cost more time for
-    motions that pass close by.
+    Motions nearer than about `tolerance` to contact are not proved, > 0 [m]; smaller values cost more time for motions
+    that pass close by.
     """
 
     world: ArmWorld
@@ -44,11 +44,11 @@ class CertifiedWorld:
 
     @property
     def space(self) -> JointSpace:
-        """The space of the world inside."""
+        """The space of the wrapped world."""
         return self.world.space
 
     def valid(self, q: Floats) -> Bools:
-        """Return what the world inside says of configurations, (n, dim): (n,)."""
+        """Check configurations, (n, dim), in the wrapped world: (n,)."""
         return self.world.valid(q)
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
@@ -57,7 +57,7 @@ class CertifiedWorld:
 
     @property
     def proof(self) -> str:
-        """``certified``, as every motion is here."""
+        """``certified``: every motion is proved."""
         return "certified"
 
     def validate(self, path: Floats) -> Bools:
@@ -66,9 +66,9 @@ class CertifiedWorld:
         return self.motion_valid(waypoints[:-1], waypoints[1:])
 
     def fingerprint(self) -> str:
-        """Return the SHA-256 (hex) of the world inside and the tolerance: equal for worlds of the same verdicts."""
+        """Return the SHA-256 (hex) of the wrapped world and the tolerance: equal for worlds of equal results."""
         return fingerprint_of("certified", self.world.fingerprint(), self.tolerance)
 
     def explain(self, q: Floats) -> str:
-        """Return in words why one configuration, (dim,), is not free."""
+        """Return, in words, why one configuration, (dim,), is not free."""
         return self.world.explain(q)

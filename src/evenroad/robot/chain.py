@@ -1,4 +1,4 @@
-"""Chain: the joints between a robot's root and one of its links, as compiled code takes them."""
+"""Chain: the joints between a robot's root and one of its links, for compiled code."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from evenroad.robot.tree_sequences import cube_points
 TURN = 2.0 * math.pi
 
 _EVEN = 2048
-"""Configurations whose tips are known: the nearest are where numeric solutions begin."""
+"""Number of configurations with known tips: numeric solutions begin at the nearest ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class Chain:
         return q, self.tip_poses(q)
 
     def tip_poses(self, q: Floats) -> Floats:
-        """Return where configurations, (n, dim), have the tip: rotation row by row, and origin, (n, 12)."""
+        """Return poses of the tip at configurations, (n, dim): rotation row by row, and origin, (n, 12)."""
         from evenroad.robot.kernel.reach import tip_poses
 
         out = np.empty((len(q), 12))
@@ -72,7 +72,7 @@ class Chain:
         return out
 
     def reach(self) -> tuple[Floats, float]:
-        """Return a point that no joint moves and how far from it the tip is at most [m]."""
+        """Return a point that no joint moves and the largest distance of the tip from it [m]."""
         far, before = 0.0, len(self.frames)
         for i in range(len(self.frames) - 1, -1, -1):
             far += math.hypot(*self.rows[i + 1, 9:12])
@@ -139,7 +139,7 @@ def _carrying(tree: MovingTree, number: int) -> tuple[MovingFrame, ...]:
 
 
 def default_tip(robot: Robot) -> str:
-    """Return the link at the end of what the group moves, none that is held; InvalidValue if there are several."""
+    """Return the last link that the group moves, except held ones; InvalidValue if there are several."""
     tree = prepared(robot).tables.tree
     carried = {
         link: len({frame.coordinate for frame in _carrying(tree, placement.frame)})

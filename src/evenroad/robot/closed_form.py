@@ -1,4 +1,4 @@
-"""Inverse kinematics in closed form, of six joints that turn, by EAIK (extra ``[ik]``) where it is installed."""
+"""Inverse kinematics in closed form, of six revolute joints, by EAIK (extra ``[ik]``) where it is installed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _kept: dict[int, tuple[Chain, Any]] = {}
 
 
 def closed_form(chain: Chain) -> Any | None:
-    """Return EAIK's robot for a chain; None where there is none: not installed, or not of such joints."""
+    """Return EAIK's robot for a chain; None if it is not installed or does not solve such joints."""
     if (known := _kept.get(id(chain))) is not None:
         return known[1]
     if len(_kept) >= 32:
@@ -38,7 +38,7 @@ def _made(chain: Chain) -> Any | None:
     if len(chain.frames) != 6 or len(set(coordinates.tolist())) != 6 or chain.ints[:, 1].any():
         return None
     try:
-        # The binding alone: EAIK's own reader of URDFs takes seconds to import.
+        # Only the binding: EAIK's own reader of URDFs takes seconds to import.
         from eaik.pybindings import EAIK
     except ImportError:
         return None

@@ -1,4 +1,4 @@
-"""Robots and scenes from whatever people have them in: values, names, files."""
+"""Robots and scenes from values, names or files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from evenroad.robot.scene import Scene
 
 
 def as_robot(robot: object) -> Robot:
-    """Return a robot: itself, or what ``load_robot`` makes of a name or a file.  InvalidValue for anything else."""
+    """Return a robot: itself, or that which ``load_robot`` loads.  InvalidValue for anything else."""
     if isinstance(robot, str | os.PathLike):
         robot = above("ArmWorld.robot")(robot)
     require_robot(robot)
@@ -21,7 +21,7 @@ def as_robot(robot: object) -> Robot:
 
 
 def as_scene(scene: object) -> Scene:
-    """Return a scene: itself, what ``load_scene`` makes of a name or a file, or one of shapes or a mapping."""
+    """Return a scene: itself, that which ``load_scene`` loads, or one of shapes or a mapping."""
     if isinstance(scene, Scene):
         return scene
     if isinstance(scene, str | os.PathLike):

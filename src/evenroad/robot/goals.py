@@ -21,39 +21,38 @@ from evenroad.world.protocol import Apart
 
 @dataclass(frozen=True, eq=False)
 class Goals:
-    """What a plan is to reach."""
+    """The goals of a plan."""
 
     configurations: Floats
-    """Goals, (g, dim); where no pose is reached and nothing else is a goal, what comes nearest."""
+    """Goals, (g, dim); where no pose is reached and there is no other goal, the nearest configuration."""
     names: tuple[str, ...]
-    """What the caller called each, or nothing."""
+    """Text by which the caller named each goal, or nothing."""
     poses: tuple[tuple[PoseGoal, Reached], ...] = ()
-    """The poses, and what reaches them."""
+    """The poses, and the configurations that reach them."""
     seconds: float = 0.0
-    """That took."""
+    """Time of inverse kinematics [s]."""
     whole: bool = True
-    """Whether the world is the same for postures that were not found: it is not where contacts are allowed near these.
-    """
+    """Whether the world is the same for postures that were not found: not so if contacts are allowed near them."""
 
     @property
     def unreached(self) -> str:
-        """Where nothing is to be planned to: why; else nothing."""
+        """Why no goal can be planned to, or nothing."""
         if len(self.names) or not self.poses:
             return ""
         return "; ".join(reached.why for _, reached in self.poses)
 
     @property
     def in_collision(self) -> bool:
-        """Whether some pose is reached, but in collision each time."""
+        """Whether some pose is reached, but always in collision."""
         return any(reached.in_collision for _, reached in self.poses)
 
     def apart(
         self, world: InScene, *, straight: bool = False
     ) -> Callable[[Floats, Floats, bool], Apart | None]:
-        """Return what says of a start, (dim,), and goals, (g, dim), what keeps them apart, quickly or not.
+        """Return a function that proves that a start, (dim,), and goals, (g, dim), are apart, quickly or not.
 
-        Where poses are among the goals, it is proved of all postures that reach them.  Of plans between `straight`
-        lines nothing is: others may lead to other postures.
+        With poses among the goals, it proves it for all postures that reach them.  Between `straight` lines it proves
+        nothing: other lines may lead to other postures.
         """
         poses = [] if straight else [goal for goal, _ in self.poses]
 
@@ -63,12 +62,12 @@ class Goals:
         return prove
 
     def records(self, world: Checks, end: Floats | None) -> list[dict[str, Any]]:
-        """Return the poses as plain values; `end`, (dim,), is where a path ends: by how much it misses them."""
+        """Return the poses as plain values; `end`, (dim,), is the end of a path, for its deviations from them."""
         return [_record(world, goal, reached, end) for goal, reached in self.poses]
 
 
 def require_tips(robot: Robot, targets: Sequence[Any], tip: str = "", frame: str = "") -> None:
-    """Raise what `goals_of` would where a pose is of a link, or in a frame, that cannot be: a world is dear to make."""
+    """Raise what `goals_of` would for a pose of an impossible link or frame: making a world first is expensive."""
     for target in targets:
         if isinstance(target, Pose | PoseGoal):
             goal = as_pose_goal(target, tip, frame)
@@ -84,7 +83,9 @@ def goals_of(
     tip: str = "",
     frame: str = "",
 ) -> Goals:
-    """Return the goals of some places: poses, with this tip and frame where they name none, and what `read` reads."""
+    """Return the goals of some targets: poses, with this tip and frame by default, and configurations that `read`
+    reads.
+    """
     rows: list[Floats] = []
     names: list[str] = []
     poses = []

@@ -10,7 +10,7 @@ from evenroad.robot.joint import Joint
 from evenroad.robot.urdf import Urdf
 
 _MOST_NAMED = 8
-"""So many names are said in one line."""
+"""Largest number of names in one line."""
 
 
 class Srdf(Protocol):
@@ -79,7 +79,7 @@ def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
 
 
 def group_notes(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | None) -> tuple[str, ...]:
-    """Return what is to be said of the group that was chosen where none was wanted: nothing where there is one."""
+    """Return a note about the group that was chosen by default, where there were several."""
     names = [] if srdf is None else [name for name, joints in srdf.groups.items() if joints]
     if srdf is None or wanted is not None or len(names) < 2:
         return ()
@@ -91,7 +91,7 @@ def group_notes(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | Non
 
 
 def few_of(names: Sequence[str]) -> str:
-    """Return the first names as a text of one line, and how many there are besides."""
+    """Return the first names as a text of one line, and the number of others."""
     said = ", ".join(shown(name)[1:-1] for name in names[:_MOST_NAMED])
     return said if len(names) <= _MOST_NAMED else f"{said} and {len(names) - _MOST_NAMED} more"
 
@@ -99,7 +99,7 @@ def few_of(names: Sequence[str]) -> str:
 def chosen_states(
     srdf: Srdf, chosen: tuple[str, ...], wanted: str | Sequence[str] | None
 ) -> dict[str, dict[str, float]]:
-    """Return the named states that give a value to every joint chosen: of two of a name, that of the groups wanted."""
+    """Return the named states with a value for every joint chosen; of two of a name that of the wanted groups."""
     mine = _words(wanted or ())
 
     def strangeness(group_and_name: tuple[str, str]) -> tuple[bool, bool]:
@@ -111,7 +111,7 @@ def chosen_states(
     for group, name in sorted(srdf.states, key=strangeness):
         values = dict(srdf.states[group, name])
         if group in mine:
-            # Two arms at home are so, each by the state of its own group.
+            # Two arms are at home if each is, by the state of its own group.
             values = together[name] = values | together.get(name, {})
         if set(chosen) <= set(values):
             found.setdefault(name, values)

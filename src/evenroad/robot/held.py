@@ -24,13 +24,13 @@ class HeldObject:
     Parameters
     ----------
     name : str
-        What it is called in verdicts; it becomes a link of the robot, with the body's own frame: goal poses may be its.
+        Its name in messages.  It becomes a link of the robot, with the body's own frame: goal poses may be of it.
     body : Shape
-        With its pose in the frame of the link that carries it.
+        The body, with its pose in the frame of the link that carries it.
     link : str
-        That link.
+        The link that carries it.
     touches : sequence of str
-        Links that it may touch, as those that hold it.  Links that no joint moves against `link` are never tested.
+        Links that it may touch, such as fingers.  Links that no joint moves against `link` are never tested.
     """
 
     name: str
@@ -49,7 +49,7 @@ class HeldObject:
 
 
 class HeldParts(NamedTuple):
-    """What a held body adds to a robot."""
+    """The parts that a held body adds to a robot."""
 
     joint: Joint
     capsules: tuple[Capsule, ...]
@@ -59,10 +59,10 @@ class HeldParts(NamedTuple):
 
 
 def held_parts(robot: KinematicTree, held: HeldObject, *, neighbours: bool) -> HeldParts:
-    """Return what a held body adds to a robot: it is tested against all links that may come near and are not allowed.
+    """Return the parts that a held body adds to a robot; it is tested against all links that may come near.
 
-    Where pairs were computed and not given, neighbours in the tree are not tested, as of the robot itself.  Raises
-    UnknownName if a link is not there, InvalidValue if the name is taken.
+    Allowed contacts are not tested.  Where pairs were computed and not given, neighbours in the tree are not tested, as
+    for the robot itself.  Raises UnknownName if a link does not exist, InvalidValue if the name is taken.
     """
     what = f"link of the robot that holds {held.name!r}:"
     for link in (held.link, *held.touches):
@@ -84,7 +84,7 @@ def held_parts(robot: KinematicTree, held: HeldObject, *, neighbours: bool) -> H
 
 
 def same_bodies(robot: KinematicTree, held: HeldObject) -> bool:
-    """Return whether what a robot holds under this name is this."""
+    """Return whether the object that a robot holds under this name is this one."""
     pose, body = held.body.pose, replace(held.body, pose=IDENTITY)
     joint = next(joint for joint in robot.joints if joint.child == held.name)
     capsules = tuple(capsule for capsule in robot.capsules if capsule.link == held.name)
@@ -97,7 +97,7 @@ def inner_of_both(
     theirs: tuple[Capsule, ...] | None,
     their_capsules: tuple[Capsule, ...],
 ) -> tuple[Capsule, ...] | None:
-    """Return what lies within the shapes of a robot and of what is fixed to it, see `Robot.inner`."""
+    """Return the inner capsules of a robot and of what is fixed to it, see `Robot.inner`."""
     if ours is None and theirs is None:
         return None
     return (*(capsules if ours is None else ours), *(their_capsules if theirs is None else theirs))

@@ -20,27 +20,27 @@ from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.robot import Robot
 
 STARTS = 64
-"""Even configurations, those whose tips are nearest, from which numeric solutions begin; then so many more."""
+"""Number of even configurations, with the nearest tips, at which numeric solutions begin; then as many again."""
 
 MOST = 64
-"""Configurations of one goal that are planned to, the nearest of all with their whole turns."""
+"""Largest number of configurations of one goal, the nearest of all with their whole turns."""
 
 _ENOUGH = 24
-"""Of an arm with more joints than the pose has numbers, after so many no more are looked for."""
+"""Number of configurations after which the search ends for an arm with more joints than the pose has numbers."""
 _STEPS = 60
 _POLISHED = 4
 _SAME = 1e-4
-"""Configurations of one posture [rad or m]."""
+"""Distance below which configurations are one posture [rad or m]."""
 _APART = 0.1
-"""Of an arm with spare joints: nearer ones are as good as the same."""
+"""The same for an arm with redundant joints."""
 _MOST_TURNING = 8
-"""Joints that are turned the other way, too."""
+"""Largest number of joints that are tried in other turns, too."""
 _COARSE = 1e-2
-"""What a closed form finds no nearer than this is none of its solutions [m, rad]."""
+"""Largest deviation of a solution in closed form [m, rad]."""
 
 
 class Checks(Protocol):
-    """What is asked of an arm's world."""
+    """The checks of an arm's world that are used here."""
 
     @property
     def robot(self) -> Robot: ...  # noqa: D102
@@ -57,27 +57,27 @@ class Reached:
     configurations: Floats
     """Free ones, within limits, (n, dim), the nearest to the start first; empty where there is none."""
     branches: int
-    """How many postures reach the pose within limits."""
+    """Number of postures that reach the pose within limits."""
     blocked: int
-    """How many of these are in collision."""
+    """Number of these in collision."""
     solver: str
     """``closed form`` or ``numeric``."""
     nearest: Floats
-    """Where there is none: a posture that is in collision, or what comes nearest, (dim,)."""
+    """Without a free one: a posture in collision, or the nearest configuration, (dim,)."""
     why: str = ""
-    """Where there is none: why."""
+    """Without a free one: why."""
 
     @property
     def in_collision(self) -> bool:
-        """Whether the pose is reached, but in collision each time."""
+        """Whether the pose is reached, but always in collision."""
         return self.branches > 0 and not len(self.configurations)
 
 
 def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike) -> Reached:
-    """Return the free configurations that bring a link where the goal wants it, whole turns added.
+    """Return the free configurations that bring a link to the goal, whole turns added.
 
     Coordinates that do not move the link stay as in `start`, (dim,) [rad or m].  Raises UnknownName if tip or frame is
-    no link; InvalidValue if nothing moves the tip, something the frame, or no tip is named and there are several, or
+    no link; InvalidValue if nothing moves the tip, something moves the frame, no tip is named and there are several, or
     `start` is no configuration.
     """
     start = np.array(as_row("start", start, len(world.robot.group)))  # type: ignore[arg-type]
@@ -102,7 +102,7 @@ def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike) -> Reached:
 
 
 def task_of(robot: Robot, goal: PoseGoal) -> tuple[Chain, Floats]:
-    """Return the chain of a goal's tip, and the goal as compiled code takes it, in the frame of the root."""
+    """Return the chain of a goal's tip, and the goal in the frame of the root, for compiled code."""
     chain = chain_of(robot, goal.tip or default_tip(robot))
     pose = frame_pose(robot, goal.frame) @ goal.pose
     return chain, task(
@@ -117,7 +117,7 @@ def task(
     near: float = 0.0,
     tilt: float = 0.0,
 ) -> Floats:
-    """Return a goal as compiled code takes it."""
+    """Return a goal for compiled code."""
     from evenroad.robot.kernel import reach as at
 
     row = np.zeros(at.GOAL)
@@ -132,9 +132,10 @@ def task(
 
 
 def stages(chain: Chain, task: Floats, start: Floats, *, exact: bool) -> Iterator[tuple[Floats, str, Floats]]:
-    """Yield postures within limits that do a task, (n, dim), by which solver, and what comes nearest: ever more.
+    """Yield postures within limits that reach a task, (n, dim), their solver, and the nearest configuration: more and
+    more.
 
-    A posture is one of the configurations that differ by whole turns.  A closed form gives all at once.
+    A posture stands for all configurations that differ by whole turns.  A closed form yields all at once.
     """
     robot = closed_form(chain) if exact else None
     if robot is not None:
@@ -146,7 +147,7 @@ def stages(chain: Chain, task: Floats, start: Floats, *, exact: bool) -> Iterato
         if len(q):
             yield distinct(chain, q, _SAME), "closed form", start
             return
-        # At a singularity there may be some all the same.
+        # A numeric solver may still find some at a singularity.
     for q, best in numeric(chain, task, start):
         yield q, "numeric", best
 
@@ -154,7 +155,7 @@ def stages(chain: Chain, task: Floats, start: Floats, *, exact: bool) -> Iterato
 def numeric(
     chain: Chain, task: Floats, start: Floats, *, limits: bool = True
 ) -> Iterator[tuple[Floats, Floats]]:
-    """Yield postures found from even starts, (n, dim), and the one that came nearest to what is wanted: ever more."""
+    """Yield postures found from even starts, (n, dim), and the nearest one: more and more."""
     from evenroad.robot.kernel import reach as kernel
 
     starts, tips = chain.even
@@ -168,7 +169,7 @@ def numeric(
     still = np.setdiff1d(np.arange(len(start)), chain.moving)
     enough = _ENOUGH if len(chain.moving) > _numbers(task) else len(starts)
     best, least = start, math.inf
-    # The start of the query first; then near ones and, where these fail, others further off.
+    # The start of the query first; then near ones and, where these fail, farther ones.
     for rows in (nearest[:STARTS], nearest[STARTS : 4 * STARTS], nearest[4 * STARTS :: 4]):
         q = np.concatenate([start[np.newaxis], starts[rows]])
         q[:, still] = start[still]
@@ -182,7 +183,7 @@ def numeric(
 def solved_from(
     chain: Chain, task: Floats, q: Floats, *, enough: int = 2**31, limits: bool = True, steps: int = _STEPS
 ) -> Floats:
-    """Move configurations, (n, dim), in place, until they do a task; return the squares of what each lacks, (n,)."""
+    """Move configurations, (n, dim), in place, until they reach a task; return the squared errors, (n,)."""
     from evenroad.robot.kernel import reach as kernel
 
     none = np.full(q.shape[1], np.inf)
@@ -194,7 +195,7 @@ def solved_from(
 
 
 def followed_from(chain: Chain, tasks: Floats, q: Floats, longest: float, wraps: Bools) -> tuple[Floats, int]:
-    """Return configurations, (n, dim), that do one task of `tasks`, (n, tasks), after the other, and how many do.
+    """Return configurations, (n, dim), that reach one of `tasks`, (n, tasks), after the other, and their number.
 
     The first begins at `q`, (dim,), each at the one before, within limits unless a joint `wraps`; none steps farther
     than `longest`.
@@ -208,7 +209,7 @@ def followed_from(chain: Chain, tasks: Floats, q: Floats, longest: float, wraps:
 
 
 def _numbers(task: Floats) -> int:
-    """Return how many numbers a task says what they are to be; those with a tolerance do not count."""
+    """Return the number of numbers that a task fixes; those with a tolerance do not count."""
     from evenroad.robot.kernel import reach as at
 
     turned = 0 if task[at.TILT] else {at.NOT: 0, at.BY_AXIS: 2, at.ALL: 3}[int(task[at.TURNED])]
@@ -216,14 +217,16 @@ def _numbers(task: Floats) -> int:
 
 
 def _polished(chain: Chain, task: Floats, q: Floats) -> Floats:
-    """Return the configurations that do a task after a few more steps; closed forms lose digits near singularities."""
+    """Return the configurations that reach a task after a few more steps; closed forms lose digits near
+    singularities.
+    """
     first = q.copy()
     missing = solved_from(chain, task, q, limits=False, steps=_POLISHED)
     return q[(missing < 1e-18) & (np.abs(q - first).max(axis=1, initial=0.0) < _COARSE)]
 
 
 def wrapped(chain: Chain, q: Floats) -> Floats:
-    """Return postures in the turn that is nearest to the middle of the limits, brought to a limit over 1e-9 at most."""
+    """Return postures in the turn nearest to the middle of the limits, moved to a limit by at most 1e-9."""
     middle = 0.5 * chain.bounds.sum(axis=0)
     q = np.where(chain.turns, q - TURN * np.round((q - middle) / TURN), q)
     nearest = np.clip(q, *chain.bounds)
@@ -231,7 +234,7 @@ def wrapped(chain: Chain, q: Floats) -> Floats:
 
 
 def distinct(chain: Chain, q: Floats, apart: float) -> Floats:
-    """Return postures of which no two are nearer than `apart`, turns aside; the first of each stays."""
+    """Return postures of which no two are nearer than `apart`, modulo turns; the first of each stays."""
     kept: list[Floats] = []
     for row in q:
         if kept:
@@ -273,7 +276,7 @@ def _with_turns(chain: Chain, q: Floats, start: Floats) -> Floats:
 
 
 def _why_not(chain: Chain, task: Floats, goal: PoseGoal, best: Floats, start: Floats) -> str:
-    """Return in words why no configuration does a task: out of reach, limits, or neither is known."""
+    """Return, in words, why no configuration reaches a task: out of reach, limits, or unknown."""
     point, far = chain.reach()
     distance = math.dist(task[9:12], point)
     if distance > far + goal.position_tolerance:
@@ -300,7 +303,7 @@ def _why_not(chain: Chain, task: Floats, goal: PoseGoal, best: Floats, start: Fl
 
 
 def misses(chain: Chain, task: Floats, q: Floats) -> tuple[float, float]:
-    """Return by how much a configuration, (dim,), misses what a task says of place [m] and rotation [rad]."""
+    """Return the deviations of a configuration, (dim,), from the position [m] and rotation [rad] of a task."""
     from evenroad.robot.kernel import reach as at
 
     tip = chain.tip_poses(q[np.newaxis])[0]

@@ -1,4 +1,4 @@
-"""Joint: how a link moves on its parent, within which limits, and joints that follow others."""
+"""Joint: how a link moves on its parent, within which limits; and joints that follow others."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from evenroad.space.joints import SLACK
 
 Kind = Literal["revolute", "continuous", "prismatic", "fixed"]
 _ROUNDING = 1e-9
-"""Limits that a follower would move by less than this stay as they are written [rad or m]."""
+"""Movement of a follower up to which limits stay as they are written [rad or m]."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Joint:
 
     @property
     def neutral(self) -> float:
-        """0, or the nearest to it within limits."""
+        """0, or the nearest value within limits."""
         return float(min(max(0.0, self.lower), self.upper))
 
     def __repr__(self) -> str:
@@ -62,7 +62,7 @@ class Joint:
 
 
 def require_within(joint: Joint, value: float, what: str, limits: str = "") -> None:
-    """Raise InvalidValue unless a joint can have a value [rad or m], up to 1e-5; `what` is said to have put it there.
+    """Raise InvalidValue unless a joint can have a value [rad or m], up to 1e-5; `what` names the source of the value.
 
     `limits` are the limits in words, where they are not the joint's own.
     """

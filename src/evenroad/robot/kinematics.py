@@ -1,4 +1,4 @@
-"""Forward kinematics in double precision: where every link is, for a batch of configurations."""
+"""Forward kinematics in double precision: the poses of all links, for a batch of configurations."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def with_mimics(robot: KinematicTree, values: Mapping[str, Floats]) -> dict[str,
 
 
 def held_values(robot: KinematicTree) -> dict[str, float]:
-    """Return where the joints are that move by themselves and are not planned for, joint -> value [rad or m]."""
+    """Return the values of independent joints outside the group, joint -> value [rad or m]."""
     return {
         joint.name: float(robot.held.get(joint.name, joint.neutral))
         for joint in robot.joints
@@ -62,7 +62,7 @@ def held_values(robot: KinematicTree) -> dict[str, float]:
 
 
 def tip_links(robot: KinematicTree) -> tuple[str, ...]:
-    """Return the last link of each chain that is planned for, before it branches: one for each arm of a robot."""
+    """Return the last link of each chain of the group, before it branches: one for each arm of a robot."""
     moved = {joint.child: joint for joint in robot.joints}
     children: dict[str, list[str]] = {link: [] for link in robot.links}
     for joint in robot.joints:
@@ -103,7 +103,7 @@ def poses_at(robot: KinematicTree, values: Mapping[str, Floats], count: int) -> 
 
 
 def joint_motion(joint: Joint, value: Floats) -> Floats:
-    """Return how a joint moves its child's frame, (n, 4, 4), for its values, (n,) [rad or m].
+    """Return the transforms of a joint, (n, 4, 4), for its values, (n,) [rad or m].
 
     Rotations by Rodrigues' formula: ``R = I + sin(q) K + (1 - cos(q)) K^2``, K v = axis x v.
     """
@@ -120,12 +120,12 @@ def joint_motion(joint: Joint, value: Floats) -> Floats:
 
 
 def capsule_endpoints(robot: KinematicTree, q: npt.ArrayLike) -> Floats:
-    """Return the end points of all capsules in the frame of the root: (n, capsules, 2, 3) [m]."""
+    """Return the endpoints of all capsules in the frame of the root: (n, capsules, 2, 3) [m]."""
     return endpoints_at(robot, link_poses(robot, q))
 
 
 def endpoints_at(robot: KinematicTree, poses: Floats) -> Floats:
-    """Return the end points of all capsules, (n, capsules, 2, 3), where the links have these poses."""
+    """Return the endpoints of all capsules, (n, capsules, 2, 3), for these poses of the links."""
     link = [robot.links.index(capsule.link) for capsule in robot.capsules]
     endpoints = np.array([[capsule.a, capsule.b] for capsule in robot.capsules]).reshape(-1, 2, 3)
     rotated = np.einsum("nkij,kej->nkei", poses[:, link][..., :3, :3], endpoints)

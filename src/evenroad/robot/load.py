@@ -36,7 +36,7 @@ PathLike = str | os.PathLike[str]
 
 
 class RobotOptions(TypedDict, total=False):
-    """How a robot is made of its file; see :func:`load_model`."""
+    """Options of reading a robot; see :func:`load_model`."""
 
     srdf: PathLike | None
     group: str | Sequence[str] | None
@@ -51,8 +51,8 @@ class RobotOptions(TypedDict, total=False):
 def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     """Return a robot from its file, or a shipped one by its name.
 
-    Warns of pairs of links that touch in every sampled configuration though they are tested, and of robots that are in
-    self-collision in all of them.
+    Warns of tested pairs of links that touch in every sampled configuration, and of robots in self-collision in all of
+    them.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
         A URDF, xacro or MJCF; or, where there is no such file, ``ur5`` or ``arm7``.
     **options
         ``srdf``, ``group``, ``bodies``, ``use_visuals``, ``packages``, ``arguments``, ``progress``: as
-        :func:`evenroad.robot.load_model` takes them, which also tells how the robot was made.
+        :func:`evenroad.robot.load_model` takes them, which also returns how the robot was made.
 
     Returns
     -------
@@ -110,8 +110,8 @@ def load_model(
 ) -> RobotModel:
     """Return a robot and how it was made from its files.
 
-    What was made is kept in the user's cache, by the content of all files (meshes, too).  Nothing is found to touch a
-    link without collision geometry; the model names such links, and what was read otherwise than it stands.
+    The robot is kept in the user's cache, by the content of all files, meshes included.  A link without collision
+    geometry touches nothing; the model names such links, and all that was read otherwise than it stands in the file.
 
     Parameters
     ----------
@@ -127,11 +127,11 @@ def load_model(
     bodies : str or path-like, optional
         YAML file of capsules and spheres, in place of those fitted (see :func:`read_bodies`).
     use_visuals : bool
-        Links without collision geometry get what is drawn of them.
+        Links without collision geometry use their visuals.
     packages : mapping of str to path-like, optional
         Folders of ROS packages, beside those that are found.
     arguments : mapping of str to str, optional
-        Of a xacro.
+        Arguments of a xacro.
     progress : callable, optional
         Called with step, steps and a text before each body is fitted; not at all for a robot from the cache.
 
@@ -155,7 +155,7 @@ def load_model(
     model = cached(key)
     if model is None:
         model = _build(file, urdf, srdf_path, bodies_path, group, progress)
-        # Files may have been saved while they were read: then nobody knows of which of their contents this is made.
+        # Files may have been saved while they were read: the robot may then mix two versions.
         if key_of(urdf, others, group) == key:
             keep(key, model)
     return replace(model, file=file)
@@ -206,7 +206,7 @@ def _build(
         group=chosen,
         states={} if srdf is None else chosen_states(srdf, chosen, group),
         planes=urdf.planes,
-        # What the user gives in place of a link's shapes is what the user says that they are.
+        # Capsules that the user gives replace a link's shapes as they are.
         inner=inner_of(_shapes(urdf, given)),
     )
     # Of those that a robot's own file lets touch, each has its reason; those of an SRDF have one for all.
@@ -261,7 +261,7 @@ def _capsules(
 
 
 def _pieces(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> dict[str, list[Piece]]:
-    """Return what every link with a body consists of: the capsules given, or the shapes of the URDF."""
+    """Return the shapes of every link with a body: the capsules given, or the shapes of the URDF."""
     pieces: dict[str, list[Piece]] = {}
     for shape in _shapes(urdf, given):
         pieces.setdefault(shape.link, []).append(piece_of(shape))

@@ -1,8 +1,8 @@
 """Infeasibility proofs for arms: the first joints alone cannot pass from start to goal.
 
-The first joints move the first links, whatever the others do.  Their ranges are cut into cells.  A cell is blocked
-throughout where its middle is, with bodies thinner by what half a cell can move them, and by how much the spheres of
-the check may be thicker.  What is left falls into pieces, and no path leaves the piece that it starts in.
+The first joints move the first links, whatever the others do.  Their ranges are divided into cells.  A cell is blocked
+throughout if its middle is, with bodies thinner by the movement within half a cell and by the excess of the spheres of
+the check.  The free cells form components, and no path leaves the component that it starts in.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from evenroad.robot.prepared_robots import joint_space
 from evenroad.robot.robot import Robot
 
 SLACK = 1e-4
-"""Bodies are thinner by this, and by four times what single precision may be wrong by, than rounding asks for [m]."""
+"""Distance by which bodies are thinner, besides four times the error of single precision [m]."""
 BEYOND = 1e-4
-"""Cells reach so far beyond the limits of joints, where a configuration may be by rounding [rad or m]."""
+"""Distance that cells reach beyond the limits of joints, where rounding may put a configuration [rad or m]."""
 _SLOWEST = 0.05
-"""Joints that move the links less than this are cut no coarser [m/rad]."""
+"""Least speed of links by which cells are sized [m/rad]."""
 _AT_ONCE = 65_536
-"""Cells."""
+"""Number of cells that are checked at once."""
 
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """A robot whose `capsules` are tested in a scene, and by how much these verdicts may be wrong, >= 0 [m].
+    """A robot whose `capsules` are tested in a scene, and the largest error of these checks, >= 0 [m].
 
-    `in_scene` says of such a robot which of its configurations, (n, dim), are free there: (n,).
+    `in_scene` returns which configurations, (n, dim), of such a robot are free there: (n,).
     """
 
     robot: Robot
@@ -43,7 +43,7 @@ class Bodies:
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Equal cells of the ranges of some joints: where they begin and end along each, and how many [rad or m].
+    """Equal cells of the ranges of some joints: lower ends, upper ends and numbers along each [rad or m].
 
     `period` is inf where a joint does not wrap.
     """
@@ -55,32 +55,32 @@ class Cells:
 
     @property
     def size(self) -> Floats:
-        """Their sides [rad or m]."""
+        """Sides of a cell [rad or m]."""
         return (self.high - self.low) / self.count
 
     @property
     def whole(self) -> Bools:
-        """Along which joints, of those that wrap, they go all the way round."""
+        """Along which joints, of those that wrap, the cells cover the whole circle."""
         return self.high - self.low >= self.period * (1.0 - 1e-12)
 
     @property
     def middles(self) -> list[Floats]:
-        """The middles along each joint."""
+        """Middles of the cells along each joint."""
         axes = zip(self.low, self.size, self.count, strict=True)
         return [low + size * (np.arange(count) + 0.5) for low, size, count in axes]
 
     def cell(self, q: Floats) -> tuple[int, ...] | None:
-        """Return which cell a place, (joints,), is in; None where it is in none."""
+        """Return the cell of values, (joints,); None where they are in none."""
         q = np.where(np.isfinite(self.period), self.low + np.mod(q - self.low, self.period), q)
         number = np.floor((q - self.low) / self.size).astype(int)
-        # Rounding must not put what is on the rim outside.
+        # Rounding must not put values on the rim outside.
         inside = (number >= -1) & (number <= self.count)
         return tuple(np.clip(number, 0, self.count - 1).tolist()) if inside.all() else None
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """All cells of a robot's first joints that a path may come to from where it starts."""
+    """All cells of a robot's first joints that a path from its start may reach."""
 
     cells: Cells
     reached: Bools
@@ -92,10 +92,10 @@ class Piece:
 
 
 def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], most: int) -> Piece | None:
-    """Return the cells that a robot's first joints, as many as `reach` has, cannot leave from a free place, (dim,).
+    """Return the cells of the first `len(reach)` joints that a path from a free configuration, (dim,), cannot leave.
 
-    About so many cells lie around the place; `reach` says how far along each joint, to its limits at most [rad or m].
-    None where nothing is shown: by bodies too thin for such cells, or as a path may lead out of all of them.
+    About `most` cells lie around it; `reach` is their extent along each joint, to its limits at most [rad or m].  None
+    where nothing is proved: bodies may be too thin for such cells, or a path may leave them all.
     """
     first = first_links(bodies.robot, len(reach))
     if not first.capsules:
@@ -104,12 +104,12 @@ def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], mo
     thin = thinner(first, 0.5 * cells.size, SLACK + 4.0 * bodies.margin)
     if not thin.capsules:
         return None
-    # Here, as most plans need no proof.
+    # Imported here, as most plans need no proof.
     from scipy.ndimage import label
 
     number = _joined(label(_free_cells(bodies.in_scene(thin), cells))[0], cells.whole)
     cell = cells.cell(configuration[: len(reach)])
-    # A place in no cell, or in a blocked one, is not as free as was said.
+    # A configuration in no cell, or in a blocked one, contradicts the check.
     if cell is None or number[cell] == 0:
         return None
     reached = number == number[cell]
@@ -117,7 +117,7 @@ def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], mo
     open_below = np.where(np.isfinite(cells.period), ~cells.whole, cells.low > space.low)
     open_above = np.where(np.isfinite(cells.period), ~cells.whole, cells.high < space.high)
     for k in range(len(reach)):
-        # It must not leave by a side of the cells that is no limit of a joint.
+        # A component must not leave by a side of the cells that is no limit of a joint.
         below, above = np.moveaxis(reached, k, 0)[[0, -1]].reshape(2, -1).any(axis=1)
         if (below and open_below[k]) or (above and open_above[k]):
             return None
@@ -125,7 +125,7 @@ def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], mo
 
 
 def first_links(robot: Robot, joints: int) -> Robot:
-    """Return the robot with what its first joints alone move: the others are held, the bodies behind them are gone.
+    """Return the robot with what its first joints alone move: other joints are held, bodies behind them are removed.
 
     Its limits are a little wider: no cell is blocked for being beyond them.
     """
@@ -174,7 +174,7 @@ def thinner(robot: Robot, half: Floats, slack: float) -> Robot:
 
 
 def _cells_around(first: Robot, configuration: Floats, reach: Floats, most: int) -> Cells:
-    """Return about so many cells around a place; where a joint wraps, all the way round at most."""
+    """Return about `most` cells around a configuration; where a joint wraps, at most the whole circle."""
     space = joint_space(first)
     period = space.flat.period
     reach = np.minimum(reach, 0.5 * period)
@@ -184,7 +184,7 @@ def _cells_around(first: Robot, configuration: Floats, reach: Floats, most: int)
     tree = moving_tree(first)
     placed = [place_capsule(capsule, tree) for capsule in first.capsules]
     speeds = speed_bounds(tree, placed, [], first)[0].max(axis=0)
-    # Half a cell along any joint moves the links by about as much, the finer the better.
+    # Half a cell along any joint moves the links by about the same distance; more cells, less distance.
     lengths = np.maximum(speeds, _SLOWEST) * (high - low)
     count = np.ceil(lengths * (most / np.prod(lengths)) ** (1 / len(reach))).astype(int)
     count = np.maximum(count, 2)

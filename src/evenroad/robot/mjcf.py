@@ -23,7 +23,7 @@ from evenroad.robot.urdf import Urdf, as_tree
 from evenroad.robot.urdf_xml import RobotFile, read_xml
 
 _FAR = 1e6
-"""Limits of slides that have none [m]."""
+"""Limits of prismatic joints without limits [m]."""
 _KINDS: dict[str, Kind] = {"mjJNT_HINGE": "revolute", "mjJNT_SLIDE": "prismatic"}
 
 
@@ -54,7 +54,7 @@ def read_mjcf(file: RobotFile) -> Urdf:
 
 
 class _Reader:
-    """A compiled model, and what is made of it."""
+    """A compiled model, and the links and joints made of it."""
 
     def __init__(self, mujoco: Any, model: Any, file: RobotFile, name: str) -> None:
         self.mujoco, self.model, self.file, self.name = mujoco, model, file, name
@@ -227,7 +227,7 @@ class _Reader:
         return tuple(planes)
 
     def _note(self, solid: Sequence[int], contacts: Contacts) -> None:
-        """Note what users may not expect of how bodies collide."""
+        """Note how bodies collide where users may not expect it."""
         if self.file.as_drawn:
             return
         grown = contacts.grown[list(solid)]
@@ -242,5 +242,5 @@ class _Reader:
 
 
 def _pose(xyz: Floats, quaternion: Floats) -> Pose:
-    # MuJoCo has w first.
+    # MuJoCo's quaternions begin with w.
     return Pose.from_quaternion(xyz.tolist(), xyzw=np.roll(quaternion, -1).tolist())

@@ -1,4 +1,4 @@
-"""Which geoms of a compiled MJCF collide with which, by MuJoCo's own rules, and by how much they are grown."""
+"""Which geoms of a compiled MJCF collide, by MuJoCo's own rules, and by how much they are grown."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats
 
 _ALL = 0xFFFFFFFF
-"""The mask of what is drawn only and taken for a body: it collides with all that collide."""
+"""Mask of visuals that are taken for bodies: they collide with all that collide."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,11 +36,11 @@ class Contacts:
 
 
 def contacts_of(mujoco: Any, model: Any, drawn: Sequence[int]) -> Contacts:
-    """Return which geoms collide; those in `drawn`, which do with none, as if they were of every kind.
+    """Return which geoms collide; visuals in `drawn`, which MuJoCo lets collide with none, collide with every kind.
 
-    Of one body, or of bodies without a joint between them, none do; nor those of a body and its parent, unless that
-    stands in the world; nor bodies that are excluded, nor types and affinities that have no bit in common.  What the
-    file names as a pair does, whatever else it says.
+    Geoms of one body, or of bodies without a joint between them, do not; nor those of a body and its parent, unless
+    that stands in the world; nor those of excluded bodies, or of types and affinities without a common bit.  Pairs that
+    the file names collide, whatever else it says.
     """
     body = model.geom_bodyid
     types, affinities = (

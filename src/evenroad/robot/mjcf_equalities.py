@@ -1,4 +1,4 @@
-"""What the equalities of a compiled MJCF make of its joints: mimics and locked joints; closed loops are refused."""
+"""Equalities of a compiled MJCF as mimics and locked joints; closed loops are refused."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from evenroad.robot.joint import Joint, Mimic
 
 
 def name_of(element: Any, what: str) -> str:
-    """Return the name of a body, joint or geom of a compiled model; one that has none is told by its number."""
+    """Return the name of a body, joint or geom of a compiled model; its number if it has none."""
     return str(element.name) or f"{what}_{element.id}"
 
 
 def with_equalities(
     mujoco: Any, model: Any, joints: Sequence[Joint], where: str, notes: list[str]
 ) -> list[Joint]:
-    """Return the joints with what equalities make of them.
+    """Return the joints after all equalities.
 
-    ``q1 = c0 + c1 q2`` makes a mimic, ``q1 = c0`` a locked joint.  Those that are not active, and welds to bodies of
-    motion capture, which go where they are put, are left out with a note.  Raises BrokenFile if bodies that can move on
-    each other are connected or welded, or an equality is of any other kind.
+    ``q1 = c0 + c1 q2`` makes a mimic, ``q1 = c0`` a locked joint.  Inactive ones, and welds to bodies of motion
+    capture, which are placed from outside, are left out with a note.  Raises BrokenFile if bodies that move on each
+    other are connected or welded, or an equality is of any other kind.
     """
     mimics: dict[str, Mimic] = {}
     locked: dict[str, float] = {}
@@ -51,7 +51,7 @@ def with_equalities(
 
 
 def _loop(mujoco: Any, model: Any, number: int, kind: str, notes: list[str]) -> str:
-    """Return in words which loop an equality closes; empty where it closes none."""
+    """Return, in words, the loop that an equality closes; empty if none."""
     joined = [int(model.eq_obj1id[number]), int(model.eq_obj2id[number])]
     if int(model.eq_objtype[number]) == int(mujoco.mjtObj.mjOBJ_SITE):
         joined = [int(model.site_bodyid[site]) for site in joined]

@@ -43,7 +43,7 @@ def read_scene_text(path: Path) -> Scene:
 
 
 def _from_text(lines: list[str], path: Path) -> Iterator[Obstacle]:
-    """Yield the obstacles of a text, word by word."""
+    """Read the obstacles of a text, word by word."""
     first = next((i for i, line in enumerate(lines) if line.lstrip().startswith("*")), len(lines))
     # Newer files have the object's position, three numbers, where older ones have the number of its shapes.
     posed = first + 1 < len(lines) and len(lines[first + 1].split()) > 1
@@ -167,7 +167,7 @@ def _obstacles(name: str, shapes: list[tuple[str, Numbers, Pose]], path: Path) -
 
 
 def _count(kind: str, name: str, path: Path) -> int:
-    """Return how many dimensions a shape has."""
+    """Return the number of dimensions of a shape."""
     require_known(f"shape of object {name!r} in {path}:", kind, _SIZES)
     return _SIZES[kind]
 

@@ -1,4 +1,4 @@
-"""UprightWorld: an arm that keeps an axis of its tip upright, as one that carries a glass of water."""
+"""OrientationWorld: an arm that keeps an axis of its tip upright, as when it carries a glass of water."""
 
 from __future__ import annotations
 
@@ -25,30 +25,30 @@ from evenroad.space.path import path_length
 UP = (0.0, 0.0, 1.0)
 
 FINE = 8
-"""States of each step at which the tilt is measured."""
+"""Number of states of each step at which the tilt is measured."""
 
 _STEP = 0.1
 """Longest step along a motion in the metric of the joints."""
 _AIM = 0.5
-"""Projected states may be tilted by this share of the tolerance: the rest is for what lies between them."""
+"""Largest tilt of projected states, as a share of the tolerance: the rest is for motions between them."""
 _JUMP = 2.5
-"""Projected states farther apart than so many steps are of two branches."""
+"""Number of steps beyond which neighbouring projected states are of two branches."""
 _TOGETHER = 64
-"""Motions that are followed at once."""
+"""Number of motions that are projected at once."""
 
 
 @dataclass(frozen=True)
 class OrientationConstraint:
-    """An axis of a link that is to be upright along the whole path.
+    """A constraint that keeps an axis of a link upright along the whole path.
 
     Parameters
     ----------
     tolerance : float
-        By how much it may be tilted, > 0, up to pi [rad].
+        Largest tilt, > 0, up to pi [rad].
     axis : sequence of 3 floats, "x", "-x", ..., or None
-        In the frame of the tip; None is the one of the six that is most upright at the start.
+        The axis in the frame of the tip; None is the one of the six that is most upright at the start.
     tip : str
-        The link; default: that of the goal poses, or the last one.
+        The link of the tip; default: that of the goal poses, or the last one.
     """
 
     tolerance: float
@@ -75,15 +75,15 @@ def orientation_world(
 
 
 class ProjectedSpace(JointSpace):
-    """The joints' space, with points of the cube moved to where the axis is upright, as far as that is found."""
+    """The joints' space, with points of the cube projected to where the axis is upright, if that is found."""
 
     def projected_by(self, world: OrientationWorld) -> ProjectedSpace:
-        """Return itself, knowing the world; frozen values have no other way."""
+        """Return a copy that projects in a world; frozen values need it."""
         object.__setattr__(self, "_world", world)
         return self
 
     def from_cube(self, u: Floats) -> Floats:
-        """Return configurations, (n, dim), of points of the cube, (n, dim); those not found stay tilted."""
+        """Return configurations, (n, dim), of points of the cube, (n, dim); those without a projection stay tilted."""
         q = super().from_cube(u)
         world: OrientationWorld = self._world  # type: ignore[attr-defined]
         return self.wrapped(np.clip(world.projected(q)[0], *world.limits))
@@ -100,9 +100,9 @@ class OrientationWorld:
     ----------
     world : ArmWorld
     chain : Chain
-        From the root to the link.
+        The chain from the root to the link.
     axis : tuple of 3 floats
-        In the frame of the link.
+        The axis in the frame of the link.
     tolerance : float
         Largest angle between axis and upright [rad].
     """
@@ -120,12 +120,12 @@ class OrientationWorld:
 
     @property
     def proof(self) -> str:
-        """``certified``: that nothing touches is proved; the tilt is measured."""
+        """``certified``: collisions are proved absent; the tilt is measured."""
         return "certified"
 
     @property
     def limits(self) -> Floats:
-        """Limits of the joints, (2, dim); none of those that wrap."""
+        """Limits of the joints, (2, dim); infinite for those that wrap."""
         return np.where(self.world.space.flat.wrapping, [[-np.inf], [np.inf]], self.chain.bounds)
 
     @property
@@ -134,11 +134,11 @@ class OrientationWorld:
         return min(_STEP, math.sqrt(0.5 * self.tolerance))
 
     def tilts(self, q: Floats) -> Floats:
-        """Return by how much the axis is tilted, (n,) [rad], at configurations (n, dim)."""
+        """Return the tilts of the axis, (n,) [rad], at configurations (n, dim)."""
         return tilts(self.chain, q, self.axis, UP)
 
     def projected(self, q: Floats) -> tuple[Floats, Bools]:
-        """Return the configurations, (n, dim), brought upright up to a share of the tolerance, and which could be."""
+        """Return the configurations, (n, dim), projected to a share of the tolerance, and which succeeded."""
         from evenroad.robot.kernel import reach as at
 
         task = np.zeros(at.GOAL)
@@ -161,7 +161,9 @@ class OrientationWorld:
         return free
 
     def along(self, a: Floats, b: Floats) -> Floats | None:
-        """Return the states of the motion between two configurations, (n, dim), ends included; None where not free."""
+        """Return the states of the motion between two configurations, (n, dim), with both; None where it
+        is not free.
+        """
         free, states = self._followed(a[np.newaxis], b[np.newaxis])
         return states if free[0] else None
 
@@ -225,18 +227,18 @@ class OrientationWorld:
         return path
 
     def fingerprint(self) -> str:
-        """Return a text that two worlds share in which the same is free."""
+        """Return a text that is equal for worlds in which the same is free."""
         return fingerprint_of("upright", self.world.fingerprint(), self.chain.tip, self.axis, self.tolerance)
 
     def explain(self, q: Floats) -> str:
-        """Return in words why one configuration, (dim,), is not free: what touches, or how far it is tilted."""
+        """Return, in words, why one configuration, (dim,), is not free: which bodies touch, or how far it is tilted."""
         tilt = float(self.tilts(q[np.newaxis])[0])
         if tilt <= self.tolerance:
             return self.world.explain(q)
         return self.tilted(tilt)
 
     def tilted(self, tilt: float) -> str:
-        """Return in words that a tilt [rad] is too much, and of what."""
+        """Return, in words, that a tilt [rad] is too large, and of what."""
         every = (sign + name for name in AXES for sign in ("", "-"))
         numbers = f"({', '.join(f'{each:.3g}' for each in self.axis)})"
         axis = next((name for name in every if as_axis("axis", name) == self.axis), numbers)

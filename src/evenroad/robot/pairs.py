@@ -16,26 +16,26 @@ from evenroad.robot.kernel.hull_trees import HullTrees, contacts, hull_trees
 from evenroad.robot.kinematics import KinematicTree, held_values, poses_at, with_mimics
 
 SAMPLES = 1000
-"""Random configurations that tell pairs that are always in contact."""
+"""Number of random configurations that find pairs that are always in contact."""
 TOUCHING = "touch in every sample"
-"""Why a pair is not tested whose shapes are in contact in all of them."""
+"""Reason why a pair whose shapes touch in all of them is not tested."""
 HELD_TOUCHING = "touch in every sample with the other joints where they are held"
-"""Why another is not, until these are held elsewhere."""
+"""Reason why another is not tested, until these joints are held elsewhere."""
 CONTAINED = "one goes into the other as drawn"
-"""Why a third is not: a single joint moves one in and out of the other."""
+"""Reason why a third is not tested: a single joint moves one in and out of the other."""
 _MOSTLY = 0.5
-"""Of all samples in which such two touch, and of the volume that is inside in one of these."""
+"""Share of samples in which such two touch, and of the volume that is inside in one of these."""
 _MOST_HULLS = 128
-"""A link of so many is not split."""
+"""Number of hulls from which on a link is not split."""
 _MOST_ROWS = 20
-"""Of the samples in which two touch, so many tell how far one is inside of the other."""
+"""Number of touching samples in which the depth of one in the other is measured."""
 _ROUNDS = 12
 _LOOKED_AT = 400
-"""Samples, of all of these, by which hulls are judged."""
+"""Number of samples by which hulls are judged."""
 _RESTING = 1e-5
-"""Shapes nearer to each other than this touch, where they do so in all samples [m]."""
+"""Distance below which shapes touch if they do so in all samples [m]."""
 _FEW = 0.003
-"""Share of them in which hulls of a pair may touch though what is inside does not."""
+"""Largest share of samples in which hulls of a pair may touch though the shapes do not."""
 Pieces = Mapping[str, Sequence[Piece]]
 """The shapes of every link that has any, as hulls and what these are around."""
 
@@ -101,7 +101,7 @@ def self_pairs(
 def pairs_of(
     robot: KinematicTree, pieces: Pieces, untested: Mapping[frozenset[str], str] | None = None
 ) -> tuple[tuple[str, str], ...]:
-    """Return the pairs that would be tested if none touched in every configuration, in the order of the links."""
+    """Return the pairs that would be tested if none always touched, in the order of the links."""
     order = [link for link in robot.links if link in pieces]
     reasons = _untested(robot, pieces, untested)
     return tuple(pair for pair in combinations(order, 2) if pair not in reasons)
@@ -110,7 +110,7 @@ def pairs_of(
 def _untested(
     robot: KinematicTree, pieces: Pieces, untested: Mapping[frozenset[str], str] | None
 ) -> dict[tuple[str, str], str]:
-    """Return the pairs that are not tested whatever they touch, each with the reason."""
+    """Return the pairs that are never tested, each with the reason."""
     order = [link for link in robot.links if link in pieces]
     rigid, above = rigid_links(robot), bodied_above(robot, pieces)
     reasons: dict[tuple[str, str], str] = {}
@@ -131,7 +131,7 @@ def _unless_round(hulls: Iterable[Hull]) -> tuple[Hull, ...]:
 
 
 def rigid_links(robot: KinematicTree) -> dict[str, str]:
-    """Return for every link the first of those that no joint moves on it."""
+    """Return for every link the first of those that are rigidly joined to it."""
     first = {robot.links[0]: robot.links[0]}
     for joint in robot.joints:
         first[joint.child] = first[joint.parent] if joint.kind == "fixed" else joint.child
@@ -139,7 +139,7 @@ def rigid_links(robot: KinematicTree) -> dict[str, str]:
 
 
 def joined_by_one(robot: KinematicTree, rigid: Mapping[str, str]) -> Callable[[str, str], bool]:
-    """Return what tells whether a single joint moves two links on each other."""
+    """Return a function of two links: whether a single joint moves them on each other."""
     over = {joint.child: rigid[joint.parent] for joint in robot.joints if joint.kind != "fixed"}
 
     def joined(first: str, second: str) -> bool:
@@ -150,7 +150,7 @@ def joined_by_one(robot: KinematicTree, rigid: Mapping[str, str]) -> Callable[[s
 
 
 def bodied_above(robot: KinematicTree, bodied: Collection[str]) -> dict[str, tuple[str, int]]:
-    """Return for every link the next one above it that has a body, if any, and how many joints between them move."""
+    """Return for every link the next one above it with a body, if any, and the number of moving joints between them."""
     # Two joints with a length between them fold, and bring together what does not touch by construction.
     above = {robot.links[0]: ("", 0)}
     for joint in robot.joints:
@@ -168,16 +168,16 @@ class _Samples:
         self.looked_at = np.arange(0)
         poses = _sampled_poses(robot)
         self._poses = {link: poses[:, robot.links.index(link)] for link in pieces}
-        # What rests on another body touches it, though rounding may part the two.
+        # A body that rests on another touches it, though rounding may part the two.
         self._parts, self._resting = (
             hull_trees({link: [(p.parts, p.radius + more) for p in of] for link, of in pieces.items()})
             for more in (0.0, 0.5 * _RESTING)
         )
 
     def judge(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], str]:
-        """Return the pairs whose shapes touch in all samples, or all of the group, each with which of the two it is.
+        """Return the pairs whose shapes touch in all samples, or in all of the group, each with which of the two.
 
-        The hulls of others that touch too often are split.
+        Hulls of others that touch too often are split.
         """
         every = np.arange(len(next(iter(self._poses.values()))))
         some, of_group = every[:: 1 + len(every) // _LOOKED_AT], every[-SAMPLES:]
@@ -207,7 +207,7 @@ class _Samples:
         return always
 
     def contains(self, pair: tuple[str, str]) -> bool:
-        """Return whether two links touch in most samples and most of one is inside of the other in one of these."""
+        """Return whether two links touch in most samples and most of one is inside the other in one of these."""
         first, second = pair
         rows = np.intersect1d(self.looked_at, self.touching[pair])
         if len(rows) <= _MOSTLY * len(self.looked_at):
@@ -222,7 +222,7 @@ class _Samples:
         return bool(np.max(shares) > _MOSTLY)
 
     def never_free(self, tested: Sequence[tuple[str, str]]) -> str:
-        """Return which pair of those tested blocks most where one of them touches in all samples of the group."""
+        """Return which tested pair blocks most, if one of them touches in all samples of the group."""
         rows = self.looked_at
         times = {pair: np.isin(rows, self.touching[pair]) for pair in tested}
         if not times or not np.any(list(times.values()), axis=0).all():
@@ -235,7 +235,7 @@ class _Samples:
         )
 
     def _split(self, wrong: Mapping[tuple[str, str], Ints]) -> dict[tuple[str, str], Ints]:
-        """Split all hulls that touch in these samples; return those in which others touch still."""
+        """Split all hulls that touch in these samples; return those in which others still touch."""
         trees, left = self._hulls(), {}
         hit: dict[str, set[int]] = {}
         for (first, second), rows in wrong.items():

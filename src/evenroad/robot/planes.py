@@ -1,4 +1,4 @@
-"""Planes: half spaces that the file of a robot has around it, as obstacles of every scene that the robot is in."""
+"""Planes: half spaces from the file of a robot, as obstacles of every scene that the robot is in."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from evenroad.geometry.shapes import Box
 from evenroad.robot.scene import Obstacle, Scene
 
 SIDE, DEPTH = 200.0, 100.0
-"""Of the box that stands for a half space, its upper side around the robot [m]."""
+"""Side and depth of the box that stands for a half space, its upper side around the robot [m]."""
 
 
 @dataclass(frozen=True)

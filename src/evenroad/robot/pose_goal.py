@@ -1,4 +1,4 @@
-"""PoseGoal: the pose of a link as a goal; and poses as people write them."""
+"""PoseGoal: the pose of a link as a goal; and reading poses."""
 
 from __future__ import annotations
 
@@ -17,33 +17,33 @@ from evenroad.geometry.pose import Pose, Vector
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 _UNIT = 1e-3
-"""How far the norm of a quaternion that is written may be from 1."""
+"""Largest difference of the norm of a written quaternion from 1."""
 
 
 @explains_calls
 @dataclass(frozen=True)
 class PoseGoal:
-    """Where a link of the robot is to be.
+    """A pose of a link as a goal.
 
     Parameters
     ----------
     pose : Pose
-        Of the link `tip`, in the frame of the link `frame`.
+        Pose of the link `tip`, in the frame of the link `frame`.
     tip : str
-        Default: the only link at the end of what the group moves.
+        The link; default: the only last link that the group moves.
     frame : str
         A link that the group does not move; default: the root.
     free_axis : sequence of 3 floats, or "x", "y", "z"
-        In the frame of the tip: it may be turned about this axis at will.  Default: it may not.
+        An axis in the frame of the tip about which it may turn freely.  Default: none.
     position_only : bool
-        It may be turned at will.
+        Whether any rotation is allowed.
     position_tolerance, angle_tolerance : float
-        By how much the origin, and the rotation, may be off, >= 0 [m, rad].
+        Largest deviations of the origin and the rotation, >= 0 [m, rad].
 
     Raises
     ------
     InvalidValue
-        If a number is none, or an axis has no direction.
+        If a number is invalid, or an axis has no direction.
 
     Examples
     --------
@@ -72,7 +72,7 @@ class PoseGoal:
 
     @property
     def is_exact(self) -> bool:
-        """Whether place and rotation are given in full."""
+        """Whether position and rotation are given in full."""
         loose = self.position_only or self.position_tolerance or self.angle_tolerance
         return self.free_axis is None and not loose
 
@@ -115,7 +115,7 @@ def as_numbers(name: str, text: str, counts: Sequence[int]) -> tuple[float, ...]
 
 
 def pose_of(text: str, *, degrees: bool = False) -> tuple[Pose, bool]:
-    """Return a pose that somebody wrote, and whether it has a rotation.
+    """Return the pose of a text or numbers, and whether it has a rotation.
 
     ``x y z``, ``x y z roll pitch yaw`` (`degrees` or radians) or ``x y z qx qy qz qw`` [m], as ROS has them.  Raises
     InvalidValue if these are not so many finite numbers, or the quaternion is not of norm 1 up to 0.001.
@@ -136,6 +136,6 @@ def pose_of(text: str, *, degrees: bool = False) -> tuple[Pose, bool]:
 
 
 def as_pose_goal(goal: Pose | PoseGoal, tip: str = "", frame: str = "") -> PoseGoal:
-    """Return a goal of a pose, with this tip and frame where it names none itself."""
+    """Return a goal of a pose, with this tip and frame by default."""
     goal = PoseGoal(goal) if isinstance(goal, Pose) else goal
     return replace(goal, tip=goal.tip or tip, frame=goal.frame or frame)

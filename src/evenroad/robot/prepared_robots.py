@@ -46,7 +46,7 @@ def joint_space(robot: Robot) -> JointSpace:
 
 
 class Prepared(NamedTuple):
-    """What is a robot's in every scene: `longest` bounds the length of a motion, `by_joint` is as in ``LaneWorld``.
+    """Tables of a robot for every scene: `longest` bounds the length of a motion, `by_joint` is as in ``LaneWorld``.
 
     `bounds`, (3, dim), are its first rows; `address` is its address.
     """
@@ -60,13 +60,13 @@ class Prepared(NamedTuple):
 
 
 _recent: dict[int, tuple[Robot, dict[str, float], Prepared]] = {}
-"""By identity, which costs less to look up than a key of a robot's values; a dictionary is the only part of a robot
-that can change."""
+"""Cache by identity, which is faster than a key of a robot's values; a dictionary is the only part of a robot that can
+change."""
 _FIELDS = tuple(each.name for each in fields(Robot) if each.name not in ("states", "held", "inner"))
 
 
 def prepared(robot: Robot) -> Prepared:
-    """Return what is a robot's in every scene; kept."""
+    """Return a robot's tables, cached."""
     recent = _recent.get(id(robot))
     if recent is not None and recent[0] is robot and recent[1] == robot.held:
         return recent[2]
@@ -75,7 +75,7 @@ def prepared(robot: Robot) -> Prepared:
     try:
         found = _kept(values, held)
     except TypeError:
-        # Of lists in place of tuples: no key.
+        # Lists instead of tuples cannot be a key.
         return _kept.__wrapped__(values, held)
     if len(_recent) >= 32:
         _recent.clear()

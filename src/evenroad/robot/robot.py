@@ -34,21 +34,21 @@ class Robot(RobotMethods):
     Parameters
     ----------
     name, links, joints : str, tuple of str, tuple of Joint
-        Of the links the root is first, every parent before its children; ``joints[i]`` leads to ``links[i + 1]``.
+        The root is the first link, and every parent comes before its children; ``joints[i]`` leads to ``links[i + 1]``.
     capsules, pairs : tuple of Capsule, tuple of (str, str)
         The bodies, and the links that are tested against each other.
     group : tuple of str
         Joints that are planned for, in the order of a configuration, none of them fixed or a mimic.
     held : mapping of str to float
-        Values of other movable joints [rad or m]; of joints not given 0, or the nearest to it within limits.
+        Values of other movable joints [rad or m].  Default: 0, or the nearest value within limits.
     states : mapping of str to mapping
-        Named configurations: joint -> value, also of joints outside of the group.
+        Named configurations: joint -> value, also of joints outside the group.
     hulls : tuple of Hull
         Convex pieces that hold the links' shapes more tightly than capsules: where capsules touch, these decide.
     pairs_given, resting : bool, tuple of (str, str)
-        Whether somebody gave the pairs, as an SRDF does; where not, those left out that always touch.
+        Whether the pairs were given, as by an SRDF; if not, the pairs left out because they always touch.
     holds, planes : tuple of str, tuple of Plane
-        Links that the robot carries for a while, see :meth:`holding`; half spaces that are in every scene.
+        Links of held objects, see :meth:`holding`; half spaces that are in every scene.
     inner : tuple of Capsule or None
         Capsules within the links' true shapes: proofs that there is no path are about them.  None: `capsules` are
         the true shapes.
@@ -76,11 +76,11 @@ class Robot(RobotMethods):
     inner: tuple[Capsule, ...] | None = None
 
     def __post_init__(self) -> None:
-        # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
+        # The kernel takes endpoints: those of a capsule with a pose are transformed to its link's frame.
         set_fields(self, capsules=tuple(map(without_pose, self.capsules)))
 
     def fingerprint(self) -> str:
-        """Return the SHA-256 (hex) of what decides verdicts; the names of the robot and its states do not."""
+        """Return the SHA-256 (hex) of all that decides checks; the names of the robot and its states do not."""
         # Planes only where there are any: robots without keep the fingerprints that they always had.
         left_out = {"name", "states", "holds", "inner", *(() if self.planes else ("planes",))}
         return fingerprint_of(
@@ -98,11 +98,11 @@ class Robot(RobotMethods):
         Parameters
         ----------
         tool : Robot, Shape or sequence of Shape
-            A robot of its own, or shapes in the frame of a new link ``tool``, to which capsules are fitted.
+            Another robot, or shapes in the frame of a new link ``tool``, to which capsules are fitted.
         at, pose : str, Pose
-            The link that carries it, and where the tool's root link is in its frame.
+            The link that carries it, and the pose of the tool's root link in its frame.
         prefix : str
-            Is put before the names of all of the tool's links and joints.
+            Prefix of the names of all of the tool's links and joints.
 
         Returns
         -------
@@ -166,7 +166,7 @@ class Robot(RobotMethods):
     def holding(
         self, shape: Shape | HeldObject, link: str = "", *, touches: Sequence[str] = (), name: str = "held"
     ) -> Robot:
-        """Return the robot with a body in its hand.
+        """Return the robot with an object in its hand.
 
         Capsules and a hull are fitted to it, as to the links of a URDF; nothing is sampled, and the robot's own pairs
         stay.  It is tested against all obstacles and against every link that joints move on `link`.
@@ -174,20 +174,20 @@ class Robot(RobotMethods):
         Parameters
         ----------
         shape : Shape, or HeldObject
-            With its pose in the frame of the link that carries it; a HeldObject says all that follows itself.
+            The body, with its pose in the frame of the link that carries it; a HeldObject has the other parameters.
         link : str
             That link.
         touches : sequence of str
             Links that it may touch.
         name : str
-            What it is called: a scene can allow it to touch an obstacle, and verdicts name it.
+            Its name, for allowed contacts of a scene and for messages.
 
         Raises
         ------
         UnknownName
-            If a link is not there.
+            If a link does not exist.
         InvalidValue
-            If it is no shape that has capsules, or the name is that of a link: attached twice.
+            If it is no shape that has capsules, or the name is that of a link, as when attached twice.
 
         Returns
         -------
@@ -234,7 +234,7 @@ class Robot(RobotMethods):
 
 
 def pieces_of(robot: Robot) -> dict[str, list[Piece]]:
-    """Return the hulls of every link that has a body; of links without any its capsules."""
+    """Return the hulls of every link that has a body; its capsules where it has no hulls."""
     pieces: dict[str, list[Piece]] = {}
     for hull in robot.hulls:
         pieces.setdefault(hull.link, []).append(Piece(hull, hull.points[np.newaxis], hull.radius))
@@ -275,7 +275,7 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
     """Return the robot with another group; the other movable joints are held at `held`, else at 0 or nearest to it.
 
     Raises UnknownName if a joint is not one that moves freely; InvalidValue if one is held that is in the group, or
-    outside of its limits.
+    outside its limits.
     """
     require_robot(robot)
     free = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
@@ -322,7 +322,7 @@ def within_scene(robot: Robot, scene: Scene) -> Robot:
         narrowed = max(lower, own[0]), min(upper, own[1])
         if narrowed != own:
             limits[name] = narrowed
-    # The same robot: what is known of it need not be looked up by all of its values.
+    # The same object: its cached tables are then found without comparing all values.
     return with_limits(robot, limits) if limits else robot
 
 
@@ -346,5 +346,5 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
             kind = "revolute" if joint.kind == "continuous" else joint.kind
             joint = replace(joint, kind=kind, lower=lower, upper=upper)
         joints.append(joint)
-    # A leader goes no further than its mimics may.
+    # A leader's range is limited by its mimics.
     return replace(robot, joints=tuple(within_limits_of_mimics(joints)))

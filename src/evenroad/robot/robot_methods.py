@@ -33,19 +33,19 @@ class RobotMethods:
 
     @property
     def dof(self) -> int:
-        """How many numbers a configuration has."""
+        """Number of values in a configuration."""
         return len(self.group)
 
     @property
     def limits(self) -> Floats:
-        """Lower and upper limit of each joint that is planned for, (dof, 2) [rad or m]; infinite where it turns on."""
+        """Lower and upper limit of each joint of the group, (dof, 2) [rad or m]; infinite for continuous ones."""
         limits: Floats = above("Robot.limits")(self)
         return limits
 
     def configuration(
         self, q: npt.ArrayLike | Mapping[str, float] | str, scene: Scene | None = None
     ) -> Floats:
-        """Return a configuration as numbers, from whatever one has it in.
+        """Return a configuration as numbers, from numbers, a mapping or a text.
 
         Parameters
         ----------
@@ -53,7 +53,7 @@ class RobotMethods:
             Numbers in the order of `joint_names` [rad or m]; joint -> value, where joints that are left out are at 0,
             or the nearest to it within limits; or a text: the name of a state, ``"0,-1.57,..."`` or ``"elbow=1,..."``.
         scene : Scene, optional
-            Whose states are known, too.
+            A scene with more named states.
 
         Returns
         -------
@@ -77,7 +77,7 @@ class RobotMethods:
         return row
 
     def fk(self, q: npt.ArrayLike | Mapping[str, float] | str, link: str = "") -> Pose:
-        """Return where a link is: forward kinematics.
+        """Return the pose of a link: forward kinematics.
 
         Parameters
         ----------
@@ -85,12 +85,12 @@ class RobotMethods:
             A configuration [rad or m].  Joints that a mapping leaves out are at 0, or the nearest to it within limits;
             a text is as :meth:`configuration` takes it.
         link : str
-            Default: the link at the end of what the group moves.
+            The link; default: the last one that the group moves.
 
         Returns
         -------
         Pose
-            Of the link's frame, in the frame of the robot's root link.
+            Pose of the link in the frame of the robot's root link.
 
         Raises
         ------
@@ -121,16 +121,16 @@ class RobotMethods:
         pose : Pose, PoseGoal or array_like, shape (4, 4)
             In the frame of the robot's root link.
         link : str
-            Default: that of the PoseGoal, else the link at the end of what the group moves.
+            The link; default: that of the PoseGoal, else the last one that the group moves.
         start : configuration, optional
-            As `q` of :meth:`fk`.  The nearest to it comes first, and joints that do not move the link stay as they are
-            there.  Default: all joints at 0, or the nearest to it within limits.
+            A configuration as `q` of :meth:`fk`.  The nearest to it comes first, and joints that do not move the
+            link keep its values.  Default: all joints at 0, or the nearest to it within limits.
 
         Returns
         -------
         ndarray, shape (n, dof)
-            All that are known, within limits, whole turns added; of an arm with spare joints some.  n is 0 where the
-            pose is out of reach.
+            All that were found, within limits, whole turns added; for a redundant arm some.  n is 0 where the pose is
+            out of reach.
 
         Raises
         ------
@@ -155,9 +155,9 @@ class RobotMethods:
         Parameters
         ----------
         rng : int, SeedSequence or Generator
-            Equal numbers give equal configurations; a Generator is spawned.
+            Seed: equal numbers give equal configurations; a Generator is spawned.
         n : int, optional
-            How many, >= 1.  Default: one, without an axis for how many.
+            Number of configurations, >= 1.  Default: one, without this axis.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""RobotModel: a robot, and how it was made of its files."""
+"""RobotModel: a robot, and how it was made from its files."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from evenroad.robot.urdf_xml import RobotFile
 
 @dataclass(frozen=True)
 class LinkBody:
-    """What became of the collision geometry of a link.
+    """The capsules of a link's collision geometry.
 
-    `shapes` are the file's, e.g. ``box`` or ``mesh forearm.stl``, with the sum of their volumes [m^3]; so many
-    `capsules` stand for them, with the volume of their union [m^3]; `given` by the user or not.
+    `shapes` are the file's, e.g. ``box`` or ``mesh forearm.stl``, with the sum of their volumes [m^3]; `capsules` is
+    the number that stands for them, with the volume of their union [m^3]; `given` says whether the user gave them.
     """
 
     link: str
@@ -25,7 +25,7 @@ class LinkBody:
 
     @property
     def added(self) -> float:
-        """Volume that the capsules add, as a share of the shapes'; 0 where there is nothing to compare with."""
+        """Volume that the capsules add, as a share of the shapes'; 0 where the shapes have none."""
         return max(self.capsule_volume / self.shape_volume - 1.0, 0.0) if self.shape_volume > 0.0 else 0.0
 
 
@@ -41,18 +41,18 @@ class RobotModel:
     dropped: tuple[tuple[str, str, str], ...]
     """Pairs of links with bodies that are not tested, each with the reason."""
     drawn_only: tuple[str, ...] = ()
-    """Links that are drawn and have no body: nothing is ever found to touch them."""
+    """Links with visuals and no body: nothing ever touches them."""
     always_touching: tuple[tuple[str, str], ...] = ()
-    """Pairs that the SRDF does not disable and that touch in every sampled configuration: none is free."""
+    """Pairs that the SRDF does not disable and that touch in every sampled configuration."""
     never_free: str = ""
-    """Where no sampled configuration is free of self-collision: that, the pair that blocks most, and what to do."""
+    """If no sampled configuration is free of self-collision: a text with the pair that blocks most, and what to do."""
     notes: tuple[str, ...] = ()
-    """What was read otherwise than it stands in the file."""
+    """Notes on all that was read otherwise than it stands in the file."""
     file: RobotFile | None = field(default=None, compare=False)
-    """Where the robot was read, and how."""
+    """The file of the robot and its options."""
 
     @property
     def bodiless(self) -> tuple[str, ...]:
-        """Links without a body, those that are drawn among them."""
+        """Links without a body, including those with visuals."""
         bodied = {body.link for body in self.bodies}
         return tuple(link for link in self.robot.links if link not in bodied)

@@ -29,11 +29,11 @@ class _Anywhere:
     robot: Robot
 
     def valid(self, q: Floats) -> Bools:
-        """Return that all are."""
+        """Return that all are valid."""
         return np.ones(len(q), dtype=np.bool_)
 
     def explain(self, q: Floats) -> str:
-        """Return that nothing is in the way."""
+        """Return that nothing blocks."""
         return "it is free"
 
 

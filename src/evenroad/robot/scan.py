@@ -29,13 +29,13 @@ def without_robot(
     Parameters
     ----------
     cloud : PointCloud
-        In the frame of the robot's root link, by its pose.
+        A cloud whose pose is in the frame of the robot's root link.
     robot : Robot
-        Who stands in it, with the joints that are not planned for where it holds them.
+        The robot that is in the cloud; joints outside the group are where it holds them.
     q : array_like, shape (dim,)
-        Where its group is [rad or m].
+        Configuration of its group [rad or m].
     margin : float
-        Balls of the cloud that come within it of a capsule of the robot are the robot's, >= 0 [m].
+        Distance from a capsule up to which balls of the cloud belong to the robot, >= 0 [m].
     """
     margin = require_positive("margin", margin, or_zero=True)
     points = cloud.pose.apply(cloud.points)
@@ -47,9 +47,10 @@ def without_robot(
 
 
 def scene_seen_by(robot: Robot, scene: Scene) -> Scene:
-    """Return a scene with clouds that say where the robot stood without its points; without a cloud of nothing else.
+    """Return a scene whose clouds lack the points of the robot that stood in them; empty clouds are removed.
 
-    Raises InvalidValue or UnknownName as :func:`evenroad.robot.configuration` where that is no configuration.
+    Raises InvalidValue or UnknownName as :func:`evenroad.robot.configuration` where the robot's pose is no
+    configuration.
     """
     obstacles: list[Obstacle] = []
     for obstacle in scene.obstacles:
@@ -64,7 +65,7 @@ def scene_seen_by(robot: Robot, scene: Scene) -> Scene:
                 q = configuration(standing, cut.at, scene)
                 body = without_shapes(body, _placed(standing, scene, cut.attached, q[np.newaxis]), cut.grow)
         if body is not None:
-            # Obstacles that say nothing of all this stay the same values.
+            # Obstacles without all this stay the same values.
             said = obstacle.seen is not None or obstacle.cuts
             obstacles.append(replace(obstacle, body=body, seen=None, cuts=()) if said else obstacle)
     gone = {obstacle.name for obstacle in scene.obstacles} - {obstacle.name for obstacle in obstacles}
@@ -91,27 +92,27 @@ def allowed_within(scene: Scene, link: str, cloud: str, region: Shape, grow: flo
     ----------
     scene : Scene
     link, cloud : str
-        Of the robot, or what it holds; and of the scene.
+        A link of the robot, or of what it holds; and an obstacle of the scene.
     region : Shape
         A box, sphere, cylinder or capsule in the frame of the robot's root link.
     grow : float
-        By how much the region is larger, >= 0 [m].
+        Distance by which the region is larger, >= 0 [m].
 
     Raises
     ------
     UnknownName
         If there is no such obstacle.
     InvalidValue
-        If the obstacle is no cloud: of others no part can be split off; or the region is another shape.
+        If the obstacle is no cloud, or the region is another shape: other obstacles cannot be split.
     """
     return _opened(scene, link, cloud, [region], require_positive("grow", grow, or_zero=True))
 
 
 def allowed_near_ends(robot: Robot, scene: Scene, endpoints: npt.ArrayLike) -> Scene:
-    """Return a scene with the contacts that it allows near the ends of a path, of these ends, (n, dim) [rad or m].
+    """Return a scene with the contacts that it allows near start and goals, (n, dim) [rad or m].
 
-    The link may touch balls whose centres are within the distance of its body at one of the ends: of what is attached
-    in its shape, if that is a box, sphere, cylinder or capsule, else of its capsules.  Raises as `allowed_within`.
+    The link may touch balls whose centres are within the distance of its body at one of them: for an attached object in
+    its shape, if that is a box, sphere, cylinder or capsule, else in its capsules.  Raises as `allowed_within`.
     """
     configurations = np.atleast_2d(np.asarray(endpoints, dtype=np.float64))
     for link, cloud, distance in sorted(scene.near_ends):
@@ -121,13 +122,13 @@ def allowed_near_ends(robot: Robot, scene: Scene, endpoints: npt.ArrayLike) -> S
 
 
 def open_everywhere(scene: Scene) -> Scene:
-    """Return a scene in which what is allowed near the ends is allowed everywhere; itself where nothing is."""
+    """Return a scene in which contacts near start and goals are allowed everywhere; itself where there are none."""
     allowed = scene.allowed.union(each[:2] for each in scene.near_ends)
     return replace(scene, allowed=allowed, near_ends=frozenset()) if scene.near_ends else scene
 
 
 def allowed_everywhere(robot: Robot, scene: Scene) -> list[tuple[str, str]]:
-    """Return which moving links may touch which whole clouds, so that they may pass through whatever was seen."""
+    """Return which moving links may touch which whole clouds."""
     rigid = rigid_links(robot)
     clouds = {
         each.name for each in scene.obstacles if isinstance(each.body, PointCloud) and _OPEN not in each.name
@@ -137,7 +138,7 @@ def allowed_everywhere(robot: Robot, scene: Scene) -> list[tuple[str, str]]:
 
 
 _OPEN = ", open to "
-"""In the name of a part of a cloud: before the link that may touch it."""
+"""Part of the name of a part of a cloud, before the link that may touch it."""
 
 
 def _opened(scene: Scene, link: str, cloud: str, shapes: Sequence[Shape], grow: float) -> Scene:

@@ -20,7 +20,7 @@ from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Shap
 from evenroad.robot.held import HeldObject
 
 MARGIN = 0.02
-"""How near to the robot points of a scan are taken for its own, where nothing else is said [m]."""
+"""Default distance from the robot up to which points of a scan belong to it [m]."""
 
 
 _ROW = Struct("16d")
@@ -29,10 +29,11 @@ _NUMBERS = {kind: number for number, kind in enumerate(PRIMITIVES)}
 
 @dataclass(frozen=True)
 class Seen:
-    """Where a robot stood when a cloud was seen, as :func:`evenroad.robot.configuration` takes it, and a margin [m].
+    """Configuration of a robot when a cloud was recorded, as :func:`evenroad.robot.configuration` takes it, and a
+    margin [m].
 
-    Balls of the cloud that come within the margin of its bodies there are its own; see
-    :func:`evenroad.robot.without_robot`, which takes them out.
+    Balls of the cloud within the margin of its bodies belong to the robot; :func:`evenroad.robot.without_robot` removes
+    them.
     """
 
     at: str
@@ -44,9 +45,9 @@ class Seen:
 
 @dataclass(frozen=True)
 class Cut:
-    """Something attached that is to be taken out of a cloud, since the camera saw it where it is grasped.
+    """An attached object that is removed from a cloud, since the camera saw it where it is grasped.
 
-    Balls of the cloud whose centres come within `grow` [m], >= 0, of what is `attached` by that name are taken out,
+    Balls of the cloud whose centres come within `grow` [m], >= 0, of the `attached` object of that name are removed,
     with the robot standing `at`, as :func:`evenroad.robot.configuration` takes it.
     """
 
@@ -74,7 +75,7 @@ class Obstacle:
     seen: Seen | None = None
     cuts: tuple[Cut, ...] = ()
     row: bytes = field(init=False, repr=False, compare=False)
-    """Sixteen doubles, as compiled code reads obstacles, see ``kernel/obstacles.py``; none for clouds and meshes."""
+    """Sixteen doubles for compiled code, see ``kernel/obstacles.py``; none for clouds and meshes."""
 
     def __post_init__(self) -> None:
         body = along_z(self.body) if isinstance(self.body, Capsule) else self.body

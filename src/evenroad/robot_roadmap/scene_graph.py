@@ -68,7 +68,8 @@ class SceneGraph:
     Parameters
     ----------
     milestones, edges, turns : arrays, (n, dim), (m, 2), (m, dim)
-        Arrays of the roadmap.    one : OneTurn
+        Arrays of the roadmap.
+    one : OneTurn
         The ranges of its joints.
     """
 
