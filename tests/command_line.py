@@ -1,7 +1,9 @@
 """Fixtures of tests that type commands."""
 
+import json
 import shutil
 import signal
+from pathlib import Path
 
 import pytest
 
@@ -54,6 +56,38 @@ def run(capsys):
         return code, captured.out, "".join(said)
 
     return run
+
+
+@pytest.fixture
+def answer(run):
+    """Run a plan without a picture; return the record that it wrote and what it said, as one line."""
+
+    def answer(*words, code=0, out="a"):
+        found, said, err = run(*words, "--no-picture", "--out", out)
+        assert (found, err) == (code, "")
+        return json.loads(Path(f"{out}.json").read_text()), " ".join(said.split())
+
+    return answer
+
+
+@pytest.fixture
+def refuse(run):
+    """Run what must be refused with exit code 2, in one line, and with nothing written; return the line."""
+
+    def there_is():
+        return sorted(
+            (path, path.stat().st_mtime_ns) for path in Path.cwd().rglob("*") if ".cache" not in path.parts
+        )
+
+    def refuse(*words):
+        before = there_is()
+        code, out, err = run(*words)
+        assert (code, out, err.count("\n")) == (2, "", 1)
+        assert err.startswith("evenroad: error: ")
+        assert there_is() == before
+        return err
+
+    return refuse
 
 
 @pytest.fixture(autouse=True)

@@ -1,6 +1,5 @@
 """``evenroad roadmap``, and ``evenroad plan --roadmap``."""
 
-import json
 import os
 import subprocess
 import sys
@@ -10,11 +9,11 @@ import pytest
 
 import evenroad as er
 from evenroad._npz import digest
-from evenroad.cli import main
 from evenroad.robot_roadmap.static_scene import joined_scenes
 from tests.command_line import CELL
 
-ENDS = ["--start", "home", "--goal", "inside", "--no-picture"]
+ALONG = ["plan", "box-reach.yaml", "--start", "home", "--goal", "inside"]
+WRONG_LIMITS = "obstacles: {}\nlimits: {knee: [0, 1]}\n"
 
 
 def test_it_makes_the_roadmap_that_python_makes(made):
@@ -25,19 +24,14 @@ def test_it_makes_the_roadmap_that_python_makes(made):
     np.testing.assert_array_equal(roadmap.edges, expected.edges)
 
 
-def test_a_plan_along_it_is_that_of_python_and_proved(made):
-    assert main(["plan", "box-reach.yaml", "--roadmap", "my.roadmap", *ENDS, "--out", "a"]) == 0
-    record = json.loads((made / "a.json").read_text())
+def test_a_plan_along_it_is_that_of_python_and_proved(answer, made):
+    record, _ = answer(*ALONG, "--roadmap", "my.roadmap")
     roadmap = er.load_roadmap("my.roadmap")
     world = er.ArmWorld(roadmap.robot, joined_scenes(roadmap.scene, er.load_scene("box-reach")))
-    result = roadmap.within(world).plan("home", "inside")
-    assert record["path"] == result.path.tolist()
+    assert record["path"] == roadmap.within(world).plan("home", "inside").path.tolist()
     assert record["proof"] == "certified"
-    assert (
-        main(["plan", "box-reach.yaml", "--roadmap", "my.roadmap", "--robot", "ur5", *ENDS, "--out", "b"])
-        == 0
-    )
-    assert json.loads((made / "b.json").read_text())["path"] == record["path"]
+    again, _ = answer(*ALONG, "--roadmap", "my.roadmap", "--robot", "ur5")
+    assert again["path"] == record["path"]
 
 
 @pytest.mark.parametrize(
@@ -60,41 +54,24 @@ def test_a_plan_along_it_is_that_of_python_and_proved(made):
         ),
         (["roadmap", "ur5", "-o", "no/where.roadmap"], "no"),
         (["roadmap", "ur5", "--cell", "cell.yaml", "-o", "cell.yaml"], "would overwrite"),
-        (
-            ["plan", "box-reach.yaml", "--roadmap", "cell.yaml", *ENDS],
-            "is text, not a .npz roadmap",
-        ),
-        (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS], "no such file: none"),
-        (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS, "-n", "5"], "goes without points"),
-        (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS, "--improve"], "goes without points"),
-        (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS, "--group", "a"], "--group goes with --robot"),
-        (["plan", "box-reach.yaml", "--roadmap", "x", "--robot-radius", "1", *ENDS], "not both"),
+        ([*ALONG, "--roadmap", "cell.yaml"], "is text, not a .npz roadmap"),
+        ([*ALONG, "--roadmap", "none"], "no such file: none"),
+        ([*ALONG, "--roadmap", "none", "-n", "5"], "goes without points"),
+        ([*ALONG, "--roadmap", "none", "--improve"], "goes without points"),
+        ([*ALONG, "--roadmap", "none", "--group", "a"], "--group goes with --robot"),
+        ([*ALONG, "--roadmap", "x", "--robot-radius", "1"], "not both"),
     ],
 )
-def test_bad_input_gets_one_line_and_nothing_is_written(tmp_path, capsys, words, said):
-    folder = tmp_path
-    (folder / "cell.yaml").write_text(CELL)
-    (folder / "limits.yaml").write_text("obstacles: {}\nlimits: {knee: [0, 1]}\n")
-    assert main(words) == 2
-    error = error_of(capsys)
-    assert error.count("\n") == 1
-    assert said in error
-    assert {path.name for path in folder.iterdir()} <= {"cell.yaml", "limits.yaml", ".cache"}
+def test_bad_input_gets_one_line_and_nothing_is_written(refuse, tmp_path, words, said):
+    (tmp_path / "cell.yaml").write_text(CELL)
+    (tmp_path / "limits.yaml").write_text(WRONG_LIMITS)
+    assert said in refuse(*words)
 
 
 def test_bad_input_is_refused_before_anything_is_compiled(made):
     (made / "today.yaml").write_text((made / "cell.yaml").read_text().replace("-0.025", "-0.03"))
-    (made / "limits.yaml").write_text("obstacles: {}\nlimits: {knee: [0, 1]}\n")
-    plan = [
-        "plan",
-        "cell.yaml",
-        "--roadmap",
-        "my.roadmap",
-        "--goal",
-        "1,-1.5,0,0,0,0",
-        "--no-picture",
-        "--start",
-    ]
+    (made / "limits.yaml").write_text(WRONG_LIMITS)
+    plan = ["plan", "cell.yaml", "--roadmap", "my.roadmap", "--goal", "1,-1.5,0,0,0,0", "--start"]
     free = "0,-1.5,0,0,0,0"
     every = [
         ["roadmap", "ur5", "-n", "0"],
@@ -118,7 +95,7 @@ def test_bad_input_is_refused_before_anything_is_compiled(made):
     assert not list((made / "compiled").rglob("*.nbc"))
 
 
-def test_a_roadmap_that_is_no_more_what_was_written_gets_one_line(made, capsys):
+def test_a_roadmap_that_is_no_more_what_was_written_gets_one_line(refuse, made):
     whole = bytearray((made / "my.roadmap").read_bytes())
     middle, last = len(whole) // 2, len(whole) - 5
     with np.load("my.roadmap") as archive:
@@ -143,32 +120,18 @@ def test_a_roadmap_that_is_no_more_what_was_written_gets_one_line(made, capsys):
         (kept("coarse", settings='{"resolution": "a"}'), "resolution must be"),
     ):
         (made / "other.roadmap").write_bytes(content)
-        assert main(["plan", "box-reach.yaml", "--roadmap", "other.roadmap", *ENDS, "--out", "a"]) == 2
-        error = error_of(capsys)
-        assert error.count("\n") == 1
+        error = refuse(*ALONG, "--roadmap", "other.roadmap")
         assert "other.roadmap" in error
         assert said in error
-    assert not (made / "a.json").exists()
 
 
-def error_of(capsys):
-    """Return what was said on standard error, without what only the first test on a machine says."""
-    lines = capsys.readouterr().err.splitlines(keepends=True)
-    return "".join(line for line in lines if "compiling for this machine" not in line)
-
-
-def test_what_contradicts_the_roadmap_gets_one_line(made, capsys):
-    other = (made / "cell.yaml").read_text().replace("-0.025", "-0.03")
-    (made / "today.yaml").write_text(other)
-    ends = ["--start", "0,-1.5,0,0,0,0", "--goal", "1,-1.5,0,0,0,0", "--no-picture"]
+def test_what_contradicts_the_roadmap_gets_one_line(refuse, made):
+    (made / "today.yaml").write_text((made / "cell.yaml").read_text().replace("-0.025", "-0.03"))
+    ends = ["--roadmap", "my.roadmap", "--start", "0,-1.5,0,0,0,0", "--goal", "1,-1.5,0,0,0,0"]
     for words, said in (
         (["today.yaml"], "'table' of scene 'today' is a box"),
         (["cell.yaml", "--robot", "arm7"], "made for another robot, 'ur5'"),
         (["cell.yaml", "--clearance", "0.01"], "was built with 0 m"),
         (["cell.yaml", "--robot", "ur5", "--group", "elbow_joint"], "among its joints of the group"),
     ):
-        capsys.readouterr()
-        assert main(["plan", *words, "--roadmap", "my.roadmap", *ends]) == 2
-        error = error_of(capsys)
-        assert error.count("\n") == 1
-        assert said in error
+        assert said in refuse("plan", *words, *ends)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from evenroad.points import SAMPLERS, PointSet, draw, load_points, save_points
+from evenroad.points.measures import MEASURES, separation
 
 
 def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):
@@ -20,14 +21,6 @@ def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):
 def test_npz_keeps_the_origin(run, tmp_path):
     run("points", "-n", 64, "-d", 2, "--sampler", "hickernell", "--seed", 3, "-o", "set.npz")
     assert load_points(tmp_path / "set.npz") == draw("hickernell", 64, 2, rng=3)
-
-
-def test_any_other_n_is_refused_with_what_there_is_and_what_makes_it(run, tmp_path):
-    code, _, err = run("points", "-n", 11, "-d", 2, "--sampler", "hickernell", "-o", "a.npy")
-    assert code == 2
-    assert "it has n = 16, 32" in err
-    assert "evenroad train -n 11 -d 2 --objective hickernell" in err
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_default_family_in_ten_dimensions_is_there_at_once(run, tmp_path):
@@ -76,7 +69,6 @@ def test_the_name_that_the_sampler_once_had_is_still_taken(run, tmp_path):
         (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.csv, \.npy, \.npz"),
         (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
         (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
-        (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'"),
         (
             ("-n", 8, "-d", 2, "--plain", "-o", "a.npy"),
             "--plain does not go .* 'even', only with halton and sobol",
@@ -87,39 +79,29 @@ def test_the_name_that_the_sampler_once_had_is_still_taken(run, tmp_path):
         ),
         (("-n", 8, "-d", 2, "--sampler", "sukharev", "-o", "a.npy"), r"are 4 and 9 \(or allow_fewer\)"),
         (("-n", 8, "-d", 2, "--seed", -1, "-o", "a.npy"), "--seed must be an integer >= 0, got -1"),
+        (
+            ("-n", 11, "-d", 2, "--sampler", "hickernell", "-o", "a.npy"),
+            "it has n = 16, 32.*evenroad train -n 11 -d 2 --objective hickernell",
+        ),
     ],
 )
-def test_bad_requests_for_points_get_one_line(run, tmp_path, arguments, says):
-    code, out, err = run("points", *arguments)
-    assert (code, out) == (2, "")
-    assert err.count("\n") == 1
-    assert re.search(says, err)
-    assert list(tmp_path.iterdir()) == []
+def test_bad_requests_for_points_get_one_line(refuse, arguments, says):
+    assert re.search(says, refuse("points", *arguments))
 
 
 @pytest.mark.parametrize("option", ["-n", "-d", "--sampler", "--seed", "-o"])
-def test_an_error_repeats_a_little_of_what_points_was_asked_for(run, tmp_path, option):
+def test_an_error_repeats_a_little_of_what_points_was_asked_for(refuse, option):
     line = {"-n": 8, "-d": 2, "--sampler": "uniform", "--seed": 0, "-o": "a.npy"}
     line[option] = "-" + "7" * 3000 if option in ("-n", "-d", "--seed") else "x" * 5000
-    code, out, err = run("points", *(each for pair in line.items() for each in pair))
-    assert (code, out) == (2, "")
-    assert len(err) < 500
-    assert list(tmp_path.iterdir()) == []
+    assert len(refuse("points", *(each for pair in line.items() for each in pair))) < 500
 
 
 def test_measures_are_printed_as_a_table_within_100_columns(run):
     np.save("set.npy", draw("halton", 50, 2).points)
     code, out, err = run("measure", "set.npy")
     assert (code, err) == (0, "")
-    for name in (
-        "hickernell_rooted",
-        "star_rooted",
-        "star_squared",
-        "star_discrepancy",
-        "dispersion_upper",
-        "riesz_rooted",
-    ):
-        assert name in out
+    named = "hickernell_rooted star_rooted star_squared star_discrepancy dispersion_upper riesz_rooted"
+    assert all(name in out for name in named.split())
     assert max(map(len, out.splitlines())) <= 100
 
 
@@ -127,8 +109,6 @@ def test_json_has_the_same_measures(run):
     points = draw("halton", 50, 2)
     save_points("set.npz", points)
     record = json.loads(run("measure", "set.npz", "--json")[1])
-    from evenroad.points.measures import MEASURES, separation
-
     assert record["hash"] == points.hash
     assert record["hickernell_rooted"] == MEASURES["hickernell"].rooted(points)
     assert record["separation"] == separation(points)
@@ -165,34 +145,25 @@ def test_a_measure_that_cannot_be_had_is_empty_and_says_why(run):
         (np.array([[np.nan, 0.5]]), "nan"),
         (np.zeros(5), "shape"),
         (np.array([["a"]]), "array of numbers"),
+        (np.empty((0, 2)), "no points"),
     ],
 )
-def test_an_array_that_is_no_point_set_is_refused(run, array, says):
+def test_an_array_that_is_no_point_set_is_refused(refuse, array, says):
     np.save("bad.npy", array)
-    code, out, err = run("measure", "bad.npy")
-    assert (code, out) == (2, "")
-    assert re.search(says, err)
+    assert re.search(says, refuse("measure", "bad.npy"))
 
 
-@pytest.mark.parametrize("name", ["nothing.npy", "nothing.npz"])
-def test_a_missing_set_is_refused_by_name(run, name):
-    code, _, err = run("measure", name)
-    assert code == 2
-    assert name in err
+def test_what_is_no_file_of_points_is_refused_by_name(refuse, tmp_path):
+    for name in ("nothing.npy", "nothing.npz"):
+        assert name in refuse("measure", name)
+    (tmp_path / "sets.npz").mkdir()
+    for name, kind in ((tmp_path, ".npy array of shape (n, d)"), ("sets.npz", ".npz point set")):
+        assert refuse("measure", name) == f"evenroad: error: {name} is a folder, not a {kind}\n"
 
 
 def test_given_points_are_the_family_of_plain_arrays():
-    from evenroad.points.npz import load_points
-
     np.save("set.npy", [[0.5, 0.25]])
     assert load_points("set.npy") == PointSet([[0.5, 0.25]])
-
-
-def test_an_empty_set_has_nothing_to_measure(run):
-    np.save("empty.npy", np.empty((0, 2)))
-    code, out, err = run("measure", "empty.npy")
-    assert (code, out) == (2, "")
-    assert "no points" in err
 
 
 def test_a_value_beyond_the_range_of_a_float_is_left_out_and_said_so():
@@ -201,11 +172,3 @@ def test_a_value_beyond_the_range_of_a_float_is_left_out_and_said_so():
     assert _finite("a", 0.5, "note") == ("a", 0.5, "note")
     for value in (np.inf, np.nan):
         assert _finite("a", value, "note") == ("a", None, "note: beyond the range of a float")
-
-
-def test_a_folder_is_no_point_set(run, tmp_path):
-    (tmp_path / "sets.npz").mkdir()
-    for name, kind in ((tmp_path, ".npy array of shape (n, d)"), ("sets.npz", ".npz point set")):
-        code, out, err = run("measure", name)
-        assert (code, out) == (2, "")
-        assert err == f"evenroad: error: {name} is a folder, not a {kind}\n"

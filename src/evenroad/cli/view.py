@@ -67,7 +67,7 @@ class View(RobotOptions):
             if self.gif.suffix.lower() != ".gif":
                 raise InvalidValue(f"--gif must name a .gif, got {str(self.gif)!r}")
             require_writable_folder(self.gif)
-        request, result = self._request()
+        request, result = self.request()
         if self.gif is not None:
             from evenroad.viz.arm import save_arm_gif
 
@@ -91,7 +91,8 @@ class View(RobotOptions):
             page.close()
         return 0
 
-    def _request(self) -> tuple[Request, PlanResult]:
+    def request(self) -> tuple[Request, PlanResult]:
+        """Return what is shown: the request of the plan, or of a scene, and the plan."""
         options = self.options()
         if self.world.suffix.lower() != ".json":
             if self.robot is None:

@@ -49,7 +49,9 @@ def save_arm_gif(path: str | os.PathLike[str], result: PlanResult, world: ArmWor
     if result.path is None:
         configurations = np.stack([result.start, result.goal])
     else:
-        configurations = configuration_at(result.path, world.space, np.linspace(0.0, 1.0, _FRAMES))
+        # An arm that stays where it is looks alike in all.
+        times = np.linspace(0.0, 1.0, _FRAMES if result.cost else 2)
+        configurations = configuration_at(result.path, world.space, times)
     frames = [draw_arm_plan(result, world, now=q).reduce(2).quantize(160) for q in configurations]
     pauses = [_PAUSE, *(len(frames) - 2) * [_FRAME], _PAUSE]
     with atomic_write(path) as file:
