@@ -189,7 +189,6 @@ _NUMBERS = {
     "int": numba.int64,
     "float": numba.float64,
     "Pair": numba.types.UniTuple(numba.int64, 2),
-    "Triple": numba.types.UniTuple(numba.int64, 3),
     "Given": numba.types.Tuple([numba.int64, numba.float64, *[numba.int64] * 4]),
 }
 """What parameters of programs may be, see ``robot.kernel.layout``."""

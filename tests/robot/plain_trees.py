@@ -19,7 +19,7 @@ Floats = npt.NDArray[np.float64]
 EXTENSIONS, STEPS_AT_ONCE = 3, 8
 LONGEST_STEP, STEP_SHARE = 1.5, 1.0 / 5.8
 LARGEST_BALL, BALL_SHARE = 2.0, 1.5
-"""As in ``evenroad.robot.kernel.tree_steps``."""
+"""As in ``_native/cpp/planning/tree_steps.cpp``."""
 
 TOLERANCE = 1e-6
 """Of proofs [m]."""

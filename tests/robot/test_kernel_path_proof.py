@@ -5,50 +5,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evenroad.robot.kernel.addresses import address, doubles_at, matrix_at
-from evenroad.robot.kernel.layout import program
-from evenroad.robot.kernel.motion_checks import checks_of
-from evenroad.robot.kernel.motion_states import COUNTS
-from evenroad.robot.kernel.path_proof import MOST_BENT, proved_or_bent
-from evenroad.robot.kernel.smoothing import CLEARANCE
+from evenroad._native import planning
+from evenroad.planning.arm_trees import checks_of
 from evenroad.robot.tree_sequences import sphere_points
 from tests.robot.oracle import clearance
 from tests.robot.test_kernel_smoothing import proved
 from tests.robot.test_trees import box_world
 
-
-@program
-def prove(
-    points: int,
-    size: int,
-    dim: int,
-    sphere: int,
-    sphere_count: int,
-    wider: int,
-    check: int,
-    resolution: float,
-    tables: int,
-    by_joint: int,
-    memory: int,
-    room: int,
-) -> int:
-    """Call `proved_or_bent` as `smooth_points` does."""
-    checks = checks_of(check, resolution, tables, by_joint, memory, room)
-    own = room + 8 * COUNTS
-    there, way = doubles_at(own, (dim,)), doubles_at(own + 8 * dim, (dim,))
-    path, directions = matrix_at(points, (size + MOST_BENT, dim)), matrix_at(sphere, (sphere_count, dim))
-    return proved_or_bent(path, size, wider, directions, there, way, checks)
+MOST_BENT = 2
+"""So many motions of a path are bent at most."""
 
 
 def proved_path(world, path):
     """The path whose motions are all proved, with bends; without waypoints where there is none."""
-    size, dim = path.shape
-    rows, sphere = np.zeros((size + MOST_BENT, dim)), sphere_points(dim)
-    rows[:size] = path
-    room, arguments = world.lanes.arguments(COUNTS + 2 * dim)
-    room[:COUNTS] = 0.0
-    given = address(rows), size, dim, address(sphere), len(sphere), world.lanes.wider(CLEARANCE)
-    return rows[: prove(*given, *arguments)].copy()
+    margins = planning.CLEARANCES
+    found = planning.prove_or_bend(
+        checks_of(world, margins), path, margins[0], sphere_points(world.space.dim)
+    )
+    return path[:0] if found is None else found
 
 
 @pytest.fixture(scope="module")

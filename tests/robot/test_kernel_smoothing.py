@@ -11,18 +11,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from evenroad._native import planning
 from evenroad.errors import InvalidValue
-from evenroad.planning.arm_trees import connect, shorten, smooth
+from evenroad.planning.arm_trees import checks_of, connect, shorten, smooth
 from evenroad.robot import Obstacle, Scene, load_robot
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.lane_world import check_addresses
-from evenroad.robot.kernel.motion_states import BATCHES as DONE
-from evenroad.robot.kernel.motion_states import COUNTS
-from evenroad.robot.kernel.smoothing import CLEARANCE
-from evenroad.robot.tree_sequences import ball_points, sphere_points
+from evenroad.robot.tree_sequences import ball_points, share_pairs, sphere_points
 from tests.robot.kernel_arms import box_scene, edge, random_scene, random_tree, ur5
 from tests.robot.oracle import clearance, link_poses
 from tests.robot.surface_oracle import all_clearance, mesh_clearance
@@ -32,6 +30,7 @@ from tests.robot.test_kernel_meshes import ball, box, scene_of
 from tests.robot.test_shorten import length, paths, queries  # noqa: F401
 from tests.robot.test_trees import GOAL, START, box_world, dense_states
 
+CLEARANCE = planning.CLEARANCES[0]
 BATCHES = 400
 BAND = 1e-5
 """Nearer to the edge of a verdict than this [m] either one is right."""
@@ -252,9 +251,9 @@ def test_work_heeds_the_limit_of_batches():
     for batches in (0, 100, 2000):
         used = []
         for path in found:
-            smooth(world, path, batches=batches)
-            room, _ = world.lanes.arguments(COUNTS)
-            used.append(int(room[:COUNTS].view(np.int64)[DONE]))
+            checks = checks_of(world, planning.CLEARANCES)
+            planning.smooth(checks, path, (share_pairs(), sphere_points(world.space.dim)), batches, True)
+            used.append(checks.counts[2])
         most[batches] = max(used)
     # Cuts and the proof come on top, and what was begun is ended.
     assert most[0] < most[100] <= 200
@@ -265,16 +264,6 @@ def on_motion(q, a, b):
     """Whether a configuration lies on a motion."""
     share = np.clip((q - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
     return np.linalg.norm(a + share * (b - a) - q) < 1e-9
-
-
-def test_straight_paths_need_no_other_program():
-    code = (
-        "import numpy as np\nfrom evenroad.planning.arm_trees import smooth\n"
-        "from evenroad.robot.kernel import shorten\nfrom tests.robot.test_trees import START, box_world\n"
-        "smooth(box_world(), np.stack([START, START + 0.1]), batches=9)\nprint(len(shorten.shorten_points.overloads))"
-    )
-    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert answer.stdout == "0\n"
 
 
 @pytest.mark.parametrize(

@@ -110,16 +110,6 @@ def test_slices_change_nothing(split, monkeypatch):
     assert counts_of(sliced) == counts_of(whole)
 
 
-def test_trees_that_outgrow_their_room_get_more(split, monkeypatch):
-    from evenroad.planning import arm_trees as trees
-
-    many = connect(split, ABOVE, [BELOW], most_motions=20_000, seconds=60)
-    assert many.goal == -1
-    assert many.nodes > 2 * 2048
-    monkeypatch.setattr(trees, "_CAPACITY", 65536)
-    assert counts_of(connect(split, ABOVE, [BELOW], most_motions=20_000, seconds=60)) == counts_of(many)
-
-
 def counts_of(connection):
     return connection.nodes, connection.motions, connection.configurations
 

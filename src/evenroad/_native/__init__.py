@@ -13,10 +13,11 @@ kernel = load()
 VARIANT: str = kernel.VARIANT
 """The instruction set of the loaded module."""
 
+planning = kernel.planning
 points = kernel.points
 roadmap = kernel.roadmap
 space = kernel.space
 trajectory = kernel.trajectory
 
-for _part in (points, roadmap, space, trajectory):
+for _part in (planning, points, roadmap, space, trajectory):
     sys.modules[f"{__name__}.{_part.__name__.rpartition('.')[2]}"] = _part

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
-from typing import Any, Protocol
+from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -13,9 +12,9 @@ from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count, require_positive
 from evenroad._clock import now
 from evenroad._compiled import compile_beside
+from evenroad._native import planning
 from evenroad.errors import InvalidValue
 from evenroad.roadmap.connector import Connection
-from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
@@ -24,10 +23,6 @@ from evenroad.space.path import configuration_at, motion_lengths
 
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
-
-_CAPACITY = 1040
-"""Initial capacity of a tree in nodes; it doubles when full.  It is no power of two, since columns would then evict
-each other from the processor's cache."""
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
@@ -59,9 +54,9 @@ class PlansWithTrees(Protocol):
 
 
 def prepare() -> None:
-    """Compile what tree planning needs, in processes beside this one, unless it is cached."""
+    """Compile the checks that tree planning needs, in processes beside this one, unless they are cached."""
     # The one that is needed last takes longest and goes first; this process begins at the other end.
-    kernels = ("trees", "lane_check", "shorten", "motion_checks", "hull_lanes")
+    kernels = ("lane_check", "motion_checks", "hull_lanes")
     compile_beside(*(f"evenroad.robot.kernel.{kernel}" for kernel in kernels))
 
 
@@ -88,9 +83,8 @@ def connect(
     limit = require_positive("seconds", seconds)
     most = require_count("most_motions", most_motions)
     first, others = _start_and_goals(start, goals, dim)
-    samples = None if sequence is None else _as_sequence(sequence, dim)
+    samples = cube_points(dim) if sequence is None else _as_sequence(sequence, dim)
     if world.fixed_contact is not None or world.backend == "scalar":
-        _require_finite(first, others)
         return Connection(np.empty((0, dim)), -1, 0, 0, 0)
     return _grown(world, first, others, samples, most, limit)[0]
 
@@ -103,20 +97,19 @@ def grown_trees(
     Raises as :func:`connect`; without lanes both are empty.
     """
     dim = world.space.dim
+    limit = require_positive("seconds", seconds)
     first, others = _start_and_goals(start, goals, dim)
     if world.fixed_contact is not None or world.backend == "scalar":
-        _require_finite(first, others)
         return np.empty((0, dim)), np.empty((0, 2), dtype=np.int64)
-    _, memory, sizes = _grown(world, first, others, None, MOST_MOTIONS, require_positive("seconds", seconds))
-    vertices, links, _ = _trees(*memory)
-    edges, before = [], 0
-    for tree, size in enumerate(sizes):
+    _, trees = _grown(world, first, others, cube_points(dim), MOST_MOTIONS, limit)
+    vertices, edges, before = [], [], 0
+    for nodes, parents in trees.trees:
         # A root has no parent: a negative number.
-        child = np.flatnonzero(links[0, tree, :size] >= 0)
-        edges.append(before + np.column_stack([child, links[0, tree, child]]))
-        before += size
-    nodes = [vertices[tree, :size] for tree, size in enumerate(sizes)]
-    return np.concatenate(nodes), np.concatenate(edges)
+        child = np.flatnonzero(parents >= 0)
+        edges.append(before + np.column_stack([child, parents[child]]))
+        vertices.append(nodes)
+        before += len(nodes)
+    return np.concatenate(vertices), np.concatenate(edges)
 
 
 def shorten(
@@ -132,14 +125,10 @@ def shorten(
     was found, proved or not: :meth:`CertifiedWorld.motion_valid` says which.  At most `pairs` motions between points
     along the path are tried, and with lanes at most `shortcuts` corners.  InvalidValue if `path` is no such array.
     """
-    path, dim = _as_path(world, path), world.space.dim
+    path = _as_path(world, path)
     if world.backend == "scalar":
-        return _shortened(world, as_batch("path", path, dim))
-    pointer, count = _pointer_to(share_pairs)
-    short, motions = _shorten_path()(world.lanes, path, (pointer, min(pairs, count)), shortcuts)
-    if not len(short):
-        as_batch("path", path, dim)
-    return short, motions
+        return _shortened(world, path)
+    return planning.shorten(checks_of(world), path, share_pairs()[:pairs], shortcuts)
 
 
 def smooth(
@@ -160,23 +149,25 @@ def smooth(
     path = _as_path(world, path)
     if world.backend == "scalar":
         return shorten(world, path)
-    driven_by = _pointer_to(share_pairs), _pointer_to(sphere_points, world.space.dim)
-    smoothed, motions = _smooth_path()(world.lanes, path, *driven_by, batches, proved)
-    if not len(smoothed):
-        as_batch("path", path, world.space.dim)
-    return smoothed, motions
+    checks = checks_of(world, planning.CLEARANCES)
+    guides = share_pairs(), sphere_points(world.space.dim)
+    smoothed, motions = planning.smooth(checks, path, guides, batches, proved)
+    return np.empty((0, world.space.dim)) if smoothed is None else smoothed, motions
+
+
+def checks_of(world: PlansWithTrees, margins: Sequence[float] = ()) -> planning.CompiledChecks:
+    """Return the checks of a world for one planner, also with bodies larger by margins."""
+    lanes = world.lanes
+    wider = {margin: lanes.wider(margin) for margin in margins}
+    return planning.CompiledChecks(lanes.addresses, lanes.resolution, wider)
 
 
 def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:
-    """Return a path, (p, dim); compiled code checks that an array as planners give it is finite."""
-    dim = world.space.dim
-    if not (
-        type(path) is np.ndarray and path.dtype == np.float64 and path.ndim == 2 and path.shape[1] == dim
-    ):
-        path = as_batch("path", path, dim)
-    if len(path) < 2:
-        raise InvalidValue(f"a path must have 2 waypoints or more, got {len(path)}")
-    return path
+    """Return a path, (p, dim), p >= 2."""
+    points = as_batch("path", path, world.space.dim)
+    if len(points) < 2:
+        raise InvalidValue(f"a path must have 2 waypoints or more, got {len(points)}")
+    return points
 
 
 def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
@@ -209,108 +200,27 @@ def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
 
 
 def _grown(
-    world: PlansWithTrees, first: Floats, goals: Floats, samples: Floats | None, most: int, seconds: float
-) -> tuple[Connection, tuple[Floats, int, int, int], tuple[int, int]]:
-    """Grow two trees; return what they found, their address, see `_trees`, and their sizes."""
-    kernel, grow = _tree_kernels()
-    order = None
+    world: PlansWithTrees, first: Floats, goals: Floats, samples: Floats, most: int, seconds: float
+) -> tuple[Connection, planning.Trees]:
+    """Return what two trees found, and the trees."""
+    order = np.arange(len(goals))
     if len(goals) > 1:
         # The nearest goals are tried first.
         distances = world.space.distance(np.broadcast_to(first, goals.shape), goals)
         order = np.argsort(distances, kind="stable")
-        goals = goals[order]
-    count, dim = len(goals) + 1, len(first)
-    capacity, steps, doubles = _sizes(count, dim, _CAPACITY)
-    memory, given = world.lanes.arguments(doubles)
-    block, pointer = memory[steps:], given[-1] + 8 * steps
-    begin, middle = kernel.STATE + 2, kernel.STATE + 2 + dim
-    block[:begin], block[begin:middle] = 0.0, first
-    block[middle : middle + goals.size] = goals.ravel()
-    sequence = _pointer_to(cube_points, dim) if samples is None else (address(samples), len(samples))
-    driven_by = sequence, _pointer_to(ball_points, dim)
-    if not grow.overloads:
-        # Compile, or load, before the clock runs; no motion is checked.
-        grow(pointer, count, capacity, *driven_by, (0, _SLICE), given)
+    start_and_goals = np.concatenate([first[np.newaxis], goals[order]])
+    checks = checks_of(world)
+    trees = planning.Trees(checks, start_and_goals, samples, ball_points(len(first)))
     deadline = now() + seconds
-    while True:
-        ended = grow(pointer, count, capacity, *driven_by, (most, _SLICE), given)
-        if ended == kernel.FULL:
-            block = _with_more_capacity(block, begin + count * dim, capacity, dim)
-            pointer, capacity = address(block), 2 * capacity
-        elif ended != kernel.PAUSED or now() >= deadline:
-            break
-    if ended == kernel.NO_NUMBERS:
-        _require_finite(first, goals)
-    motions, configurations, *_, waypoints, reached, nodes, others = block[:begin].view(np.int64).tolist()
-    path, goal = np.empty((0, dim)), -1
-    if ended == kernel.SOLVED:
-        columns = begin + count * dim + (2 * dim + 8) * capacity
-        path = block[columns : columns + waypoints * dim].reshape(waypoints, dim).copy()
-        goal = reached - 1 if order is None else int(order[reached - 1])
-    connection = Connection(path, goal, nodes + others, configurations, motions)
-    return connection, (block, begin + count * dim, capacity, dim), (nodes, others)
-
-
-# Imported late: where the vector type cannot even be defined, all else still works.
-@cache
-def _tree_kernels() -> tuple[Any, Any]:
-    from evenroad.robot.kernel import trees
-
-    return trees, trees.grow
-
-
-@cache
-def _sizes(count: int, dim: int, least: int) -> tuple[int, int, int]:
-    """Return the capacity of trees for this number of roots, and the numbers of doubles before them and with them."""
-    from evenroad.robot.kernel import tree_steps, trees
-
-    capacity, steps = -(-max(least, 2 * count + trees.EXTRA_NODES) // 16) * 16, tree_steps.memory_for(dim)
-    return capacity, steps, steps + trees.floats_for(count, capacity, dim)
-
-
-@cache
-def _shorten_path() -> Callable[..., tuple[Floats, int]]:
-    from evenroad.robot.kernel.shorten import shorten_path
-
-    return shorten_path
-
-
-@cache
-def _smooth_path() -> Callable[..., tuple[Floats, int]]:
-    from evenroad.robot.kernel.smoothing import smooth_path
-
-    return smooth_path
-
-
-def _with_more_capacity(block: Floats, begin: int, capacity: int, dim: int) -> Floats:
-    """Return a block of memory with twice the capacity, with nodes, links and columns copied."""
-    larger = np.empty(begin + 2 * (4 * dim + 8) * capacity)
-    larger[:begin] = block[:begin]
-    nodes, links, columns = _trees(larger, begin, 2 * capacity, dim)
-    nodes[:, :capacity], links[..., :capacity], columns[..., :capacity] = _trees(block, begin, capacity, dim)
-    return larger
-
-
-def _trees(
-    block: Floats, begin: int, capacity: int, dim: int
-) -> tuple[Floats, npt.NDArray[np.int64], npt.NDArray[np.float32]]:
-    links = begin + 2 * capacity * dim
-    columns = links + 8 * capacity
-    return (
-        block[begin:links].reshape(2, capacity, dim),
-        block[links:columns].view(np.int64).reshape(4, 2, capacity),
-        block[columns : columns + capacity * dim].view(np.float32).reshape(2, dim, capacity),
-    )
-
-
-@cache
-def _pointer_to(points: Callable[..., Floats], *dim: int) -> tuple[int, int]:
-    """Return the address and the number of points that stay in memory."""
-    return address(points(*dim)), len(points(*dim))
+    while trees.grow(most, _SLICE) == "paused" and now() < deadline:
+        continue
+    motions, configurations, _ = checks.counts
+    goal = int(order[trees.goal]) if trees.goal >= 0 else -1
+    return Connection(trees.path, goal, sum(trees.sizes), configurations, motions), trees
 
 
 def _start_and_goals(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> tuple[Floats, Floats]:
-    """Return start, (dim,), and goals, (g, dim); compiled code checks that they are finite."""
+    """Return start, (dim,), and goals, (g, dim)."""
     try:
         first, others = np.asarray(start, dtype=np.float64), np.asarray(goals, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -319,11 +229,8 @@ def _start_and_goals(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> tu
         raise InvalidValue(f"start must have shape ({dim},), got {first.shape}")
     if others.ndim != 2 or others.shape[1] != dim or len(others) == 0:
         raise InvalidValue(f"goals must have shape (g, {dim}), g >= 1, got {others.shape}")
+    as_batch("start and goals", np.concatenate([first[np.newaxis], others]), dim)
     return first, others
-
-
-def _require_finite(first: Floats, goals: Floats) -> None:
-    as_batch("start and goals", np.concatenate([first[np.newaxis], goals]), len(first))
 
 
 def _as_sequence(sequence: npt.ArrayLike, dim: int) -> Floats:

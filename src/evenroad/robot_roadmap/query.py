@@ -62,12 +62,10 @@ def prepare() -> None:
     """Compile what a plan along a roadmap needs, in processes beside this one, unless it is cached."""
     # The one that is needed last takes longest and goes first; this process begins at the other end.
     compile_beside(
-        "evenroad.robot.kernel.smoothing",
         "evenroad.robot_roadmap.lane_search",
         "evenroad.robot_roadmap.scene_graph",
         "evenroad.robot.kernel.lane_check",
         "evenroad.robot.kernel.motion_checks",
-        "evenroad.robot.kernel.trees",
     )
 
 

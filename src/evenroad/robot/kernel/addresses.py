@@ -82,7 +82,7 @@ def _array(number: types.Type, dimensions: int) -> Callable[..., Any]:
 ANY_LENGTH = 1 << 40
 """For arrays whose lengths are not passed on: nothing reads beyond what the tables say."""
 
-doubles_at, matrix_at, matrices_at = (_array(types.float64, dimensions) for dimensions in (1, 2, 3))
+doubles_at, matrix_at = (_array(types.float64, dimensions) for dimensions in (1, 2))
 singles_at, integers_at, bytes_at = (_array(kind, 1) for kind in (types.float32, types.int64, types.uint8))
 byte_table_at, small_table_at = (_array(kind, 2) for kind in (types.uint8, types.int32))
-table_at, number_tables_at = (_array(types.int64, dimensions) for dimensions in (2, 3))
+table_at = _array(types.int64, 2)

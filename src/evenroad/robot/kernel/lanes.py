@@ -166,16 +166,6 @@ plus, minus, times = _by_axis("fadd"), _by_axis("fsub"), _by_axis("fmul")
 
 
 @intrinsic
-def smallest_lane(typing_context: Any, a: Any) -> Any:
-    """Return the least of sixteen numbers."""
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        return _call(builder, f"llvm.vector.reduce.fmin.v{LANES}f32", _FLOAT, args[0])
-
-    return types.float32(a), lower
-
-
-@intrinsic
 def dot(typing_context: Any, a: Any, b: Any) -> Any:
     """Return the inner product of two vectors, of which one may be three float32 numbers."""
 

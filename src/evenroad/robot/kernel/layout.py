@@ -120,9 +120,8 @@ BLOCK_FLOAT_ROW = 6 * LANES
 """Bounding boxes of 16 obstacles: centres x, y, z, half extents x, y, z, 16 numbers each."""
 
 Pair: TypeAlias = tuple[int, int]
-Triple: TypeAlias = tuple[int, int, int]
 Given: TypeAlias = tuple[int, float, int, int, int, int]
-"""What a program takes beside numbers: an array by its address and length; a shape; and ``LaneWorld.arguments``.
+"""What a program takes beside numbers: an array by its address and length; and ``LaneWorld.arguments``.
 ``_njit`` knows them by these names."""
 
 MEMORY = 5

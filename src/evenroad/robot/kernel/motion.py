@@ -64,26 +64,3 @@ def span(start: Floats, end: Floats, bounds: Floats, resolution: float, directio
             direction[k] -= period * np.rint(direction[k] / period)
         squared += direction[k] * direction[k]
     return math.ceil(math.sqrt(squared) / resolution)
-
-
-@quick_inlined
-def canonical(q: Floats, bounds: Floats) -> None:
-    """Bring `q` into bounds: wrapping coordinates into their ranges, the others cut."""
-    enter(q, bounds, q)
-    for k in range(len(q)):
-        if bounds[2, k] == np.inf:
-            q[k] = min(max(q[k], bounds[0, k]), bounds[1, k])
-
-
-@quick_inlined
-def distance_and_direction(a: Floats, b: Floats, bounds: Floats, direction: Floats) -> float:
-    """Write the short way from `a` to `b` and return its length."""
-    squared = 0.0
-    for k in range(len(a)):
-        apart = b[k] - a[k]
-        period = bounds[2, k]
-        if period != np.inf:
-            apart -= period * np.rint(apart / period)
-        direction[k] = apart
-        squared += apart * apart
-    return np.sqrt(squared)

@@ -115,14 +115,6 @@ def blocked(c: Checks) -> int:
 
 
 @quick_inlined
-def look_at(table: int, c: Checks) -> int:
-    """Let checks of states read the lengths at an address, proofs enlarge them; return where those before were."""
-    workspace = integers_at(c.workspace, (WORKSPACE,))
-    before, workspace[5] = workspace[5], table
-    return before
-
-
-@quick_inlined
 def motion_free(a: Floats, b: Floats, known: int, c: Checks) -> bool:
     """Return whether the motion from `a` to `b`, both within bounds, is free at its states.
 
@@ -141,12 +133,6 @@ def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: 
     of sixteen stretches the answer is no.
     """
     return call_at(c.address, (a, b, PROOF, tolerance, most_batches, c.resolution, c.workspace)) != 0
-
-
-@quick_inlined
-def motion_is(a: Floats, b: Floats, kind: int, tolerance: float, most_batches: int, c: Checks) -> bool:
-    """Return whether the motion from `a` to `b` is what one of the kinds above says, in one call for all of them."""
-    return call_at(c.address, (a, b, kind, tolerance, most_batches, c.resolution, c.workspace)) != 0
 
 
 @once

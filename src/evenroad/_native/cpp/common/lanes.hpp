@@ -73,6 +73,26 @@ EVENROAD_INLINE V sqrt(V a) {
 #endif
 }
 
+/// Return `a * b + c`, rounded once where the processor has such an instruction, else twice.
+EVENROAD_INLINE Floats16 fma(Floats16 a, Floats16 b, Floats16 c) {
+#if defined(__AVX512F__)
+  return (Floats16)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+#elif defined(__FMA__)
+  __m256 x[2], y[2], z[2];
+  __builtin_memcpy(x, &a, sizeof a);
+  __builtin_memcpy(y, &b, sizeof b);
+  __builtin_memcpy(z, &c, sizeof c);
+  for (int half = 0; half < 2; half++) z[half] = _mm256_fmadd_ps(x[half], y[half], z[half]);
+  __builtin_memcpy(&c, z, sizeof c);
+  return c;
+#elif defined(__aarch64__)
+  for (int lane = 0; lane < 16; lane++) c[lane] = __builtin_fmaf(a[lane], b[lane], c[lane]);
+  return c;
+#else
+  return a * b + c;
+#endif
+}
+
 /// Return the least of all lanes.
 template <class T, int N>
 EVENROAD_INLINE T least(const Lanes<T, N>& lanes) {

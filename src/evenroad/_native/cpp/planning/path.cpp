@@ -1,0 +1,37 @@
+// Lengths are those of the short way from waypoint to waypoint.
+#include "planning/path.hpp"
+
+namespace evenroad::planning {
+
+Path::Path(std::span<const double> points, const Joints& joints)
+    : joints_(&joints), dim_(joints.size()), points_(points.begin(), points.end()), direction_(joints.size()) {}
+
+void Path::measure() {
+  places_.assign(1, 0.0);
+  for (std::size_t i = 1; i < size(); i++) {
+    places_.push_back(places_.back() + write_direction((*this)[i - 1], (*this)[i], *joints_, direction_));
+  }
+}
+
+void Path::write_place(std::size_t i, double along, Configuration q) const {
+  if (along >= places_[i + 1]) {
+    copy((*this)[i + 1], q);
+    return;
+  }
+  const ConstConfiguration from = (*this)[i];
+  write_direction(from, (*this)[i + 1], *joints_, direction_);
+  const double share = (along - places_[i]) / (places_[i + 1] - places_[i]);
+  for (std::size_t k = 0; k < dim_; k++) q[k] = from[k] + share * direction_[k];
+  bring_inside(q, *joints_);
+}
+
+void Path::insert(std::size_t before, ConstConfiguration q) {
+  points_.insert(points_.begin() + static_cast<std::ptrdiff_t>(before * dim_), q.begin(), q.end());
+}
+
+void Path::erase(std::size_t first, std::size_t last) {
+  const auto at = [&](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i * dim_); };
+  points_.erase(at(first), at(last));
+}
+
+}  // namespace evenroad::planning

@@ -1,0 +1,64 @@
+// Bends lead beside the middle of a motion, as far as two of its states are apart.
+#include "planning/path_proof.hpp"
+
+#include <vector>
+
+namespace evenroad::planning {
+
+namespace {
+
+constexpr ProofLimits PROOF{1e-6, 1024};
+
+/// So many motions of a path are bent; so many places are tried for the waypoint in the middle, about half of them do.
+constexpr int MOST_BENT = 2;
+constexpr std::size_t PLACES = 8;
+
+bool is_free_with_margin(ConstConfiguration a, ConstConfiguration there, ConstConfiguration b, double margin,
+                         MotionChecks& checks) {
+  checks.keep_away(margin);
+  const bool is_free = checks.is_free(a, there, Known::NO_ENDPOINT) && checks.is_free(there, b, Known::BOTH_ENDPOINTS);
+  checks.keep_away(0.0);
+  return is_free;
+}
+
+/// Write a place by which both ways are proved; return whether there is one.
+bool write_bend(ConstConfiguration a, ConstConfiguration b, double margin, Matrix<const double> directions,
+                MotionChecks& checks, Configuration there) {
+  std::vector<double> way(a.size());
+  for (std::size_t number = 0; number < PLACES; number++) {
+    write_direction(a, b, checks.joints, way);
+    const ConstConfiguration direction = directions[number % directions.rows];
+    for (std::size_t k = 0; k < a.size(); k++) there[k] = a[k] + 0.5 * way[k] + checks.resolution * direction[k];
+    const bool is_within = enter(there, checks.joints);
+    bring_inside(there, checks.joints);
+    if (is_within && is_free_with_margin(a, there, b, margin, checks) && checks.is_proved(a, there, PROOF) &&
+        checks.is_proved(there, b, PROOF)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_proved(const Path& path, std::size_t first, std::size_t last, MotionChecks& checks) {
+  for (std::size_t i = first; i + 1 < last; i++) {
+    if (!checks.is_proved(path[i], path[i + 1], PROOF)) return false;
+  }
+  return true;
+}
+
+bool prove_or_bend(Path& path, double margin, Matrix<const double> directions, MotionChecks& checks) {
+  std::vector<double> there(checks.joints.size());
+  int bent = 0;
+  for (std::size_t i = 0; i + 1 < path.size(); i++) {
+    if (checks.is_proved(path[i], path[i + 1], PROOF)) continue;
+    if (bent == MOST_BENT || !write_bend(path[i], path[i + 1], margin, directions, checks, there)) return false;
+    path.insert(i + 1, there);
+    // Both of its motions are proved.
+    bent++, i++;
+  }
+  return true;
+}
+
+}  // namespace evenroad::planning

@@ -1,0 +1,130 @@
+// Places are tried at random directions, to which the direction in which the path gets shorter is added.
+#include "planning/slides.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace evenroad::planning {
+
+namespace {
+
+/// Places are so far away, as shares of the shorter motion to a neighbour, one after the other.
+constexpr std::array SIZES{0.2, 0.24, 0.3, 0.36, 0.44, 0.54, 0.66, 0.8};
+
+/// So much of the direction in which the path gets shorter soonest is added to a direction of length 1.
+constexpr double AHEAD = 0.2;
+
+/// The way from neighbour to neighbour has to become shorter by this share.
+constexpr double WORTH_WHILE = 1e-3;
+
+/// A waypoint does not slide where the way by it is longer than the straight one by less than this share.
+constexpr double BEND = 0.01;
+
+/// The states beside a place are so far towards the neighbours, as a share of the way.
+constexpr double BESIDE = 0.4;
+
+/// So many of the places that are free are looked at closely, the one with the shortest way first.
+constexpr int TRIED = 2;
+
+}  // namespace
+
+Slides::Slides(Path& path, MotionChecks& checks, Matrix<const double> directions)
+    : path_(path),
+      checks_(checks),
+      directions_(directions),
+      ahead_(checks.joints.size()),
+      direction_(checks.joints.size()) {
+  for (Candidate& candidate : candidates_) candidate.q.resize(checks.joints.size());
+}
+
+void Slides::slide(std::size_t i, std::size_t number) {
+  const ConstConfiguration a = path_[i - 1], here = path_[i], b = path_[i + 1];
+  const auto [before, after] = write_ahead(a, here, b);
+  if (write_direction(a, b, checks_.joints, direction_) > (before + after) * (1.0 - BEND)) return;
+  const double most = (before + after) * (1.0 - WORTH_WHILE);
+  bool is_any_open = false;
+  for (std::size_t place = 0; place < CANDIDATES; place++) {
+    const bool is_within =
+        write_candidate(candidates_[place], here, CANDIDATES * number + place, std::min(before, after));
+    write_states(place, a, b);
+    candidates_[place].is_open = is_within && candidates_[place].length <= most;
+    is_any_open |= candidates_[place].is_open;
+  }
+  if (!is_any_open) return;
+  const Touching touching = checks_.touching();
+  checks_.counts.configurations += static_cast<std::int64_t>(LANES);
+  // Sixteen states, as of a motion.
+  checks_.counts.motions++;
+  for (std::size_t place = 0; place < CANDIDATES; place++) {
+    for (std::size_t lane = STATES * place; lane < STATES * (place + 1); lane++) {
+      if (touching[lane]) candidates_[place].is_open = false;
+    }
+  }
+  take_best(i);
+}
+
+/// Write the direction in which a waypoint shortens the path soonest; return how far its neighbours are.
+Slides::Apart Slides::write_ahead(ConstConfiguration a, ConstConfiguration here, ConstConfiguration b) {
+  constexpr double LEAST = 1e-9;
+  const double before = std::max(write_direction(here, a, checks_.joints, direction_), LEAST);
+  for (std::size_t k = 0; k < here.size(); k++) ahead_[k] = direction_[k] / before;
+  const double after = std::max(write_direction(here, b, checks_.joints, direction_), LEAST);
+  double squared = 1e-18;
+  for (std::size_t k = 0; k < here.size(); k++) {
+    ahead_[k] += direction_[k] / after;
+    squared += ahead_[k] * ahead_[k];
+  }
+  for (double& each : ahead_) each /= std::sqrt(squared);
+  return {before, after};
+}
+
+/// Write a place around a waypoint, as far as a share of the shorter motion; return whether it is within the limits.
+bool Slides::write_candidate(Candidate& candidate, ConstConfiguration here, std::size_t turn, double shorter) {
+  const ConstConfiguration direction = directions_[turn % directions_.rows];
+  double along = 0.0;
+  for (std::size_t k = 0; k < here.size(); k++) along += direction[k] * ahead_[k];
+  // Rather away from the contact than back.
+  const double side = along < 0.0 ? -1.0 : 1.0;
+  double reach = SIZES[turn % SIZES.size()] * shorter;
+  reach /= std::sqrt(1.0 + 2.0 * AHEAD * side * along + AHEAD * AHEAD);
+  for (std::size_t k = 0; k < here.size(); k++) {
+    candidate.q[k] = here[k] + reach * (side * direction[k] + AHEAD * ahead_[k]);
+  }
+  const bool is_within = enter(candidate.q, checks_.joints);
+  bring_inside(candidate.q, checks_.joints);
+  return is_within;
+}
+
+/// Write a place and a state towards each neighbour for the check, and how long the way by it is.
+void Slides::write_states(std::size_t number, ConstConfiguration a, ConstConfiguration b) {
+  Candidate& candidate = candidates_[number];
+  const std::size_t lane = STATES * number;
+  candidate.length = write_direction(a, candidate.q, checks_.joints, direction_);
+  for (std::size_t k = 0; k < a.size(); k++) {
+    // The lane to spare repeats the last candidate.
+    checks_.state(k, lane) = checks_.state(k, LANES - 1) = candidate.q[k];
+    checks_.state(k, lane + 1) = candidate.q[k] - BESIDE * direction_[k];
+  }
+  candidate.length += write_direction(b, candidate.q, checks_.joints, direction_);
+  for (std::size_t k = 0; k < a.size(); k++) checks_.state(k, lane + 2) = candidate.q[k] - BESIDE * direction_[k];
+}
+
+/// Move the waypoint to the first of the best open places that both neighbours can be reached from.
+void Slides::take_best(std::size_t i) {
+  for (int tried = 0; tried < TRIED; tried++) {
+    Candidate* best = nullptr;
+    for (Candidate& candidate : candidates_) {
+      if (candidate.is_open && (best == nullptr || candidate.length < best->length)) best = &candidate;
+    }
+    if (best == nullptr) return;
+    best->is_open = false;
+    if (checks_.is_free(path_[i - 1], best->q, Known::BOTH_ENDPOINTS) &&
+        checks_.is_free(best->q, path_[i + 1], Known::BOTH_ENDPOINTS)) {
+      copy(best->q, path_[i]);
+      return;
+    }
+  }
+}
+
+}  // namespace evenroad::planning

@@ -1,0 +1,157 @@
+// While a path is drawn tight its motions are judged with bodies a little larger: of motions free then nearly all are
+// proved.
+#include "planning/smoother.hpp"
+
+#include <optional>
+#include <span>
+
+#include "planning/path_proof.hpp"
+#include "planning/slides.hpp"
+
+namespace evenroad::planning {
+
+namespace {
+
+/// After so many slides so many pairs of places are joined: a round.
+constexpr std::size_t SLIDES = 12, PAIRS = 2;
+
+/// Rounds end when so many in a row make the path shorter by less than this share, or after the most.
+constexpr int IN_A_ROW = 4;
+constexpr double LEAST_GAIN = 2e-3;
+constexpr std::size_t MOST_ROUNDS = 64;
+
+/// After every third of these rounds it is tried to pass by waypoints.
+constexpr std::size_t PASSED_BY = 3;
+
+/// So many pairs are joined where what was drawn tight is not proved.
+constexpr std::size_t SPARE_PAIRS = 20;
+
+/// The proof of a motion takes about so many batches, which slides leave to it.
+constexpr std::int64_t OF_PROOF = 6;
+
+constexpr std::size_t HALF = LANES / 2;
+
+void bring_in(Path& path, const Joints& joints) {
+  for (std::size_t i = 0; i < path.size(); i++) enter(path[i], joints);
+}
+
+/// A path without its ends where these nearly touch something: they stay as they are, and what leads away from them.
+struct Middle {
+  Path path;
+  std::optional<std::vector<double>> start, goal;
+
+  /// Return the path with its ends.
+  Path whole() && {
+    if (start) path.insert(0, *start);
+    if (goal) path.insert(path.size(), *goal);
+    return std::move(path);
+  }
+};
+
+std::vector<double> copied(ConstConfiguration q) { return {q.begin(), q.end()}; }
+
+/// Return what is left between ends that nearly touch something; nothing where all that leads away from one does.
+std::optional<Middle> between_ends(const Path& path, MotionChecks& checks) {
+  Middle middle{path, {}, {}};
+  std::vector<double> way(checks.joints.size());
+  const std::size_t last = path.size() - 1;
+  for (std::size_t side = 0; side < 2; side++) {
+    const ConstConfiguration end = path[side == 0 ? 0 : last], next = path[side == 0 ? 1 : last - 1];
+    write_direction(end, next, checks.joints, way);
+    for (std::size_t lane = 0; lane < HALF; lane++) {
+      const double share = static_cast<double>(lane) / static_cast<double>(HALF);
+      for (std::size_t k = 0; k < way.size(); k++) checks.state(k, HALF * side + lane) = end[k] + share * way[k];
+    }
+  }
+  const Touching touching = checks.touching();
+  for (std::size_t side = 0; side < 2; side++) {
+    if (!touching[HALF * side]) continue;
+    std::size_t lane = 1;
+    while (lane < HALF && touching[HALF * side + lane]) lane++;
+    if (lane == HALF) return {};
+    const std::size_t end = side == 0 ? 0 : middle.path.size() - 1;
+    (side == 0 ? middle.start : middle.goal) = copied(middle.path[end]);
+    const Configuration first_free = middle.path[end];
+    for (std::size_t k = 0; k < way.size(); k++) first_free[k] = checks.state(k, HALF * side + lane);
+    bring_inside(first_free, checks.joints);
+  }
+  return middle;
+}
+
+/// Let waypoints slide, and join places of the path, while that gains anything.
+void slide_and_shorten(Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks) {
+  Shortcuts shortcuts(path, checks, Demand::FREE);
+  Slides slides(path, checks, guides.directions);
+  const auto is_work_left = [&] {
+    return checks.counts.batches + OF_PROOF * (static_cast<std::int64_t>(path.size()) - 1) < most_batches;
+  };
+  shortcuts.pass_by();
+  int little = 0;
+  std::size_t pair = 0;
+  for (std::size_t turn = 0; turn < MOST_ROUNDS && path.size() > 2 && little < IN_A_ROW && is_work_left(); turn++) {
+    const double length = path.length();
+    for (std::size_t number = SLIDES * turn; number < SLIDES * (turn + 1); number++) {
+      if (is_work_left()) slides.slide(1 + number % (path.size() - 2), number);
+    }
+    path.measure();
+    for (std::size_t i = 0; i < PAIRS; i++) shortcuts.join_shares(guides.pairs[pair++ % guides.pairs.rows]);
+    if (turn % PASSED_BY == PASSED_BY - 1) shortcuts.pass_by();
+    little = path.length() > length * (1.0 - LEAST_GAIN) ? little + 1 : 0;
+  }
+  shortcuts.shortcut_corners(MOST_SHORTCUTS);
+}
+
+/// Return the path drawn tight and proved; nothing where it is not.
+std::optional<Path> smoothed(const Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks) {
+  std::optional<Middle> middle;
+  double margin = 0.0;
+  for (const double each : CLEARANCES) {
+    margin = each;
+    checks.keep_away(margin);
+    middle = between_ends(path, checks);
+    if (middle) break;
+  }
+  if (middle) slide_and_shorten(middle->path, guides, most_batches, checks);
+  checks.keep_away(0.0);
+  if (!middle) return {};
+  Path shorter = std::move(*middle).whole();
+  if (!prove_or_bend(shorter, margin, guides.directions, checks)) return {};
+  return shorter;
+}
+
+/// Shorten a path by straight motions alone; return whether it is proved in the end.
+bool shorten_as_given(Path& path, const Guides& guides, std::int64_t most_batches, bool is_given_proved,
+                      MotionChecks& checks) {
+  const std::size_t size = path.size();
+  // The motions at the ends stay in any case.
+  if (!is_given_proved && !(is_proved(path, 0, 2, checks) && is_proved(path, size - 2, size, checks))) return false;
+  const std::int64_t most = checks.counts.batches + most_batches;
+  Shortcuts shortcuts(path, checks, Demand::PROVED);
+  shortcuts.pass_by();
+  for (std::size_t row = 0; row < SPARE_PAIRS; row++) shortcuts.join_shares(guides.pairs[row % guides.pairs.rows]);
+  shortcuts.shortcut_corners(MOST_SHORTCUTS, most);
+  return is_given_proved || is_proved(path, 0, path.size(), checks);
+}
+
+}  // namespace
+
+void shorten(Path& path, Matrix<const double> pairs, std::int64_t most_shortcuts, MotionChecks& checks) {
+  bring_in(path, checks.joints);
+  Shortcuts shortcuts(path, checks, Demand::PROVED);
+  shortcuts.pass_by();
+  for (std::size_t row = 0; row < pairs.rows; row++) shortcuts.join_shares(pairs[row]);
+  shortcuts.shortcut_corners(most_shortcuts);
+  shortcuts.pass_by();
+}
+
+bool smooth(Path& path, const Guides& guides, std::int64_t most_batches, bool is_given_proved, MotionChecks& checks) {
+  bring_in(path, checks.joints);
+  if (path.size() < 3) return true;
+  if (std::optional<Path> shorter = smoothed(path, guides, most_batches, checks)) {
+    path = std::move(*shorter);
+    return true;
+  }
+  return shorten_as_given(path, guides, most_batches, is_given_proved, checks);
+}
+
+}  // namespace evenroad::planning

@@ -1,0 +1,97 @@
+// The search of the nearest node looks at sixteen nodes at once; it is what trees spend their time on beside checks.
+#include "planning/tree.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/lanes.hpp"
+
+namespace evenroad::planning {
+
+namespace {
+
+constexpr int WIDTH = 16;
+
+/// Room for nodes at first.  Not a power of two: columns would then take each other's place in the cache.
+constexpr std::size_t FIRST_CAPACITY = 1040;
+
+constexpr float FAR = 1e15F;
+constexpr double NO_PERIOD = 1e30;
+
+}  // namespace
+
+Tree::Tree(const Joints& joints) : dim_(joints.size()), periods_(joints.size()) {
+  for (std::size_t k = 0; k < dim_; k++) periods_[k] = static_cast<float>(std::min(joints.period[k], NO_PERIOD));
+}
+
+Node Tree::add(ConstConfiguration q, Node parent) {
+  const Node node = size();
+  nodes_.insert(nodes_.end(), q.begin(), q.end());
+  parents_.push_back(parent);
+  tried_.push_back(0);
+  proved_.push_back(0);
+  if (parents_.size() > capacity_) make_room();
+  write_columns(node);
+  return node;
+}
+
+Node Tree::nearest(ConstConfiguration q) const {
+  float best = 3e38F;
+  std::size_t number = 0;
+  for (std::size_t first = 0; first < parents_.size(); first += WIDTH) {
+    Floats16 squared{};
+    const float* column = columns_.data() + first;
+    for (std::size_t k = 0; k < dim_; k++, column += capacity_) {
+      Floats16 apart = abs(load<Floats16>(column) - static_cast<float>(q[k]));
+      apart = min(apart, periods_[k] - apart);
+      squared = fma(apart, apart, squared);
+    }
+    if (below_zero(squared - best) == 0) continue;
+    best = least<float, WIDTH>(squared);
+    std::size_t lane = 0;
+    while (squared[lane] > best) lane++;
+    number = first + lane;
+  }
+  return static_cast<Node>(number);
+}
+
+Node Tree::least_tried() const {
+  // Two loops: of the first the compiler makes vectors.
+  std::int64_t least = tried_[0];
+  for (const std::int64_t each : tried_) least = std::min(least, each);
+  return std::ranges::find(tried_, least) - tried_.begin();
+}
+
+void Tree::remove_branch(Node node) {
+  std::vector<Node> moved(parents_.size());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < parents_.size(); i++) {
+    const Node parent = parents_[i];
+    // Parents come before their children.
+    if (std::cmp_equal(i, node) || (parent >= 0 && moved[static_cast<std::size_t>(parent)] == NO_NODE)) {
+      moved[i] = NO_NODE;
+      continue;
+    }
+    moved[i] = static_cast<Node>(kept);
+    parents_[kept] = parent >= 0 ? moved[static_cast<std::size_t>(parent)] : NO_NODE;
+    tried_[kept] = tried_[i], proved_[kept] = proved_[i];
+    std::copy_n(&nodes_[i * dim_], dim_, &nodes_[kept * dim_]);
+    kept++;
+  }
+  parents_.resize(kept), tried_.resize(kept), proved_.resize(kept), nodes_.resize(kept * dim_);
+  std::ranges::fill(columns_, FAR);
+  for (std::size_t i = 0; i < kept; i++) write_columns(static_cast<Node>(i));
+}
+
+void Tree::write_columns(Node node) {
+  const auto number = static_cast<std::size_t>(node);
+  for (std::size_t k = 0; k < dim_; k++) columns_[k * capacity_ + number] = static_cast<float>((*this)[node][k]);
+}
+
+void Tree::make_room() {
+  capacity_ = capacity_ == 0 ? FIRST_CAPACITY : 2 * capacity_;
+  columns_.assign(dim_ * capacity_, FAR);
+  for (Node node = 0; node < size(); node++) write_columns(node);
+}
+
+}  // namespace evenroad::planning

@@ -1,0 +1,63 @@
+// A tree of configurations: its nodes, which of them is nearest to a place, and which was tried least often.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "planning/joints.hpp"
+
+namespace evenroad::planning {
+
+using Node = std::int64_t;
+
+/// Stands for a node that is not there, e.g. the parent of a root.
+inline constexpr Node NO_NODE = -1;
+
+/// Nodes are numbered as they were added, so parents come before their children.
+class Tree {
+ public:
+  explicit Tree(const Joints& joints);
+
+  Node size() const { return static_cast<Node>(parents_.size()); }
+  bool empty() const { return parents_.empty(); }
+  ConstConfiguration operator[](Node node) const { return {&nodes_[static_cast<std::size_t>(node) * dim_], dim_}; }
+  Node parent(Node node) const { return parents_[static_cast<std::size_t>(node)]; }
+  bool is_root(Node node) const { return parent(node) == NO_NODE; }
+  std::span<const double> nodes() const { return nodes_; }
+
+  /// How often the tree grew from a node.
+  std::int64_t& tried(Node node) { return tried_[static_cast<std::size_t>(node)]; }
+
+  /// Whether the motion from a node's parent is proved.
+  bool is_proved(Node node) const { return proved_[static_cast<std::size_t>(node)] != 0; }
+  void set_proved(Node node) { proved_[static_cast<std::size_t>(node)] = 1; }
+
+  /// Add a configuration, which is no node of this tree, and return its number.
+  Node add(ConstConfiguration q, Node parent);
+
+  /// Return the node nearest to a configuration, the first of equals; distances are of single precision.
+  Node nearest(ConstConfiguration q) const;
+
+  /// Return the node that was tried least often, the first of equals.
+  Node least_tried() const;
+
+  /// Remove a node and all that descend from it; the others move up and keep their order.
+  void remove_branch(Node node);
+
+ private:
+  void write_columns(Node node);
+  void make_room();
+
+  std::size_t dim_, capacity_ = 0;
+  std::vector<double> nodes_;
+  /// The nodes by coordinate, `capacity_` numbers each; places that hold no node are far away.
+  std::vector<float> columns_;
+  std::vector<float> periods_;
+  std::vector<Node> parents_;
+  std::vector<std::int64_t> tried_;
+  std::vector<std::uint8_t> proved_;
+};
+
+}  // namespace evenroad::planning

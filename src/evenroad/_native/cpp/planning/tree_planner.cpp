@@ -1,0 +1,170 @@
+// A path is proved only once it is found; of a motion that is not, the tree loses the branch behind it, and grows on.
+#include "planning/tree_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evenroad::planning {
+
+namespace {
+
+/// So many steps at most are made in one go towards the other tree.
+constexpr std::int64_t MOST_STEPS = 64;
+
+/// So many goals at most are first tried straight on.
+constexpr Node MOST_STRAIGHT = 16;
+
+/// Of the proofs of the motions of a path [m].
+constexpr ProofLimits PROOF{1e-6, 1024};
+
+}  // namespace
+
+TreePlanner::TreePlanner(Matrix<const double> ends, const Sequences& sequences, MotionChecks& checks)
+    : ends_(ends),
+      checks_(checks),
+      steps_(checks.joints, sequences),
+      trees_{Tree(checks.joints), Tree(checks.joints)},
+      here_(ends.columns),
+      there_(ends.columns),
+      direction_(ends.columns),
+      target_(ends.columns) {}
+
+Growth TreePlanner::grow(std::int64_t most_motions, std::int64_t batches) {
+  most_motions_ = most_motions;
+  if (!is_begun_) {
+    plant();
+    is_begun_ = true;
+  }
+  if (!is_planted()) return Growth::NOT_FREE;
+  const std::int64_t pause = checks_.counts.batches + batches;
+  while (true) {
+    if (is_spent()) return Growth::SPENT;
+    if (checks_.counts.batches >= pause) return Growth::PAUSED;
+    const Node goals = std::min(static_cast<Node>(goals_.size()), MOST_STRAIGHT);
+    const bool is_solved = straight_ < goals ? join(0, 0, straight_++) : grow_once();
+    if (is_solved) return Growth::SOLVED;
+  }
+}
+
+/// Plant the start in the first tree and the goals in the second; leave out what is not free.
+void TreePlanner::plant() {
+  for (std::size_t first = 0; first < ends_.rows; first += LANES) {
+    const std::size_t some = std::min(LANES, ends_.rows - first);
+    std::array<bool, LANES> inside{};
+    for (std::size_t lane = 0; lane < LANES; lane++) {
+      // Lanes to spare repeat the last row.
+      copy(ends_[first + std::min(lane, some - 1)], here_);
+      inside[lane] = enter(here_, checks_.joints);
+      // What is out of bounds may be too large for single precision.
+      if (!inside[lane]) bring_inside(here_, checks_.joints);
+      for (std::size_t k = 0; k < here_.size(); k++) checks_.state(k, lane) = here_[k];
+    }
+    const Touching touching = checks_.touching();
+    checks_.counts.configurations += static_cast<std::int64_t>(some);
+    for (std::size_t lane = 0; lane < some; lane++) {
+      if (!inside[lane] || touching[lane]) continue;
+      const std::size_t row = first + lane;
+      for (std::size_t k = 0; k < here_.size(); k++) here_[k] = checks_.state(k, lane);
+      trees_[row == 0 ? 0 : 1].add(here_, NO_NODE);
+      if (row > 0) goals_.push_back(static_cast<std::int64_t>(row) - 1);
+    }
+    if (trees_[0].empty()) return;
+  }
+}
+
+/// Return the tree to grow: the one that grew last, unless the other is smaller.
+std::size_t TreePlanner::growing_tree() {
+  if (trees_[growing_].size() > trees_[1 - growing_].size()) growing_ = 1 - growing_;
+  return growing_;
+}
+
+/// Take the next steps of a tree, and go on from each towards the other; return whether they met.
+bool TreePlanner::grow_once() {
+  const std::size_t tree = growing_tree();
+  Tree& own = trees_[tree];
+  const auto left = static_cast<std::size_t>(most_motions_ - checks_.counts.motions);
+  for (const Step& step : steps_.next(own, std::min(STEPS_AT_ONCE, left), checks_)) {
+    if (is_spent()) return false;
+    if (!checks_.is_free(own[step.origin], step.target, Known::START)) continue;
+    const Node found = own.add(step.target, step.origin);
+    if (join(tree, found, trees_[1 - tree].nearest(own[found]))) return true;
+    // The proof failed and took nodes away: the other steps know old numbers.
+    if (have_met()) return false;
+  }
+  return false;
+}
+
+/// Go from a node to one of the other tree; return whether that makes a path of which every motion is proved.
+bool TreePlanner::join(std::size_t tree, Node found, Node other) {
+  met_ = {NO_NODE, NO_NODE};
+  const Node last = reach(tree, found, other);
+  if (last == NO_NODE) return false;
+  met_[tree] = last, met_[1 - tree] = other;
+  if (!is_path_proved()) return false;
+  write_path();
+  return true;
+}
+
+/// Go from a node towards one of the other tree in equal steps, each a new node, until one is blocked.
+///
+/// Return the node from which the last step led to the other, or NO_NODE, also once the budget is spent.
+Node TreePlanner::reach(std::size_t tree, Node found, Node other) {
+  Tree& own = trees_[tree];
+  copy(own[found], here_), copy(trees_[1 - tree][other], there_);
+  const double length = write_direction(here_, there_, checks_.joints, direction_);
+  const auto steps = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(length / steps_.longest())));
+  for (std::int64_t step = 1; step <= std::min(steps, MOST_STEPS); step++) {
+    const bool is_last = step == steps;
+    const double share = static_cast<double>(step) / static_cast<double>(steps);
+    for (std::size_t k = 0; k < here_.size(); k++) target_[k] = is_last ? there_[k] : here_[k] + share * direction_[k];
+    // The other tree's node stays as it is: a root may exceed a limit by the slack.
+    if (!is_last) bring_inside(target_, checks_.joints);
+    if (is_spent()) return NO_NODE;
+    if (!checks_.is_free(own[found], target_, is_last ? Known::BOTH_ENDPOINTS : Known::START)) return NO_NODE;
+    if (is_last) return found;
+    found = own.add(target_, found);
+  }
+  return NO_NODE;
+}
+
+/// Return whether every motion of the path is proved free; branches behind those that are not go from the trees.
+///
+/// A motion that was proved once is not looked at again; nor is any once the budget is spent.
+bool TreePlanner::is_path_proved() {
+  if (is_spent()) return false;
+  // The motion between the trees first: it is the only one that can go without taking nodes along.
+  bool is_proved = checks_.is_proved(trees_[0][met_[0]], trees_[1][met_[1]], PROOF);
+  for (std::size_t tree = 0; tree < 2; tree++) is_proved &= is_branch_proved(tree, met_[tree]);
+  return is_proved;
+}
+
+bool TreePlanner::is_branch_proved(std::size_t tree, Node leaf) {
+  Tree& own = trees_[tree];
+  Node broken = NO_NODE;
+  for (Node node = leaf; !own.is_root(node); node = own.parent(node)) {
+    if (own.is_proved(node)) continue;
+    if (is_spent()) return false;
+    if (checks_.is_proved(own[own.parent(node)], own[node], PROOF)) {
+      own.set_proved(node);
+    } else {
+      broken = node;
+    }
+  }
+  if (broken == NO_NODE) return true;
+  own.remove_branch(broken);
+  return false;
+}
+
+/// Write the way from the start to the goal that was reached, and which one this is.
+void TreePlanner::write_path() {
+  std::vector<Node> way;
+  for (Node node = met_[0]; node != NO_NODE; node = trees_[0].parent(node)) way.push_back(node);
+  std::ranges::reverse(way);
+  const auto append = [&](ConstConfiguration q) { path_.insert(path_.end(), q.begin(), q.end()); };
+  for (const Node node : way) append(trees_[0][node]);
+  Node node = met_[1];
+  for (append(trees_[1][node]); !trees_[1].is_root(node); append(trees_[1][node])) node = trees_[1].parent(node);
+  goal_ = goals_[static_cast<std::size_t>(node)];
+}
+
+}  // namespace evenroad::planning

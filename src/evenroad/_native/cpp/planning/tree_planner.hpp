@@ -1,0 +1,75 @@
+// RRT-Connect for arms: two trees grow from the start and from the goals until they meet.
+//
+// After J. Kuffner and S. LaValle, 2000, with an even sequence in place of random samples, and with steps around nodes
+// that were extended often enough: one batch of sixteen holds the middle and the end of eight of them, and only those
+// free at both are looked at in full.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/matrix.hpp"
+#include "planning/motion_checks.hpp"
+#include "planning/tree.hpp"
+#include "planning/tree_steps.hpp"
+
+namespace evenroad::planning {
+
+/// What a call of `grow` ended with: its slice used up, the budget of motions spent, start or goals not free, or a path
+/// found.
+enum class Growth : std::uint8_t { PAUSED, SPENT, NOT_FREE, SOLVED };
+
+/// Two trees, which of them grows next, and where they met.
+class TreePlanner {
+ public:
+  /// `ends` are the start and the goals, of which the first are tried straight on.  Ends, sequences and the joints of
+  /// the checks must last as long as this.
+  TreePlanner(Matrix<const double> ends, const Sequences& sequences, MotionChecks& checks);
+
+  /// Grow until the trees meet, so many motions are spent, or about so many batches of sixteen were checked in this
+  /// call; the next call goes on.
+  Growth grow(std::int64_t most_motions, std::int64_t batches);
+
+  /// The configurations from the start to the goal that was reached, one after the other; none without a path.
+  const std::vector<double>& path() const { return path_; }
+
+  /// Which of the goals was reached, -1 without a path.
+  std::int64_t goal() const { return goal_; }
+
+  const Tree& tree(std::size_t number) const { return trees_[number]; }
+  const Counts& counts() const { return checks_.counts; }
+
+ private:
+  void plant();
+  bool is_planted() const { return !trees_[0].empty() && !trees_[1].empty(); }
+  std::size_t growing_tree();
+  bool grow_once();
+  bool join(std::size_t tree, Node found, Node other);
+  Node reach(std::size_t tree, Node found, Node other);
+  bool have_met() const { return met_[0] != NO_NODE; }
+  bool is_path_proved();
+  bool is_branch_proved(std::size_t tree, Node leaf);
+  void write_path();
+  bool is_spent() const { return checks_.counts.motions >= most_motions_; }
+
+  Matrix<const double> ends_;
+  MotionChecks& checks_;
+  TreeSteps steps_;
+  /// From the start, and from the goals.
+  std::array<Tree, 2> trees_;
+  /// Which of the goals the roots of the second tree are.
+  std::vector<std::int64_t> goals_;
+  bool is_begun_ = false;
+  std::size_t growing_ = 0;
+  /// How many goals were tried straight on.
+  Node straight_ = 0;
+  /// Where the trees met last: a node of each, or none.
+  std::array<Node, 2> met_{NO_NODE, NO_NODE};
+  std::int64_t most_motions_ = 0;
+  std::vector<double> here_, there_, direction_, target_;
+  std::vector<double> path_;
+  std::int64_t goal_ = -1;
+};
+
+}  // namespace evenroad::planning

@@ -1,0 +1,60 @@
+// Where a tree grows next: towards the next point of an even sequence, or by eight steps around its nodes at once.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/matrix.hpp"
+#include "planning/motion_checks.hpp"
+#include "planning/tree.hpp"
+
+namespace evenroad::planning {
+
+/// So many steps around nodes are offered at once: the middle and the end of each are a batch of sixteen.
+inline constexpr std::size_t STEPS_AT_ONCE = LANES / 2;
+
+/// A motion that would add a node at `target`.
+struct Step {
+  Node origin;
+  std::vector<double> target;
+};
+
+/// Even sequences in place of random numbers, used in turn.
+struct Sequences {
+  /// Of the unit cube.  After the last point it goes on from the first, each time shifted a little further.
+  Matrix<const double> samples;
+  /// Of the unit ball.
+  Matrix<const double> steps;
+};
+
+/// Offers the next steps of a tree.
+class TreeSteps {
+ public:
+  TreeSteps(const Joints& joints, const Sequences& sequences);
+
+  /// No step of a tree is longer.
+  double longest() const { return longest_; }
+
+  /// Return where the tree may go next: one extension, or of at most so many steps those free in the middle and at the
+  /// end.
+  std::span<const Step> next(Tree& tree, std::size_t most, MotionChecks& checks);
+
+ private:
+  void write_sample();
+  std::span<const Step> extension(const Tree& tree, Node closest);
+  std::span<const Step> ball_steps(Tree& tree, Node closest, std::size_t most, MotionChecks& checks);
+
+  const Joints& joints_;
+  Sequences sequences_;
+  double longest_;
+  /// Of the ball of steps, along each coordinate.
+  std::vector<double> radii_;
+  std::size_t next_sample_ = 0, next_step_ = 0;
+  std::vector<double> sample_, direction_;
+  std::array<Step, STEPS_AT_ONCE> offered_;
+};
+
+}  // namespace evenroad::planning
