@@ -13,8 +13,76 @@ from evenroad.points.measures import MEASURES, riesz_rooted, separation
 SEED = 170382760648021597650530316304495310428
 
 
-class Refusals:
-    """What every engine refuses."""
+SEEDS = {
+    "int": lambda: 5,
+    "generator": lambda: np.random.default_rng(5),
+    "seed sequence": lambda: np.random.SeedSequence(5),
+    "entropy": lambda: None,
+}
+
+
+class EngineContract:
+    """What every engine owes: subclass it as ``class TestMine(SetContract): engine_class = Mine``."""
+
+    engine_class: type[qmc.FamilyEngine | qmc.SequenceEngine]
+    n = 64
+    d = 2
+
+    def engine(self, **options):
+        return self.engine_class(**{"d": self.d, "rng": SEED, **options})
+
+    def test_it_is_an_engine_of_scipy_whose_points_lie_in_the_cube(self):
+        engine = self.engine()
+        assert isinstance(engine, scipy_qmc.QMCEngine)
+        assert (engine.d, engine.num_generated) == (self.d, 0)
+        sample = engine.random(self.n)
+        assert sample.shape == (self.n, self.d)
+        assert sample.dtype == np.float64
+        assert ((sample >= 0) & (sample < 1)).all()
+
+    def test_no_points_and_one_point_have_two_axes(self):
+        engine = self.engine()
+        assert engine.random(0).shape == (0, self.d)
+        assert engine.num_generated == 0
+        assert engine.random().shape == (1, self.d)
+        assert engine.num_generated == 1
+
+    def test_parts_are_the_whole_and_what_was_handed_out_can_be_changed(self):
+        whole, engine, parts = self.engine().random(self.n), self.engine(), []
+        for n in (0, 1, self.n // 2, np.int64(self.n - self.n // 2 - 1)):
+            part = engine.random(n)
+            parts.append(part.copy())
+            part[:] = 0.5
+        np.testing.assert_array_equal(np.concatenate(parts), whole)
+        assert engine.num_generated == self.n
+        np.testing.assert_array_equal(engine.reset().random(self.n), whole)
+
+    @pytest.mark.parametrize("seed", SEEDS)
+    def test_reset_goes_back_to_the_first_point_and_fast_forward_skips(self, seed):
+        engine = self.engine(rng=SEEDS[seed]())
+        first = engine.random(40)
+        assert engine.reset() is engine
+        assert engine.num_generated == 0
+        assert engine.fast_forward(13) is engine
+        assert engine.num_generated == 13
+        np.testing.assert_array_equal(engine.random(27), first[13:])
+
+    def test_a_passed_generator_is_spawned_so_that_engines_differ_and_the_stream_stays(self):
+        given, untouched = np.random.default_rng(6), np.random.default_rng(6)
+        first = [self.engine(rng=given).random(9).tobytes() for _ in range(6)]
+        assert len(set(first)) > 3
+        assert given.random() == untouched.random()
+        assert self.engine(rng=np.random.default_rng(6)).random(9).tobytes() == first[0]
+
+    def test_the_old_name_of_the_seed_works_but_not_beside_the_new_one(self):
+        np.testing.assert_array_equal(self.engine(rng=None, seed=3).random(9), self.engine(rng=3).random(9))
+        with pytest.raises(InvalidValue, match="not both"):
+            self.engine(rng=3, seed=3)
+
+    @pytest.mark.parametrize("bad", [0, -1, 1.5, "2", None, True])
+    def test_a_dimension_that_is_no_positive_integer_is_refused(self, bad):
+        with pytest.raises(InvalidValue, match="d must be an integer >= 1"):
+            self.engine(d=bad)
 
     @pytest.mark.parametrize("bad", [-1, 1.5, "2", None])
     def test_a_number_of_points_that_is_no_count_is_refused(self, bad):
@@ -29,72 +97,27 @@ class Refusals:
         with pytest.raises(InvalidValue, match="rng must be"):
             self.engine(rng=bad)
 
+    def test_scipys_own_tools_take_it(self):
+        quadrature = qmc_quad(
+            lambda x: np.prod(x, axis=0), [0] * self.d, [1] * self.d, n_points=self.n, qrng=self.engine()
+        )
+        assert quadrature.integral == pytest.approx(0.5**self.d, rel=0.15)
+        normal = scipy_qmc.MultivariateNormalQMC(np.zeros(self.d), engine=self.engine())
+        assert normal.random(self.n).shape == (self.n, self.d)
+        assert self.engine(optimization="random-cd").random(16).shape == (16, self.d)
 
-class EngineContract(Refusals):
-    """Subclass it as ``class TestMine(EngineContract): engine_class = Mine``; n and d are ones that it has."""
 
-    engine_class: type[qmc.FamilyEngine]
-    n = 64
-    d = 2
+class SetContract(EngineContract):
+    """What an engine owes whose points are a set of n: n and d are ones that it has."""
 
     def engine(self, **options):
-        return self.engine_class(**{"d": self.d, "n": self.n, "rng": SEED, **options})
-
-    def test_it_is_an_engine_of_scipy(self):
-        engine = self.engine()
-        assert isinstance(engine, scipy_qmc.QMCEngine)
-        assert (engine.d, engine.n, engine.num_generated) == (self.d, self.n, 0)
-
-    def test_all_points_lie_in_the_cube(self):
-        sample = self.engine().random(self.n)
-        assert sample.shape == (self.n, self.d)
-        assert sample.dtype == np.float64
-        assert (sample >= 0).all()
-        assert (sample < 1).all()
-
-    def test_no_points_and_one_point_have_two_axes(self):
-        engine = self.engine()
-        assert engine.random(0).shape == (0, self.d)
-        assert engine.num_generated == 0
-        assert engine.random().shape == (1, self.d)
-        assert engine.num_generated == 1
-
-    def test_two_halves_are_the_whole(self):
-        whole = self.engine().random(self.n)
-        engine = self.engine()
-        halves = [engine.random(self.n // 2), engine.random(np.int64(self.n - self.n // 2))]
-        np.testing.assert_array_equal(np.concatenate(halves), whole)
-        assert engine.num_generated == self.n
+        return super().engine(**{"n": self.n, **options})
 
     def test_all_points_are_the_set(self):
         engine = self.engine()
+        assert engine.n == self.n
         np.testing.assert_array_equal(engine.random(self.n), engine.points.points)
         assert engine.points.origin.family == self.engine_class.family
-
-    def test_what_was_handed_out_can_be_changed_without_changing_the_set(self):
-        engine = self.engine()
-        engine.random(4)[:] = 0.5
-        np.testing.assert_array_equal(engine.reset().random(4), self.engine().random(4))
-
-    @pytest.mark.parametrize("make_rng", [
-        lambda: 5, lambda: np.random.default_rng(5), lambda: np.random.SeedSequence(5), lambda: None,
-    ], ids=["int", "generator", "seed sequence", "entropy"])  # fmt: skip
-    def test_reset_goes_back_to_the_first_point(self, make_rng):
-        engine = self.engine(rng=make_rng())
-        first = engine.random(8)
-        assert engine.reset() is engine
-        assert engine.num_generated == 0
-        np.testing.assert_array_equal(engine.random(8), first)
-
-    def test_fast_forward_skips(self):
-        whole = self.engine().random(8)
-        engine = self.engine()
-        assert engine.fast_forward(4) is engine
-        assert engine.num_generated == 4
-        np.testing.assert_array_equal(engine.random(4), whole[4:])
-        engine.reset()
-        odd = [engine.fast_forward(1).random() for _ in range(4)]
-        np.testing.assert_array_equal(np.concatenate(odd), whole[1::2])
 
     def test_asking_for_more_than_is_left_raises_and_hands_out_nothing(self):
         engine = self.engine()
@@ -103,34 +126,16 @@ class EngineContract(Refusals):
             with pytest.raises(Exhausted, match=f"asked for 4 more points, but 3 of the {self.n} are left"):
                 ask(4)
         assert engine.num_generated == self.n - 3
-        last = engine.random(3)
-        np.testing.assert_array_equal(last, engine.points.points[-3:])
+        np.testing.assert_array_equal(engine.random(3), engine.points.points[-3:])
         assert engine.random(0).shape == (0, self.d)
         with pytest.raises(Exhausted):
             engine.random()
 
-    def test_the_same_seed_gives_the_same_bits(self):
+    def test_the_same_seed_gives_the_same_bits_and_others_differ_as_those_without_do(self):
         for seed in (SEED, 0):
-            first, second = self.engine(rng=seed), self.engine(rng=seed)
-            assert first.points == second.points
-
-    def test_other_seeds_give_other_sets(self):
+            assert self.engine(rng=seed).points == self.engine(rng=seed).points
         assert len({self.engine(rng=seed).points.hash for seed in range(8)}) > 4
-
-    def test_a_passed_generator_is_spawned_so_that_engines_differ_and_the_stream_stays(self):
-        given, untouched = np.random.default_rng(6), np.random.default_rng(6)
-        hashes = {self.engine(rng=given).points.hash for _ in range(6)}
-        assert len(hashes) > 3
-        assert given.random() == untouched.random()
-        assert self.engine(rng=np.random.default_rng(6)).points.hash in hashes
-
-    def test_without_a_seed_every_engine_is_fresh(self):
         assert len({self.engine(rng=None).points.hash for _ in range(8)}) > 1
-
-    def test_the_old_name_of_the_seed_works_but_not_beside_the_new_one(self):
-        assert self.engine(rng=None, seed=3).points == self.engine(rng=3).points
-        with pytest.raises(InvalidValue, match="not both"):
-            self.engine(rng=3, seed=3)
 
     def test_integers_are_the_points_scaled_and_rounded_down(self):
         points = self.engine().random(self.n)
@@ -140,18 +145,12 @@ class EngineContract(Refusals):
         np.testing.assert_array_equal(integers, np.floor(points * 8 - 3))
         assert engine.num_generated == self.n
 
-    @pytest.mark.parametrize("bad", [0, -1, 1.5, "2", None, True])
-    def test_a_dimension_or_size_that_is_no_positive_integer_is_refused(self, bad):
-        with pytest.raises(InvalidValue, match="d must be an integer >= 1"):
-            self.engine(d=bad)
-        with pytest.raises(InvalidValue, match="n must be an integer >= 1"):
-            self.engine(n=bad)
-
-    def test_an_option_that_the_family_does_not_have_is_refused(self):
+    def test_options_that_there_are_not_are_refused(self):
+        for bad in (0, -1, 1.5, "2", None, True):
+            with pytest.raises(InvalidValue, match="n must be an integer >= 1"):
+                self.engine(n=bad)
         with pytest.raises(UnknownName, match="scramble"):
             self.engine(scramble=True)
-
-    def test_an_unknown_optimization_is_refused(self):
         with pytest.raises(ValueError, match="'toto' is not a valid optimization method"):
             self.engine(optimization="toto")
 
@@ -161,99 +160,22 @@ class EngineContract(Refusals):
         assert scipy_qmc.discrepancy(sample) <= scipy_qmc.discrepancy(plain.random(self.n))
         np.testing.assert_array_equal(np.sort(sample, axis=0), np.sort(plain.points.points, axis=0))
 
-    def test_scipys_own_tools_take_it(self):
-        quadrature = qmc_quad(
-            lambda x: np.prod(x, axis=0),
-            [0] * self.d,
-            [1] * self.d,
-            n_points=self.n,
-            n_estimates=4,
-            qrng=self.engine(),
-        )
-        assert quadrature.integral == pytest.approx(0.5**self.d, rel=0.15)
-        normal = scipy_qmc.MultivariateNormalQMC(np.zeros(self.d), engine=self.engine())
-        assert normal.random(self.n).shape == (self.n, self.d)
 
+class TestGrowing(EngineContract):
+    engine_class = qmc.Growing
+    d = 5
 
-class SequenceContract(Refusals):
-    """Subclass it as ``class TestMine(SequenceContract): engine_class = Mine``."""
-
-    engine_class: type[qmc.SequenceEngine]
-    d = 2
-
-    def engine(self, **options):
-        return self.engine_class(**{"d": self.d, "rng": SEED, **options})
-
-    def test_it_is_an_engine_of_scipy_whose_points_lie_in_the_cube(self):
+    def test_its_points_are_those_of_the_sampler_and_its_end_is_said(self):
         engine = self.engine()
-        assert isinstance(engine, scipy_qmc.QMCEngine)
-        assert (engine.d, engine.num_generated) == (self.d, 0)
-        sample = engine.random(100)
-        assert sample.shape == (100, self.d)
-        assert ((sample >= 0) & (sample < 1)).all()
-
-    def test_it_goes_on_where_it_was_and_its_points_are_those_of_the_sampler(self):
-        whole = draw(self.engine_class.family, 601, self.d, rng=SEED).points
-        engine = self.engine()
-        parts = [engine.random(n) for n in (0, 1, 99, 300, np.int64(201))]
-        np.testing.assert_array_equal(np.concatenate(parts), whole)
-        assert engine.num_generated == 601
-
-    @pytest.mark.parametrize("make_rng", [
-        lambda: 5, lambda: np.random.default_rng(5), lambda: np.random.SeedSequence(5), lambda: None,
-    ], ids=["int", "generator", "seed sequence", "entropy"])  # fmt: skip
-    def test_reset_goes_back_to_the_first_point_and_fast_forward_skips(self, make_rng):
-        engine = self.engine(rng=make_rng())
-        first = engine.random(40)
-        assert engine.reset() is engine
-        assert engine.num_generated == 0
-        assert engine.fast_forward(13) is engine
-        assert engine.num_generated == 13
-        np.testing.assert_array_equal(engine.random(27), first[13:])
-
-    def test_a_passed_generator_is_spawned_so_that_engines_differ_and_the_stream_stays(self):
-        given, untouched = np.random.default_rng(6), np.random.default_rng(6)
-        first, second = (self.engine(rng=given).random(9) for _ in range(2))
-        assert (first != second).any()
-        assert given.random() == untouched.random()
-
-    def test_the_old_name_of_the_seed_works_but_not_beside_the_new_one(self):
-        np.testing.assert_array_equal(self.engine(rng=None, seed=3).random(9), self.engine(rng=3).random(9))
-        with pytest.raises(InvalidValue, match="not both"):
-            self.engine(rng=3, seed=3)
-
-    def test_its_end_is_said_and_nothing_is_handed_out_past_it(self):
-        engine = self.engine()
-        engine.fast_forward(2**30 - 2)
+        np.testing.assert_array_equal(engine.random(601), draw("growing", 601, self.d, rng=SEED).points)
+        engine.fast_forward(2**30 - 603)
         for ask in (engine.random, engine.fast_forward):
             with pytest.raises(Exhausted, match="asked for 3 more points, but the sequence ends 2 points on"):
                 ask(3)
         assert engine.num_generated == 2**30 - 2
 
-    @pytest.mark.parametrize("bad", [0, -1, 1.5, "2", None, True])
-    def test_a_dimension_that_is_no_positive_integer_is_refused(self, bad):
-        with pytest.raises(InvalidValue, match="d must be an integer >= 1"):
-            self.engine(d=bad)
 
-    def test_scipys_own_tools_take_it(self):
-        quadrature = qmc_quad(
-            lambda x: np.prod(x, axis=0),
-            [0] * self.d,
-            [1] * self.d,
-            n_points=64,
-            n_estimates=4,
-            qrng=self.engine(),
-        )
-        assert quadrature.integral == pytest.approx(0.5**self.d, rel=0.15)
-        assert self.engine(optimization="random-cd").random(16).shape == (16, self.d)
-
-
-class TestGrowing(SequenceContract):
-    engine_class = qmc.Growing
-    d = 5
-
-
-class TestHickernell(EngineContract):
+class TestHickernell(SetContract):
     engine_class = qmc.Hickernell
 
     def test_its_sets_have_the_discrepancy_of_the_bank(self):
@@ -266,23 +188,16 @@ class TestHickernell(EngineContract):
             self.engine(n=61)
 
 
-class TestKorobov(EngineContract):
+class TestKorobov(SetContract):
     engine_class = qmc.Korobov
+    n, d = 97, 5
 
     def test_all_seeds_are_equally_good(self):
-        energies = [riesz_rooted(self.engine(d=5, n=97, rng=seed).points) for seed in range(5)]
+        energies = [riesz_rooted(self.engine(rng=seed).points) for seed in range(5)]
         np.testing.assert_allclose(energies, energies[0], rtol=1e-11)
 
 
-class TestKorobovOfMoreDimensions(EngineContract):
-    engine_class = qmc.Korobov
-    n, d = 101, 7
-
-    def test_scipys_own_tools_take_it(self):
-        assert self.engine().random(self.n).mean() == pytest.approx(0.5, abs=0.01)
-
-
-class TestLattice(EngineContract):
+class TestLattice(SetContract):
     engine_class = qmc.Lattice
 
     def test_seeds_keep_points_apart(self):
@@ -291,7 +206,7 @@ class TestLattice(EngineContract):
             assert separation(self.engine(rng=seed).points) > 0.9 / 8
 
 
-class TestEven(EngineContract):
+class TestEven(SetContract):
     engine_class = qmc.Even
     n, d = 128, 6
 

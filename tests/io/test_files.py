@@ -91,17 +91,6 @@ def test_a_file_that_is_taken_for_an_abandoned_one_before_its_lock_is_made_again
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
 
 
-def test_files_are_readable_as_the_umask_says(tmp_path):
-    path = tmp_path / "a.txt"
-    old = os.umask(0o022)
-    try:
-        with atomic_write(path) as file:
-            file.write(b"x")
-    finally:
-        os.umask(old)
-    assert path.stat().st_mode & 0o777 == 0o644
-
-
 @pytest.mark.parametrize("name", ["no/such/folder.txt", "file.txt/inside.txt", ""])
 def test_a_folder_that_cannot_be_written_is_known_before_the_work(tmp_path, name):
     (tmp_path / "file.txt").write_text("")

@@ -67,8 +67,3 @@ def test_interpolation_hits_both_ends_to_the_last_bit():
 def test_edges_that_do_not_span_a_rectangle_are_refused(edge_u, edge_v, text):
     with pytest.raises(InvalidValue, match=text):
         Rectangle(corner=(0.0, 0.0), edge_u=edge_u, edge_v=edge_v)
-
-
-def test_text_is_no_batch():
-    with pytest.raises(InvalidValue, match="numbers"):
-        TURNED.from_cube([["a", "b"]])

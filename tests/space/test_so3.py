@@ -36,11 +36,6 @@ def test_distance_is_half_the_angle_between_the_rotations(pair):
     np.testing.assert_allclose(SO3().distance(a, b), angle / 2, atol=1e-14)
 
 
-def test_distance_is_the_arccosine_of_the_product(pair):
-    a, b = pair
-    np.testing.assert_allclose(SO3().distance(a, b), np.arccos(np.abs((a * b).sum(axis=1))), atol=1e-12)
-
-
 def test_interpolation_is_that_of_scipy(pair):
     a, b = pair
     for t in (0.1, 0.5, 0.9):
@@ -56,12 +51,6 @@ def test_quaternions_of_the_cube_are_of_unit_norm_and_uniform_on_the_sphere():
     directions = np.vstack([np.eye(4), [[0.5, -0.5, 0.5, 0.5]]])
     for direction in directions:
         assert stats.kstest((1 + q @ direction) / 2, stats.beta(1.5, 1.5).cdf).pvalue > 1e-3
-
-
-def test_angles_of_uniform_rotations_have_their_known_distribution():
-    q = SO3().from_cube(np.random.default_rng(2).random((4000, 3)))
-    angle = 2 * SO3().distance(q, np.repeat(IDENTITY, len(q), axis=0))
-    assert stats.kstest(angle, lambda x: (x - np.sin(x)) / math.pi).pvalue > 1e-3
 
 
 def test_a_quaternion_and_its_negative_are_one_rotation(pair):

@@ -2,11 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.path import Path as Outline
 from PIL import Image, ImageColor
 
 from evenroad.errors import BrokenFile
-from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.planning import PRM, plan
 from evenroad.points import draw
 from evenroad.robot import (
@@ -20,17 +18,8 @@ from evenroad.robot import (
     load_scene,
 )
 from evenroad.viz import style
-from evenroad.viz.arm import VIEWS, draw_arm_view, save_arm_picture
-from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
+from evenroad.viz.arm import draw_arm_view, save_arm_picture
 from evenroad.viz.sheet import FINER, View, ticks
-
-TURNED = rotation_from_rpy(0.5, -0.8, 1.9)
-OBSTACLES = (
-    Obstacle.of("box", "box", (0.2, 0.3, 0.6), (0.1, 0.2, 0.3), TURNED),
-    Obstacle.of("ball", "sphere", (0.2,), (0.1, 0.2, 0.3)),
-    Obstacle.of("post", "cylinder", (0.1, 0.7), (0.1, 0.2, 0.3), TURNED),
-    Obstacle.of("pipe", "capsule", (0.1, 0.7), (0.1, 0.2, 0.3), TURNED),
-)
 
 
 @pytest.fixture(scope="module")
@@ -44,45 +33,6 @@ def reach(tmp_path_factory):
 def _planned(world, start="home", goal="inside", n=512):
     ends = [configuration(world.robot, text, world.scene) for text in (start, goal)]
     return plan(world, *ends, draw("korobov", n, 6))
-
-
-def _points_inside(obstacle, rng):
-    """Random points of a body, in the scene's frame."""
-    p = rng.uniform(-1, 1, (4000, 3))
-    if obstacle.shape == "box":
-        p = 0.5 * p * obstacle.size
-    else:
-        half = 0.5 * obstacle.size[1] if len(obstacle.size) > 1 else 0.0
-        p = p * [obstacle.size[0], obstacle.size[0], obstacle.size[0] + half]
-        beyond = np.maximum(np.abs(p[:, 2]) - half, 0)
-        if obstacle.shape == "cylinder":
-            p = p[(beyond == 0) & (np.hypot(p[:, 0], p[:, 1]) <= obstacle.size[0])]
-        else:
-            p = p[np.sqrt(p[:, 0] ** 2 + p[:, 1] ** 2 + beyond**2) <= obstacle.size[0]]
-    return p @ np.reshape(obstacle.rotation, (3, 3)).T + obstacle.xyz
-
-
-@pytest.mark.parametrize("obstacle", OBSTACLES, ids=lambda each: each.name)
-@pytest.mark.parametrize("pair", [pair for _, pair in VIEWS])
-def test_an_outline_holds_all_of_an_obstacle_and_little_more(obstacle, pair):
-    points = _points_inside(obstacle, np.random.default_rng(0))
-    assert len(points) > 100
-    outline = obstacle_outline(obstacle, pair)
-    assert Outline(np.vstack([outline, outline[:1]])).contains_points(points[:, pair], radius=5e-3).all() or (
-        Outline(np.vstack([outline, outline[:1]])[::-1]).contains_points(points[:, pair], radius=5e-3).all()
-    )
-    np.testing.assert_allclose(outline.min(axis=0), points[:, pair].min(axis=0), atol=0.08)
-    np.testing.assert_allclose(outline.max(axis=0), points[:, pair].max(axis=0), atol=0.08)
-    low, high = obstacle_bounds(obstacle)
-    assert (low <= points.min(axis=0)).all()
-    assert (high >= points.max(axis=0)).all()
-
-
-def test_a_stadium_is_at_its_radius_from_its_segment():
-    a, b = np.array([0.1, 0.2]), np.array([0.5, -0.3])
-    outline = stadium(a, b, 0.25)
-    t = np.clip((outline - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)[:, np.newaxis]
-    np.testing.assert_allclose(np.linalg.norm(outline - a - t * (b - a), axis=1), 0.25)
 
 
 def _view(world, result, pair):

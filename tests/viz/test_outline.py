@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from evenroad.robot.scene import Obstacle
-from evenroad.viz.outline import obstacle_bounds, obstacle_outline
+from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
 
 VIEWS = ((0, 1), (0, 2), (1, 2))
 ROTATIONS = {
@@ -51,3 +51,28 @@ def test_bounds_hold_all_corners_tightly(turn):
     low, high = obstacle_bounds(obstacle)
     np.testing.assert_allclose(low, corners(obstacle).min(axis=0))
     np.testing.assert_allclose(high, corners(obstacle).max(axis=0))
+
+
+@pytest.mark.parametrize("axes", VIEWS)
+@pytest.mark.parametrize(("shape", "size"), [("sphere", (0.2,)), ("capsule", (0.1, 0.7))])
+def test_an_outline_of_a_round_body_holds_all_of_it_and_little_more(shape, size, axes):
+    obstacle = Obstacle.of("it", shape, size, (0.1, 0.2, 0.3), tuple(ROTATIONS["askew"].ravel()))
+    half = 0.5 * size[1] if len(size) > 1 else 0.0
+    points = np.random.default_rng(0).uniform(-1, 1, (4000, 3)) * [size[0], size[0], size[0] + half]
+    beyond = np.maximum(np.abs(points[:, 2]) - half, 0)
+    points = points[np.hypot(np.hypot(points[:, 0], points[:, 1]), beyond) <= size[0]]
+    points = points @ ROTATIONS["askew"].T + obstacle.xyz
+    outline = obstacle_outline(obstacle, axes)
+    hull = ConvexHull(outline)
+    assert (hull.equations @ np.column_stack([points[:, axes], np.ones(len(points))]).T).max() < 5e-3
+    np.testing.assert_allclose(outline.min(axis=0), points[:, axes].min(axis=0), atol=0.08)
+    np.testing.assert_allclose(outline.max(axis=0), points[:, axes].max(axis=0), atol=0.08)
+    low, high = obstacle_bounds(obstacle)
+    assert ((low <= points) & (points <= high)).all()
+
+
+def test_a_stadium_is_at_its_radius_from_its_segment():
+    a, b = np.array([0.1, 0.2]), np.array([0.5, -0.3])
+    outline = stadium(a, b, 0.25)
+    t = np.clip((outline - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)[:, np.newaxis]
+    np.testing.assert_allclose(np.linalg.norm(outline - a - t * (b - a), axis=1), 0.25)

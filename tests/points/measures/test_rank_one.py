@@ -169,9 +169,6 @@ def test_other_points_have_no_generating_vector(family):
 def test_what_is_no_lattice_is_refused(arguments, said):
     with pytest.raises(InvalidValue, match=said):
         lattice_basis(*arguments)
-
-
-def test_a_bad_number_of_neighbours_is_refused():
     with pytest.raises(InvalidValue, match="k must be"):
         neighbour_directions(8, (1, 3), 0)
 

@@ -5,7 +5,7 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
-from evenroad.points.measures import MEASURES, riesz_rooted, separation
+from evenroad.points.measures import riesz_rooted, separation
 from evenroad.points.samplers import Growing, growing
 from evenroad.points.samplers.growing import growing_vector
 from tests.points.samplers.sampler_contract import SamplerContract
@@ -70,20 +70,6 @@ def test_every_beginning_is_spread_far_better_than_sobols(n, d):
 def test_the_shift_keeps_the_energy():
     energies = [riesz_rooted(draw("growing", 90, 4, rng=seed)) for seed in range(4)]
     np.testing.assert_allclose(energies, energies[0], rtol=1e-9)
-
-
-@pytest.mark.parametrize(("digit", "d"), [(3, 2), (5, 4), (6, 3)])
-def test_the_score_is_that_of_the_points_themselves(digit, d):
-    vector = growing_vector(d) % 2**digit
-    energies, unevenness = [], []
-    for part in growing.PARTS:
-        n = round(2 ** (digit - 1) * (1 + part))
-        points = np.array([[slow_inverse(i) * int(z) % 1.0 for z in vector] for i in range(n)])
-        # The rooted energy of the studies is in units of the mean spacing.
-        energies.append(np.log(riesz_rooted(points)) + np.log(n) / d)
-        unevenness.append(np.log(MEASURES["wrap_around"].rooted(points)))
-    expected = growing.SPREAD * np.mean(energies) + growing.EVENNESS * np.mean(unevenness)
-    assert growing._scores(vector[np.newaxis], digit)[0] == pytest.approx(expected, rel=1e-9)
 
 
 def test_the_vector_is_the_same_whatever_was_asked_before():

@@ -46,57 +46,72 @@ def _impatient():
 
 
 @pytest.fixture
-def cluster(tmp_path):
-    """Yield the scheduler's address and the processes: the scheduler, then two workers."""
+def scheduler(tmp_path):
+    """Yield the address of a scheduler without workers, a function that starts some, and all processes."""
     file = tmp_path / "scheduler.json"
     options = ("--no-dashboard", "--scheduler-file", str(file))
-    scheduler = _start("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", *options)
-    running = [scheduler]
-    try:
-        address = _address(file, scheduler)
+    running = [_start("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", *options)]
+
+    def add_workers(*names):
         worker = ("distributed.cli.dask_worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
-        for name in ("a", "b"):
-            folder = ("--local-directory", str(tmp_path / name))
-            running.append(_start(*worker, "--name", name, *folder))
-        yield address, running
+        for name in names:
+            running.append(_start(*worker, "--name", name, "--local-directory", str(tmp_path / name)))
+
+    try:
+        address = _waited_for(
+            lambda: (
+                file.exists() and file.read_text().endswith("}") and json.loads(file.read_text())["address"]
+            )
+        )
+        yield address, add_workers, running
     finally:
         for process in reversed(running):
             process.kill()
             process.wait()
 
 
-def _address(file, scheduler):
+def _waited_for(ask):
     for _ in range(600):
-        assert scheduler.poll() is None, "the scheduler did not start"
-        if file.exists() and file.read_text().endswith("}"):
-            return json.loads(file.read_text())["address"]
+        if answer := ask():
+            return answer
         time.sleep(0.1)
-    raise AssertionError("the scheduler wrote no file")
+    raise AssertionError("a scheduler or a worker did not start")
 
 
-def _wait_for(count, workers, executor):
-    for _ in range(600):
-        if workers.count(executor) >= count:
-            return
-        time.sleep(0.1)
-    raise AssertionError("a worker did not start")
-
-
-def test_a_cluster_that_loses_a_worker_gives_the_same_table_as_one_process(cluster, tmp_path):
-    address, processes = cluster
-    workers = dask_workers(address)
-    executor = workers.make()
-    _wait_for(2, workers, executor)
-    executor.shutdown()
+def _killing(process, at_least):
+    """Return a callback that kills a process when so many tasks are finished, and the list of when it did."""
     killed = []
 
-    def kill_one(finished, tasks):
-        if finished >= len(TASKS) // 4 and not killed:
+    def kill(finished, tasks):
+        if finished >= at_least and not killed:
             killed.append(finished)
-            os.kill(processes[1].pid, signal.SIGKILL)
+            os.kill(process.pid, signal.SIGKILL)
 
+    return kill, killed
+
+
+def test_a_cluster_that_loses_a_worker_gives_the_table_of_one_process_and_without_its_scheduler_keeps_rows(
+    scheduler, tmp_path, monkeypatch
+):
+    """One cluster for all, which takes seconds to start: what is refused first, then what it survives."""
+    address, add_workers, running = scheduler
+    with monkeypatch.context() as change:
+        change.setattr(schedulers, "WORKER_SECONDS", 0.5)
+        with pytest.raises(NotAvailable, match="has no workers"):
+            dask_workers(address)
+    add_workers("a", "b")
+    with monkeypatch.context() as change:
+        change.setattr(schedulers, "__version__", "0.0.0")
+        with pytest.raises(NotAvailable, match="have evenroad .*, here it is 0.0.0"):
+            dask_workers(address)
+    workers = dask_workers(address)
+    executor = workers.make()
+    _waited_for(lambda: workers.count(executor) >= 2)
+    executor.shutdown()
+
+    kill, killed = _killing(running[1], len(TASKS) // 4)
     with open_store(tmp_path / "dask.db") as store:
-        report = run_tasks("test", TASKS, store, workers, callback=kill_one)
+        report = run_tasks("test", TASKS, store, workers, callback=kill)
     assert killed[0] < len(TASKS)
     assert (report.finished, report.failures) == (len(TASKS), 0)
     assert len(read_rows(tmp_path / "dask.db").worker.present()) == 2
@@ -104,44 +119,14 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_table_as_one_process(clust
         run_tasks("test", TASKS, store, in_process())
     assert table_of(tmp_path / "dask.db") == table_of(tmp_path / "alone.db")
 
-
-def test_a_scheduler_that_goes_away_ends_the_run_and_keeps_its_rows(cluster, tmp_path, monkeypatch):
     monkeypatch.setattr(schedulers, "CONNECT_SECONDS", 2.0)
-    address, processes = cluster
-    workers = dask_workers(address)
-    scheduler = []
-
-    def kill_scheduler(finished, tasks):
-        if finished and not scheduler:
-            scheduler.append(finished)
-            os.kill(processes[0].pid, signal.SIGKILL)
-
+    kill, killed = _killing(running[0], 1)
     with (
-        open_store(tmp_path / "dask.db") as store,
+        open_store(tmp_path / "left.db") as store,
         pytest.raises(NotAvailable, match="no Dask scheduler answers"),
     ):
-        run_tasks("test", TASKS, store, workers, callback=kill_scheduler)
-    assert scheduler[0] <= len(read_rows(tmp_path / "dask.db")) < len(TASKS)
-
-
-def test_workers_of_another_version_are_refused(cluster, monkeypatch):
-    address, _ = cluster
-    monkeypatch.setattr(schedulers, "__version__", "0.0.0")
-    with pytest.raises(NotAvailable, match="have evenroad .*, here it is 0.0.0"):
-        dask_workers(address)
-
-
-def test_a_scheduler_without_workers_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(schedulers, "WORKER_SECONDS", 0.5)
-    file = tmp_path / "scheduler.json"
-    options = ("--no-dashboard", "--scheduler-file", str(file))
-    scheduler = _start("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", *options)
-    try:
-        with pytest.raises(NotAvailable, match="has no workers"):
-            dask_workers(_address(file, scheduler))
-    finally:
-        scheduler.kill()
-        scheduler.wait()
+        run_tasks("test", TASKS, store, workers, callback=kill)
+    assert killed[0] <= len(read_rows(tmp_path / "left.db")) < len(TASKS)
 
 
 def test_an_unreachable_scheduler_is_said_within_seconds(monkeypatch):
@@ -158,19 +143,10 @@ def test_without_the_package_the_extra_is_named(monkeypatch):
         dask_workers("tcp://127.0.0.1:8786")
 
 
-@pytest.mark.parametrize(
-    "address",
-    [
-        "foo",
-        "127.0.0.1:8786",
-        "tcp://127.0.0.1",
-        "tcp://:8786",
-        "foo://host:8786",
-        "tcp://host:8786/x",
-        "tcp://a b:1",
-        "",
-    ],
-)
+@pytest.mark.parametrize("address", [
+    "foo", "127.0.0.1:8786", "tcp://127.0.0.1", "tcp://:8786", "foo://host:8786", "tcp://host:8786/x",
+    "tcp://a b:1", "",
+])  # fmt: skip
 def test_an_address_of_another_form_is_refused_with_an_example(address):
     with pytest.raises(InvalidValue, match="of the form tcp://host:8786"):
         dask_workers(address)

@@ -43,12 +43,6 @@ def test_a_block_is_what_the_paper_takes_whatever_the_seed(name, family, run):
     assert set_id == ""
 
 
-def test_runs_of_a_block_protocol_follow_each_other_in_the_sequence():
-    blocks = [_draw("halton paper-blocks", 10, 2, run=run)[0].points for run in range(3)]
-    sequence = Halton(scramble=False, start=1).draw(30, 2).points
-    np.testing.assert_array_equal(np.concatenate(blocks), sequence)
-
-
 def test_a_pool_set_is_named_by_its_number():
     points, set_id = _draw("hickernell", 64, 3, seed=4)
     stored = Bank().cell("hickernell", 64, 3).load()
