@@ -73,16 +73,6 @@ def test_problems_with_different_rules_are_different_tables(run):
     ]
 
 
-def test_two_processes_write_the_rows_of_one(run, tmp_path):
-    run(*SMALL, "--store", "one.db")
-    code, _, _ = run(*SMALL[:-1], 2, "--store", "two.db")
-    assert code == 0
-    one, two = read_rows(tmp_path / "one.db"), read_rows(tmp_path / "two.db")
-    assert list(one.status) == list(two.status)
-    assert one.valid.tolist() == two.valid.tolist()
-    assert one.edges_checked.tolist() == two.edges_checked.tolist()
-
-
 def test_list_shows_what_there_is_and_runs_nothing(run, tmp_path):
     code, out, _ = run("bench", "--list")
     assert code == 0

@@ -13,6 +13,8 @@ from evenroad.points import load_points
 from evenroad.points.measures import star_discrepancy
 from evenroad_studies.workers import interrupt_between_steps
 
+MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "--jobs", 1, "-o", "sets")
+
 
 def test_training_writes_sets_and_the_same_line_goes_on(run, tmp_path):
     line = ("train", "-n", 12, "-d", 2, "--sets", 2, "--steps", 50, "--jobs", 1, "-o", "sets")
@@ -28,26 +30,7 @@ def test_training_writes_sets_and_the_same_line_goes_on(run, tmp_path):
 
 
 def test_the_network_trains_from_the_command_line(run, tmp_path):
-    line = (
-        "train",
-        "-n",
-        12,
-        "-d",
-        2,
-        "--method",
-        "mpmc",
-        "--sets",
-        2,
-        "--steps",
-        5,
-        "--refine",
-        20,
-        "--jobs",
-        1,
-        "-o",
-        "sets",
-    )
-    assert run(*line)[0] == 0
+    assert run(*MPMC, "--steps", 5, "--refine", 20)[0] == 0
     assert load_points(tmp_path / "sets" / "set-0001.npz").origin.family == "mpmc"
     assert load_points(tmp_path / "sets" / "refined-0001.npz").origin.method.endswith("+annealed")
 
@@ -88,9 +71,6 @@ def test_bad_requests_to_train_get_one_line(run, tmp_path, arguments, says):
     assert (code, out) == (2, "")
     assert err.strip().count("\n") == 0
     assert re.search(says, err)
-
-
-MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "--jobs", 1, "-o", "sets")
 
 
 @pytest.mark.parametrize(
@@ -157,10 +137,7 @@ main(sys.argv[1:])
 
 
 def test_what_a_killed_training_was_writing_is_removed_by_the_next_one(run, tmp_path):
-    line = [
-        str(each)
-        for each in ("train", "-n", 8, "-d", 2, "--jobs", 1, "--sets", 1, "--steps", 5, "-o", "sets")
-    ]
+    line = ["train", "-n", "8", "-d", "2", "--jobs", "1", "--sets", "1", "--steps", "5", "-o", "sets"]
     killed = subprocess.run([sys.executable, "-c", KILLED_WHILE_SAVING, *line], check=False, timeout=120)
     assert killed.returncode == -signal.SIGKILL
     assert [path.name.startswith(".evenroad-") for path in (tmp_path / "sets").iterdir()] == [True]

@@ -14,10 +14,6 @@ TINY = NetworkConfig(16, 2, width=8, layers=2, k=3, steps=40)
 HICKERNELL = MEASURES["hickernell"].rooted
 
 
-class Stop(Exception):
-    pass
-
-
 def test_the_network_makes_its_start_better_and_says_how_good_it_is():
     made = train(NetworkConfig(32, 2, steps=300), rng=1)
     assert made.value == pytest.approx(HICKERNELL(made.points), rel=1e-9)
@@ -102,34 +98,18 @@ def test_a_training_that_diverges_says_so(monkeypatch):
         train(TINY)
 
 
-def test_many_sets_have_their_origins_and_are_the_same_in_processes(tmp_path):
-    alone = train_many(TINY, 3, rng=5, workers=1)
-    together = train_many(TINY, 3, rng=5, workers=2, folder=tmp_path)
-    assert alone == together
-    assert [load_points(tmp_path / f"set-000{i}.npz") for i in range(3)] == list(alone)
-    for index, points in enumerate(alone):
+def test_many_sets_have_their_origins_and_their_folder_is_not_that_of_another_network(tmp_path):
+    """In how many processes, and what is left of a stopped training: as of sets that are annealed."""
+    made = train_many(TINY, 2, rng=5, workers=1, folder=tmp_path)
+    assert [load_points(tmp_path / f"set-000{i}.npz") for i in range(2)] == list(made)
+    for index, points in enumerate(made):
         origin = points.origin
         assert (origin.family, origin.method, origin.objective) == ("mpmc", "network", "hickernell")
         assert (origin.seed, origin.replica) == (5, index)
-    child = np.random.SeedSequence(5, spawn_key=(2,))
-    assert np.array_equal(alone[2].points, train(TINY, rng=child).points)
-
-
-def test_a_stopped_training_goes_on_after_its_finished_sets(tmp_path):
-    def stop_in_the_second(step, steps, best):
-        if step == 60:
-            raise Stop
-
-    with pytest.raises(Stop):
-        train_many(TINY, 2, workers=1, folder=tmp_path, callback=stop_in_the_second)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["request.json", "set-0000.npz"]
-    assert train_many(TINY, 2, workers=1, folder=tmp_path) == train_many(TINY, 2, workers=1)
-
-
-def test_a_folder_of_another_network_is_refused(tmp_path):
-    train_many(TINY, 1, workers=1, folder=tmp_path)
+    child = np.random.SeedSequence(5, spawn_key=(1,))
+    assert np.array_equal(made[1].points, train(TINY, rng=child).points)
     with pytest.raises(InvalidValue, match="network"):
-        train_many(NetworkConfig(16, 2, width=9, steps=40), 1, workers=1, folder=tmp_path)
+        train_many(NetworkConfig(16, 2, width=9, steps=40), 2, rng=5, workers=1, folder=tmp_path)
 
 
 def test_sets_of_many_points_stay_inside_the_cube():

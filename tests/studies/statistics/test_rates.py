@@ -33,25 +33,12 @@ def test_impossible_counts_are_refused(solved, runs):
         wilson(solved, runs)
 
 
-def _mcnemar_by_counting(first, second):
-    """Sum the chances of all splits that are no likelier than the one seen."""
-    n = first + second
-    chances = [math.comb(n, i) / 2**n for i in range(n + 1)]
-    return sum(chance for chance in chances if chance <= chances[first] * (1 + 1e-9))
-
-
 @given(st.integers(0, 60), st.integers(0, 60))
-def test_mcnemar_counts_the_splits_that_are_no_likelier(first, second):
-    assert mcnemar_exact(first, second) == pytest.approx(_mcnemar_by_counting(first, second), rel=1e-9)
-
-
-def test_mcnemar_agrees_with_scipy_on_a_whole_table():
-    first, second = np.array([0, 3, 40, 200]), np.array([0, 9, 41, 120])
-    theirs = [
-        1.0,
-        *(stats.binomtest(int(a), int(a + b)).pvalue for a, b in zip(first[1:], second[1:], strict=True)),
-    ]
+def test_mcnemar_agrees_with_scipy(first, second):
+    theirs = stats.binomtest(first, first + second).pvalue if first + second else 1.0
     assert mcnemar_exact(first, second) == pytest.approx(theirs, rel=1e-9)
+    table = np.array([first, 0, second, 200])
+    assert mcnemar_exact(table, table[::-1])[0] == mcnemar_exact(first, 200)
 
 
 def test_the_paired_interval_is_the_published_formula():
@@ -73,25 +60,6 @@ def test_the_paired_interval_covers_the_truth_about_95_times_in_100():
 def test_more_discordant_pairs_than_pairs_are_refused():
     with pytest.raises(InvalidValue, match="pairs"):
         bonett_price(6, 5, 10)
-
-
-def _fisher_by_counting(first, second):
-    """Sum the chances of all tables with these totals that are no likelier than the one seen."""
-    (a, m), (b, n) = first, second
-    total = a + b
-    chance = {
-        i: math.comb(m, i) * math.comb(n, total - i) / math.comb(m + n, total)
-        for i in range(max(0, total - n), min(m, total) + 1)
-    }
-    return sum(value for value in chance.values() if value <= chance[a] * (1 + 1e-7))
-
-
-small = st.integers(1, 60).flatmap(lambda runs: st.tuples(st.integers(0, runs), st.just(runs)))
-
-
-@given(small, small)
-def test_fisher_counts_the_tables_that_are_no_likelier(first, second):
-    assert fisher_exact(first, second) == pytest.approx(_fisher_by_counting(first, second), rel=1e-6)
 
 
 @given(counts, counts)
@@ -123,10 +91,6 @@ def _holm_step_by_step(values):
 @given(st.lists(st.floats(0, 1), max_size=30))
 def test_holm_is_the_step_down_procedure(values):
     assert holm(values) == pytest.approx(_holm_step_by_step(values))
-
-
-def test_holm_of_a_worked_example():
-    assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
 
 
 @pytest.mark.parametrize("values", [[math.nan], [1.5], [-0.1], [[0.5]]])

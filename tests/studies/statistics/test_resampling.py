@@ -13,8 +13,6 @@ from evenroad_studies.statistics.rates import Interval, mcnemar_exact, student_i
 from evenroad_studies.statistics.resampling import (
     SamplesNeeded,
     _isotonic,
-    _ratios,
-    _weights,
     percentile_interval,
     resampled_ratios,
     samples_needed,
@@ -40,14 +38,6 @@ def test_a_bootstrap_of_single_runs_has_the_binomial_spread():
 def test_as_many_units_give_the_same_bits():
     first = resampled_ratios([1, 0, 1], [1, 1, 1])
     assert np.array_equal(first, resampled_ratios([1, 0, 1], [1, 1, 1]))
-
-
-@pytest.mark.parametrize(
-    "numbers", [([], []), ([1], [0]), ([1, 2], [1]), ([math.nan], [1]), ([1], [math.inf])]
-)
-def test_a_bootstrap_of_nothing_is_refused(numbers):
-    with pytest.raises(InvalidValue, match="bootstrap"):
-        resampled_ratios(*numbers)
 
 
 def test_percentiles_may_be_infinite():
@@ -113,12 +103,6 @@ def test_with_many_units_students_interval_says_what_a_bootstrap_says():
     assert (interval.low, interval.high) == pytest.approx(bootstrap, abs=0.003)
 
 
-@pytest.mark.parametrize(("sums", "pairs"), [([], []), ([3], [2]), ([0], [0]), ([1, 1], [1])])
-def test_impossible_paired_sums_are_refused(sums, pairs):
-    with pytest.raises(InvalidValue):
-        clustered_difference(sums, pairs, "sets")
-
-
 def test_many_units_are_resampled_in_blocks_with_the_same_spread():
     solved = np.repeat([1, 0], [600, 900])
     values = resampled_ratios(solved, np.ones(1500), draws=1020)
@@ -174,22 +158,11 @@ def test_isotonic_rates_are_those_of_pooling_adjacent_violators(pairs):
     assert _isotonic(rates[None], weights)[0] == pytest.approx(pooled, abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("counts", "rates", "resampled"),
-    [
-        ((64, 32), [0.1, 0.2], [[0.1, 0.2]]),
-        ((32,), [0.1, 0.2], [[0.1]]),
-        ((32,), [0.1], [0.1]),
-        ((), [], [[]]),
-    ],
-)
-def test_shapes_that_do_not_fit_are_refused(counts, rates, resampled):
-    with pytest.raises(InvalidValue):
-        samples_needed(counts, rates, resampled, [10] * len(rates))
-
-
-def test_samples_needed_print_with_their_interval():
+def test_samples_needed_print_with_their_interval_if_there_is_one():
     assert str(SamplesNeeded(411.6, 380.2, math.inf, 32, 1024)) == "412 [380, > 1024]"
+    needed = samples_needed((32, 64), [0.1, 0.95], None, [9, 9])
+    assert (needed.has_interval, str(needed)) == (False, f"{needed.short} [–]")
+    assert 32 < needed.estimate < 64
 
 
 def test_columns_are_resampled_together():
@@ -204,12 +177,6 @@ def test_a_resample_without_any_run_of_a_column_has_the_ratio_of_all():
     assert np.all(values == 0.5)
 
 
-def test_without_resamples_there_is_no_interval():
-    needed = samples_needed((32, 64), [0.1, 0.95], None, [9, 9])
-    assert (needed.has_interval, str(needed)) == (False, f"{needed.short} [–]")
-    assert 32 < needed.estimate < 64
-
-
 @given(st.lists(st.integers(0, 12), min_size=2, max_size=8))
 def test_students_interval_of_units_of_one_size_is_that_of_a_mean(sums):
     runs = [12] * len(sums)
@@ -222,37 +189,33 @@ def test_students_interval_of_units_of_one_size_is_that_of_a_mean(sums):
         assert student_test(sums, runs) == pytest.approx(stats.ttest_1samp(shares, 0.0).pvalue, abs=1e-12)
 
 
-def test_one_unit_says_nothing():
+@pytest.mark.parametrize(("sums", "p"), [([0, 0, 0], 1.0), ([1, -1, 0], 1.0), ([2, 2, 2], 0.0), ([3], 1.0)])
+def test_units_without_a_difference_and_a_single_one_are_no_evidence(sums, p):
+    assert student_test(sums, [5] * len(sums)) == p
     assert student_interval([3], [5], "sets") == Interval(-1.0, 1.0, "student over sets")
-    assert student_test([3], [5]) == 1.0
 
 
-def test_units_without_a_difference_at_all_are_no_evidence():
-    assert student_test([0, 0, 0], [5, 5, 5]) == 1.0
-    assert student_test([1, -1, 0], [5, 5, 5]) == 1.0
-    assert student_test([2, 2, 2], [5, 5, 5]) == 0.0
+IMPOSSIBLE = [([], []), ([1], [1, 2]), ([1, 1], [0, 1])]
 
 
-@pytest.mark.parametrize(("sums", "runs"), [([], []), ([1], [1, 2]), ([1, 1], [0, 1])])
-def test_student_needs_units_with_runs(sums, runs):
-    with pytest.raises(InvalidValue, match="sums and runs"):
-        student_interval(sums, runs, "sets")
+@pytest.mark.parametrize(
+    ("call", "numbers"),
+    [
+        *((resampled_ratios, each) for each in [*IMPOSSIBLE[:2], ([1], [0]), ([math.nan], [1])]),
+        *((clustered_difference, (*each, "sets")) for each in [*IMPOSSIBLE[:2], ([3], [2]), ([0], [0])]),
+        *((student_interval, (*each, "sets")) for each in IMPOSSIBLE),
+        (samples_needed, ((64, 32), [0.1, 0.2], [[0.1, 0.2]], [10, 10])),
+        (samples_needed, ((32,), [0.1, 0.2], [[0.1]], [10, 10])),
+        (samples_needed, ((32,), [0.1], [0.1], [10])),
+        (samples_needed, ((), [], [[]], [])),
+    ],
+)
+def test_impossible_numbers_and_shapes_are_refused(call, numbers):
+    with pytest.raises(InvalidValue):
+        call(*numbers)
 
 
 def test_the_wider_of_two_intervals_is_taken():
     narrow, wide = Interval(0.4, 0.5, "a"), Interval(0.1, 0.3, "b")
     assert narrow.or_wider(wide) is wide is wide.or_wider(narrow)
     assert narrow.or_wider(Interval(0.4, 0.5, "c")) is narrow
-
-
-@given(st.integers(2, 30), st.booleans())
-def test_sums_of_resamples_are_those_of_double_precision(units, whole):
-    rng = np.random.default_rng(units)
-    above, below = rng.integers(0, 2**19, (units, 2)), rng.integers(1, 9, (units, 2))
-    if not whole:
-        above = above + 0.3
-    weights = _weights(units, 50, np.random.default_rng(0)).astype(np.float64)
-    assert np.array_equal(
-        _ratios(weights.astype(np.float32), above.astype(float), below.astype(float)),
-        (weights @ above) / (weights @ below),
-    )

@@ -21,14 +21,6 @@ class Stop(Exception):
     pass
 
 
-def test_sets_are_the_same_whatever_the_number_of_processes(tmp_path):
-    alone = anneal_many(**SMALL, sets=3, workers=1, rng=5)
-    together = anneal_many(**SMALL, sets=3, workers=2, rng=5, folder=tmp_path)
-    assert alone == together
-    assert len({points.hash for points in alone}) == 3
-    assert [load_points(tmp_path / f"set-000{i}.npz") for i in range(3)] == list(alone)
-
-
 def test_set_i_comes_from_child_i_of_the_seed():
     third = anneal_many(**SMALL, sets=3, workers=1, rng=5)[2]
     child = np.random.SeedSequence(5, spawn_key=(2,))
@@ -102,12 +94,15 @@ def test_a_killed_process_leaves_the_finished_sets(tmp_path):
     assert len(anneal_many(**SMALL, sets=3, workers=1, folder=tmp_path)) == 3
 
 
-def test_processes_leave_ctrl_c_to_the_parent(tmp_path):
+def test_two_processes_make_the_sets_of_one_and_leave_ctrl_c_to_the_parent(tmp_path):
     before = signal.getsignal(signal.SIGINT)
-    whole = anneal_many(**SMALL, sets=3, workers=1)
+    alone = anneal_many(**SMALL, sets=3, workers=1, rng=5)
     # The first call back is .2 s after the start: the processes are still importing then.
-    assert anneal_many(**SMALL, sets=3, workers=2, callback=interrupt_the_children) == whole
+    options = dict(workers=2, rng=5, folder=tmp_path, callback=interrupt_the_children)
+    assert anneal_many(**SMALL, sets=3, **options) == alone
     assert signal.getsignal(signal.SIGINT) == before
+    assert len({points.hash for points in alone}) == 3
+    assert [load_points(tmp_path / f"set-000{i}.npz") for i in range(3)] == list(alone)
 
 
 def interrupt_the_children(step, steps, best):
@@ -138,16 +133,17 @@ def test_a_folder_of_another_request_is_refused(tmp_path, changes, text):
         anneal_many(**{**SMALL, **changes}, folder=tmp_path, workers=1)
 
 
-def test_a_folder_of_another_schedule_is_refused(tmp_path):
+@pytest.mark.parametrize(
+    "schedule", [{"schedule": SCHEDULE - 1}, {}], ids=["another", "not written down, once"]
+)
+def test_a_folder_of_another_schedule_is_refused(tmp_path, schedule):
     anneal_many(**SMALL, folder=tmp_path, workers=1)
-    request = json.loads((tmp_path / "request.json").read_text())
-    older = {**request, "schedule": SCHEDULE - 1}
-    # Before the schedule had a number it was not written down.
-    oldest = {name: value for name, value in request.items() if name != "schedule"}
-    for other, text in ((older, f"schedule={SCHEDULE - 1}, asked"), (oldest, "schedule=None, asked")):
-        (tmp_path / "request.json").write_text(json.dumps(other))
-        with pytest.raises(InvalidValue, match=text):
-            anneal_many(**SMALL, folder=tmp_path, workers=1)
+    file = tmp_path / "request.json"
+    request = json.loads(file.read_text())
+    del request["schedule"]
+    file.write_text(json.dumps(request | schedule))
+    with pytest.raises(InvalidValue, match=f"schedule={schedule.get('schedule')}, asked"):
+        anneal_many(**SMALL, folder=tmp_path, workers=1)
 
 
 def test_a_strange_set_in_the_folder_is_refused(tmp_path):
