@@ -38,19 +38,15 @@ class TestSequence(SamplerContract):
             np.testing.assert_array_equal(self.sampler.draw(n, d, rng=3).points, longest[:n])
         np.testing.assert_array_equal(Sequence(start=500).draw(99, d, rng=3).points, longest[500:599])
 
-    def test_behind_the_last_block_it_is_a_scramble_of_sobols(self):
-        points = self.sampler.draw(700, 3, rng=3).points[512:]
-        scrambled = [Sobol(start=512).draw(188, 3, rng=each).points for each in _scrambles(3, 3)]
+    @pytest.mark.parametrize("start", [512, 2**24])
+    def test_behind_the_last_block_it_is_a_scramble_of_sobols(self, start):
+        points = Sequence(start=start).draw(188, 3, rng=3).points
+        scrambled = [Sobol(start=start).draw(188, 3, rng=each).points for each in _scrambles(3, 3)]
         assert any((points == each).all() for each in scrambled)
 
-    def test_far_along_only_what_is_asked_for_is_drawn(self):
-        far = 2**30 - 40
-        points = Sequence(start=far).draw(40, 3, rng=3).points
-        assert any(
-            (points == Sobol(start=far).draw(40, 3, rng=each).points).all() for each in _scrambles(3, 3)
-        )
+    def test_its_end_is_said(self):
         with pytest.raises(InvalidValue, match="ends at index"):
-            Sequence(start=far).draw(41, 3, rng=3)
+            Sequence(start=2**30 - 40).draw(41, 3, rng=3)
 
     @pytest.mark.parametrize("start", [-1, 0.5, "3"])
     def test_a_start_that_is_no_index_is_refused(self, start):

@@ -16,7 +16,9 @@ from evenroad_studies.bench.task import Outcome, Task
 from evenroad_studies.report.arms import draw_costs, summary_tables
 from evenroad_studies.workers import in_process
 
-SMALL = dict(runs=2, only=["scara"], draws=1, counts=[16], samplers=["sobol scrambled", "roadmap", "trees"])
+SMALL = dict(
+    runs=2, only=["scara", "shelf"], draws=1, counts=[16], samplers=["sobol scrambled", "roadmap", "trees"]
+)
 
 
 def test_every_task_is_there_once_and_what_shares_a_roadmap_stands_together():

@@ -1,5 +1,6 @@
 """evenroad bench and evenroad export."""
 
+import os
 import re
 import signal
 import sqlite3
@@ -12,7 +13,7 @@ import pytest
 from evenroad.cli import main
 from evenroad.errors import BrokenFile
 from evenroad_studies.bench.samplers import SAMPLERS
-from evenroad_studies.bench.store import open_store, read_rows
+from evenroad_studies.bench.store import Store, open_store, read_rows
 
 SMALL = ("bench", "paper", "--runs", 2, "--only", "hypercube-legacy6,corridor-2d-0.1", "--quick", "--jobs", 1)
 
@@ -185,52 +186,60 @@ def test_an_address_that_is_none_is_one_line_at_once(run, address):
     )
 
 
-COMMAND = [sys.executable, "-c", "import sys; from evenroad.cli import main; sys.exit(main())"]
+INTERRUPTED = [
+    "evenroad: stopping after this step (Ctrl-C again: at once)",
+    "evenroad: interrupted; what was finished is kept",
+]
 
 
-def _interrupted(folder, times, jobs):
-    """Run a benchmark, press Ctrl-C when it has some rows; return its standard error."""
-    options = ["--only", "hypercube-legacy6", "--runs", "200", "--jobs", str(jobs), "--store", "results.db"]
-    with subprocess.Popen(
-        [*COMMAND, "bench", *options],
-        cwd=folder,
-        stderr=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
-        text=True,
-    ) as process:
+def _said(err):
+    """Return what was said beside the lines of the progress."""
+    return [line for line in err.splitlines() if not line.startswith("bench paper")]
+
+
+def test_ctrl_c_ends_the_run_after_its_step(run, tmp_path, monkeypatch):
+    added, add = [], Store.add
+
+    def add_and_interrupt(store, *row):
+        add(store, *row)
+        added.append(row)
+        if len(added) == 20:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(Store, "add", add_and_interrupt)
+    code, _, err = run(*SMALL)
+    assert (code, _said(err)) == (130, INTERRUPTED)
+    assert len(read_rows(tmp_path / "results.db")) == len(added)
+    assert [each.name for each in tmp_path.iterdir() if each.is_file()] == ["results.db"]
+
+
+def test_ctrl_c_twice_ends_a_run_of_two_processes_at_once_and_keeps_what_is_finished(tmp_path):
+    store = tmp_path / "results.db"
+    line = ["bench", "--only", "hypercube-legacy6", "--runs", "200", "--jobs", "2", "--store", "results.db"]
+    command = [sys.executable, "-c", "import sys; from evenroad.cli import main; sys.exit(main())", *line]
+    quiet = dict(stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    with subprocess.Popen(command, cwd=tmp_path, **quiet) as process:
         try:
-            store = folder / "results.db"
             for _ in range(600):
                 if store.exists() and store.stat().st_size > 60_000:
                     break
                 time.sleep(0.1)
-            for _ in range(times):
+            for _ in range(2):
                 process.send_signal(signal.SIGINT)
                 time.sleep(0.05)
             _, err = process.communicate(timeout=60)
         finally:
             process.kill()
-    assert process.returncode == 130
-    return err
-
-
-@pytest.mark.parametrize(("times", "jobs"), [(1, 1), (2, 2)])
-def test_ctrl_c_keeps_what_is_finished_and_the_same_command_goes_on(tmp_path, times, jobs):
-    err = _interrupted(tmp_path, times, jobs)
-    # Before these lines there are those of the progress.
-    assert [line for line in err.splitlines() if not line.startswith("bench paper")] == [
-        "evenroad: stopping after this step (Ctrl-C again: at once)",
-        "evenroad: interrupted; what was finished is kept",
-    ]
-    rows = read_rows(tmp_path / "results.db")
+    assert (process.returncode, _said(err)) == (130, INTERRUPTED)
+    rows = read_rows(store)
     assert len(rows) > 0
     assert set(rows.status.present()) <= {"solved", "not_connected"}
-    left = {each.name for each in tmp_path.iterdir() if each.is_file()}
     # The second one may come while rows are being written: these then wait for the next run.
-    assert left == {"results.db"} or (times == 2 and left == {"results.db", "results.db.rescue"})
-    with open_store(tmp_path / "results.db"):
+    left = {each.name for each in tmp_path.iterdir() if each.is_file()}
+    assert left in ({"results.db"}, {"results.db", "results.db.rescue"})
+    with open_store(store):
         pass
-    assert len(read_rows(tmp_path / "results.db")) >= len(rows)
+    assert len(read_rows(store)) >= len(rows)
     assert [each.name for each in tmp_path.iterdir() if each.is_file()] == ["results.db"]
 
 

@@ -1,8 +1,16 @@
-"""Whether a body of boxes meets obstacles, slowly, from the corners of all boxes: nothing is shared with the kernel."""
+"""Whether a body of boxes meets obstacles, slowly: by the corners of all boxes, and by linear programs.
+
+Nothing is shared with the kernel.
+"""
 
 from itertools import product
 
 import numpy as np
+from scipy.optimize import linprog
+
+from evenroad.geometry import rotation_from_heading, rotation_from_quaternion
+from evenroad.space import SE2, SE3, BoxSpace
+from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld
 
 
 def corners(box):
@@ -62,3 +70,70 @@ def _along_axes(part, obstacle, rotation, place):
     axes = np.concatenate(axes, axis=1)
     mine, theirs = axes @ own.transpose(0, 2, 1), axes @ other.T
     return np.maximum(mine.min(2) - theirs.max(2), theirs.min(2) - mine.max(2)).max(axis=1)
+
+
+def a_turn(random):
+    return rotation_from_quaternion(xyzw=random.normal(size=4))
+
+
+def some_boxes(random, m, dim, flat=()):
+    """Random boxes in the cube of side 10; those numbered in `flat` are rectangles."""
+    boxes = []
+    for i in range(m):
+        half = random.uniform(0.3, 1.5, dim)
+        if i in flat:
+            half[random.integers(dim)] = 0.0
+        turn = a_turn(random) if dim == 3 else rotation_from_heading(random.uniform(0, 7))
+        boxes.append(OrientedBox(random.uniform(0, 10, dim), half, turn, name=f"crate {i}"))
+    return boxes
+
+
+RANDOM = np.random.default_rng(5)
+ELL = (
+    OrientedBox.spanning((-1, -0.2, -0.2), (1, 0.2, 0.2)),
+    OrientedBox.spanning((0.6, 0, -0.2), (1, 1, 0.2)),
+)
+FLAT_ELL = (OrientedBox.spanning((-1, -0.2), (1, 0.2)), OrientedBox.spanning((0.6, 0), (1, 1)))
+IN_SPACE = SolidWorld(
+    SE3([0, 0, 0], [10, 10, 10]), ELL, some_boxes(RANDOM, 25, 3, flat=range(0, 25, 2)), (0.1, 0.05)
+)
+IN_THE_PLANE = SolidWorld(SE2([0, 0], [10, 10]), FLAT_ELL, some_boxes(RANDOM, 12, 2), (0.1, 0.05))
+SHIFTED = SolidWorld(BoxSpace([0, 0, 0], [10, 10, 10]), ELL, some_boxes(RANDOM, 25, 3), 0.1)
+SHIFTED_IN_THE_PLANE = SolidWorld(BoxSpace([0, 0], [10, 10]), FLAT_ELL, some_boxes(RANDOM, 12, 2), 0.1)
+WORLDS = [IN_SPACE, IN_THE_PLANE, SHIFTED, SHIFTED_IN_THE_PLANE]
+
+
+def pose_of(q, dim):
+    """Translation and matrix of a configuration."""
+    if len(q) == dim:
+        return q, np.eye(dim)
+    turn = rotation_from_heading(q[2]) if dim == 2 else rotation_from_quaternion(xyzw=np.roll(q[3:], -1))
+    return q[:dim], np.array(turn).reshape(dim, dim)
+
+
+def penetration(centre, matrix, half, obstacle):
+    """By how much both boxes can shrink on all sides and still have a point in common; < 0 if they are apart."""
+    rows, limits = [], []
+    for middle, axes, extents in (
+        (centre, matrix, half),
+        (np.array(obstacle.centre), obstacle.matrix, np.array(obstacle.half_extents)),
+    ):
+        for axis, extent in zip(axes.T, extents, strict=True):
+            rows += [[*axis, 1.0], [*-axis, 1.0]]
+            limits += [extent + axis @ middle, extent - axis @ middle]
+    dim = len(centre)
+    best = linprog([0.0] * dim + [-1.0], rows, limits, bounds=[(None, None)] * (dim + 1))
+    return -best.fun
+
+
+def deepest(world, q):
+    """The largest penetration; boxes whose balls are apart are apart."""
+    dim = len(world.body[0].centre)
+    position, matrix = pose_of(q, dim)
+    found = [-1.0]
+    for part, obstacle in product(world.body, world.obstacles):
+        centre = position + matrix @ np.array(part.centre)
+        reach = np.linalg.norm(part.half_extents) + np.linalg.norm(obstacle.half_extents)
+        if np.linalg.norm(centre - np.array(obstacle.centre)) < reach:
+            found.append(penetration(centre, matrix @ part.matrix, part.half_extents, obstacle))
+    return max(found)

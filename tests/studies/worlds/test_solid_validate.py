@@ -13,8 +13,7 @@ from evenroad.space.path import subdivide
 from evenroad.world import FunctionWorld
 from evenroad.world.protocol import ValidatesPaths
 from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld
-from tests.studies.worlds.solids_oracle import gap
-from tests.studies.worlds.test_solid_world import WORLDS, deepest
+from tests.studies.worlds.solids_oracle import WORLDS, deepest, gap
 
 FINER = 20
 
