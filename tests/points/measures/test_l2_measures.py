@@ -185,7 +185,7 @@ def test_symmetric_is_average_squared_times_four_to_the_d():
     assert ratio == pytest.approx(4.0**5, rel=1e-10)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     seed=st.integers(0, 10**6),
     n=st.integers(1, 12),

@@ -76,7 +76,7 @@ def test_short_vectors_are_all_up_to_the_last_one_of_each_pair(n, z):
     assert ours | {tuple(-x for x in each) for each in ours} == among
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(n=st.integers(1, 5000), d=st.integers(1, 9), data=st.data())
 def test_a_reduced_basis_generates_the_lattice_and_nothing_else(n, d, data):
     z = [1, *(data.draw(st.integers(0, n)) for _ in range(d - 1))]
@@ -129,7 +129,7 @@ def test_a_graph_that_generates_half_the_lattice_has_two_sheets():
     assert neighbour_directions(n, z, 11).sheets == 1
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(n=st.integers(2, 2000), d=st.integers(2, 7), a=st.integers(1, 10**6))
 def test_one_neighbour_less_than_the_least_is_not_enough(n, d, a):
     z = [pow(a, i, n) for i in range(d)]

@@ -80,7 +80,7 @@ def test_gradients_are_those_of_central_differences(d, s, periodic):
     np.testing.assert_allclose(gradient.T, slow, atol=1e-6 * np.abs(slow).max())
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 10**6), n=st.integers(2, 12), d=st.integers(1, 6))
 def test_the_periodic_energy_does_not_feel_shifts_and_reflections(seed, n, d):
     rng = np.random.default_rng(seed)

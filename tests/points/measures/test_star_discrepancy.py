@@ -27,7 +27,7 @@ def test_it_is_the_largest_deviation_over_the_full_grid(n, d):
     assert star_discrepancy(points) == pytest.approx(slow_star_discrepancy(points), abs=1e-14)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10**6), n=st.integers(1, 8), d=st.integers(1, 3))
 def test_ties_and_zeros_are_counted_right(seed, n, d):
     points = np.random.default_rng(seed).integers(0, 4, (n, d)) / 4

@@ -88,7 +88,7 @@ def test_how_often_the_race_is_looked_at_does_not_change_who_wins(n, d, block, m
     assert korobov._searched.__wrapped__(n, d) == expected
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(n=st.integers(1, 3000), d=st.integers(1, 40))
 def test_the_generator_is_a_number_below_half_of_n_without_common_divisor(n, d):
     a = korobov_generator(n, d)

@@ -42,7 +42,7 @@ def test_where_powers_are_fine_they_are_kept(n, d):
         assert draw("even", n, d, rng=1).points.tobytes() == draw("korobov", n, d, rng=1).points.tobytes()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(n=st.integers(1, 400), d=st.integers(1, 9))
 def test_no_vector_has_more_energy_than_that_of_the_best_multiplier(n, d):
     z = rank_one_vector(n, d)

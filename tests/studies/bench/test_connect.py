@@ -58,7 +58,7 @@ def _graphs(draw):
     return nodes, sorted(edges), free
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(_graphs())
 def test_connected_is_what_flooding_the_free_edges_says(graph):
     nodes, edges, free = graph
@@ -68,7 +68,7 @@ def test_connected_is_what_flooding_the_free_edges_says(graph):
     assert states.world.motions == states.motions_checked <= len(edges)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(_graphs())
 def test_the_first_connected_prefix_is_what_trying_all_prefixes_says(graph):
     nodes, edges, free = graph

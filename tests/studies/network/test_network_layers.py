@@ -71,7 +71,7 @@ def test_the_slopes_are_those_of_finite_differences(part):
         assert slopes[part].ravel()[index] == pytest.approx(difference, rel=1e-4, abs=1e-6)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(1, 9), st.integers(1, 9), st.integers(1, 20), st.integers(0, 99))
 def test_matrices_of_all_shapes_multiply_as_in_numpy(n, depth, m, seed):
     draws = np.random.default_rng(seed)
@@ -91,7 +91,7 @@ def test_a_step_of_adam_is_that_of_its_formulas():
     np.testing.assert_allclose(weights, expected, rtol=1e-5)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(2, 30), st.integers(1, 6), st.integers(1, 12), st.integers(0, 1000))
 def test_every_point_hears_of_its_k_nearest_others(n, d, k, seed):
     points = np.random.default_rng(seed).random((n, d))

@@ -45,7 +45,7 @@ def annealed(n, d, objective, seed=0):
 
 
 @pytest.mark.parametrize("name", known_names())
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seed=st.integers(0, 10**6), n=st.integers(2, 20), d=st.integers(1, 6))
 def test_a_randomised_set_has_the_value_of_its_objective(name, seed, n, d):
     points = annealed(n, d, name, seed)
@@ -148,7 +148,7 @@ def test_a_passed_generator_is_spawned_and_not_consumed(verb):
     assert given_one.random() == untouched.random()
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     st.lists(
         st.one_of(st.sampled_from([0.0, 5e-324, 1e-17, 0.5, 1 - 2**-53]), st.floats(0, 1, exclude_max=True)),
