@@ -157,7 +157,7 @@ def test_a_goal_that_an_arm_cannot_leave_is_explained():
         result = er.plan(er.Scene(tuple(posts), name="balls"), start, goal, planner, robot="ur5", seconds=0.2)
         assert not result.solved
         assert "The goal can" in result.message
-        assert "leave its place: " in result.message
+        assert "enclosed: " in result.message
         assert "'forearm_link' touches 'ball" in result.message
         assert "The start can" not in result.message
 

@@ -166,7 +166,7 @@ def test_an_end_that_touches_an_obstacle_is_a_result_with_a_picture(run, room, t
 
 def test_an_invalid_start_names_the_nearest_free_place(answer, room):
     record, _ = answer(*plan_arguments(room, (20, 12), (20, 25), 4), code=1)
-    assert "the nearest free place is (20, 10)" in record["message"]
+    assert "the nearest free position is (20, 10)" in record["message"]
 
 
 def test_without_a_number_of_points_the_hardest_maze_is_solved(answer):

@@ -1,4 +1,4 @@
-"""A start or a goal that cannot leave its place is said to be one."""
+"""A start or a goal that is enclosed is named."""
 
 from types import SimpleNamespace
 
@@ -29,20 +29,20 @@ START, GOAL = (0.2, 0.5), (0.8, 0.5)
 def test_the_end_that_is_shut_in_is_named_with_what_touches_most_often():
     result = plan(WORLD, START, GOAL, limits=Budget(samples=64))
     assert result.status == "budget_spent"
-    assert "The goal cannot leave its place: 0 of 128 motions of length 0.04" in result.message
+    assert "The goal is enclosed: 0 of 128 motions of length 0.04" in result.message
     assert "the ring stands left of it in" in result.message
     assert "the nearest free sample is 0.0" in result.message
     assert "The start" not in result.message
     back = plan(WORLD, GOAL, START, limits=Budget(samples=64))
-    assert "The start cannot leave its place" in back.message
+    assert "The start is enclosed" in back.message
     assert "The goal" not in back.message
 
 
 def test_of_several_goals_each_is_named_by_its_number():
     goals = np.array([GOAL, (0.8, 0.51)])
     result = plan(WORLD, START, goals, limits=Budget(samples=64))
-    assert "Goal 0 cannot leave its place" in result.message
-    assert "Goal 1 cannot leave its place" in result.message
+    assert "Goal 0 is enclosed" in result.message
+    assert "Goal 1 is enclosed" in result.message
 
 
 def test_nothing_is_said_of_a_path_or_of_ends_that_move_freely():
@@ -56,5 +56,5 @@ def test_nothing_is_said_of_a_path_or_of_ends_that_move_freely():
 def test_a_world_without_words_counts_only():
     mute = SimpleNamespace(space=WORLD.space, valid=WORLD.valid, motion_valid=WORLD.motion_valid)
     message = with_reasons(mute, plan(mute, START, GOAL, PRM(16))).message
-    assert "The goal cannot leave its place: 0 of 128 motions of length 0.04" in message
+    assert "The goal is enclosed: 0 of 128 motions of length 0.04" in message
     assert " from it are free; the nearest free sample" in message

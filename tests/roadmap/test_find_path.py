@@ -39,7 +39,7 @@ def test_no_path_is_proved():
 def test_an_end_in_collision_is_a_status(start, goal, status):
     result = plan(two_rooms(gap=5), start, goal)
     assert result.status == status
-    assert "the nearest free place is" in result.message
+    assert "the nearest free position is" in result.message
 
 
 def test_for_any_other_world_points_grow():

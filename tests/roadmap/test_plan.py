@@ -97,12 +97,12 @@ def test_an_end_in_collision_is_an_answer_and_nothing_is_searched(start, goal, s
 def test_an_end_in_collision_says_with_what_and_by_how_much():
     touching = plan_on(WALL.world(1.0), (2, 8.5), (18, 18), draw("halton", 64, 2))
     assert touching.message == (
-        "the start is in collision: the obstacle at (2, 9) is 0.5 away, the disk needs 1; the nearest free place is"
+        "the start is in collision: the obstacle at (2, 9) is 0.5 away, the disk needs 1; the nearest free position is"
         " (2, 8)"
     )
     inside = plan_on(WALL.world(1.0), (2, 2), (18, 9.5), draw("halton", 64, 2))
     assert inside.message == (
-        "the goal is in collision: its centre lies in an obstacle or outside the map; the nearest free place is"
+        "the goal is in collision: its centre lies in an obstacle or outside the map; the nearest free position is"
         " (18, 8)"
     )
 

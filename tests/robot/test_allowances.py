@@ -175,7 +175,7 @@ def test_a_world_that_does_not_know_the_ends_says_so(ends):
     near = scene(near_ends=frozenset({("block", "scan", NEAR)}))
     robot = in_scene(UR5, near)
     with pytest.raises(
-        er.errors.InvalidValue, match="allows contacts near the ends, which a world does not know"
+        er.errors.InvalidValue, match="allows contacts near start and goals, which a world does not know"
     ):
         ArmWorld(robot, near)
     divided = allowed_near_ends(robot, near, ends)

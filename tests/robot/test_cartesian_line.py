@@ -123,10 +123,10 @@ def test_where_there_is_no_straight_way_the_answer_says_so():
         "box-reach", "home", "inside", robot="ur5", straight=CartesianLine(retreat=0.2, away="up")
     )
     assert stretched.status is er.Status.NOT_CONNECTED
-    assert "no straight way from the start: after" in stretched.message
+    assert "no straight line from the start: after" in stretched.message
     sideways = er.plan("box-reach", "home", "inside", robot="ur5", straight=CartesianLine(0.3, away="x"))
     assert sideways.status is er.Status.NOT_CONNECTED
-    assert "no straight way to the goal: after" in sideways.message
+    assert "no straight line to the goal: after" in sideways.message
 
 
 def test_a_line_that_is_none_is_refused():

@@ -163,8 +163,8 @@ def test_an_invalid_place_is_explained_with_the_nearest_free_one():
     occupied = np.zeros((20, 20), dtype=bool)
     occupied[:, 10:] = True
     world = GridMap(occupied).world(2.0)
-    assert world.explain(np.array([9.0, 10.0])).endswith("; the nearest free place is (8, 10)")
-    assert "no place of the map is free" in GridMap(occupied).world(30.0).explain(np.array([9.0, 10.0]))
+    assert world.explain(np.array([9.0, 10.0])).endswith("; the nearest free position is (8, 10)")
+    assert "no position on the map is free" in GridMap(occupied).world(30.0).explain(np.array([9.0, 10.0]))
 
 
 @pytest.mark.parametrize("frame", FRAMES)

@@ -59,7 +59,7 @@ def why_enclosed(world: World, name: str, configuration: Floats) -> str | None:
     if number > ENCLOSED * DIRECTIONS:
         return None
     away = distances[world.valid(samples)].min(initial=np.inf)
-    can = "cannot leave its place" if number == 0 else "can hardly leave its place"
+    can = "is enclosed" if number == 0 else "is nearly enclosed"
     text = (
         f"{name} {can}: {number} of {DIRECTIONS} motions of length {step:.2g} from it are free"
         f"{_what_touches(world, here[~free], reached[~free])}"

@@ -100,7 +100,7 @@ def _between_lines(
     if straight.retreat:
         leaving = _line(within, request.world, chain, straight, request.start, straight.retreat)
         if leaving.why:
-            return refused(request, Status.NOT_CONNECTED, f"no straight way from the start: {leaving.why}")
+            return refused(request, Status.NOT_CONNECTED, f"no straight line from the start: {leaving.why}")
     rows = np.flatnonzero(free[1:])
     first, why = np.broadcast_to(leaving.path[-1], request.goals[rows].shape), ""
     rows = rows[np.argsort(request.world.space.distance(first, request.goals[rows]), kind="stable")]
@@ -117,7 +117,7 @@ def _between_lines(
             break
     if not coming:
         every = "the goal" if len(rows) == 1 else f"any of {len(rows)} goals; to the nearest"
-        return refused(request, Status.NOT_CONNECTED, f"no straight way to {every}: {why}")
+        return refused(request, Status.NOT_CONNECTED, f"no straight line to {every}: {why}")
     beginnings = np.array([line.path[-1] for line in coming.values()])
     result = plan(request.world, leaving.path[-1], beginnings, shorten)
     result = replace(result, start=request.start, goals=request.goals)

@@ -265,6 +265,6 @@ def require_certified(world: World, result: PlanResult) -> PlanResult:
     first, last = ("(" + ", ".join(f"{x:.6g}" for x in result.path[failed[0] + i]) + ")" for i in (0, 1))
     message = (
         f"motion {failed[0] + 1} of {len(result.path) - 1} is not proved free, from {first} to {last}:"
-        " it may touch, or pass too near to contact to tell"
+        " it may touch, or pass too near to contact for a proof"
     )
     return replace(result, status=Status.NOT_CERTIFIED, message=message, proof="resolution")

@@ -123,8 +123,8 @@ class ArmWorld(OneOrMany):
         object.__setattr__(self, "scene", with_planes(self.scene, self.robot.planes, self.robot.links))
         if self.scene.near_ends:
             raise InvalidValue(
-                f"scene {self.scene.name!r} allows contacts near the ends, which a world does not know: plan does,"
-                " or give it allowed_near_ends(robot, scene, ends)"
+                f"scene {self.scene.name!r} allows contacts near start and goals, which a world does not know:"
+                " plan does, or give it allowed_near_ends(robot, scene, start_and_goals)"
             )
         space, longest, of_robot, by_joint, bounds, by_joint_at = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)

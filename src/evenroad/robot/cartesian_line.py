@@ -104,7 +104,7 @@ def line_from(world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats,
         first = int(np.flatnonzero(~free)[0])
         states = between(world, path[first : first + 2], FINE)
         blocked = states[~world.valid(states)]
-        why = world.explain(blocked[0]) if len(blocked) else "it comes too near to contact to tell"
+        why = world.explain(blocked[0]) if len(blocked) else "it comes too near to contact for a proof"
         return Line(path[:1], f"after {length * first / count:.3g} m {where} {why}")
     off_m, off_rad = _off(world, chain, path, here, away, turn)
     if off_m > straight.line_tolerance or off_rad > straight.angle_tolerance:

@@ -228,7 +228,7 @@ class Passages(NamedTuple):
         axes = tuple(self.turn[i].ravel().tolist())
         return tuple(
             Obstacle.of(
-                f"wall {number} of a pocket",
+                f"wall {number} of a passage",
                 "box",
                 (2.0 * size).tolist(),
                 (self.centre[i] + self.turn[i] @ position).tolist(),

@@ -1,8 +1,8 @@
 """The order in which states of motions are checked: halves, quarters, eighths, all motions together.
 
-A motion of n segments has the states 1 .. n - 1 between its ends.  Level l holds the multiples of n / 2^l,
+A motion of n segments has the states 1 .. n - 1 between its endpoints.  Level l holds the multiples of n / 2^l,
 rounded down, that no level before it held: van der Corput's order, taken level by level.  A motion that is
-blocked somewhere is thus found out after few states, long before a walk from one end would come there.
+blocked somewhere is thus found after few states, long before a walk from one endpoint would reach it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ def require_few_segments(resolution: object, segments: float) -> None:
 
 
 def between_endpoints(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, Ints]]:
-    """Yield the states between the ends of motions of so many segments, (m,), level by level, each once.
+    """Yield the states between the endpoints of motions with these numbers of segments, (m,), level by level, each
+    once.
 
     They are the motions' indices and the states' numbers; state k of n lies a fraction k / n along.  A motion is left
     out from when the caller clears its entry in `open_motions`, (m,).
@@ -57,9 +58,9 @@ def between_endpoints(segments: Ints, open_motions: Bools) -> Iterator[tuple[Int
 
 @njit(cache=True, nogil=True)
 def next_between(level: int, multiple: int, segments: int) -> tuple[int, int, int]:
-    """Return the next state of a motion of so many segments, after its place in the order: (level, multiple, state).
+    """Return the next state of a motion of so many segments, after its position in the order: (level, multiple, state).
 
-    `level` and `multiple` are the place of the state before; 1 and -1 for the first.  The state is 0 after the last.
+    `level` and `multiple` are those of the state before; 1 and -1 for the first.  The state is 0 after the last.
     """
     while True:
         multiple += 2

@@ -15,9 +15,9 @@ _MOST_PIECES = 200_000
 def least_distance(path: Floats, distance: Callable[[Floats], Floats], tolerance: float) -> float:
     """Return the least distance along a path, (p, dim), less at most `tolerance`: never more than it is.
 
-    `distance` says of places, (n, dim), how far an obstacle is; between two places it may change by no more than how
-    far they are apart, as every distance does.  So a piece of the path is halved while its middle leaves open that the
-    least is within it (S. Piyavskii, 1972, of functions with a Lipschitz constant).
+    `distance` returns the distances of configurations, (n, dim), from obstacles; between two of them it may change by
+    no more than their distance.  So a piece of the path is halved while it may contain the least (S. Piyavskii, 1972,
+    of functions with a Lipschitz constant).
     """
     waypoints = path if len(path) > 1 else np.repeat(path, 2, axis=0)
     a, b = waypoints[:-1], waypoints[1:]
@@ -41,7 +41,7 @@ def least_distance(path: Floats, distance: Callable[[Floats], Floats], tolerance
 def largest_kept(keeps: Callable[[float], bool], known: float, most: float, tolerance: float) -> float | None:
     """Return the largest clearance up to `most` that is proved to be kept, within `tolerance`; None if none is.
 
-    `keeps` says whether one is proved; `known` is one that was asked for.
+    `keeps` says whether one is proved; `known` is the clearance of the query.
     """
     if not keeps(known):
         return None

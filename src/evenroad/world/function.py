@@ -36,16 +36,16 @@ class FunctionWorld(OneOrMany):
 
     A motion is divided into ``n = ceil(distance / resolution)`` segments of one length and free if all n + 1 ends of
     segments are: the states of OMPL's DiscreteMotionValidator, which takes the first of them for granted.  What lies
-    between two states is not seen, so the resolution should be small beside the thinnest obstacle.  The ends come
+    between two states is not checked, so the resolution should be small beside the thinnest obstacle.  Endpoints come
     first, then halves, quarters and so on (van der Corput's order), for all motions of a batch together, each until a
-    state of it is blocked: a vectorised function is called few times, with many states.  A path that is handed out is
-    looked at more closely (`validate`): shortcutting tries so many motions that it would find the gaps between states.
+    state of it is blocked: a vectorised function is called few times, with many states.  The final
+    path is checked more closely (`validate`): shortcutting tries so many motions that it would find the gaps.
 
     Parameters
     ----------
     space : Space, or a sequence of (low, high)
-        Where the configurations live: what it does not contain is not free, and the function is not asked.  Bounds,
-        one pair a coordinate, stand for a BoxSpace.
+        The space of the configurations; outside it nothing is free, and the function is not called.  Bounds, one pair
+        a coordinate, stand for a BoxSpace.
     is_valid : callable
         From configurations, a read-only float64 (n, dim) array, to a bool array (n,); or from one configuration (dim,)
         to a bool, which costs a call each.  Must give equal answers to equal configurations.
@@ -54,11 +54,11 @@ class FunctionWorld(OneOrMany):
         part in the part's own metric; n is then the largest that any part asks for.  Default: a hundredth of the
         space's extent, the largest distance that 65 configurations spread over the space have from each other.
     vectorised : bool, optional
-        Whether `is_valid` takes many configurations at once.  Default: it is asked about many first, and about one
-        after the other where it has no answer to that.
+        Whether `is_valid` takes many configurations at once.  Default: it is called with many first, and with one
+        after the other where that fails.
     name : str, optional
-        What the function tests, with all that its answers depend on, for example ``"cell 7, tool v2"``.  Only with a
-        name can a roadmap of this world be saved with what is known: a function cannot be compared.
+        What the function tests, with all that its results depend on, for example ``"cell 7, tool v2"``.  It stands for
+        the function, which cannot be compared, in the world's fingerprint.
 
     Raises
     ------
@@ -76,7 +76,7 @@ class FunctionWorld(OneOrMany):
     """
 
     proof: ClassVar[str] = "resolution"
-    """A function says nothing of what lies between two states, `validate` or not."""
+    """The proof of a motion: a function says nothing of what lies between two states."""
 
     space: Space
     is_valid: Callable[[Floats], Any]
@@ -183,7 +183,7 @@ class FunctionWorld(OneOrMany):
                 free[i] = self._evaluate_one(state)
 
     def _takes_many(self, states: Floats) -> bool:
-        """Return whether the function answers for many at once; where it answers neither way, as if it did."""
+        """Return whether the function takes many configurations at once; True where it fails either way."""
         # As many rows as columns would look right where a function of one row compares columns.
         rows = np.repeat(states[:1], self.space.dim + 1, axis=0)
         rows.setflags(write=False)
@@ -266,9 +266,9 @@ def _extent(space: Space) -> float:
 
 
 def _in_fixed_order(a: Floats, b: Floats) -> tuple[Floats, Floats]:
-    """Return the ends with the smaller (in dictionary order) first.
+    """Return the endpoints with the smaller (in dictionary order) first.
 
-    States are rounded: without a fixed order a motion and its reverse could be judged differently.
+    States are rounded: without a fixed order a motion and its reverse could differ.
     """
     first_difference = (a != b).argmax(axis=1)[:, np.newaxis]
     swap = np.take_along_axis(a, first_difference, axis=1) > np.take_along_axis(b, first_difference, axis=1)

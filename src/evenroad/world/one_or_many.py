@@ -26,7 +26,7 @@ class OneOrMany:
 
     @property
     def dim(self) -> int:
-        """How many numbers a configuration has."""
+        """Number of values in a configuration."""
         return self.space.dim
 
     def valid(self, q: Any) -> Any:
@@ -101,7 +101,7 @@ class OneOrMany:
         >>> import evenroad as er
         >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(radius=2)
         >>> world.explain((1, 5))
-        'the obstacle at (0, 5) is 1 away, the disk needs 2; the nearest free place is (2, 5)'
+        'the obstacle at (0, 5) is 1 away, the disk needs 2; the nearest free position is (2, 5)'
         """
         raise NotImplementedError
 

@@ -12,17 +12,17 @@ from evenroad.space import Space
 class World(Protocol):
     """Validity of configurations and of motions, always for a batch.
 
-    Implementations never write to their arguments, give every row the verdict that it would get alone, and
-    raise InvalidValue for a wrong shape or an entry that is not finite.  A motion is the shortest
-    interpolation of the space; it is free only if both of its ends are, and reversing it changes nothing.
+    Implementations never write to their arguments, give every row the result that it would get alone, and raise
+    InvalidValue for a wrong shape or an entry that is not finite.  A motion is the shortest
+    interpolation of the space; it is free only if both of its endpoints are, and reversing it changes nothing.
 
-    A world may have a text `proof` that says what its verdict on a motion shows: ``exact`` (no gap, up to rounding),
-    ``certified`` (no gap) or ``resolution`` (states close together).  Of others nothing more is claimed than the last.
+    A world may have a text `proof` that says what its check of a motion shows: ``exact`` (no gap, up to rounding),
+    ``certified`` (no gap) or ``resolution`` (states close together), which is the default.
     """
 
     @property
     def space(self) -> Space:
-        """The space that the configurations live in."""
+        """The space of the configurations."""
 
     def valid(self, q: Floats) -> Bools:
         """Return for each configuration, (n, dim), whether it is free: (n,)."""
@@ -33,15 +33,15 @@ class World(Protocol):
 
 @runtime_checkable
 class Explains(Protocol):
-    """A world that can say in words why a configuration is not free; planners put it into their answers."""
+    """A world that explains, in words, why a configuration is not free; planners put it into their answers."""
 
     def explain(self, q: Floats) -> str:
-        """Return for one configuration, (dim,), that is not free, what it collides with."""
+        """Return what one configuration, (dim,), that is not free collides with."""
 
 
 @runtime_checkable
 class ExplainsStarts(Explains, Protocol):
-    """A world that knows more of why a robot cannot start."""
+    """A world that explains in more detail why a robot cannot start."""
 
     def explain_start(self, q: Floats) -> str:
         """Return as `explain` why a start, (dim,), is not free, and what to do about it."""
@@ -49,11 +49,11 @@ class ExplainsStarts(Explains, Protocol):
 
 @runtime_checkable
 class ValidatesPaths(Protocol):
-    """A world whose verdicts on motions have gaps, and that can look closer at the path that is handed out."""
+    """A world whose checks of motions have gaps, with a strict check for the final path."""
 
     @property
     def proof(self) -> str:
-        """What `validate` shows: ``resolution`` (states closer than planned with) or ``certified`` (no gap)."""
+        """What `validate` shows: ``resolution`` (states closer than in planning) or ``certified`` (no gap)."""
 
     def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are free by the strict check: (p - 1,)."""
@@ -61,15 +61,15 @@ class ValidatesPaths(Protocol):
 
 @runtime_checkable
 class MeasuresPaths(Protocol):
-    """A world that can tell how near a path comes to an obstacle."""
+    """A world that measures the clearance of a path."""
 
     def path_clearance(self, path: Floats) -> float | None:
-        """Return how far a path, (p, dim), stays from all obstacles, never more than it does; None says nothing."""
+        """Return a lower bound of the distance of a path, (p, dim), from all obstacles; None if unknown."""
 
 
 @dataclass(frozen=True)
 class Apart:
-    """What keeps a start from its goals."""
+    """A proof that no path leads from a start to its goals."""
 
     message: str
     """In a sentence: of which bodies, and by what."""

@@ -24,10 +24,10 @@ PARTS = 16
 
 @njit(cache=True, nogil=True)
 def find_gates(cells: npt.NDArray[np.uint8]) -> Bools:
-    """Return the cells around places where a path may lead through cells that are not surely free.
+    """Return the cells where a path may lead through cells that are not surely free.
 
-    From every component of surely free cells the undecided ones are visited outwards.  Along a wall they are a strip
-    of one or two.  Where they lie deeper, where two components meet, or where none comes to, there is a gate.
+    From every component of surely free cells the undecided ones are visited outwards.  Along a wall they are a strip of
+    one or two.  Where they lie deeper, where two components meet, or where no component reaches, there is a gate.
     """
     rows, cols = cells.shape
     flat = cells.ravel()
@@ -77,7 +77,7 @@ def _flood(flat: Any, least: int, deeper: int, around: Any, reached: Any, begin:
 
 
 class Components(NamedTuple):
-    """Which places hang together; arrays over the padded grid, (rows + 2, cols + 2), and over its g cells at gates."""
+    """Connected components; arrays over the padded grid, (rows + 2, cols + 2), and over its g cells at gates."""
 
     cells: Ints32
     """The component of each cell, 0 where no disk is free and at gates."""
@@ -86,7 +86,7 @@ class Components(NamedTuple):
     opened: npt.NDArray[np.uint16]
     """Which parts of a cell at a gate may have a free point, (g, PARTS): a bit a part, a number a row."""
     first: Ints
-    """Where the pieces of each cell at a gate begin, (g + 1,): what of its parts hangs together inside of it."""
+    """First pieces of each cell at a gate, (g + 1,): its parts that are connected inside it."""
     pieces: Ints32
     """The component of each piece."""
 
@@ -95,9 +95,9 @@ class Components(NamedTuple):
 def label_components(disk: DiskTables, gates: Bools) -> tuple[Ints32, Ints32, Any, Ints, Ints32]:
     """Return the `Components` of a disk on a map, as a tuple.
 
-    Cells that are not surely blocked hang together over their sides, and so do the parts of a cell at a gate.  A disk
-    whose centre goes over a corner touches all four there, so none of them is blocked: two components are apart for
-    certain.  What is in one component need not hang together, where a gate is hardly wider or narrower than the disk.
+    Cells that are not surely blocked are connected over their sides, and so are the parts of a cell at a gate.  A disk
+    whose centre moves over a corner touches all four there, so none of them is blocked: two components are surely
+    apart.  One component need not be connected where a gate is hardly wider or narrower than the disk.
 
     Of the parts of a cell only a bit each is kept: on a map of narrow passages every cell is at a gate.
     """
@@ -204,7 +204,7 @@ def _open_parts(row: int, col: int, opened: Any, disk: DiskTables) -> None:
 def _distance(row: int, col: int, top: int, left: int, size: int, disk: DiskTables) -> float:
     """Return the distance from the middle of a square of parts of a cell to the nearest obstacle.
 
-    Where that is beyond the radius, any distance that is.
+    Beyond the radius it may be any larger distance.
     """
     x, y = col + (left + 0.5 * size) / PARTS, row + (top + 0.5 * size) / PARTS
     return math.sqrt(squared_gap(x, y, row, col, math.ceil(disk.radius) + 1, 0.0, disk))

@@ -20,7 +20,7 @@ from evenroad.world.gridmap.frame import MapFrame
 @explains_calls
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class CellGrid:
-    """The cells of a map, and where it lies: what a :class:`GridMap` is made of."""
+    """The cells of a map and their frame: the base of :class:`GridMap`."""
 
     occupied: Bools
     frame: MapFrame
@@ -63,7 +63,7 @@ class CellGrid:
 
     @property
     def origin(self) -> tuple[float, float]:
-        """Where the map begins, in map units: see :class:`MapFrame`."""
+        """Origin of the map, in map units: see :class:`MapFrame`."""
         return self.frame.origin
 
     @property

@@ -1,4 +1,4 @@
-"""GridMap, a map that robots drive on; and DiskWorld, a disk robot on one, with exact answers."""
+"""GridMap, a map that robots drive on; and DiskWorld, a disk robot on one, with exact checks."""
 
 from __future__ import annotations
 
@@ -38,16 +38,16 @@ _SMALLEST_RADIUS = 1e-150
 
 @explains_calls
 class GridMap(CellGrid):
-    """Which cells of a map are occupied, and where the map lies.
+    """The occupied cells of a map, and its frame.
 
     Parameters
     ----------
     occupied : array_like of bool, shape (rows, cols), at least one cell
         True where a cell is an obstacle; row 0 is the top of the image.  Copied to a read-only array.
     frame : MapFrame, optional
-        Where the cells lie; by default that of a bare image of this size: x right, y down, unit = pixel.
+        Frame of the cells; by default that of a bare image of this size: x right, y down, unit = pixel.
     unknown : array_like of bool, shape (rows, cols), optional
-        Cells of which a map says nothing; whether they are obstacles, `occupied` says.  Default: none.
+        Unknown cells; `occupied` says whether they are obstacles.  Default: none.
     resolution : float, optional
         In place of `frame`: side of a cell, > 0 [m], of a map as ROS has them, y up, the origin in the lower left.
 
@@ -67,14 +67,14 @@ class GridMap(CellGrid):
     def world(self, radius: float, clearance: float = 0.0) -> DiskWorld:
         """Return the world of a disk robot on the map.
 
-        A robot of another footprint has none yet: take the radius of the disk around it.
+        For a robot of another footprint, take the radius of the disk around it.
 
         Parameters
         ----------
         radius : float
-            Of the disk, > 0, in map units: metres of a ROS map, pixels of a bare image.
+            Radius of the disk, > 0, in map units: metres of a ROS map, pixels of a bare image.
         clearance : float
-            What it keeps from every obstacle, >= 0, in map units.
+            Least distance from every obstacle, >= 0, in map units.
 
         Returns
         -------
@@ -110,7 +110,7 @@ class DiskWorld(OneOrMany):
     """
 
     proof: ClassVar[str] = "exact"
-    """What is shown of a motion called free."""
+    """What a check of a motion shows."""
 
     grid: GridMap
     radius: float
@@ -165,7 +165,7 @@ class DiskWorld(OneOrMany):
         return nearest_obstacle_points(q, self.tables)[1] * self.grid.frame.resolution
 
     def path_clearance(self, path: Floats) -> float:
-        """Return how far the disk stays from all obstacles along a path, (p, 2), within 1e-3 pixels and never more."""
+        """Return the clearance of the disk along a path, (p, 2), within 1e-3 pixels and never too large."""
         points = as_batch("path", path, 2)
         nearest = least_distance(points, self._from_centre, _CLOSE * self.grid.frame.resolution)
         return max(0.0, nearest - (self.radius - self.margin))
@@ -194,8 +194,8 @@ class DiskWorld(OneOrMany):
     def may_connect(self, a: Floats, b: Floats) -> bool:
         """Return False where it is proved that no path leads from map point `a`, (2,), to `b`, (2,).
 
-        Places none of whose points is free separate the others into components, in one of which every path stays.
-        Where both ends are in the same one, there is a path unless it leads through a passage that is narrower than
+        Cells without a free point separate the others into components, in one of which every path stays.
+        Where both points are in the same one, there is a path unless it leads through a passage that is narrower than
         the disk by less than about a tenth of a pixel.
         """
         return self.component(a) == self.component(b) != 0
@@ -243,13 +243,13 @@ class DiskWorld(OneOrMany):
         return Components(*label_components(self.tables, self.gates))
 
     def fingerprint(self) -> str:
-        """Return the SHA-256 (hex) of map, frame and radius: equal for two worlds that give the same verdicts."""
+        """Return the SHA-256 (hex) of map, frame and radius: equal for worlds of equal results."""
         digest = hashlib.sha256(f"disk {self.radius!r} {self.grid.frame!r}".encode())
         digest.update(self.grid.occupied.tobytes())
         return digest.hexdigest()
 
     def explain(self, q: Floats) -> str:
-        """Return in words how near an obstacle is to a disk at the map point `q`, (2,)."""
+        """Return, in words, how near an obstacle is to a disk at the map point `q`, (2,)."""
         centre = self._row(q)[np.newaxis]
         distance = float(self._from_centre(centre)[0])
         reason = "its centre lies in an obstacle or outside the map"
@@ -259,8 +259,8 @@ class DiskWorld(OneOrMany):
             reason = f"the obstacle at ({x:.6g}, {y:.6g}) is {distance:.6g} away, {needs}"
         free = self.nearest_free(centre)
         if free is None:
-            return f"{reason}; no place of the map is free"
-        return f"{reason}; the nearest free place is ({free[0]:.6g}, {free[1]:.6g})"
+            return f"{reason}; no position on the map is free"
+        return f"{reason}; the nearest free position is ({free[0]:.6g}, {free[1]:.6g})"
 
     def _pixels(self, q: Floats) -> Floats:
         """Return the pixel coordinates (column, row) of one map point."""

@@ -34,7 +34,7 @@ _MODES = ("trinary", "scale", "raw")
 
 
 class RosMapMeta(NamedTuple):
-    """What a map_server YAML file says, checked: lengths in metres, the yaw in radians."""
+    """The checked content of a map_server YAML file: lengths in metres, the yaw in radians."""
 
     image: Path
     resolution: float
@@ -45,7 +45,7 @@ class RosMapMeta(NamedTuple):
     free_thresh: float
     mode: str
     passed_over: tuple[str, ...]
-    """Keys that nothing is known of."""
+    """Unknown keys."""
 
 
 @explains_calls
@@ -120,7 +120,7 @@ def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False)
     * **scale**: the same, but a pixel that is not opaque is unknown.  Cells between the thresholds, which
       map_server grades from 1 to 99, are known neither to be free nor occupied: they count as unknown;
     * **raw**: the pixel, on the scale 0..255, *is* the occupancy in percent, whatever `negate` says, and
-      values above 100 are unknown.  map_server leaves the verdict to whoever uses the percentage; here it is
+      values above 100 are unknown.  map_server leaves the decision to whoever uses the percentage; here it is
       the same two thresholds.
 
     Unknown cells are obstacles, unless `unknown_is_free`.  Raises BrokenFile if the YAML file or the image is missing
@@ -179,7 +179,7 @@ def classify_pixels(image: Image.Image, meta: RosMapMeta) -> tuple[Bools, Bools]
     `image` is one of `open_image`.  The rules are those of `load_ros_map`.
     """
     levels, white = _summed_channels(image, with_alpha=meta.mode == "trinary")
-    # The verdict depends on the level alone, so it is made once a level, in float64, and looked up.
+    # The class depends on the level alone, so it is computed once a level, in float64, and looked up.
     shade = np.arange(white + 1) / white
     if meta.mode == "raw":
         percent = np.round(shade * 255.0)

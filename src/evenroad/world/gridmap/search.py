@@ -169,10 +169,10 @@ def _is_step_free(c: int, r: int, to_c: int, to_r: int, disk: DiskTables) -> boo
 
 @njit(cache=True, nogil=True)
 def straighten(path: Any, disk: DiskTables, spreads: Any) -> tuple[Floats, int]:
-    """Return a shorter path of free motions between the same ends, and how many motions were tested.
+    """Return a shorter path of free motions between the same endpoints, and the number of motions tested.
 
-    First from each point on to the farthest that is found to be in sight; then rounds of points spread evenly along
-    the path, of which the shortest selection that stays free is kept.
+    First each point is joined to the farthest visible one; then rounds of points spread evenly along the path follow,
+    of which the shortest free selection is kept.
     """
     points, motions = _skip_ahead(path, disk)
     for most in spreads:
@@ -194,7 +194,7 @@ def straighten(path: Any, disk: DiskTables, spreads: Any) -> tuple[Floats, int]:
 
 @njit(cache=True, nogil=True)
 def _links(x: float, y: float, disk: DiskTables, gates: Bools) -> tuple[Any, int]:
-    """Return the lattice points near (x, y) that can be reached straight, and how many were tried."""
+    """Return the lattice points near (x, y) that straight motions reach, and the number tried."""
     px, py = to_padded(x, y, disk.frame)
     rows, cols = disk.cells.shape
     near_c, near_r = round(2.0 * px), round(2.0 * py)
