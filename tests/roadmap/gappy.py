@@ -27,12 +27,13 @@ class GappyWorld:
 
     def motion_valid(self, a, b):
         self.asked_motions += len(a)
-        return np.array([self._at_states(x, y) for x, y in zip(a, b, strict=True)], dtype=bool)
-
-    def _at_states(self, a, b):
-        n = max(1, int(np.ceil(np.linalg.norm(b - a) / self.step)))
-        t = np.linspace(0.0, 1.0, n + 1)[:, np.newaxis]
-        return bool(self.valid((1 - t) * a + t * b).all())
+        steps = np.maximum(1, np.ceil(np.linalg.norm(b - a, axis=1) / self.step)).astype(int)
+        free = np.ones(len(a), dtype=bool)
+        for n in np.unique(steps):
+            t, of = np.linspace(0.0, 1.0, n + 1)[:, np.newaxis, np.newaxis], steps == n
+            states = (1 - t) * a[of] + t * b[of]
+            free[of] = self.valid(states.reshape(-1, 2)).reshape(n + 1, -1).all(axis=0)
+        return free
 
     def validate(self, path):
         self.rechecked += len(path) - 1

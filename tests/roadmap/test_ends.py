@@ -18,6 +18,7 @@ from evenroad.roadmap.connector import Connection
 from evenroad.roadmap.result import NEAR, NO_POINTS, PlanResult, Status, require_start_and_goal
 from evenroad.robot import ArmWorld, CartesianLine, Joint, Robot, Scene
 from evenroad.robot_roadmap.build import arm_roadmap
+from evenroad.robot_roadmap.query import search
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.space import SE3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
@@ -27,19 +28,10 @@ PLANE = BoxSpace((0.0, 0.0), (1.0, 1.0))
 A, B, C = np.array([[0.1, 0.2], [0.8, 0.9], [0.5, 0.5]])
 
 
-def result(path, start=A, goals=(B,), index=0, **more):
-    goals = np.array(goals)
-    return PlanResult(
-        status=Status.SOLVED,
-        message="",
-        start=np.array(start),
-        goals=goals,
-        origin=NO_POINTS,
-        rule="none",
-        goal_index=index,
-        path=np.array(path),
-        **more,
-    )
+def result(path, start=A, goals=(B,), index=0, status=Status.SOLVED, **more):
+    goals, path = np.array(goals), None if path is None else np.array(path)
+    asked = dict(start=np.array(start), goals=goals, origin=NO_POINTS, rule="none", goal_index=index)
+    return PlanResult(status=status, message="", path=path, **asked, **more)
 
 
 @pytest.mark.parametrize(
@@ -67,9 +59,7 @@ def test_a_path_that_leads_elsewhere_is_a_fault_and_no_error_of_the_input(wrong,
 def test_one_that_leads_there_but_for_rounding_is_handed_out():
     for path in ([A, C, B], [A + 0.5 * NEAR, B - 0.5 * NEAR]):
         assert require_start_and_goal(PLANE, result(path)).path.tolist() == np.array(path).tolist()
-    nothing = PlanResult(
-        status=Status.NOT_CONNECTED, message="", start=A, goals=B[np.newaxis], origin=NO_POINTS, rule="none"
-    )
+    nothing = result(None, index=None, status=Status.NOT_CONNECTED)
     assert require_start_and_goal(PLANE, nothing) is nothing
 
 
@@ -117,8 +107,11 @@ def test_what_a_robot_roadmap_found_is_looked_at(monkeypatch):
     world = ArmWorld(ur5(joints=3), TABLE)
     known = arm_roadmap(world, 40, 4, recipe=Recipe(0.0, 0)).within(world)
     a, b, c = known.roadmap.milestones[:3]
-    search = known._search
-    monkeypatch.setattr(known, "_search", lambda start, goals, *rest: search(c, goals, *rest))
+
+    def astray(graph, worlds, query, *limits):
+        return search(graph, worlds, query._replace(start=c), *limits)
+
+    monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.search", astray)
     for shorten in (True, False):
         with pytest.raises(AssertionError, match="does not start"):
             known.plan(a, b, shorten=shorten)
@@ -132,13 +125,12 @@ def test_what_lies_between_straight_lines_is_looked_at():
         found = er.plan(world, first, goals, smooth=shorten)
         return PlanResult(**{**vars(found), "path": found.path[::-1] if astray else found.path})
 
-    ends = Request(world, np.array(start), np.array([goal]))
-    for astray in (False, True):
-        if not astray:
-            assert plan_tip_motion(ends, CartesianLine(approach=0.03), None, plan).solved
-            continue
-        with pytest.raises(AssertionError, match="does not start"):
-            plan_tip_motion(ends, CartesianLine(approach=0.03), None, plan)
+    asked = Request(world, np.array(start), np.array([goal]))
+    astray = False
+    assert plan_tip_motion(asked, CartesianLine(approach=0.03), None, plan).solved
+    astray = True
+    with pytest.raises(AssertionError, match="does not start"):
+        plan_tip_motion(asked, CartesianLine(approach=0.03), None, plan)
 
 
 def test_ends_of_joints_that_turn_for_ever_may_be_asked_for_after_any_turns():

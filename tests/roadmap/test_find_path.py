@@ -1,9 +1,7 @@
 """Planning without a number of points."""
 
 import numpy as np
-import pytest
 
-from evenroad.errors import InvalidValue
 from evenroad.planning import plan
 from evenroad.roadmap import Budget
 from evenroad.space import BoxSpace
@@ -33,15 +31,6 @@ def test_no_path_is_proved():
     assert result.message.startswith("proved: there is no path")
 
 
-@pytest.mark.parametrize(
-    ("start", "goal", "status"), [((30, 30), (5, 5), "start_invalid"), ((5, 5), (30, 30), "goal_invalid")]
-)
-def test_an_end_in_collision_is_a_status(start, goal, status):
-    result = plan(two_rooms(gap=5), start, goal)
-    assert result.status == status
-    assert "the nearest free position is" in result.message
-
-
 def test_for_any_other_world_points_grow():
     world = FunctionWorld(
         BoxSpace((0, 0), (1, 1)), lambda q: (np.abs(q[:, 0] - 0.5) > 0.1) | (q[:, 1] > 0.9), 0.01
@@ -52,8 +41,3 @@ def test_for_any_other_world_points_grow():
     assert result.planner == "prm anytime"
     closed = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
     assert plan(closed, (0.1, 0.1), (0.9, 0.1), limits=Budget(samples=128)).status == "budget_spent"
-
-
-def test_a_start_that_is_no_configuration_is_refused():
-    with pytest.raises(InvalidValue, match="start must be 2 finite numbers"):
-        plan(two_rooms(gap=5), (1, 2, 3), (4, 5))

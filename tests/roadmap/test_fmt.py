@@ -110,15 +110,13 @@ def test_on_the_mazes_it_checks_a_fraction_of_the_edges(level):
     assert again.path.tobytes() == tree.path.tobytes()
 
 
-def test_ends_that_will_not_do_are_named():
+def test_a_start_a_goal_and_points_that_will_not_do_are_named():
     world = ChanceWorld(0, 0.0, 1.0)
     assert fmt_on(world, (0.3, 0.3), GOAL, draw("sobol", 8, 2)).status is Status.START_INVALID
     assert fmt_on(world, START, (0.3, 0.3), draw("sobol", 8, 2)).status is Status.GOAL_INVALID
     with pytest.raises(InvalidValue, match="d=3"):
         fmt_on(world, START, GOAL, draw("sobol", 8, 3))
-
-
-def test_no_points_and_equal_ends_are_no_special_cases():
+    # No points and an equal start and goal are no special cases.
     empty = PointSet(np.empty((0, 2)))
     assert fmt_on(ChanceWorld(0, 1.0, 1.0), START, GOAL, empty).cost == pytest.approx(np.sqrt(2))
     assert fmt_on(ChanceWorld(0, 1.0, 1.0), START, START, empty).cost == 0.0

@@ -40,19 +40,14 @@ class Detours:
 OPEN = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: np.ones(len(q), dtype=bool), 0.1)
 
 
-def solved(start, goal, detours, improve=True, **limits):
-    ends = np.array([start]), np.array([goal])
-    problem = Problem(OPEN, ends[0][0], ends[1], budget=Budget(seconds=None, **limits))
-    return solve_by(problem, detours, improve=improve)
+def improved(start=(0.1, 0.1), goal=(0.9, 0.1), improve=True, **limits):
+    detours = Detours()
+    problem = Problem(OPEN, np.array(start), np.array([goal]), budget=Budget(seconds=None, **limits))
+    return detours, solve_by(problem, detours, improve=improve)
 
 
 def over(height):
     return 2 * np.hypot(0.4, height - 0.1)
-
-
-def improved(**limits):
-    detours = Detours()
-    return detours, solved((0.1, 0.1), (0.9, 0.1), detours, **limits)
 
 
 @pytest.mark.parametrize(("rounds", "best"), [(1, 0.7), (2, 0.7), (3, 0.3), (4, 0.3)])
@@ -73,27 +68,19 @@ def test_stages_hold_the_cost_over_time_of_what_was_better():
     assert all(a.seconds <= b.seconds for a, b in pairwise(stages))
 
 
-def test_motions_bound_the_rounds():
+def test_motions_bound_the_rounds_and_a_round_gives_up_sooner_than_the_first_path():
     assert improved(motions=5)[0].asked == [0, 1, 2]
-
-
-def test_a_round_gives_up_sooner_than_the_first_path():
     most = improved(rounds=3)[0].most
     assert most[0] > 10**9
     assert most[1:] == [1000] * 3
 
 
-def test_a_straight_path_is_not_improved_on():
-    detours = Detours()
-    result = solved((0.3, 0.9), (0.7, 0.9), detours, rounds=50)
+def test_a_straight_path_is_not_improved_on_and_none_is_unless_that_is_asked_for():
+    detours, result = improved((0.3, 0.9), (0.7, 0.9), rounds=50)
     assert detours.asked == [0]
     assert result.cost == pytest.approx(0.4)
     assert "the best of" not in result.message
-
-
-def test_without_improve_the_first_path_is_the_answer():
-    detours = Detours()
-    result = solved((0.1, 0.1), (0.9, 0.1), detours, improve=False)
+    detours, result = improved(improve=False)
     assert detours.asked == [0]
     assert result.stages == ()
 
@@ -109,13 +96,8 @@ def test_on_a_map_a_roadmap_grows_beside_the_first_path():
     occupied[10:50, 30] = True
     world = GridMap(occupied).world(1.0)
     first = plan(world, (5, 30), (55, 33))
-    best = plan(
-        world,
-        (5, 30),
-        (55, 33),
-        default_planner(world, improve=True),
-        limits=Budget(seconds=None, samples=512),
-    )
+    planner, limits = default_planner(world, improve=True), Budget(seconds=None, samples=512)
+    best = plan(world, (5, 30), (55, 33), planner, limits=limits)
     assert best.cost <= first.cost
     assert world.motion_valid(best.path[:-1], best.path[1:]).all()
     assert best.stages[0].cost == first.cost

@@ -9,7 +9,7 @@ from evenroad.roadmap import Complete, KEarlier, KMutual, KNearest, Radius, Stat
 from evenroad.roadmap.rules.near import ascending
 from evenroad.world.gridmap.shipped import load_maze
 from tests.plan_on import plan_on
-from tests.roadmap.worlds import ChanceWorld
+from tests.roadmap.worlds import ChanceWorld, costs_from
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)
 
@@ -73,11 +73,8 @@ def test_the_full_path_is_the_cheapest_one_and_follows_the_lowest_nodes_back(que
     a, b = nodes[edges[:, 0]], nodes[edges[:, 1]]
     free = world.motion_valid(a, b)
     lengths = (options["edge_cost"] or world.space.distance)(a, b)
-    cost = np.full(len(nodes), np.inf)
-    cost[-2] = 0.0
-    for _ in nodes:
-        for (i, j), length in zip(edges[free], lengths[free], strict=True):
-            cost[i], cost[j] = min(cost[i], cost[j] + length), min(cost[j], cost[i] + length)
+    cost = costs_from(-2, len(nodes), edges[free], lengths[free])
+    assert (result.counts["edges_checked"], result.counts["edges_free"]) == (len(edges), free.sum())
     assert result.solved == np.isfinite(cost[-1])
     if result.solved:
         assert result.cost == pytest.approx(cost[-1], rel=1e-9)
@@ -142,11 +139,7 @@ def test_with_costs_below_the_lengths_by_as_much_as_rounding_may_the_path_still_
         assert full.path.tobytes() == lazy.path.tobytes()
         nodes, edges = full.roadmap.configurations, full.roadmap.edges
         costs = below(nodes[edges[:, 0]], nodes[edges[:, 1]])
-        cost = np.full(len(nodes), np.inf)
-        cost[-2] = 0.0
-        for _ in nodes:
-            for (i, j), step in zip(edges.tolist(), costs.tolist(), strict=True):
-                cost[i], cost[j] = min(cost[i], cost[j] + step), min(cost[j], cost[i] + step)
+        cost = costs_from(-2, len(nodes), edges, costs)
         assert full.cost == pytest.approx(cost[-1], rel=1e-13)
 
 
@@ -173,15 +166,8 @@ def test_on_the_mazes_lazy_checks_few_edges_and_finds_the_same_path(level):
 
 
 def test_lazily_not_connected_speaks_of_what_could_be_reached():
-    result = plan_on(
-        ChanceWorld(1, 0.9, 0.0),
-        START,
-        GOAL,
-        draw("sobol", 32, 2),
-        search="lazy",
-        lazy_milestones=True,
-        links=None,
-    )
+    how = dict(search="lazy", lazy_milestones=True, links=None)
+    result = plan_on(ChanceWorld(1, 0.9, 0.0), START, GOAL, draw("sobol", 32, 2), **how)
     assert result.status is Status.NOT_CONNECTED
     assert result.counts["start_component"] == 0
     assert "milestones not known to be invalid" in result.message
@@ -202,18 +188,14 @@ def test_the_shortcut_keeps_to_the_edge_cost():
 
 
 @pytest.mark.parametrize(
-    ("cost", "text"),
+    ("option", "text"),
     [
-        (lambda a, b: np.zeros(len(a)), "at least the length"),
-        (lambda a, b: np.full(len(a), np.nan), "finite"),
-        (lambda a, b: 7.0, "shape"),
+        ({"edge_cost": lambda a, b: np.zeros(len(a))}, "at least the length"),
+        ({"edge_cost": lambda a, b: np.full(len(a), np.nan)}, "finite"),
+        ({"edge_cost": lambda a, b: 7.0}, "shape"),
+        ({"search": "lazzy"}, "full, lazy"),
     ],
 )
-def test_an_edge_cost_that_cannot_be_one_is_refused(cost, text):
-    with pytest.raises(InvalidValue, match=text):
-        plan_on(ChanceWorld(0), START, GOAL, draw("sobol", 8, 2), edge_cost=cost)
-
-
-def test_an_unknown_search_is_refused_by_name():
-    with pytest.raises(UnknownName, match="full, lazy"):
-        plan_on(ChanceWorld(0), START, GOAL, draw("sobol", 8, 2), search="lazzy")
+def test_an_edge_cost_that_cannot_be_one_and_an_unknown_search_are_refused(option, text):
+    with pytest.raises((InvalidValue, UnknownName), match=text):
+        plan_on(ChanceWorld(0), START, GOAL, draw("sobol", 8, 2), **option)

@@ -100,7 +100,10 @@ def test_a_number_of_points_in_space_means_sliced_poses_for_few_neighbours_and_s
     assert even_points(40, space, rule, rng=3) == sampler.draw(40, 6, rng=3)
 
 
-@pytest.mark.parametrize("space", [JOINTS, SE2((0.0, 0.0), (1.0, 1.0)), Product([SO3(), SO3()])])
+@pytest.mark.parametrize(
+    "space",
+    [JOINTS, JointSpace([-3.0] * 10, [3.0] * 10), SE2((0.0, 0.0), (1.0, 1.0)), Product([SO3(), SO3()])],
+)
 def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
     assert even_points(40, space, KNearest(4), rng=3) == draw("even", 40, space.cube_dim, rng=3)
 
@@ -121,11 +124,6 @@ def test_in_a_box_of_many_dimensions_points_of_a_sparse_roadmap_are_drawn_in(d, 
     points = draw("even", 30, d, rng=3)
     box = BoxSpace([0.0] * d, [2.0] * d)
     assert even_points(30, box, rule, rng=3) == (contracted(points) if near else points)
-
-
-def test_joints_are_not_drawn_in():
-    space = JointSpace([-3.0] * 10, [3.0] * 10)
-    assert even_points(30, space, KNearest(4), rng=3) == draw("even", 30, 10, rng=3)
 
 
 @pytest.mark.parametrize("rule", [KNearest(5), KNearest(15)])

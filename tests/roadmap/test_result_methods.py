@@ -1,5 +1,7 @@
 """What one does with a plan: look at it, keep it, walk along it, drive it."""
 
+from xml.etree import ElementTree
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -21,6 +23,22 @@ def test_states_along_the_path_lie_on_it_and_close_together():
     assert gaps.max() <= 0.05 * (1 + 1e-9)
     assert gaps.sum() == pytest.approx(RESULT.cost)
     assert {tuple(row) for row in RESULT.path} <= {tuple(row) for row in states}
+
+
+def html_of(result):
+    """Return the page in a notebook, read as XML: one that is broken is not shown at all."""
+    return ElementTree.fromstring(f"<div>{result._repr_html_()}</div>")
+
+
+def test_a_notebook_shows_the_answer_and_one_line_a_coordinate_or_why_there_is_none():
+    page = html_of(RESULT)
+    assert "solved" in "".join(page.itertext())
+    lines = page.findall(".//polyline")
+    assert len(lines) == 2
+    assert all(len(line.get("points").split()) == len(RESULT.path) for line in lines)
+    page = html_of(BLOCKED)
+    assert "start" in "".join(page.itertext())
+    assert page.findall(".//polyline") == []
 
 
 def test_what_is_saved_is_read_again(tmp_path):

@@ -1,4 +1,3 @@
-import inspect
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 
@@ -10,20 +9,14 @@ from hypothesis import strategies as st
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.planning import plan
 from evenroad.points import PointSet, draw
-from evenroad.roadmap import (
-    Budget,
-    Complete,
-    KNearest,
-    Radius,
-    Status,
-)
+from evenroad.roadmap import Budget, Complete, KNearest, Radius, Status
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
-from evenroad.roadmap.point_roadmap import WorldRoadmap, roadmap_of_points
+from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.space import Rectangle, Space
 from evenroad.world import GridMap
 from evenroad.world.gridmap.shipped import load_maze
 from tests.roadmap.spaces import Great, Torus
-from tests.roadmap.worlds import ChanceWorld
+from tests.roadmap.worlds import ChanceWorld, costs_from
 
 SQUARE = ChanceWorld.space
 CORNERS = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
@@ -59,14 +52,8 @@ def _cheapest(roadmap, world, start, goal, lazy_milestones, links):
         edges += [(int(i), end) for i in [*near[: reach.k], *close]]
     first, second = np.array(edges).T
     free = world.motion_valid(q[first], q[second]) & valid[first] & valid[second]
-    cost = np.full(n + 2, np.inf)
-    cost[n] = 0.0
-    length = np.hypot(*(q[first] - q[second]).T)
-    for _ in q:
-        for i, j, step in zip(first[free], second[free], length[free], strict=True):
-            # Milestones on the way only: nothing goes on from the goal, or back to the start.
-            cost[i], cost[j] = min(cost[i], cost[j] + step), min(cost[j], cost[i] + step)
-    return cost[n + 1]
+    # Milestones on the way only: nothing goes on from the goal, or back to the start.
+    return costs_from(n, n + 2, np.array(edges)[free], np.hypot(*(q[first] - q[second]).T)[free])[n + 1]
 
 
 @settings(max_examples=60, deadline=None)
@@ -116,23 +103,14 @@ def test_no_edge_of_the_roadmap_is_asked_about_twice():
     assert states["edges_free"] + states["edges_blocked"] <= len(roadmap.edges)
 
 
-def test_a_roadmap_is_made_once_and_cannot_be_changed():
+def test_a_roadmap_is_made_once_for_several_worlds_and_cannot_be_changed():
     roadmap = roadmap_of_points(SQUARE, draw("sobol", 64, 2))
     assert str(roadmap.rule) == "k=20 symmetrised"
     for array in (roadmap.milestones, roadmap.edges):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
-
-
-def test_one_roadmap_serves_several_worlds():
-    roadmap = roadmap_of_points(SQUARE, draw("sobol", 64, 2))
     assert not roadmap.within(ChanceWorld(1, 1.0, 0.0)).plan(*CORNERS[::3]).solved
     assert roadmap.within(ChanceWorld(1, 1.0, 1.0)).plan(*CORNERS[::3]).solved
-
-
-def test_every_planner_shortens_its_paths_unless_told_not_to():
-    assert inspect.signature(plan).parameters["smooth"].default
-    assert inspect.signature(WorldRoadmap.plan).parameters["shorten"].default
 
 
 def test_statuses_counts_and_names_of_a_query():

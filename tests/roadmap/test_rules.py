@@ -92,9 +92,6 @@ def test_the_prm_star_rules_are_the_formulas_of_karaman_and_frazzoli():
     radius = 1.2 * (math.log(200) / 200) ** (1 / 3)
     assert _as_set(RadiusStar(1.2).edges(points)) == _as_set(Radius(radius).edges(points))
     assert prm_star_gamma(2, 1.0) == pytest.approx(2 * math.sqrt(1.5 / math.pi))
-
-
-def test_complete_is_every_pair():
     assert len(Complete().edges(np.zeros((7, 2)))) == 21
 
 
@@ -118,12 +115,21 @@ def test_a_theory_radius_that_says_nothing_is_refused_with_its_size_and_a_way_ou
         THEORY.edges(np.zeros((3, 2)))
 
 
-@pytest.mark.parametrize("rule", RULES, ids=str)
-def test_a_name_leads_back_to_its_rule(rule):
-    assert rule_named(str(rule)) == rule
-
-
-def test_an_unknown_name_lists_the_forms():
+def test_rules_say_their_name_and_a_name_leads_back_to_its_rule():
+    named = {
+        "k=10 symmetrised": KNearest(10),
+        "k=10 mutual": KMutual(10),
+        "k=10 earlier": KEarlier(10),
+        "k*": KStar(),
+        "radius=0.5": Radius(0.5),
+        "radius=0.30000000000000004": Radius(0.1 + 0.2),
+        "radius* gamma=2": RadiusStar(2.0),
+        "complete": Complete(),
+        "theory radius alpha=1.5 star_discrepancy=0.001": THEORY,
+    }
+    assert [str(rule) for rule in named.values()] == list(named)
+    for rule in (*named.values(), *RULES):
+        assert rule_named(str(rule)) == rule
     with pytest.raises(UnknownName, match="k=K earlier, k=K mutual"):
         rule_named("k=10")
 
@@ -145,56 +151,34 @@ def test_tiny_sets_have_the_edges_that_they_can_have(rule, count):
     assert edges.dtype == np.int32
 
 
-@pytest.mark.parametrize("kind", [KNearest, KMutual, KEarlier])
-@pytest.mark.parametrize("k", [0, -3, 2.5, True])
-def test_a_k_below_one_is_refused(kind, k):
-    with pytest.raises(InvalidValue, match="k must be"):
-        kind(k)
-
-
-@pytest.mark.parametrize("r", [0, -1, np.nan, np.inf, "1"])
-def test_a_radius_that_is_not_positive_and_finite_is_refused(r):
-    with pytest.raises(InvalidValue, match="radius"):
-        Radius(r)
-    with pytest.raises(InvalidValue, match="gamma"):
-        RadiusStar(r)
-
-
 @pytest.mark.parametrize(
-    "arguments",
+    ("rule", "bad", "text"),
     [
-        dict(alpha=1.0, dispersion=0.1),
-        dict(alpha=2.0),
-        dict(alpha=2.0, dispersion=0.1, star_discrepancy=0.1),
-        dict(alpha=2.0, dispersion=1.5),
-        dict(alpha=2.0, star_discrepancy=0.0),
+        *(
+            (rule, dict(k=k), "k must be")
+            for rule in (KNearest, KMutual, KEarlier)
+            for k in (0, -3, 2.5, True)
+        ),
+        *((Radius, dict(r=r), "radius") for r in (0, -1, np.nan, np.inf, "1")),
+        *((RadiusStar, dict(gamma=gamma), "gamma") for gamma in (0, -1, np.nan, np.inf, "1")),
+        (TheoryRadius, dict(alpha=1.0, dispersion=0.1), "alpha"),
+        (TheoryRadius, dict(alpha=2.0), "give either"),
+        (TheoryRadius, dict(alpha=2.0, dispersion=0.1, star_discrepancy=0.1), "give either"),
+        (TheoryRadius, dict(alpha=2.0, dispersion=1.5), "dispersion"),
+        (TheoryRadius, dict(alpha=2.0, star_discrepancy=0.0), "star_discrepancy"),
     ],
 )
-def test_a_theory_radius_without_a_theory_is_refused(arguments):
-    with pytest.raises(InvalidValue):
-        TheoryRadius(**arguments)
-
-
-def test_rules_say_their_name():
-    assert str(KNearest(10)) == "k=10 symmetrised"
-    assert str(KMutual(10)) == "k=10 mutual"
-    assert str(KEarlier(10)) == "k=10 earlier"
-    assert str(KStar()) == "k*"
-    assert str(Radius(0.5)) == "radius=0.5"
-    assert str(Radius(0.1 + 0.2)) == "radius=0.30000000000000004"
-    assert str(RadiusStar(2.0)) == "radius* gamma=2"
-    assert str(Complete()) == "complete"
-    assert str(THEORY) == "theory radius alpha=1.5 star_discrepancy=0.001"
+def test_what_is_no_rule_is_refused(rule, bad, text):
+    with pytest.raises(InvalidValue, match=text):
+        rule(**bad)
 
 
 def test_the_hole_of_a_set_is_within_the_bound_that_the_theory_radius_takes():
     # Without the factor 2 the first of these sets is a counterexample.
-    for points in ([[0.0, 0.375], [0.55, 0.975]], draw("uniform", 12, 2).points, draw("sobol", 32, 2).points):
-        discrepancy = star_discrepancy(points)
-        assert dispersion_linf(points) <= 2 * discrepancy ** (1 / 2)
-    assert dispersion_linf([[0.0, 0.375], [0.55, 0.975]]) > star_discrepancy(
-        [[0.0, 0.375], [0.55, 0.975]]
-    ) ** (1 / 2)
+    sets = ([[0.0, 0.375], [0.55, 0.975]], draw("uniform", 12, 2).points, draw("sobol", 32, 2).points)
+    shares = [dispersion_linf(points) / star_discrepancy(points) ** 0.5 for points in sets]
+    assert max(shares) <= 2
+    assert shares[0] > 1
 
 
 @pytest.mark.parametrize(("d", "k"), [(2, 10), (5, 10), (6, 20), (10, 20), (14, 28)])

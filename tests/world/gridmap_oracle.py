@@ -20,6 +20,17 @@ def distance_to_obstacles(a: Point, b: Point, occupied: np.ndarray) -> float:
     return nearest
 
 
+def points_to_obstacles(points: np.ndarray, occupied: np.ndarray) -> np.ndarray:
+    """Return the distance of (n, 2) points from all closed occupied squares and from outside the map, (n,)."""
+    rows, columns = np.nonzero(occupied)
+    height, width = occupied.shape
+    x, y = points[:, :1], points[:, 1:]
+    aside = np.maximum(np.maximum(columns - x, x - columns - 1), 0.0)
+    above = np.maximum(np.maximum(rows - y, y - rows - 1), 0.0)
+    outside = np.min(np.concatenate([x, y, width - x, height - y], axis=1), axis=1)
+    return np.minimum(np.hypot(aside, above).min(axis=1, initial=np.inf), np.maximum(outside, 0.0))
+
+
 def distance_to_outside(p: Point, rows: int, cols: int) -> float:
     """Return how far inside the map p is; the map is convex, so of a segment only its ends count."""
     return max(0.0, min(p[0], p[1], cols - p[0], rows - p[1]))

@@ -8,22 +8,12 @@ import pytest
 from evenroad.planning import plan
 from evenroad.world import GridMap
 from evenroad.world.clearance import largest_kept, least_distance
+from tests.world.gridmap_oracle import points_to_obstacles
 
 
 def _rooms(seed):
     rng = np.random.default_rng(seed)
     return GridMap(rng.random((40, 60)) < 0.04)
-
-
-def _to_squares(grid, points):
-    """Return the distance of points from the nearest occupied square or the outside, by trying all of them."""
-    rows, columns = np.nonzero(grid.occupied)
-    height, width = grid.occupied.shape
-    x, y = points[:, :1], points[:, 1:]
-    aside = np.maximum(np.maximum(columns - x, x - columns - 1), 0.0)
-    above = np.maximum(np.maximum(rows - y, y - rows - 1), 0.0)
-    outside = np.min(np.concatenate([x, y, width - x, height - y], axis=1), axis=1)
-    return np.minimum(np.hypot(aside, above).min(axis=1), outside)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -38,7 +28,7 @@ def test_the_clearance_of_a_disks_path_is_the_least_distance_along_it(seed):
     along = np.concatenate(
         [a + np.linspace(0.0, 1.0, 2001)[:, np.newaxis] * (b - a) for a, b in pairwise(result.path)]
     )
-    truth = _to_squares(grid, along).min() - 0.7
+    truth = points_to_obstacles(along, grid.occupied).min() - 0.7
     # The oracle looks at states, so it may be a little too large.
     assert truth - 0.02 <= result.clearance <= truth + 1e-9
 

@@ -52,8 +52,7 @@ class Asked:
     """A function that calls everything free but what it is told, and remembers what it was asked."""
 
     def __init__(self, is_free=lambda q: np.ones(len(q), dtype=bool)):
-        self.is_free = is_free
-        self.batches = []
+        self.is_free, self.batches = is_free, []
 
     def __call__(self, q):
         self.batches.append(q.copy())
@@ -68,13 +67,6 @@ def levels(n):
     return [state.tolist() for _, state in between_endpoints(np.array([n]), np.array([True]))]
 
 
-def test_states_come_in_halves_then_quarters_then_eighths():
-    assert levels(8) == [[4], [2, 6], [1, 3, 5, 7]]
-    assert levels(5) == [[2], [1, 3], [4]]
-    assert levels(2) == [[1]]
-    assert levels(1) == levels(0) == []
-
-
 @given(n=st.integers(1, 3000))
 def test_each_state_between_the_ends_comes_once_and_every_level_halves_the_gaps(n):
     seen = [0, n]
@@ -82,6 +74,9 @@ def test_each_state_between_the_ends_comes_once_and_every_level_halves_the_gaps(
         seen += states
         assert np.diff(np.sort(seen)).max() <= math.ceil(n / 2**level)
     assert sorted(seen) == list(range(n + 1))
+    assert levels(8) == [[4], [2, 6], [1, 3, 5, 7]]
+    assert levels(5) == [[2], [1, 3], [4]]
+    assert levels(1) == levels(0) == []
 
 
 def test_a_motion_too_long_for_one_batch_is_handed_out_in_parts():
@@ -122,20 +117,18 @@ def test_with_a_resolution_a_part_the_finer_division_counts():
         assert len(asked.states) == n + 1
 
 
-def test_a_blocked_middle_is_found_with_the_third_state():
-    asked = Asked(lambda q: np.abs(q[:, 0] - 0.5) > 0.01)
-    world = FunctionWorld(SQUARE, asked, 0.001, vectorised=True)
-    assert not world.motion_valid([[0.0, 0.0]], [[1.0, 0.0]])[0]
-    assert len(asked.states) == 3
-
-
-def test_a_blocked_end_is_found_before_any_state_between():
-    asked = Asked(lambda q: q[:, 0] > 0.5)
-    world = FunctionWorld(SQUARE, asked, 0.001, vectorised=True)
-    assert not world.motion_valid([[0.0, 0.0]], [[1.0, 0.0]])[0]
-    assert len(asked.states) == 1
-    assert not world.motion_valid([[1.0, 0.0]], [[0.0, 0.0]])[0]
-    assert len(asked.states) == 3
+@pytest.mark.parametrize(
+    ("is_free", "b", "asked_for"),
+    [
+        (lambda q: np.abs(q[:, 0] - 0.5) > 0.01, (1.0, 0.0), 3),  # the middle, after both ends
+        (lambda q: q[:, 0] > 0.5, (1.0, 0.0), 1),
+        (lambda q: q[:, 0] < 0.5, (1.0, 0.0), 2),
+    ],
+)
+def test_a_blocked_end_is_found_before_any_state_between_and_a_blocked_middle_next(is_free, b, asked_for):
+    asked = Asked(is_free)
+    assert not FunctionWorld(SQUARE, asked, 0.001, vectorised=True).motion_valid([[0.0, 0.0]], [b])[0]
+    assert len(asked.states) == asked_for
 
 
 def test_one_configuration_at_a_time_nothing_is_asked_after_the_first_blocked_state():
@@ -176,30 +169,25 @@ def test_a_function_cannot_write_into_the_callers_configurations():
 
 
 @pytest.mark.parametrize(
-    "answer",
+    ("answer", "vectorised"),
     [
-        lambda q: np.ones(len(q)),
-        lambda q: np.ones(len(q), dtype=int),
-        lambda q: np.ones((len(q), 1), dtype=bool),
-        lambda q: np.ones(len(q) + 1, dtype=bool),
-        lambda q: None,
+        (lambda q: np.ones(len(q)), True),
+        (lambda q: np.ones(len(q), dtype=int), True),
+        (lambda q: np.ones((len(q), 1), dtype=bool), True),
+        (lambda q: np.ones(len(q) + 1, dtype=bool), True),
+        (lambda q: None, True),
+        *((lambda q, answer=answer: answer, False) for answer in (1, None, np.array([True]), "free")),
     ],
 )
-def test_a_vectorised_answer_that_is_none_is_refused_and_the_function_named(answer):
+def test_an_answer_that_is_none_is_refused_and_the_function_named(answer, vectorised):
     def my_checker(q):
         return answer(q)
 
-    with pytest.raises(InvalidValue, match=r"my_checker must return a bool array of shape \(2,\)"):
-        FunctionWorld(SQUARE, my_checker, 0.1).valid([[0.1, 0.2], [0.3, 0.4]])
-
-
-@pytest.mark.parametrize("answer", [1, None, np.array([True]), "free"])
-def test_an_answer_for_one_configuration_that_is_none_is_refused(answer):
-    def my_checker(q):
-        return answer
-
-    with pytest.raises(InvalidValue, match="my_checker must return a bool for one"):
-        FunctionWorld(SQUARE, my_checker, 0.1, vectorised=False).valid([[0.1, 0.2]])
+    wanted = r"a bool array of shape \(2,\)" if vectorised else "a bool for one"
+    with pytest.raises(InvalidValue, match=f"my_checker must return {wanted}"):
+        FunctionWorld(SQUARE, my_checker, 0.1, vectorised=None if vectorised else False).valid(
+            [[0.1, 0.2], [0.3, 0.4]]
+        )
 
 
 def test_errors_of_the_function_itself_come_through():
@@ -231,27 +219,33 @@ def test_without_a_resolution_a_hundredth_of_the_extent_is_taken(space, extent):
     assert 0.9 * extent <= 100 * resolution <= extent
 
 
-@pytest.mark.parametrize("resolution", [0.0, -1.0, math.nan, math.inf, "fine", [0.1], (0.1, 0.1)])
-def test_a_resolution_that_is_none_is_refused(resolution):
-    with pytest.raises(InvalidValue, match="resolution"):
-        FunctionWorld(SQUARE, outside_a_disk, resolution)
+PLANE = SE2([0, 0], [1, 1])
 
 
-@pytest.mark.parametrize("resolution", [np.array(0.1), [0.1], [0.1, 0.0], [0.1, 0.1, 0.1], ["a", "b"]])
-def test_resolutions_must_be_one_a_part(resolution):
-    with pytest.raises(InvalidValue, match="resolution"):
-        FunctionWorld(SE2([0, 0], [1, 1]), outside_a_disk, resolution)
+@pytest.mark.parametrize(
+    ("space", "function", "resolution", "text"),
+    [
+        *(
+            (SQUARE, outside_a_disk, resolution, "resolution")
+            for resolution in (0.0, -1.0, math.nan, math.inf, "fine", [0.1], (0.1, 0.1))
+        ),
+        *(
+            (PLANE, outside_a_disk, resolution, "resolution")
+            for resolution in (np.array(0.1), [0.1], [0.1, 0.0], [0.1, 0.1, 0.1], ["a", "b"])
+        ),
+        (SQUARE, np.ones(3), 0.1, "is_valid"),
+        *((space, np.isfinite, 0.1, ".") for space in ("abc", 3, [(0, 1, 2)], None, [(1, 0)])),
+    ],
+)
+def test_what_is_no_space_no_function_or_no_resolution_is_refused(space, function, resolution, text):
+    with pytest.raises(InvalidValue, match=text):
+        FunctionWorld(space, function, resolution)
 
 
 def test_a_resolution_far_too_small_is_an_error_and_no_endless_wait():
     world = FunctionWorld(SQUARE, outside_a_disk, 1e-12)
     with pytest.raises(InvalidValue, match="resolution must be larger"):
         world.motion_valid([[0.0, 0.0]], [[0.0, 1.0]])
-
-
-def test_what_is_no_function_is_refused():
-    with pytest.raises(InvalidValue, match="is_valid"):
-        FunctionWorld(SQUARE, np.ones(3), 0.1)
 
 
 def _ball(radius):
@@ -271,13 +265,9 @@ def test_equal_worlds_have_one_fingerprint_and_others_another():
         replace(first, space=BoxSpace((0, 0), (1, 2))),
     ]
     assert len({world.fingerprint() for world in (first, *others)}) == 5
-
-
-def test_a_single_place_makes_no_difference_to_how_a_fingerprint_is_computed():
-    one = FunctionWorld(
-        BoxSpace((0, 0), (1, 1)), lambda q: bool(q[0] > 0.5), 0.1, vectorised=False, name="half"
-    )
-    many = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: q[:, 0] > 0.5, 0.1, name="half")
+    # One configuration at a time or many makes no difference.
+    one = FunctionWorld(SQUARE, lambda q: bool(q[0] > 0.5), 0.1, vectorised=False, name="half")
+    many = FunctionWorld(SQUARE, lambda q: q[:, 0] > 0.5, 0.1, name="half")
     assert one.fingerprint() == many.fingerprint()
 
 
@@ -340,9 +330,3 @@ def test_a_function_that_takes_both_is_asked_about_many():
     assert "one configuration" not in repr(world)
     assert world.valid((1, 0)) is True
     assert world.motion_valid((-1, 0), (1, 0)) is False
-
-
-@pytest.mark.parametrize("space", ["abc", 3, [(0, 1, 2)], None, [(1, 0)]])
-def test_what_is_no_space_is_told_so(space):
-    with pytest.raises(InvalidValue):
-        FunctionWorld(space, np.isfinite, 0.1)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from evenroad.world import GridMap
-from tests.world.gridmap_oracle import distance_to_obstacles
+from tests.world.gridmap_oracle import distance_to_obstacles, points_to_obstacles
 
 ROUNDING = 1e-9
 DENSITIES = (0.0, 0.01, 0.03, 0.1, 0.3, 0.7, 1.0)
@@ -114,13 +114,10 @@ def test_the_class_of_a_cell_holds_in_all_of_its_closed_square(radius):
         for row, col in np.argwhere(~occupied):
             state = cells[row + 1, col + 1]
             seen.add(int(min(state, 2)))
-            offsets = [(0, 0), (0, 1), (1, 0), (1, 1), *rng.random((4, 2)).tolist()]
-            distances = [
-                distance_to_obstacles((col + dx, row + dy), (col + dx, row + dy), occupied)
-                for dx, dy in offsets
-            ]
+            offsets = np.concatenate([[(0, 0), (0, 1), (1, 0), (1, 1)], rng.random((4, 2))])
+            distances = points_to_obstacles(np.array([col, row]) + offsets, occupied)
             if state == 0:
-                assert max(distances) < radius + ROUNDING
+                assert distances.max() < radius + ROUNDING
             elif state >= 2:
-                assert min(distances) >= radius + (state - 2) - ROUNDING
+                assert distances.min() >= radius + (state - 2) - ROUNDING
     assert len(seen) >= 2
