@@ -21,9 +21,7 @@ OF_PLANNERS = {
 }
 """Methods by which planners and files ask a world; users have `result` and `er.plan` for them."""
 
-NOT_YET = {
-    *("Roadmap", "Status", "CartesianLine", "OrientationConstraint", "load_roadmap"),
-}
+NOT_YET = {*("Roadmap", "Status", "CartesianLine", "OrientationConstraint", "load_roadmap")}
 """Names of the root that are about to move or to go."""
 
 

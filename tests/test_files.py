@@ -84,11 +84,7 @@ def test_whatever_is_read_the_error_is_ours(tmp_path, what, reader):
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
-    [
-        ("a: [1, 2\n", "line 2, column 1: "),
-        ("a: 1\n b: 2", "line 2, column 3: "),
-    ],
+    ("text", "says"), [("a: [1, 2\n", "line 2, column 1: "), ("a: 1\n b: 2", "line 2, column 3: ")]
 )
 def test_yaml_that_does_not_parse_is_said_with_its_place(tmp_path, text, says):
     (tmp_path / "a.yaml").write_text(text)

@@ -25,10 +25,8 @@ CALLS = {
     "draw random": ("x = er.draw('random', 64, 2, rng=0)", "x.points.shape == (64, 2)"),
     "draw uniform": ("x = er.draw('uniform', 64, 2, rng=0)", "x.points.shape == (64, 2)"),
     "draw with a Generator": ("x = er.draw('sobol', 64, 2, rng=np.random.default_rng(1))", "len(x) == 64"),
-    "draw twice the same": (
-        "x, y = er.draw('halton', 64, 3, rng=7), er.draw('halton', 64, 3, rng=7)",
-        "np.array_equal(x.points, y.points)",
-    ),
+    "draw twice the same": ("x, y = er.draw('halton', 64, 3, rng=7), er.draw('halton', 64, 3, rng=7)",
+        "np.array_equal(x.points, y.points)"),
     "points as an array": ("x = np.asarray(points)", "x.shape == (64, 2)"),
     "points have a shape": ("x = points.shape", "x == (64, 2)"),
     "points have a length": ("x = len(points)", "x == 64"),
@@ -37,10 +35,8 @@ CALLS = {
     "points know their dimension": ("x = points.dim", "x == 2"),
     "points know their origin": ("x = points.origin", "x is not None"),
     "points to a file": ("points.save('set.npy'); x = np.load('set.npy')", "x.shape == (64, 2)"),
-    "points there and back": (
-        "points.save('set.npy'); x = er.load_points('set.npy')",
-        "np.array_equal(x.points, points.points)",
-    ),
+    "points there and back": ("points.save('set.npy'); x = er.load_points('set.npy')",
+        "np.array_equal(x.points, points.points)"),
     "points of an array": ("x = er.PointSet(np.random.default_rng(0).random((32, 3)))", "len(x) == 32"),
     "points to a Path": ("points.save(Path('set.npz')); x = er.load_points(Path('set.npz'))", "len(x) == 64"),
     "points to text": ("points.save('set.csv'); x = er.load_points('set.csv')", "len(x) == 64"),
@@ -53,27 +49,18 @@ CALLS = {
     "qmc LatinHypercube": ("x = er.qmc.LatinHypercube(d=2, rng=0).random(8)", "x.shape == (8, 2)"),
     "qmc Even": ("x = er.qmc.Even(d=2, n=64, rng=0).random(64)", "x.shape == (64, 2)"),
     "qmc one point": ("x = er.qmc.Halton(d=2, rng=0).random()", "x.shape == (1, 2)"),
-    "qmc reset": (
-        "e = er.qmc.Halton(d=2, rng=0); x = e.random(4); e.reset(); y = e.random(4)",
-        "np.array_equal(x, y)",
-    ),
+    "qmc reset": ("e = er.qmc.Halton(d=2, rng=0); x = e.random(4); e.reset(); y = e.random(4)", "np.array_equal(x, y)"),
     "qmc fast forward": (
         "e = er.qmc.Halton(d=2, rng=0); x = e.random(8)[4:]; e.reset(); e.fast_forward(4); y = e.random(4)",
-        "np.allclose(x, y)",
-    ),
+        "np.allclose(x, y)"),
     "qmc counts": ("e = er.qmc.Halton(d=2, rng=0); e.random(4)", "e.num_generated == 4"),
     "qmc integers": ("x = er.qmc.Halton(d=2, rng=0).integers(0, u_bounds=10, n=5)", "x.shape == (5, 2)"),
-    "qmc is SciPy's": (
-        "from scipy.stats import qmc; x = er.qmc.Even(d=2, n=16, rng=0)",
-        "isinstance(x, qmc.QMCEngine)",
-    ),
+    "qmc is SciPy's": ("from scipy.stats import qmc; x = er.qmc.Even(d=2, n=16, rng=0)",
+        "isinstance(x, qmc.QMCEngine)"),
     "qmc discrepancy": ("x = er.qmc.discrepancy(points.points)", "0 < x < 0.2"),
     "qmc discrepancy by method": ("x = er.qmc.discrepancy(points.points, method='L2-star')", "0 < x < 0.2"),
     "qmc scale": ("x = er.qmc.scale(points.points, [-1, -2], [1, 2])", "x.min() < -1"),
-    "SciPy takes the points": (
-        "from scipy.stats import qmc; x = qmc.discrepancy(np.asarray(points))",
-        "0 < x < 0.2",
-    ),
+    "SciPy takes the points": ("from scipy.stats import qmc; x = qmc.discrepancy(np.asarray(points))", "0 < x < 0.2"),
     # --- maps
     "map by name": ("x = er.load_map('maze3')", "isinstance(x, er.GridMap)"),
     "map by the name of a file": ("x = er.load_map('office.yaml')", "isinstance(x, er.GridMap)"),
@@ -90,19 +77,14 @@ CALLS = {
     "map explain": ("x = disk.explain((0.5, 0.5))", "isinstance(str(x), str)"),
     "map dimension": ("x = disk.dim", "x == 2"),
     "map plan": ("x = er.plan(disk, start, goal)", "x.solved"),
-    "map plan with points": (
-        "x = er.plan(disk, start, goal, er.draw('sobol', 512, 2))",
-        "x.path.shape[1] == 2",
-    ),
+    "map plan with points": ("x = er.plan(disk, start, goal, er.draw('sobol', 512, 2))", "x.path.shape[1] == 2"),
     "map plan by keyword": ("x = er.plan(disk, start=start, goal=goal, seconds=5)", "x.solved"),
     "map plan by RRTConnect": ("x = er.plan(disk, start, goal, er.RRTConnect(), rng=0)", "x.solved"),
     "map plan by PRM": ("x = er.plan(disk, start, goal, er.PRM(512), rng=0)", "x.solved"),
     "map plan straight": ("x = er.plan(gridmap, start, goal, radius=0.02)", "x.solved"),
     "map plot": ("x = gridmap.plot()", "x is not None"),
-    "map other robots": (
-        "x = gridmap.world(footprint=[(-.03, -.02), (.03, -.02), (.03, .02), (-.03, .02)])",
-        "x.dim == 3",
-    ),
+    "map other robots": ("x = gridmap.world(footprint=[(-.03, -.02), (.03, -.02), (.03, .02), (-.03, .02)])",
+        "x.dim == 3"),
     # --- what a plan answers
     "result path": ("x = result.path", "x.ndim == 2"),
     "result status": ("x = result.status", "x == er.Status.SOLVED or str(x) == 'solved'"),
@@ -113,10 +95,7 @@ CALLS = {
     "result message": ("x = result.message", "isinstance(x, str)"),
     "result seconds": ("x = result.seconds", "x >= 0"),
     "result length": ("x = result.length", "x > 0"),
-    "result resample": (
-        "x = result.resample(0.01)",
-        "np.linalg.norm(np.diff(x, axis=0), axis=1).max() < 0.0101",
-    ),
+    "result resample": ("x = result.resample(0.01)", "np.linalg.norm(np.diff(x, axis=0), axis=1).max() < 0.0101"),
     "result save": ("result.save('way.json')", "Path('way.json').exists()"),
     "result save csv": ("result.save('way.csv')", "Path('way.csv').exists()"),
     "result plot": ("x = result.plot()", "x is not None"),
@@ -124,14 +103,8 @@ CALLS = {
     "result clearance": ("x = result.clearance", "x >= 0"),
     # --- arms
     "robot by name": ("x = er.load_robot('ur5')", "isinstance(x, er.Robot)"),
-    "robot of a file": (
-        "Path('one.urdf').write_text(URDF); x = er.load_robot('one.urdf')",
-        "isinstance(x, er.Robot)",
-    ),
-    "robot of a Path": (
-        "Path('one.urdf').write_text(URDF); x = er.load_robot(Path('one.urdf'))",
-        "x.name == 'one'",
-    ),
+    "robot of a file": ("Path('one.urdf').write_text(URDF); x = er.load_robot('one.urdf')", "isinstance(x, er.Robot)"),
+    "robot of a Path": ("Path('one.urdf').write_text(URDF); x = er.load_robot(Path('one.urdf'))", "x.name == 'one'"),
     "robot joint names": ("x = robot.joint_names", "len(x) == 6 and all(isinstance(n, str) for n in x)"),
     "robot dof": ("x = robot.dof", "x == 6"),
     "robot limits": ("x = robot.limits", "np.shape(x) == (6, 2)"),
@@ -142,14 +115,10 @@ CALLS = {
     "robot fk of the tip": ("x = robot.fk(np.zeros(6))", "len(x.xyz) == 3"),
     "robot fk of a dict": ("x = robot.fk({'elbow_joint': -1.5}, 'tool0')", "len(x.xyz) == 3"),
     "robot fk of a state": ("x = robot.fk('home', 'tool0')", "len(x.xyz) == 3"),
-    "robot ik": (
-        "p = robot.fk(robot.states['home'], 'tool0'); x = robot.ik(p)",
-        "x.ndim == 2 and x.shape[1] == 6 and len(x) > 0",
-    ),
-    "robot ik holds": (
-        "p = robot.fk('home', 'tool0'); x = robot.ik(p, link='tool0')",
-        "np.allclose(robot.fk(x[0], 'tool0').xyz, p.xyz, atol=1e-4)",
-    ),
+    "robot ik": ("p = robot.fk(robot.states['home'], 'tool0'); x = robot.ik(p)",
+        "x.ndim == 2 and x.shape[1] == 6 and len(x) > 0"),
+    "robot ik holds": ("p = robot.fk('home', 'tool0'); x = robot.ik(p, link='tool0')",
+        "np.allclose(robot.fk(x[0], 'tool0').xyz, p.xyz, atol=1e-4)"),
     "robot random one": ("x = robot.random(np.random.default_rng(0))", "x.shape == (6,)"),
     "robot random many": ("x = robot.random(0, 10)", "x.shape == (10, 6)"),
     "robot repr": ("x = repr(robot)", "'\\n' not in x and len(x) < 200"),
@@ -159,26 +128,17 @@ CALLS = {
     "pose of a matrix": ("x = er.Pose.from_matrix(np.eye(4))", "len(x.xyz) == 3"),
     "poses multiply": ("x = er.Pose((1, 0, 0)) @ er.Pose((0, 1, 0))", "np.allclose(x.xyz, (1, 1, 0))"),
     "pose inverts": ("x = er.Pose((1, 0, 0)).inverse()", "np.allclose(x.xyz, (-1, 0, 0))"),
-    "scene of solids": (
-        "x = er.Scene([er.Box((0.2, 0.2, 0.2), xyz=(0.6, 0, 0.3)), er.Sphere(0.1, xyz=(0, 0.6, 0.3))])",
-        "len(x.obstacles) == 2",
-    ),
+    "scene of solids": ("x = er.Scene([er.Box((0.2, 0.2, 0.2), xyz=(0.6, 0, 0.3)), er.Sphere(0.1, xyz=(0, 0.6, 0.3))])",
+        "len(x.obstacles) == 2"),
     "scene of other solids": (
         "x = er.Scene([er.Cylinder(0.1, 0.4, xyz=(0.6, 0, 0)), er.Capsule(radius=0.1, length=0.4)])",
-        "len(x.obstacles) == 2",
-    ),
-    "scene of a cloud": (
-        "x = er.Scene([er.PointCloud(np.random.default_rng(0).random((50, 3)) + 1)])",
-        "len(x.obstacles)",
-    ),
+        "len(x.obstacles) == 2"),
+    "scene of a cloud": ("x = er.Scene([er.PointCloud(np.random.default_rng(0).random((50, 3)) + 1)])",
+        "len(x.obstacles)"),
     "scene of a dict": (
         "x = er.Scene({'obstacles': [{'box': {'size': [0.2, 0.2, 0.2]}, 'xyz': [0.6, 0, 0.3], 'name': 'can'}]})",
-        "x.obstacles[0].name == 'can'",
-    ),
-    "scene and one more": (
-        "x = scene.with_(er.Sphere(0.05, xyz=(0.3, 0.3, 0.3), name='ball'))",
-        "x is not scene",
-    ),
+        "x.obstacles[0].name == 'can'"),
+    "scene and one more": ("x = scene.with_(er.Sphere(0.05, xyz=(0.3, 0.3, 0.3), name='ball'))", "x is not scene"),
     "scene by name": ("x = er.load_scene('box-reach')", "isinstance(x, er.Scene)"),
     "arm world": ("x = er.ArmWorld(robot, scene)", "x.dim == 6"),
     "arm world of names": ("x = er.ArmWorld('ur5', 'box-reach')", "x.dim == 6"),
@@ -188,31 +148,19 @@ CALLS = {
     "arm valid of many": ("x = arm.valid(np.stack([robot_home] * 3))", "x.shape == (3,) and x.all()"),
     "arm explain": ("x = arm.explain(robot_home)", "isinstance(str(x), str)"),
     "arm plan": ("x = er.plan(arm, 'home', robot_home + 0.2)", "x.solved"),
-    "arm plan to a pose": (
-        "x = er.plan(arm, 'home', er.Pose((0.5, 0.2, 0.4), rpy=(3.14159, 0, 0)))",
-        "x.solved",
-    ),
+    "arm plan to a pose": ("x = er.plan(arm, 'home', er.Pose((0.5, 0.2, 0.4), rpy=(3.14159, 0, 0)))", "x.solved"),
     # --- worlds of one's own
     "own world": ("x = er.FunctionWorld(space, free, resolution=0.02)", "x.dim == 2"),
-    "own world of one": (
-        "x = er.FunctionWorld(space, free_of_one, resolution=0.02)",
-        "x.valid(np.ones((4, 2))).all()",
-    ),
+    "own world of one": ("x = er.FunctionWorld(space, free_of_one, resolution=0.02)", "x.valid(np.ones((4, 2))).all()"),
     "own world of bounds": ("x = er.FunctionWorld([(-2, 2), (-2, 2)], free, resolution=0.02)", "x.dim == 2"),
-    "own world valid of one": (
-        "x = er.FunctionWorld(space, free_of_one).valid((1, 1))",
-        "x in (True, False) and np.ndim(x) == 0",
-    ),
+    "own world valid of one": ("x = er.FunctionWorld(space, free_of_one).valid((1, 1))",
+        "x in (True, False) and np.ndim(x) == 0"),
     "own world plans": (
         "x = er.plan(er.FunctionWorld(space, free, resolution=0.02), (-1, 0), (1, 0), er.draw('sobol', 256, 2))",
-        "x.solved",
-    ),
-    "own world SE2": (
-        "x = er.FunctionWorld(er.spaces.SE2((-5, -5), (5, 5)), free, resolution=0.02)",
-        "x.dim == 3",
-    ),
+        "x.solved"),
+    "own world SE2": ("x = er.FunctionWorld(er.spaces.SE2((-5, -5), (5, 5)), free, resolution=0.02)", "x.dim == 3"),
     "own world box space": ("x = er.spaces.BoxSpace((-1, -1), (1, 1))", "x.dim == 2"),
-}
+}  # fmt: skip
 
 NOT_YET: dict[str, str] = {
     "map other robots": "GridMap.world() got an unexpected keyword argument 'footprint'",

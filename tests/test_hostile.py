@@ -112,15 +112,9 @@ HOSTILE = {
     "long_name.yaml": (load_scene, b"n" * 900_000 + b": 1\n"),
     "bomb.npz": (load_points, npz(points=BOMB, origin=TEXT, hash=TEXT)),
     "vast.npz": (load_points, npz(points=VAST, origin=TEXT, hash=TEXT)),
-    "word.npz": (
-        load_points,
-        npz(points=TEXT, origin=npy(header((), f"<U{10**9}"), b"x"), hash=TEXT),
-    ),
+    "word.npz": (load_points, npz(points=TEXT, origin=npy(header((), f"<U{10**9}"), b"x"), hash=TEXT)),
     "vast.npy": (load_points, VAST),
-    "roadmap.npz": (
-        load_roadmap,
-        npz(points=BOMB, **dict.fromkeys(ROADMAP, TEXT)),
-    ),
+    "roadmap.npz": (load_roadmap, npz(points=BOMB, **dict.fromkeys(ROADMAP, TEXT))),
     "robot.npz": (load_roadmap, npz(points=BOMB)),
     "vast_cloud.npy": (load_cloud, VAST),
     "vast.ply": (

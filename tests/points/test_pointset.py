@@ -42,24 +42,12 @@ def test_only_matrices_are_point_sets(shape):
         PointSet(np.zeros(shape))
 
 
-@pytest.mark.parametrize(
-    "bad",
-    [
-        [["a", "b"]],
-        [[b"0.5", b"0.5"]],
-        [[0.5 + 0j, 0.5]],
-        np.array([["0.5"]], dtype=object),
-        np.array([[np.complex128(0.5)]], dtype=object),
-        np.array([[np.timedelta64(0, "s")]], dtype=object),
-        np.array([[np.datetime64(0, "s")]], dtype=object),
-        np.zeros((2, 2), dtype="m8[s]"),
-        np.zeros((2, 2), dtype="M8[s]"),
-        np.zeros((2, 2), dtype="V8"),
-        [[None]],
-        [[10**400]],
-        [[0.5, 0.5], [0.5]],
-    ],
-)
+@pytest.mark.parametrize("bad", [
+    [["a", "b"]], [[b"0.5", b"0.5"]], [[0.5 + 0j, 0.5]], np.array([["0.5"]], dtype=object),
+    np.array([[np.complex128(0.5)]], dtype=object), np.array([[np.timedelta64(0, "s")]], dtype=object),
+    np.array([[np.datetime64(0, "s")]], dtype=object), np.zeros((2, 2), dtype="m8[s]"),
+    np.zeros((2, 2), dtype="M8[s]"), np.zeros((2, 2), dtype="V8"), [[None]], [[10**400]], [[0.5, 0.5], [0.5]],
+])  # fmt: skip
 def test_what_is_not_a_real_number_is_refused(bad):
     with pytest.raises(InvalidValue, match="array of numbers"):
         PointSet(bad)

@@ -52,18 +52,11 @@ def test_interpolation_hits_both_ends_to_the_last_bit():
     np.testing.assert_array_equal(TURNED.interpolate(a, b, 1.0), b)
 
 
-@pytest.mark.parametrize(
-    ("edge_u", "edge_v", "text"),
-    [
-        ((0.0, 0.0), (0.0, 1.0), "length"),
-        ((1.0, 0.0), (0.0, 0.0), "length"),
-        ((1.0, 0.0), (1.0, 1.0), "perpendicular"),
-        ((1.0, math.nan), (0.0, 1.0), "finite"),
-        ((1.0, math.inf), (0.0, 1.0), "finite"),
-        ((1.0,), (0.0, 1.0), "2 finite"),
-        ("ab", (0.0, 1.0), "2 finite"),
-    ],
-)
+@pytest.mark.parametrize(("edge_u", "edge_v", "text"), [
+    ((0.0, 0.0), (0.0, 1.0), "length"), ((1.0, 0.0), (0.0, 0.0), "length"),
+    ((1.0, 0.0), (1.0, 1.0), "perpendicular"), ((1.0, math.nan), (0.0, 1.0), "finite"),
+    ((1.0, math.inf), (0.0, 1.0), "finite"), ((1.0,), (0.0, 1.0), "2 finite"), ("ab", (0.0, 1.0), "2 finite"),
+])  # fmt: skip
 def test_edges_that_do_not_span_a_rectangle_are_refused(edge_u, edge_v, text):
     with pytest.raises(InvalidValue, match=text):
         Rectangle(corner=(0.0, 0.0), edge_u=edge_u, edge_v=edge_v)

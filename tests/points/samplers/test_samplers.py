@@ -66,12 +66,6 @@ def test_starting_later_gives_the_rest_of_the_same_sequence(sampler, scramble):
     assert rest.origin.start == 13
 
 
-def test_blocks_follow_each_other_from_index_one():
-    whole = Halton(scramble=False).draw(1 + 3 * 20, 2).points
-    blocks = [Halton(scramble=False, start=run * 20 + 1).draw(20, 2).points for run in (0, 1, 2)]
-    np.testing.assert_array_equal(np.concatenate(blocks), whole[1:])
-
-
 class TestSukharev(SamplerContract):
     sampler = Sukharev()
     shapes = ((1, 1), (7, 1), (64, 2), (27, 3))
@@ -84,9 +78,6 @@ class TestSukharev(SamplerContract):
     def test_another_count_is_refused_and_the_two_nearest_are_named(self):
         with pytest.raises(NotAvailable, match=r"n=100 .* 64 and 125"):
             self.sampler.draw(100, 3)
-
-    def test_fewer_points_come_only_when_allowed(self):
-        assert Sukharev(allow_fewer=True).draw(100, 3).n == 64
 
     def test_one_point_is_the_middle_of_any_cube(self):
         assert (self.sampler.draw(1, 100).points == 0.5).all()

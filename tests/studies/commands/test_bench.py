@@ -14,6 +14,7 @@ from evenroad.cli import main
 from evenroad.errors import BrokenFile
 from evenroad_studies.bench.samplers import SAMPLERS
 from evenroad_studies.bench.store import Store, open_store, read_rows
+from tests.studies.report.stores import made_up, write_store
 
 SMALL = ("bench", "paper", "--runs", 2, "--only", "hypercube-legacy6,corridor-2d-0.1", "--quick", "--jobs", 1)
 
@@ -26,29 +27,29 @@ def _cells(out, problem, n):
     return dict(zip(SAMPLERS, cells, strict=True))
 
 
-def test_a_suite_is_run_shown_and_found_done_the_next_time(run, tmp_path):
+def test_a_suite_is_run_shown_within_80_columns_exported_and_found_done_the_next_time(run, tmp_path):
     code, out, err = run(*SMALL)
     assert code == 0, err
-    rows = read_rows(tmp_path / "results.db")
+    rows, lines = read_rows(tmp_path / "results.db"), out.splitlines()
     assert rows.problem.present() == ("corridor-2d-0.1", "hypercube-legacy6")
     assert f"{len(rows)} tasks run now, 0 found done" in out
     assert "report: evenroad report results.db -o out/" in out
-    code, out, _ = run(*SMALL)
-    assert code == 0
-    assert f"0 tasks run now, {len(rows)} found done" in out
-
-
-def test_the_table_shows_success_by_problem_n_and_sampler_within_80_columns(run, tmp_path):
-    _, out, _ = run(*SMALL)
-    rows = read_rows(tmp_path / "results.db")
     here = rows.problem.is_in(["corridor-2d-0.1"]) & (rows.n == 256) & rows.sampler.is_in(["uniform"])
-    lines = out.splitlines()
     assert _cells(out, "corridor-2d-0.1", 256)["uniform"] == f"{100 * rows.solved[here].mean():.0f}"
     # There is no grid of 128 points.
     assert _cells(out, "corridor-2d-0.1", 128)["sukharev"] == "–"
     assert [word[:6] for word in lines[1].split()[1:]] == [name.split()[0][:6] for name in SAMPLERS]
     assert lines[2].split() == ["blocks", "scram.", "blocks", "scram.", "nell"]
     assert max(map(len, lines)) <= 80
+    code, out, _ = run(*SMALL)
+    assert (code, f"0 tasks run now, {len(rows)} found done" in out) == (0, True)
+    # With the option that scripts of earlier versions say, and without.
+    for option in ((), ("--arena",)):
+        code, out, err = run("export", "results.db", *option, "-o", "arena.db")
+        assert (code, f"{len(rows)} runs" in out) == (0, True), err
+        connection = sqlite3.connect(tmp_path / "arena.db")
+        assert connection.execute("SELECT count(*) FROM runs").fetchone() == (len(rows),)
+        connection.close()
 
 
 def test_the_table_names_its_rule_and_search_and_the_fair_one_shows_k_10(run, tmp_path):
@@ -163,9 +164,7 @@ def test_a_file_that_is_no_store_is_refused_before_anything_runs(run, tmp_path):
 
 
 def test_a_damaged_store_is_one_line_and_exit_code_2_for_every_verb_that_reads_it(run, tmp_path):
-    run(*SMALL)
-    store = tmp_path / "results.db"
-    connection = sqlite3.connect(store)
+    connection = sqlite3.connect(write_store(tmp_path / "results.db", made_up(runs=2)))
     connection.execute("UPDATE rows SET valid = valid + 1 WHERE run = 1")
     connection.commit()
     connection.close()
@@ -174,16 +173,6 @@ def test_a_damaged_store_is_one_line_and_exit_code_2_for_every_verb_that_reads_i
         assert code == 2
         assert err.startswith("evenroad: error: results.db is damaged: the row with the key ")
         assert len(err.splitlines()) == 1
-
-
-@pytest.mark.parametrize("address", ["foo", "foo://host:8786", "tcp://127.0.0.1", "tcp://host:port"])
-def test_an_address_that_is_none_is_one_line_at_once(run, address):
-    pytest.importorskip("distributed")
-    code, _, err = run("bench", "--quick", "--scheduler", address)
-    assert code == 2
-    assert err == (
-        f"evenroad: error: the address of a scheduler must be of the form tcp://host:8786, got {address!r}\n"
-    )
 
 
 INTERRUPTED = [
@@ -241,19 +230,6 @@ def test_ctrl_c_twice_ends_a_run_of_two_processes_at_once_and_keeps_what_is_fini
         pass
     assert len(read_rows(store)) >= len(rows)
     assert [each.name for each in tmp_path.iterdir() if each.is_file()] == ["results.db"]
-
-
-def test_export_writes_a_planner_arena_database(run, tmp_path):
-    run(*SMALL)
-    code, out, err = run("export", "results.db", "-o", "arena.db")
-    assert code == 0, err
-    connection = sqlite3.connect(tmp_path / "arena.db")
-    (runs,) = connection.execute("SELECT count(*) FROM runs").fetchone()
-    connection.close()
-    assert runs == len(read_rows(tmp_path / "results.db"))
-    assert f"{runs} runs" in out
-    # What scripts of earlier versions say.
-    assert run("export", "results.db", "--arena", "-o", "arena.db")[0] == 0
 
 
 def test_a_suite_says_that_it_leaves_cells_out_without_the_large_sets(monkeypatch, tmp_path):

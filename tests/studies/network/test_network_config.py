@@ -8,22 +8,10 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad_studies.network import NetworkConfig
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("n", 1),
-        ("n", 2.0),
-        ("d", 0),
-        ("width", 0),
-        ("layers", 0),
-        ("k", True),
-        ("steps", 0),
-        ("rate", 0.0),
-        ("rate", float("inf")),
-        ("noise", -1e-6),
-        ("noise", float("nan")),
-    ],
-)
+@pytest.mark.parametrize(("name", "value"), [
+    ("n", 1), ("n", 2.0), ("d", 0), ("width", 0), ("layers", 0), ("k", True), ("steps", 0), ("rate", 0.0),
+    ("rate", float("inf")), ("noise", -1e-6), ("noise", float("nan")),
+])  # fmt: skip
 def test_a_value_out_of_range_is_refused_by_name(name, value):
     with pytest.raises(InvalidValue, match=f"{name} must be .*, got"):
         NetworkConfig(**{"n": 16, "d": 2, name: value})

@@ -11,8 +11,8 @@ from evenroad_studies.report import runs as module
 from evenroad_studies.report.analysis import analyse, load_expected, needed_of, verdicts_of
 from evenroad_studies.report.cells import cells_of
 from evenroad_studies.report.comparisons import comparisons_of
-from evenroad_studies.report.fair import parts_of, pooled
-from evenroad_studies.report.runs import combined, first_rows, natural_key, sums_by_unit
+from evenroad_studies.report.fair import pooled
+from evenroad_studies.report.runs import combined, first_rows, natural_key
 from evenroad_studies.statistics.rates import bonett_price, fisher_exact, holm, mcnemar_exact, wilson
 from tests.studies.report.stores import made_up, runs_from, solved, task, write_store
 
@@ -45,16 +45,6 @@ def test_a_cell_counts_what_a_loop_counts(rows, cells):
         assert cell.mean_seconds == pytest.approx(np.mean([each.seconds for each in mine]))
 
 
-def test_cells_come_in_the_order_of_tables(cells):
-    assert list(dict.fromkeys(cell.sampler for cell in cells)) == [
-        "uniform",
-        "halton paper-blocks",
-        "halton scrambled",
-        "hickernell",
-    ]
-    assert [cell.n for cell in cells[:3]] == [128, 256, 512]
-
-
 def test_samplers_drawn_afresh_get_wilsons_interval_and_pools_one_over_sets(cells):
     for cell in cells:
         if cell.sampler == "hickernell":
@@ -72,15 +62,6 @@ def test_sets_that_were_drawn_once_each_are_independent_runs(tmp_path):
     assert cell.interval.kind == "wilson"
 
 
-def test_random_worlds_with_several_runs_each_are_the_units(tmp_path):
-    rows = [
-        (task("fair-balls-2d-50", run=run, instance=run // 3), solved(run // 3 % 2 == 0)) for run in range(60)
-    ]
-    (cell,) = cells_of(runs_from(tmp_path / "a.db", rows))
-    assert cell.interval.kind == "wilson over instances"
-    assert len(cell.units.runs) == 20
-
-
 def test_failures_are_runs_that_were_not_solved_and_have_no_means(tmp_path):
     rows = [
         (task(run=0), solved(valid=40)),
@@ -91,12 +72,6 @@ def test_failures_are_runs_that_were_not_solved_and_have_no_means(tmp_path):
     assert (cell.runs, cell.solved, cell.failures) == (3, 1, 2)
     assert cell.mean_valid == 40
     assert math.isnan(cell.sd_valid)
-
-
-def test_a_cell_of_failures_only_has_no_means(tmp_path):
-    (cell,) = cells_of(runs_from(tmp_path / "a.db", [(task(), Outcome("timeout"))]))
-    assert math.isnan(cell.mean_valid)
-    assert cell.rate == 0
 
 
 def test_early_milestones_are_those_at_the_solution_where_there_was_one(tmp_path):
@@ -131,12 +106,6 @@ def test_each_pair_of_samplers_is_tested_once(runs, cells):
         if each.cell.n == 128
     ]
     assert len(pairs) == len(set(pairs)) == 3 + 2
-
-
-def test_a_pool_is_compared_set_by_set(runs, cells):
-    tests = {each.cell.sampler: each.test for each in comparisons_of(runs, cells)}
-    assert tests["hickernell"] == "Fisher over sets"
-    assert tests["halton paper-blocks"] == "McNemar"
 
 
 def test_runs_without_a_counterpart_are_left_out(tmp_path):
@@ -313,18 +282,6 @@ def test_pools_are_by_generator_dimension_and_difficulty_of_the_name(tmp_path):
     }
 
 
-@pytest.mark.parametrize(
-    ("problem", "parts"),
-    [
-        ("fair-balls-10d-50", ("balls", "10d", "50 %")),
-        ("fair-se3-25", ("se3", "se3", "25 %")),
-        ("fair-maze", ("maze", "maze", "-")),
-    ],
-)
-def test_names_of_fair_problems_are_taken_apart(problem, parts):
-    assert parts_of(problem) == parts
-
-
 def test_a_store_without_a_fair_suite_has_none(runs):
     assert pooled(runs) == {}
 
@@ -349,18 +306,6 @@ def test_codes_are_the_same_by_table_and_by_sorting(monkeypatch):
     monkeypatch.setattr(module, "TABLE_LIMIT", 0)
     assert np.array_equal(combined(*columns), by_table)
     assert np.array_equal(first_rows(by_table), np.unique(by_table, return_index=True)[1])
-
-
-def test_sums_by_unit_are_those_of_a_loop():
-    rng = np.random.default_rng(0)
-    group, unit, column = rng.integers(0, 4, 50), rng.integers(-3, 3, 50), rng.integers(-2, 3, 50)
-    group[group == 2] = 3
-    found = sums_by_unit(group, 5, unit, column)
-    for g in range(5):
-        of = {u: column[(group == g) & (unit == u)] for u in unit[group == g]}
-        assert found[g].unit.tolist() == sorted(of)
-        assert found[g].sums.tolist() == [of[u].sum() for u in sorted(of)]
-        assert found[g].runs.tolist() == [len(of[u]) for u in sorted(of)]
 
 
 def test_an_empty_store_is_analysed_to_nothing(tmp_path):

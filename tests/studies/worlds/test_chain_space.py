@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.space.protocol import all_distances
 from evenroad.testing import SpaceContract
 from evenroad_studies.worlds.chain import ChainSpace
 
@@ -75,10 +74,3 @@ def test_a_chain_without_links_is_refused():
     for wrong in (0, -1, 2.0, True):
         with pytest.raises(InvalidValue, match="joints"):
             ChainSpace(wrong)
-
-
-def test_all_pairs_have_the_distances_of_pair_after_pair():
-    space = ChainSpace(5)
-    q = space.from_cube(np.random.default_rng(0).random((50, space.cube_dim)))
-    pairs = [[space.distance(x[np.newaxis], y[np.newaxis])[0] for y in q[15:]] for x in q[:20]]
-    np.testing.assert_allclose(all_distances(space, q[:20], q[15:]), pairs, rtol=1e-12, atol=1e-12)

@@ -10,7 +10,6 @@ import pytest
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.testing import WorldContract
-from evenroad.world import FunctionWorld
 from evenroad_studies.problems import source_named
 from evenroad_studies.worlds import Corridor
 
@@ -76,12 +75,6 @@ def test_only_the_first_coordinates_are_tested_where_so_asked(side):
     q = np.random.default_rng(1).random((3000, 5))
     free = Corridor(5, 0.3, checked=3, side=side).valid(q)
     np.testing.assert_array_equal(free, [is_free(x[:3], 0.3, side) for x in q])
-
-
-def test_the_two_sides_are_mirror_images_and_not_the_same():
-    q = np.random.default_rng(2).random((2000, 3))
-    np.testing.assert_array_equal(Corridor(3, 0.3).valid(q), Corridor(3, 0.3, side="demo").valid(q[:, ::-1]))
-    assert (Corridor(3, 0.3).valid(q) != Corridor(3, 0.3, side="demo").valid(q)).any()
 
 
 def free_volume(m, lam):
@@ -175,12 +168,3 @@ def test_the_legacy_problem_is_the_one_of_the_paper():
 def test_parameters_that_make_no_corridor_are_refused(arguments, error, text):
     with pytest.raises(error, match=text):
         Corridor(*arguments)
-
-
-def test_a_corridor_as_a_function_gives_what_the_corridor_gives():
-    world = Corridor(3, 0.3)
-    q = np.random.default_rng(1).random((20_000, 3))
-    q = q[world.valid(q)][:600]
-    function = FunctionWorld(world.space, world.valid, world.resolution)
-    motions = q, np.roll(q, 1, axis=0)
-    np.testing.assert_array_equal(function.motion_valid(*motions), world.motion_valid(*motions))

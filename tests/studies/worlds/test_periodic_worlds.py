@@ -139,16 +139,10 @@ def test_without_balls_all_motions_in_the_cube_are_free():
     assert PeriodicBalls(np.empty((0, 3)), 0.1).motion_valid(np.zeros((1, 3)), np.ones((1, 3)))[0]
 
 
-@pytest.mark.parametrize(
-    ("centres", "radius", "match"),
-    [
-        (np.zeros(3), 0.1, "centres"),
-        (np.zeros((2, 0)), 0.1, "centres"),
-        ([[0.5, np.nan]], 0.1, "finite"),
-        ([[0.5, 1.5]], 0.1, "1.5"),
-        ([[0.5, 0.5]], 0.0, "radius"),
-    ],
-)
+@pytest.mark.parametrize(("centres", "radius", "match"), [
+    (np.zeros(3), 0.1, "centres"), (np.zeros((2, 0)), 0.1, "centres"), ([[0.5, np.nan]], 0.1, "finite"),
+    ([[0.5, 1.5]], 0.1, "1.5"), ([[0.5, 0.5]], 0.0, "radius"),
+])  # fmt: skip
 def test_balls_that_cannot_be_are_refused(centres, radius, match):
     with pytest.raises(InvalidValue, match=match):
         PeriodicBalls(centres, radius)
