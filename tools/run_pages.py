@@ -110,6 +110,11 @@ INSTEAD = {
     "evenroad roadmap my_arm.urdf --cell cell.yaml -n 1024 *": Instead(
         None, "half a minute: tests/cli runs such"
     ),
+    "evenroad train -n 50 -d 3 *": Instead(
+        'evenroad train -n 50 -d 3 --objective "hickernell+10*riesz" --sets 2 --steps 50 --jobs 1 -o sets/',
+        "two processes that start for it",
+    ),
+    "evenroad view box-reach.json --gif *": Instead(None, "seconds of drawing: an example and tests/cli do"),
     "evenroad view box-reach.json": Instead(None, "serves a page until it is stopped (extra [view])"),
     "evenroad robot duo.urdf *": Instead(None, "a robot of two arms that does not ship"),
     "evenroad robot arm.urdf.xacro *": Instead(None, "needs the extra [xacro] and a package of ROS"),
@@ -117,7 +122,10 @@ INSTEAD = {
 }
 """A command, or how it begins -> what is run in its place."""
 
-SMALLER = {"er.ArmWorld(robot, cell), 1024)": 'er.ArmWorld(robot), er.draw("even", 16, 6))'}
+SMALLER = {
+    "er.ArmWorld(robot, cell), 1024)": 'er.ArmWorld(robot), er.draw("even", 16, 6))',
+    "world, runs = maze.world(), 100": "world, runs = maze.world(), 5",
+}
 """Python that takes long -> what is run in its place."""
 
 
