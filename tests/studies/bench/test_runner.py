@@ -72,12 +72,8 @@ def test_every_task_gets_a_row_and_the_report_counts_them(path):
 
 
 def test_a_second_run_finds_everything_done(calm):
-    report = _run(calm, workers=_workers(_must_not_run))
+    report = _run(calm, workers=_workers(lambda tasks, limit: pytest.fail("nothing was left to run")))
     assert (report.found, report.finished) == (len(TASKS), 0)
-
-
-def _must_not_run(tasks, limit):
-    raise AssertionError("nothing was left to run")
 
 
 def test_a_stopped_run_keeps_its_rows_and_goes_on(path, calm):
@@ -315,11 +311,7 @@ def test_a_limit_is_a_positive_number_that_clocks_can_take(path, limit):
         _run(path, limit=limit)
 
 
-def test_the_longest_limit_is_no_failure(path):
-    assert _run(path, TASKS[:1], limit=LONGEST_LIMIT).failures == 0
-
-
-def test_the_limit_reaches_the_worker(path):
+def test_the_limit_reaches_the_worker_and_the_longest_is_no_failure(path):
     limits = []
 
     def note(tasks, limit):
@@ -329,18 +321,22 @@ def test_the_limit_reaches_the_worker(path):
     report = _run(path, workers=_workers(note), limit=12.5)
     assert set(limits) == {12.5}
     assert report.failures == len(TASKS)
+    assert _run(path, TASKS[:1], limit=LONGEST_LIMIT, retry=True).failures == 0
 
 
 # Chunks.
 
 
-def test_chunks_hold_all_tasks_in_order_each_of_one_problem():
+def test_chunks_hold_all_tasks_in_order_each_of_one_problem_and_one_that_is_put_back_comes_next():
     chunker, cut = Chunker(TASKS), []
+    first = chunker.next()
+    chunker.put_back(first)
     while chunker:
         chunk = chunker.next()
         assert len({task.problem for task in chunk}) == 1
         chunker.learn(chunk, [0.001] * len(chunk))
         cut.append(chunk)
+    assert cut[0] == first
     assert tuple(task for chunk in cut for task in chunk) == TASKS
 
 
@@ -354,10 +350,3 @@ def test_chunks_of_fast_tasks_grow_and_those_of_slow_ones_are_single():
         chunker.learn(first, [seconds] * len(first))
         assert len(chunker.next()) >= expected or expected == 1
         assert len(chunker.next()) <= max(1.5 * expected, 1)
-
-
-def test_a_chunk_that_is_put_back_comes_next():
-    chunker = Chunker(TASKS)
-    first = chunker.next()
-    chunker.put_back(first)
-    assert chunker.next() == first

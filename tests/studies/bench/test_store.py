@@ -35,6 +35,17 @@ def _write(path, outcomes):
             store.add("paper", task, outcome, "host:1")
 
 
+def _during(path, act):
+    """Do something with a store, for tests that say what it raises."""
+    with open_store(path) as store:
+        act(store)
+
+
+def _stop(store):
+    store.add("paper", TASK, SOLVED, "")
+    raise KeyboardInterrupt
+
+
 def test_everything_comes_back_as_it_was_written(path):
     outcomes = [SOLVED, NOT_CONNECTED, FAILED, Outcome("timeout", error="took longer than 1 s")]
     tasks = [replace(TASK, run=run) for run in range(len(outcomes))]
@@ -52,13 +63,16 @@ def test_everything_comes_back_as_it_was_written(path):
     np.testing.assert_array_equal(rows.answered, [True, True, False, False])
 
 
-def test_numbers_of_numpy_are_numbers(path):
-    task = replace(TASK, n=np.int64(128), run=np.int32(3))
-    _write(path, [(task, replace(SOLVED, valid=np.int64(20), length=np.float64(2.0)))])
-    rows = read_rows(path)
-    assert (rows.n[0], rows.run[0], rows.valid[0], rows.length[0]) == (128, 3, 20, 2.0)
+def test_what_is_finished_is_known_by_the_key_and_whether_it_is_an_answer_and_numbers_may_be_numpys(path):
+    tasks = [replace(TASK, n=np.int64(128), run=np.int32(run)) for run in range(3)]
+    solved = replace(SOLVED, valid=np.int64(20), length=np.float64(2.0))
+    _write(path, zip(tasks, (solved, FAILED, Outcome("lost")), strict=True))
     with open_store(path) as store:
-        assert store.finished() == {replace(TASK, run=3).key: True}
+        assert store.finished() == {
+            replace(TASK, run=run).key: answered for run, answered in enumerate((True, False, False))
+        }
+    rows = read_rows(path)
+    assert (rows.n[0], rows.run[0], rows.valid[0], rows.length[0]) == (128, 0, 20, 2.0)
 
 
 def test_rows_are_in_the_order_of_the_tasks_whatever_the_order_of_arrival(path, tmp_path):
@@ -84,15 +98,9 @@ def test_rows_are_in_the_order_of_the_tasks_whatever_the_order_of_arrival(path, 
     np.testing.assert_array_equal(other.run, rows.run)
 
 
-def test_what_is_finished_is_known_by_the_key_and_whether_it_is_an_answer(path):
-    tasks = [replace(TASK, run=run) for run in range(3)]
-    _write(path, zip(tasks, (SOLVED, FAILED, Outcome("lost")), strict=True))
-    with open_store(path) as store:
-        assert store.finished() == {tasks[0].key: True, tasks[1].key: False, tasks[2].key: False}
-
-
 def test_a_later_row_of_the_same_task_takes_the_place_of_the_first(path):
-    _write(path, [(TASK, FAILED)])
+    _write(path, [(TASK, replace(FAILED, error="no such file: \udcff.png"))])
+    assert read_rows(path).error[0] == "no such file: \\udcff.png"
     _write(path, [(TASK, SOLVED)])
     rows = read_rows(path)
     assert (len(rows), rows.status[0], rows.error[0]) == (1, "solved", "")
@@ -150,30 +158,23 @@ def test_stores_of_several_machines_are_read_as_one(path, tmp_path):
         assert [values[i] for i in range(len(rest))] == [expected[i] for i in range(len(whole))], name
 
 
-def test_of_a_task_with_rows_in_two_stores_that_of_the_first_counts(path, tmp_path):
+def test_of_a_task_with_rows_in_two_stores_that_of_the_first_counts_but_an_answer_before_a_failure(
+    path, tmp_path
+):
     _write(path, [(TASK, NOT_CONNECTED), (replace(TASK, run=1), SOLVED)])
     _write(tmp_path / "b.db", [(TASK, SOLVED)])
-    one, other = read_rows(path), read_rows(tmp_path / "b.db")
+    _write(tmp_path / "failed.db", [(TASK, FAILED)])
+    one, other, failed = (read_rows(each) for each in (path, tmp_path / "b.db", tmp_path / "failed.db"))
     assert joined([one, other]).solved.tolist() == [False, True]
     assert joined([other, one]).solved.tolist() == [True, True]
     assert len(joined([one.where(np.zeros(2, dtype=np.bool_))])) == 0
-
-
-def test_an_answer_in_one_store_counts_before_a_failure_in_another(path, tmp_path):
-    _write(path, [(TASK, FAILED)])
-    _write(tmp_path / "b.db", [(TASK, SOLVED)])
-    assert joined([read_rows(path), read_rows(tmp_path / "b.db")]).solved.tolist() == [True]
-    assert joined([read_rows(path)]).status[0] == "failed"
+    assert joined([failed, other]).solved.tolist() == [True]
+    assert joined([failed]).status[0] == "failed"
 
 
 def test_what_was_added_before_an_exception_is_written(path):
-    def stopped():
-        with open_store(path) as store:
-            store.add("paper", TASK, SOLVED, "")
-            raise KeyboardInterrupt
-
     with pytest.raises(KeyboardInterrupt):
-        stopped()
+        _during(path, _stop)
     assert len(read_rows(path)) == 1
 
 
@@ -196,11 +197,6 @@ def test_rows_are_committed_when_the_last_time_is_long_enough_ago(path, monkeypa
         monkeypatch.setattr(store_module, "COMMIT_SECONDS", 0.0)
         store.commit_if_due()
         assert len(read_rows(path)) == 1
-
-
-def test_a_traceback_with_the_name_of_a_broken_file_is_written(path):
-    _write(path, [(TASK, replace(FAILED, error="no such file: \udcff.png"))])
-    assert read_rows(path).error[0] == "no such file: \\udcff.png"
 
 
 # Interrupts.
@@ -230,15 +226,14 @@ class _Interrupted:
 
 @pytest.mark.parametrize("after", ["BEGIN", "INTO names", "INTO rows", "COMMIT"])
 def test_an_interrupt_inside_a_commit_loses_no_row(path, after):
-    def interrupted():
-        with open_store(path) as store:
-            for run in range(5):
-                store.add("paper", replace(TASK, run=run), replace(SOLVED, set_id=str(run)), "")
-            store._connection = _Interrupted(store._connection, after)
-            store.commit()
+    def interrupted(store):
+        for run in range(5):
+            store.add("paper", replace(TASK, run=run), replace(SOLVED, set_id=str(run)), "")
+        store._connection = _Interrupted(store._connection, after)
+        store.commit()
 
     with pytest.raises(KeyboardInterrupt):
-        interrupted()
+        _during(path, interrupted)
     _write(path, [(replace(TASK, run=5), replace(SOLVED, set_id="5"))])
     rows = read_rows(path)
     assert rows.run.tolist() == list(range(6))
@@ -246,13 +241,12 @@ def test_an_interrupt_inside_a_commit_loses_no_row(path, after):
 
 
 def test_an_interrupt_inside_the_last_commit_leaves_the_rows_beside_the_store(path, tmp_path):
-    def interrupted():
-        with open_store(path) as store:
-            store.add("paper", TASK, SOLVED, "")
-            store._connection = _Interrupted(store._connection, "INTO rows")
+    def interrupted(store):
+        store.add("paper", TASK, SOLVED, "")
+        store._connection = _Interrupted(store._connection, "INTO rows")
 
     with pytest.raises(KeyboardInterrupt):
-        interrupted()
+        _during(path, interrupted)
     assert len(read_rows(path)) == 0
     assert (tmp_path / "results.db.rescue").exists()
     _write(path, [])
@@ -303,34 +297,32 @@ def test_a_second_writer_is_refused_and_readers_are_not(path):
     _write(path, [])
 
 
-def _table(path):
-    path.write_bytes(b"a,b\n1,2\n" * 100)
-
-
 def _other_database(path):
     connection = sqlite3.connect(path)
     connection.execute("CREATE TABLE runs (id INTEGER)")
     connection.close()
 
 
-@pytest.mark.parametrize("make", [_table, _other_database])
-def test_a_file_of_another_kind_is_refused_and_left_alone(path, make):
-    make(path)
-    before = path.read_bytes()
-    for use in (lambda: read_rows(path), lambda: _write(path, [])):
-        with pytest.raises(BrokenFile, match="not a store of benchmark results"):
-            use()
-    assert path.read_bytes() == before
-
-
-def test_a_store_of_another_schema_version_is_refused_with_both_numbers(path):
+def _another_schema(path):
     _write(path, [(TASK, SOLVED)])
     connection = sqlite3.connect(path)
     connection.execute(f"PRAGMA user_version = {SCHEMA + 1}")
     connection.close()
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda path: path.write_bytes(b"a,b\n1,2\n" * 100), "not a store of benchmark results"),
+        (_other_database, "not a store of benchmark results"),
+        (_another_schema, f"schema version {SCHEMA + 1}, this evenroad reads {SCHEMA}"),
+    ],
+)
+def test_a_file_of_another_kind_or_version_is_refused_and_left_alone(path, make, says):
+    make(path)
     before = path.read_bytes()
     for use in (lambda: read_rows(path), lambda: _write(path, [])):
-        with pytest.raises(BrokenFile, match=f"schema version {SCHEMA + 1}, this evenroad reads {SCHEMA}"):
+        with pytest.raises(BrokenFile, match=says):
             use()
     assert path.read_bytes() == before
 
@@ -361,19 +353,17 @@ def test_rows_that_a_locked_file_cannot_take_are_left_beside_it_and_taken_in_the
     _write(path, outcomes[:1])
     other = sqlite3.connect(path, isolation_level=None)
 
-    def write_while_locked():
-        with open_store(path) as store:
-            other.execute("BEGIN EXCLUSIVE")
-            for task, outcome in outcomes[1:]:
-                store.add("paper", task, outcome, "host:1")
+    def write_while_locked(store):
+        other.execute("BEGIN EXCLUSIVE")
+        for task, outcome in outcomes[1:]:
+            store.add("paper", task, outcome, "host:1")
 
     with pytest.raises(BrokenFile) as error:
-        write_while_locked()
+        _during(path, write_while_locked)
     other.close()
     assert "locked (rows that were written before are kept)" in str(error.value)
-    assert f"2 finished rows left in {path}.rescue: the next run with this store takes them in" in str(
-        error.value
-    )
+    left = f"2 finished rows left in {path}.rescue: the next run with this store takes them in"
+    assert left in str(error.value)
     assert read_rows(path).run.tolist() == [0]
     _write(path, [])
     _write(path.with_name("calm.db"), outcomes)
@@ -387,15 +377,14 @@ def test_a_locked_file_is_waited_for_once(path, monkeypatch):
     _write(path, [])
     other = sqlite3.connect(path, isolation_level=None)
 
-    def write_while_locked():
-        with open_store(path) as store:
-            other.execute("BEGIN EXCLUSIVE")
-            store._connection.set_trace_callback(begun.append)
-            store.add("paper", TASK, SOLVED, "")
-            store.commit()
+    def write_while_locked(store):
+        other.execute("BEGIN EXCLUSIVE")
+        store._connection.set_trace_callback(begun.append)
+        store.add("paper", TASK, SOLVED, "")
+        store.commit()
 
     with pytest.raises(BrokenFile, match="locked"):
-        write_while_locked()
+        _during(path, write_while_locked)
     other.close()
     assert sum("BEGIN" in statement for statement in begun) == 1
 
@@ -431,13 +420,12 @@ def test_an_answer_is_not_given_up_for_a_failure_that_was_rescued_before_it(path
 def _left_behind(path):
     """Return what a run that could not write its row left."""
 
-    def full():
-        with open_store(path.with_name("full.db")) as store:
-            store._connection.execute("PRAGMA query_only = 1")
-            store.add("paper", TASK, SOLVED, "host:1")
+    def full(store):
+        store._connection.execute("PRAGMA query_only = 1")
+        store.add("paper", TASK, SOLVED, "host:1")
 
     with pytest.raises(BrokenFile, match="left in"):
-        full()
+        _during(path.with_name("full.db"), full)
     return path.with_name("full.db.rescue").read_text()
 
 
@@ -492,20 +480,18 @@ def test_without_room_beside_the_store_rows_go_to_the_temporary_folder(path, tmp
     (tmp_path / "temporary").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
     path.with_name("results.db.rescue").mkdir()
-    where = leave_rows(path, [(run,) * len(COLUMNS) for run in (1, 2)])
+    said = leave_rows(path, [(run,) * len(COLUMNS) for run in (1, 2)])
     (left,) = (tmp_path / "temporary").iterdir()
-    assert (
-        where == f"2 finished rows left in {left}: move it to {path}.rescue, and the next run takes them in"
-    )
+    assert said == f"2 finished rows left in {left}: move it to {path}.rescue, and the next run takes them in"
     assert [json.loads(line)["run"] for line in left.read_text().splitlines()] == [1, 2]
 
 
 def test_rows_that_can_be_left_nowhere_are_said_to_be_lost(path, tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "missing"))
     path.with_name("results.db.rescue").mkdir()
-    where = leave_rows(path, [(1,) * len(COLUMNS)])
+    said = leave_rows(path, [(1,) * len(COLUMNS)])
     assert (
-        where == f"1 finished row could not be left in {path}.rescue either: the next run computes them again"
+        said == f"1 finished row could not be left in {path}.rescue either: the next run computes them again"
     )
 
 

@@ -36,6 +36,11 @@ def _write(path, rows=60):
             store.add("paper", task, OUTCOMES[run % 3], "host:1")
 
 
+def _finished(path):
+    with open_store(path) as store:
+        return store.finished()
+
+
 def _mutant(whole, rng):
     """Return the content with a byte changed, a bit flipped, a page zeroed, or its end cut off."""
     content = bytearray(whole)
@@ -79,8 +84,7 @@ def test_a_damaged_store_is_not_written_to(path):
     for _ in range(MUTANTS // 8):
         path.write_bytes(_mutant(whole, rng))
         try:
-            with open_store(path) as store:
-                found = store.finished()
+            found = _finished(path)
             finished = found if finished is None else finished
             assert found == finished
         except BrokenFile:
@@ -113,12 +117,9 @@ def _change(path, statement):
 def test_a_row_that_is_not_as_it_was_written_is_refused_by_readers_and_writers(path, statement):
     _write(path)
     _change(path, statement)
-    with pytest.raises(BrokenFile, match="results.db is damaged: "):
-        read_rows(path)
-    with pytest.raises(BrokenFile, match="results.db is damaged: "):
-        read_rows(path, problems=["maze-2"])
-    with pytest.raises(BrokenFile, match="results.db is damaged: "), open_store(path) as store:
-        store.finished()
+    for use in (read_rows, lambda path: read_rows(path, problems=["maze-2"]), _finished):
+        with pytest.raises(BrokenFile, match="results.db is damaged: "):
+            use(path)
 
 
 def test_a_key_that_is_not_its_tasks_is_refused_whatever_the_checksum_says(path, monkeypatch):
@@ -145,13 +146,10 @@ def other_user():
         os.seteuid(0)
 
 
-def test_a_lock_that_cannot_be_made_is_named(path):
+def test_a_lock_that_cannot_be_made_or_is_another_users_is_named(path, other_user):
     path.with_name("results.db.lock").mkdir()
     with pytest.raises(BrokenFile, match="results.db.lock beside it: Is a directory"):
         _write(path)
-
-
-def test_a_lock_of_another_user_is_named(other_user):
     lock = other_user / "results.db.lock"
     lock.touch()
     lock.chmod(0o600)
