@@ -130,7 +130,10 @@ def definitions() -> dict[str, str]:
         return {**defined, "CMAKE_CXX_COMPILER": ";".join(shlex.split(own))}
     import ziglang
 
-    zig = Path(ziglang.__file__).parent / ("zig.exe" if os.name == "nt" else "zig")
+    folder = Path(ziglang.__file__).parent
+    zig = folder / ("zig.exe" if os.name == "nt" else "zig")
+    # clang's own C++ library is built once and kept beside it: installations that share a cache replace each other's.
+    os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(folder / ".cache"))
     defined |= {"CMAKE_CXX_COMPILER": f"{zig};c++", "EVENROAD_ZIG": "ON"}
     if sys.platform == "linux":
         musl = "musl" in (sysconfig.get_config_var("MULTIARCH") or sysconfig.get_config_var("HOST_GNU_TYPE"))

@@ -9,7 +9,6 @@ from scipy import ndimage
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import CELLS
 from evenroad.world import GridMap, MapFrame
-from evenroad.world.gridmap.components import find_gates, label_components
 
 FINE = 12
 """Points a pixel of the picture that decides what hangs together."""
@@ -43,9 +42,8 @@ def test_what_is_known_of_narrow_passages_is_in_proportion_to_the_pixels():
     world = GridMap(np.zeros((1, 20_000), dtype=bool)).world(0.3)
     a, b = np.array([0.4, 0.5]), np.array([19_999.6, 0.5])
     assert world.may_connect(a, b)
-    gates = find_gates(world.tables.cells)
-    assert gates.sum() == 20_000
-    assert sum(array.nbytes for array in label_components(world.tables, gates)) < 70 * 20_000
+    assert world.disk.gates().sum() == 20_000
+    assert world._components.nbytes < 70 * 20_000
     assert world.cells_of(world.component(a)).all()
 
 

@@ -18,6 +18,7 @@ points = kernel.points
 roadmap = kernel.roadmap
 space = kernel.space
 trajectory = kernel.trajectory
+world = kernel.world
 
-for _part in (planning, points, roadmap, space, trajectory):
+for _part in (planning, points, roadmap, space, trajectory, world):
     sys.modules[f"{__name__}.{_part.__name__.rpartition('.')[2]}"] = _part

@@ -17,7 +17,6 @@ from evenroad.robot.tree_sequences import shifted_cube_points
 from evenroad.space.batch import as_batch
 from evenroad.world import World
 from evenroad.world.gridmap.gridmap import DiskWorld
-from evenroad.world.gridmap.search import find_path, straighten
 
 BEFORE_PROOF = 200_000
 """Number of motions after which the world tries to prove that there is no path: more than hard queries need."""
@@ -87,13 +86,13 @@ class Cells:
         """
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)
-        path, goal, nodes, motions = find_path(first, last, world.tables, world.gates, most_motions)
-        return Connection(path, int(goal), nodes, 0, motions)
+        path, goal, nodes, motions = world.disk.find_path(first, last, most_motions)
+        return Connection(path, goal, nodes, 0, motions)
 
     def smooth(self, world: DiskWorld, path: Floats) -> tuple[Floats, int]:
         """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and the number of checks."""
         points = as_batch("path", path, 2)
-        return straighten(points, world.tables, _SPREADS) if len(points) > 1 else (points.copy(), 0)
+        return world.disk.straighten(points, _SPREADS) if len(points) > 1 else (points.copy(), 0)
 
 
 @dataclass(frozen=True)

@@ -3,28 +3,20 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_positive
+from evenroad._native.world import Components, Disk
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.clearance import least_distance
-from evenroad.world.gridmap.cells import DiskTables, classify, vertical_runs
-from evenroad.world.gridmap.components import PARTS, Components, find_gates, label_components, pieces_of
 from evenroad.world.gridmap.grid import CellGrid
-from evenroad.world.gridmap.kernel import (
-    motions_are_free,
-    nearest_free_point,
-    nearest_obstacle_points,
-    points_are_free,
-)
 from evenroad.world.one_or_many import OneOrMany, one_or_many
 from evenroad.world.protocol import Apart
 
@@ -115,11 +107,15 @@ class DiskWorld(OneOrMany):
     grid: GridMap
     radius: float
     margin: float = 0.0
-    tables: DiskTables = field(init=False, repr=False)
+    disk: Disk = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         radius = require_positive("radius", self.radius)
-        set_fields(self, radius=radius, tables=_tables_of(self.grid, radius))
+        set_fields(self, radius=radius, disk=_disk_on(self.grid, radius))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what a copy is made of, here or in another process: it makes its own tables."""
+        return type(self), (self.grid, self.radius, self.margin)
 
     @property
     def space(self) -> Rectangle:
@@ -136,12 +132,12 @@ class DiskWorld(OneOrMany):
 
         Of one point, (2,), a bool; `motion_valid`, too.
         """
-        return points_are_free(as_batch("q", q, 2), self.tables)
+        return self.disk.points_free(as_batch("q", q, 2))
 
     @one_or_many
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,)."""
-        return motions_are_free(*as_batch_pair(a, b, 2), self.tables)
+        return self.disk.motions_free(*as_batch_pair(a, b, 2))
 
     @one_or_many
     def distance(self, q: Floats) -> Floats:
@@ -162,7 +158,7 @@ class DiskWorld(OneOrMany):
 
     def _from_centre(self, q: Floats) -> Floats:
         """Return the distance from the disk's centre, (n, 2), to the nearest obstacle, (n,)."""
-        return nearest_obstacle_points(q, self.tables)[1] * self.grid.frame.resolution
+        return self.disk.nearest_obstacles(q)[1] * self.grid.frame.resolution
 
     def path_clearance(self, path: Floats) -> float:
         """Return the clearance of the disk along a path, (p, 2), within 1e-3 pixels and never too large."""
@@ -176,7 +172,7 @@ class DiskWorld(OneOrMany):
         A point in an obstacle or outside the map is its own; of several equally near ones, always the same is returned.
         """
         centres = as_batch("q", q, 2)
-        pixels, distance = nearest_obstacle_points(centres, self.tables)
+        pixels, distance = self.disk.nearest_obstacles(centres)
         # A centre that is its own nearest point is returned as it came, without the detour through pixels.
         nearest, away = centres.copy(), distance > 0.0
         nearest[away] = self.grid.frame.to_map(pixels[away])
@@ -188,8 +184,8 @@ class DiskWorld(OneOrMany):
         It is the nearest of the surely free cells, and of a lattice of quarter pixels in those that are partly free.
         """
         column, row = self._pixels(q)
-        x, y = nearest_free_point(column + 1.0, row + 1.0, self.tables)
-        return None if math.isnan(x) else self.grid.frame.to_map(np.array([[x - 1.0, y - 1.0]]))[0]
+        free = self.disk.nearest_free(column, row)
+        return None if free is None else self.grid.frame.to_map(np.array([free]))[0]
 
     def may_connect(self, a: Floats, b: Floats) -> bool:
         """Return False where it is proved that no path leads from map point `a`, (2,), to `b`, (2,).
@@ -215,32 +211,15 @@ class DiskWorld(OneOrMany):
         rows, cols = self.grid.occupied.shape
         if not (0.0 < column < cols and 0.0 < row < rows):
             return 0
-        cell = int(row) + 1, int(column) + 1
-        of_cells, number, opened, first, of_pieces = self._components
-        gate = number[cell]
-        if gate < 0:
-            return int(of_cells[cell])
-        pieces = np.empty((PARTS, PARTS), np.int16)
-        pieces_of(opened[gate], pieces)
-        piece = pieces[int(PARTS * (row % 1.0)), int(PARTS * (column % 1.0))]
-        return 0 if piece < 0 else int(of_pieces[first[gate] + piece])
+        return self._components.at(column, row)
 
     def cells_of(self, component: int) -> Bools:
         """Return the cells of the map, (rows, cols), that have a part in a component."""
-        of_cells, number, _, first, of_pieces = self._components
-        inside = of_cells == component
-        gates = np.repeat(np.arange(len(first) - 1), np.diff(first))[of_pieces == component]
-        inside[number >= 0] = np.bincount(gates, minlength=len(first) - 1) > 0
-        return inside[1:-1, 1:-1]
-
-    @cached_property
-    def gates(self) -> Bools:
-        """Cells between components, where the disk may pass: (rows + 2, cols + 2) with the border."""
-        return find_gates(self.tables.cells)
+        return self._components.cells_of(component)[1:-1, 1:-1]
 
     @cached_property
     def _components(self) -> Components:
-        return Components(*label_components(self.tables, self.gates))
+        return Components(self.disk)
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of map, frame and radius: equal for worlds of equal results."""
@@ -267,12 +246,8 @@ class DiskWorld(OneOrMany):
         return self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2))[0]
 
 
-def _tables_of(grid: GridMap, radius: float) -> DiskTables:
+def _disk_on(grid: GridMap, radius: float) -> Disk:
     radius_in_pixels = max(radius / grid.frame.resolution, _SMALLEST_RADIUS)
     # The ring of occupied cells stands for everything outside the map.
-    above, below = vertical_runs(np.pad(grid.occupied, 1, constant_values=True))
-    cells = classify(above, below, radius_in_pixels)
-    frame = grid.frame.coefficients()
-    for table in (frame, cells, above, below):
-        table.setflags(write=False)
-    return DiskTables(frame, cells, above, below, radius_in_pixels)
+    padded = np.pad(grid.occupied, 1, constant_values=True)
+    return Disk(padded, grid.frame.coefficients(), radius_in_pixels)

@@ -113,6 +113,11 @@ nb::object as_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> 
   return nb::cast(nb::ndarray<nb::numpy, T>(data, shape, owner));
 }
 
+/// Give bytes that are 0 or 1 to Python as an array of bools.
+inline nb::object as_bools(std::vector<std::uint8_t>&& values, std::initializer_list<std::size_t> shape) {
+  return as_numpy(std::move(values), shape).attr("view")("bool");
+}
+
 /// Refuse numbers of something unless all are from 0 to below `count`.
 template <class T>
 void require_below(std::span<const T> numbers, std::size_t count, const char* name) {

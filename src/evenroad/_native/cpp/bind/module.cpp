@@ -28,4 +28,5 @@ NB_MODULE(EVENROAD_MODULE, module) {
   evenroad::bind::add_roadmap(module);
   evenroad::bind::add_space(module);
   evenroad::bind::add_trajectory(module);
+  evenroad::bind::add_world(module);
 }

@@ -17,5 +17,6 @@ void add_points(nanobind::module_& module);
 void add_roadmap(nanobind::module_& module);
 void add_space(nanobind::module_& module);
 void add_trajectory(nanobind::module_& module);
+void add_world(nanobind::module_& module);
 
 }  // namespace evenroad::bind

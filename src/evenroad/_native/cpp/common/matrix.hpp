@@ -34,6 +34,8 @@ struct OwnMatrix {
 
   std::span<T> operator[](std::size_t row) { return {values.data() + row * columns, columns}; }
   T& operator()(std::size_t row, std::size_t column) { return values[row * columns + column]; }
+  std::span<const T> operator[](std::size_t row) const { return {values.data() + row * columns, columns}; }
+  const T& operator()(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
   operator Matrix<T>() { return {values.data(), rows, columns}; }
 };
 

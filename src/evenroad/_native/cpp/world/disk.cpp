@@ -1,0 +1,117 @@
+// Seen from a point of cell (row, column), only one or two squares of each column can be the nearest: the one in the
+// same row if it is occupied, else the first above and the first below.
+#include "world/disk.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "world/gates.hpp"
+
+namespace evenroad::world {
+
+namespace {
+
+/// Say whether a corner at (x, y) from a segment's start is nearer than the radius to its inside.
+///
+/// Only a foot strictly between the ends counts; its squared distance is cross^2 / length^2, compared without dividing:
+/// `limit` is radius^2 * length^2.
+bool is_too_close(Point corner, Point by, double squared_length, double limit) {
+  const double along = corner.x * by.x + corner.y * by.y;
+  if (along <= 0.0 || along >= squared_length) return false;
+  const double cross = by.x * corner.y - by.y * corner.x;
+  return cross * cross < limit;
+}
+
+}  // namespace
+
+const OwnMatrix<std::uint8_t>& Disk::gates() const {
+  std::call_once(found_gates_, [this] { gates_ = find_gates(*this); });
+  return gates_;
+}
+
+bool Disk::is_free(Point at) const {
+  if (!is_inside(at)) return false;
+  const auto column = static_cast<std::int64_t>(at.x), row = static_cast<std::int64_t>(at.y);
+  const std::uint8_t state = cell(row, column);
+  if (state != UNDECIDED) return state >= FREE;
+  const double squared_radius = radius_ * radius_;
+  return squared_gap(at, row, column, reach(), squared_radius) >= squared_radius;
+}
+
+double Disk::squared_gap(Point at, std::int64_t row, std::int64_t column, std::int64_t reach, double enough) const {
+  double least = std::numeric_limits<double>::infinity();
+  const std::int64_t last = std::min(column + reach, columns() - 1);
+  for (std::int64_t other = std::max<std::int64_t>(column - reach, 0); other <= last; other++) {
+    const auto left = static_cast<double>(other);
+    const double gap_x = std::max(std::max(left - at.x, at.x - (left + 1.0)), 0.0);
+    double gap_y = 0.0;
+    if (const std::int64_t up = above(row, other); up > 0) {
+      gap_y = std::min(at.y - static_cast<double>(row + 1 - up), static_cast<double>(row + below(row, other)) - at.y);
+    }
+    least = std::min(least, gap_x * gap_x + gap_y * gap_y);
+    if (least < enough) break;
+  }
+  return least;
+}
+
+bool Disk::is_motion_free(Point from, Point to) const {
+  const Point a = frame_.to_padded(from), b = frame_.to_padded(to);
+  if (!is_free(a) || !is_free(b)) return false;
+  // One direction for both orders: a motion and its reverse round alike.
+  return b.x < a.x || (b.x == a.x && b.y < a.y) ? is_segment_free(b, a) : is_segment_free(a, b);
+}
+
+// Follow the segment (from.x <= to.x), whose ends are free, cell by cell; parameter t runs from 0 to 1.  Every piece of
+// the segment from one t to the next lies in the closed cell that is looked at, and the pieces leave no gap.  Where the
+// segment comes nearest to a square that it does not meet, either the segment ends, which was tested as a point, or the
+// square has a corner.  So corners are all that an undecided cell asks about.
+bool Disk::is_segment_free(Point from, Point to) const {
+  const Point by{to.x - from.x, to.y - from.y};
+  const double squared_length = by.x * by.x + by.y * by.y;
+  if (squared_length < 1e-200) return true;  // Shorter than any rounding, and its ends are free.
+  // Below this, 1 / d would overflow.
+  const bool crosses_columns = by.x > 1e-300, crosses_rows = std::abs(by.y) > 1e-300;
+  const double per_column = crosses_columns ? 1.0 / by.x : 0.0, per_row = crosses_rows ? 1.0 / by.y : 0.0;
+  const double per_pixel = 1.0 / std::sqrt(squared_length);
+  const std::int64_t row_step = by.y > 0.0 ? 1 : -1, next_line = by.y > 0.0 ? 1 : 0;
+  auto column = static_cast<std::int64_t>(from.x), row = static_cast<std::int64_t>(from.y);
+  double t = 0.0;
+  while (true) {
+    const std::uint8_t state = cell(row, column);
+    if (state == BLOCKED) return false;
+    if (state == UNDECIDED && passes_a_corner(row, column, from, by, squared_length)) return false;
+    const double next_column = crosses_columns ? (static_cast<double>(column + 1) - from.x) * per_column : 2.0;
+    const double next_row = crosses_rows ? (static_cast<double>(row + next_line) - from.y) * per_row : 2.0;
+    // Rounding may put a grid line a hair before the place that a leap ended at: never go back.
+    t = std::max(t, std::min(next_column, next_row));
+    if (state > FREE) {
+      // The slack holds at the point of leaving, so as much of the motion beyond it is free as well.
+      t += static_cast<double>(state - FREE) * per_pixel;
+      column = static_cast<std::int64_t>(from.x + t * by.x), row = static_cast<std::int64_t>(from.y + t * by.y);
+    } else if (next_column <= next_row) {
+      column++;
+    } else {
+      row += row_step;
+    }
+    if (t >= 1.0) return true;
+  }
+}
+
+// A square in the cell's own row or column faces it with a side: where that ends, a cell of the next row or column that
+// the segment goes to sees the corner.
+bool Disk::passes_a_corner(std::int64_t row, std::int64_t column, Point from, Point by, double squared_length) const {
+  const double limit = radius_ * radius_ * squared_length;
+  const std::int64_t near = reach(), last = std::min(column + near, columns() - 1);
+  for (std::int64_t other = std::max<std::int64_t>(column - near, 0); other <= last; other++) {
+    const std::int64_t up = above(row, other), down = below(row, other);
+    if (other == column || up == 0) continue;
+    const double x = static_cast<double>(other < column ? other + 1 : other) - from.x;
+    const Point upper{x, static_cast<double>(row + 1 - up) - from.y},
+        lower{x, static_cast<double>(row + down) - from.y};
+    if (up <= near && is_too_close(upper, by, squared_length, limit)) return true;
+    if (down <= near && is_too_close(lower, by, squared_length, limit)) return true;
+  }
+  return false;
+}
+
+}  // namespace evenroad::world

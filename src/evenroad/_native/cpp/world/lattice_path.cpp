@@ -1,0 +1,247 @@
+// A* over whole-number costs with buckets for the queue; a step between surely free cells that share a side or a corner
+// needs no check, every other one is tested exactly.
+#include "world/lattice_path.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "world/node_memory.hpp"
+
+namespace evenroad::world {
+
+namespace {
+
+/// A step on the half lattice and its cost: about ten times its length in pixels.
+struct Step {
+  std::int8_t right, down;
+  std::int8_t cost;
+};
+
+/// The first eight lead from cell to cell.
+constexpr std::array<Step, 24> STEPS = {{
+    {2, 0, 10}, {-2, 0, 10}, {0, 2, 10},  {0, -2, 10},  {2, 2, 14}, {2, -2, 14}, {-2, 2, 14}, {-2, -2, 14},
+    {1, 0, 5},  {-1, 0, 5},  {0, 1, 5},   {0, -1, 5},   {1, 1, 7},  {1, -1, 7},  {-1, 1, 7},  {-1, -1, 7},
+    {2, 1, 11}, {2, -1, 11}, {-2, 1, 11}, {-2, -1, 11}, {1, 2, 11}, {1, -2, 11}, {-1, 2, 11}, {-1, -2, 11},
+}};
+constexpr std::size_t OVER_CELLS = 8;
+/// Number of lattice points that a start or goal is linked to, and the rings of them that are tried.
+constexpr std::size_t LINKS = 24;
+constexpr std::int64_t RINGS = 13;
+/// Share of the least cost that counts as a bound: what is rounded down on the way.
+constexpr double BOUND = 0.97;
+
+/// A point of the half lattice, in half pixels of the padded plane.
+struct Node {
+  std::int64_t column, row;
+};
+
+/// The queue: nodes in buckets by key, first out what came last.  Its keys never lie farther apart than its buckets.
+class Buckets {
+ public:
+  explicit Buckets(std::int64_t least) : key_(least) { heads_.fill(-1); }
+
+  std::int64_t key() const { return key_; }
+  bool empty() const { return waiting_ == 0; }
+
+  void put(std::int64_t node, std::int64_t key) {
+    std::int64_t& head = heads_[key % COUNT];
+    entries_.push_back({node, head});
+    head = static_cast<std::int64_t>(entries_.size()) - 1;
+    waiting_++;
+  }
+
+  std::int64_t take() {
+    while (heads_[key_ % COUNT] < 0) key_++;
+    std::int64_t& head = heads_[key_ % COUNT];
+    const Entry entry = entries_[head];
+    head = entry.next;
+    waiting_--;
+    return entry.node;
+  }
+
+  /// More than the largest step of a key, twice the costliest step.
+  static constexpr std::int64_t COUNT = 64;
+
+ private:
+  struct Entry {
+    std::int64_t node, next;
+  };
+
+  std::array<std::int64_t, COUNT> heads_;
+  std::vector<Entry> entries_;
+  std::int64_t key_, waiting_ = 0;
+};
+
+class Search {
+ public:
+  Search(const Disk& disk, std::span<const Point> goals, std::int64_t most)
+      : disk_(disk), wide_(2 * disk.columns() + 1), most_(most), nodes_((2 * disk.rows() + 1) * wide_), goals_(goals) {
+    disk.gates();
+    for (std::size_t goal = 0; goal < goals.size(); goal++) {
+      const Point at = disk.frame().to_padded(goals[goal]);
+      targets_.push_back({2.0 * at.x, 2.0 * at.y});
+      for (const std::int64_t node : links(goals[goal])) {
+        if (goal_of(node) < 0) goal_nodes_.push_back({node, static_cast<std::int64_t>(goal)});
+      }
+      // The first goal that a node leads to is the one that counts.
+      std::sort(goal_nodes_.begin(), goal_nodes_.end(),
+                [](const GoalNode& a, const GoalNode& b) { return a.node < b.node; });
+    }
+  }
+
+  LatticePath run(Point start) {
+    LatticePath found;
+    Buckets queue = seeded(start);
+    while (!queue.empty() && motions_ < most_) {
+      const std::int64_t node = queue.take();
+      if (nodes_[node].is_closed) continue;
+      nodes_[node].is_closed = true;
+      found.expanded++;
+      if (const std::int64_t goal = goal_of(node); goal >= 0) {
+        found.goal = goal, found.points = trace(node, start, goals_[goal]);
+        break;
+      }
+      expand(node, queue);
+    }
+    found.motions = motions_;
+    return found;
+  }
+
+ private:
+  struct GoalNode {
+    std::int64_t node, goal;
+  };
+
+  Node node_at(std::int64_t node) const { return {node % wide_, node / wide_}; }
+  Point map_point(Node at) const {
+    return disk_.frame().to_map({0.5 * static_cast<double>(at.column), 0.5 * static_cast<double>(at.row)});
+  }
+
+  /// Say whether a node is the centre of a surely free cell.
+  bool is_centre(Node at) const {
+    return at.row % 2 == 1 && at.column % 2 == 1 && disk_.cell(at.row / 2, at.column / 2) >= FREE;
+  }
+
+  /// Say whether a node lies in a cell of a gate, or between two.
+  bool is_at_gate(Node at) const {
+    const auto before = [](std::int64_t half, std::int64_t count) { return half > 0 ? (half - 1) / 2 : count - 1; };
+    return disk_.is_gate(at.row / 2, at.column / 2) ||
+           disk_.is_gate(before(at.row, disk_.rows()), before(at.column, disk_.columns()));
+  }
+
+  /// Return to which goal a node leads, -1 to none.
+  std::int64_t goal_of(std::int64_t node) const {
+    const auto at = std::lower_bound(goal_nodes_.begin(), goal_nodes_.end(), node,
+                                     [](const GoalNode& each, std::int64_t wanted) { return each.node < wanted; });
+    return at != goal_nodes_.end() && at->node == node ? at->goal : -1;
+  }
+
+  /// Return a lower bound of the cost from a node to the nearest target.
+  std::int64_t bound(Node at) const {
+    double least = 1e18;
+    for (const Point& target : targets_) {
+      const double along = std::abs(target.x - static_cast<double>(at.column));
+      const double across = std::abs(target.y - static_cast<double>(at.row));
+      least = std::min(least, 5.0 * std::max(along, across) + 2.0 * std::min(along, across));
+    }
+    return static_cast<std::int64_t>(BOUND * least);
+  }
+
+  /// Return the nodes near a map point that can be reached straight, ring by ring until there are enough.
+  std::vector<std::int64_t> links(Point from) {
+    const Point at = disk_.frame().to_padded(from);
+    // Far outside there is nothing to link to.
+    const auto nearest = [](double along) {
+      return static_cast<std::int64_t>(std::nearbyint(2.0 * std::min(std::max(along, -1e9), 1e9)));
+    };
+    const std::int64_t column = nearest(at.x), row = nearest(at.y);
+    const std::int64_t last_row = 2 * disk_.rows() - 1, last_column = 2 * disk_.columns() - 1;
+    std::vector<std::int64_t> linked;
+    for (std::int64_t ring = 0; ring < RINGS && linked.size() < LINKS; ring++) {
+      for (std::int64_t r = std::max<std::int64_t>(row - ring, 0); r <= std::min(row + ring, last_row); r++) {
+        for (std::int64_t c = std::max<std::int64_t>(column - ring, 0); c <= std::min(column + ring, last_column);
+             c++) {
+          if (std::max(std::abs(r - row), std::abs(c - column)) != ring) continue;
+          if (!is_centre({c, r}) && !is_at_gate({c, r})) continue;
+          motions_++;
+          if (disk_.is_motion_free(from, map_point({c, r}))) linked.push_back(r * wide_ + c);
+        }
+      }
+    }
+    return linked;
+  }
+
+  /// Put the nodes near the start into the queue.
+  Buckets seeded(Point start) {
+    const Point at = disk_.frame().to_padded(start);
+    const std::vector<std::int64_t> linked = links(start);
+    std::vector<std::int64_t> keys;
+    std::int64_t least = std::int64_t{1} << 60;
+    for (const std::int64_t node : linked) {
+      const auto [column, row] = node_at(node);
+      const double away = std::hypot(0.5 * static_cast<double>(column) - at.x, 0.5 * static_cast<double>(row) - at.y);
+      const auto cost = static_cast<std::int32_t>(10.0 * away);
+      nodes_.reach(node, cost, NodeMemory::SEED);
+      keys.push_back(cost + bound({column, row}));
+      least = std::min(least, keys.back());
+    }
+    // The keys of the seeds may lie far apart, as no two steps of the search do: late ones count as less near.
+    Buckets queue(least);
+    for (std::size_t i = 0; i < linked.size(); i++) {
+      queue.put(linked[i], std::min(keys[i], least + Buckets::COUNT / 2 - 1));
+    }
+    return queue;
+  }
+
+  /// Put the nodes that a node leads to into the queue.
+  void expand(std::int64_t node, Buckets& queue) {
+    const Node here = node_at(node);
+    const std::size_t first = is_centre(here) ? 0 : OVER_CELLS, last = is_at_gate(here) ? STEPS.size() : OVER_CELLS;
+    for (std::size_t step = first; step < last; step++) {
+      // Never out of the array: nothing is free on its ring.
+      const Node there{here.column + STEPS[step].right, here.row + STEPS[step].down};
+      const std::int64_t to = there.row * wide_ + there.column;
+      const std::int32_t cost = nodes_[node].cost() + STEPS[step].cost;
+      if (nodes_[to].is_closed || (nodes_[to].is_reached() && nodes_[to].cost() <= cost)) continue;
+      if (!is_step_free(step, here, there)) continue;
+      nodes_.reach(to, cost, static_cast<std::uint8_t>(step));
+      queue.put(to, std::max(cost + bound(there), queue.key()));
+    }
+  }
+
+  bool is_step_free(std::size_t step, Node from, Node to) {
+    if (step < OVER_CELLS) return is_centre(to);
+    if (!is_at_gate(to) || disk_.cell(to.row / 2, to.column / 2) == BLOCKED) return false;
+    motions_++;
+    return disk_.is_motion_free(map_point(from), map_point(to));
+  }
+
+  std::vector<Point> trace(std::int64_t node, Point start, Point goal) const {
+    std::vector<Point> points = {goal, map_point(node_at(node))};
+    while (nodes_[node].step != NodeMemory::SEED) {
+      const Step& step = STEPS[nodes_[node].step];
+      node -= step.down * wide_ + step.right;
+      points.push_back(map_point(node_at(node)));
+    }
+    points.push_back(start);
+    std::reverse(points.begin(), points.end());
+    return points;
+  }
+
+  const Disk& disk_;
+  std::int64_t wide_, most_, motions_ = 0;
+  NodeMemory nodes_;
+  std::span<const Point> goals_;
+  /// The goals on the lattice, in half pixels; which nodes lead to them, by node.
+  std::vector<Point> targets_;
+  std::vector<GoalNode> goal_nodes_;
+};
+
+}  // namespace
+
+LatticePath find_path(const Disk& disk, Point start, std::span<const Point> goals, std::int64_t most) {
+  return Search(disk, goals, most).run(start);
+}
+
+}  // namespace evenroad::world

@@ -1,0 +1,86 @@
+#include "world/nearest_place.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace evenroad::world {
+
+namespace {
+
+constexpr double INF = std::numeric_limits<double>::infinity();
+/// Not onto the sides of a cell, where rounding decides whose they are.
+constexpr double INSIDE = 1e-6;
+
+double squared_distance(Point a, Point b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
+
+/// The free place that was found, and its squared distance.
+struct Best {
+  Point at{};
+  double squared = INF;
+};
+
+void look_at_cell(const Disk& disk, std::int64_t row, std::int64_t column, Point from, Best& best) {
+  const std::uint8_t state = disk.cell(row, column);
+  const auto left = static_cast<double>(column), top = static_cast<double>(row);
+  if (state == BLOCKED) return;
+  if (state >= FREE) {
+    const Point near{std::min(std::max(from.x, left + INSIDE), left + 1.0 - INSIDE),
+                     std::min(std::max(from.y, top + INSIDE), top + 1.0 - INSIDE)};
+    if (const double squared = squared_distance(near, from); squared < best.squared) best = {near, squared};
+    return;
+  }
+  for (int i = 0; i < 25; i++) {
+    const Point near{left + 0.25 * (i % 5), top + 0.25 * (i / 5)};
+    const double squared = squared_distance(near, from);
+    if (squared < best.squared && disk.is_free(near)) best = {near, squared};
+  }
+}
+
+}  // namespace
+
+NearestObstacle nearest_obstacle(const Disk& disk, Point at) {
+  if (!disk.is_inside(at)) return {at, 0.0};
+  const auto column = static_cast<std::int64_t>(at.x), row = static_cast<std::int64_t>(at.y);
+  double best = INF;
+  Point nearest = at;
+  for (std::int64_t away = 0; away < disk.columns(); away++) {
+    // So many columns off, everything is at least away - 1 away.
+    const double least = static_cast<double>(away) - 1.0;
+    if (away > 1 && least * least >= best) break;
+    for (const std::int64_t other : {column - away, column + away}) {
+      if (other < 0 || other >= disk.columns()) continue;
+      const auto left = static_cast<double>(other);
+      Point near{std::min(std::max(at.x, left), left + 1.0), at.y};
+      if (const std::int64_t up = disk.above(row, other); up > 0) {
+        const auto upper = static_cast<double>(row + 1 - up), lower = static_cast<double>(row + disk.below(row, other));
+        near.y = at.y - upper <= lower - at.y ? upper : lower;
+      }
+      if (const double squared = squared_distance(near, at); squared < best) best = squared, nearest = near;
+    }
+  }
+  return {nearest, std::sqrt(best)};
+}
+
+std::optional<Point> nearest_free(const Disk& disk, Point at) {
+  const std::int64_t last_row = disk.rows() - 2, last_column = disk.columns() - 2;
+  // Of a place that is no number, or far outside, the nearest cell of the map.
+  const auto cell = [](double along, std::int64_t last) {
+    return along >= 1.0 ? static_cast<std::int64_t>(std::min(along, static_cast<double>(last))) : 1;
+  };
+  const std::int64_t column = cell(at.x, last_column), row = cell(at.y, last_row);
+  Best best;
+  for (std::int64_t ring = 0; ring < std::max(disk.rows(), disk.columns()); ring++) {
+    if (ring > 1 && static_cast<double>(ring) - 1.0 > std::sqrt(best.squared)) break;
+    const std::int64_t bottom = std::min(row + ring, last_row);
+    for (std::int64_t r = std::max<std::int64_t>(row - ring, 1); r <= bottom; r++) {
+      const std::int64_t step = std::max<std::int64_t>(std::abs(r - row) == ring ? 1 : 2 * ring, 1);
+      for (std::int64_t c = column - ring; c <= column + ring; c += step) {
+        if (c >= 1 && c <= last_column) look_at_cell(disk, r, c, at, best);
+      }
+    }
+  }
+  return best.squared < INF ? std::optional<Point>(best.at) : std::nullopt;
+}
+
+}  // namespace evenroad::world
