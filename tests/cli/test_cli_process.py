@@ -157,20 +157,6 @@ def test_without_a_folder_for_compiled_code_it_works_and_says_so_in_one_line(rea
     assert list((tmp_path / "kept").rglob("*.nbi"))
 
 
-def test_a_damaged_cache_of_compiled_code_is_no_answer(tmp_path):
-    """Exit code 1 is for "no path": it came from the traceback of a cut file."""
-    kept = {"NUMBA_CACHE_DIR": str(tmp_path)}
-    assert python("-c", LOAD_COMPILED, **kept).stdout == "(1, 1, 2)\n"
-    files = [*tmp_path.rglob("*.nb?")]
-    for file in files:
-        file.write_bytes(file.read_bytes()[:-50])
-    done = python("-c", LOAD_COMPILED, **kept)
-    assert (done.returncode, done.stdout) == (0, "(1, 1, 2)\n")
-    assert 1 <= done.stderr.count("\n") == done.stderr.count("was damaged, and is made again") <= len(files)
-    done = python("-c", LOAD_COMPILED, **kept)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "(1, 1, 2)\n", "")
-
-
 def test_an_error_of_our_own_is_never_exit_code_1():
     done = with_verbs_that("def run(arguments):\n    raise KeyError('slip')\n")
     assert done.returncode == 70

@@ -28,6 +28,13 @@ from tests.plan_on import plan_on
 from tests.points.measures.dispersion_oracle import dispersion_l2, dispersion_linf
 
 SQUARE = BoxSpace([0.0, 0.0], [1.0, 1.0])
+OPEN = DiscWorld(2, (Plane((0, 1), np.array([[9.0, 9.0]]), np.array([0.1])),))
+
+
+def least_gap(q, edges):
+    """Return the least distance of two points, (n, 2), that no edge joins."""
+    joined = {tuple(edge) for edge in edges.tolist()}
+    return min(np.linalg.norm(q[i] - q[j]) for i in range(len(q)) for j in range(i) if (j, i) not in joined)
 
 
 def test_the_papers_case_costs_one_plus_its_factor():
@@ -79,29 +86,23 @@ def test_the_printed_factor_would_make_paths_shorter_than_straight_lines():
     assert 1 / (alpha - 1) < 1
     points = draw("cover", 128, 2)
     beta = certify(points, Radius(1.0), SQUARE).dispersion
-    world = DiscWorld(2, (Plane((0, 1), np.array([[9.0, 9.0]]), np.array([0.1])),))
-    start, goal = np.array([0.05, 0.5]), np.array([0.95, 0.5])
-    result = plan_on(
-        world, start, goal, points, rule=Radius(2 * alpha * beta), shorten=False, certify=True, links=None
-    )
+    how = dict(rule=Radius(2 * alpha * beta), shorten=False, certify=True, links=None)
+    result = plan_on(OPEN, [0.05, 0.5], [0.95, 0.5], points, **how)
     assert result.milestone_cost > 0.9 / (alpha - 1)
-    assert (
-        result.milestone_cost <= result.certificate.longest(0.9, 1.0) < (1 + 1 / (alpha - 1)) * 0.9 + 2 * beta
-    )
+    longest = result.certificate.longest(0.9, 1.0)
+    assert result.milestone_cost <= longest < (1 + 1 / (alpha - 1)) * 0.9 + 2 * beta
 
 
 def random_discs(rng, d):
     m = int(rng.integers(1, 5))
     axes = rng.permutation(d)[:2]
-    return DiscWorld(
-        d, (Plane((int(axes[0]), int(axes[1])), rng.random((m, 2)), rng.uniform(0.03, 0.25, m)),)
-    )
+    plane = Plane((int(axes[0]), int(axes[1])), rng.random((m, 2)), rng.uniform(0.03, 0.25, m))
+    return DiscWorld(d, (plane,))
 
 
 def test_the_shortest_path_around_one_disc_is_two_tangents_and_an_arc():
-    length = shortest_around(
-        np.array([[0.5, 0.5]]), np.array([0.2]), np.array([0.1, 0.5]), np.array([0.9, 0.5])
-    )
+    start, goal = np.array([0.1, 0.5]), np.array([0.9, 0.5])
+    length = shortest_around(np.array([[0.5, 0.5]]), np.array([0.2]), start, goal)
     assert length == pytest.approx(2 * math.sqrt(0.4**2 - 0.2**2) + 0.2 * (math.pi - 2 * math.acos(0.5)))
 
 
@@ -168,17 +169,16 @@ def test_a_rule_that_is_not_known_is_certified_by_its_graph():
             certify(points, rule, SQUARE)
     result = plan_on(world, [0.01, 0.02], [0.98, 0.97], points, rule=KMutual(12), shorten=False, certify=True)
     q = points.points[world.valid(points.points)]
-    edges = {tuple(edge) for edge in KMutual(12).edges(q, SQUARE)}
-    gaps = [np.linalg.norm(q[i] - q[j]) for i in range(len(q)) for j in range(i) if (j, i) not in edges]
+    gap = least_gap(q, KMutual(12).edges(q, SQUARE))
     # Start and goal are among the neighbours, too, and take places.
-    assert 0.7 * min(gaps) <= result.certificate.between <= min(gaps)
+    assert 0.7 * gap <= result.certificate.between <= gap
 
 
 def test_an_end_that_is_not_joined_to_its_nearest_milestone_voids_the_certificate():
     points = draw("cover", 300, 2)
-    world = DiscWorld(2, (Plane((0, 1), np.array([[9.0, 9.0]]), np.array([0.1])),))
-    middle = points.points.mean(0)
-    result = plan_on(world, middle, [0.98, 0.97], points, rule=KMutual(3), links=None, certify=True)
+    result = plan_on(
+        OPEN, points.points.mean(0), [0.98, 0.97], points, rule=KMutual(3), links=None, certify=True
+    )
     assert result.certificate.between == 0.0 or result.certificate.to_terminals > 0.0
     assert result.certificate.factor(0.5) == math.inf
 
@@ -187,15 +187,13 @@ def test_a_kept_roadmap_is_certified_by_its_edges():
     points = draw("cover", 400, 2)
     roadmap = roadmap_of_points(SQUARE, points, KNearest(20))
     certificate = certify_roadmap(roadmap)
-    edges = {tuple(edge) for edge in roadmap.edges}
     q = points.points
-    gaps = [np.linalg.norm(q[i] - q[j]) for i in range(400) for j in range(i) if (j, i) not in edges]
-    assert certificate.between == pytest.approx(min(gaps))
-    assert certificate.between < min(gaps)
+    gap = least_gap(q, roadmap.edges)
+    assert certificate.between == pytest.approx(gap)
+    assert certificate.between < gap
     assert certificate.complete
     assert certificate.to_terminals > certificate.dispersion
-    rng = np.random.default_rng(3)
-    ends = rng.random((200, 2))
+    ends = np.random.default_rng(3).random((200, 2))
     away = np.sort(np.linalg.norm(ends[:, None] - q[None], axis=2), axis=1)
     # Ends are linked to their hundred nearest.
     assert certificate.to_terminals < away[:, 99].min()

@@ -19,6 +19,13 @@ def free(world, count, seed):
     return q[world.valid(q)][:count]
 
 
+def reach():
+    """Return the shipped arm at its box, where it rests, and where it reaches."""
+    scene = load_scene("box-reach")
+    world = ArmWorld(in_scene(load_robot("ur5"), scene), scene)
+    return world, *(world.robot.configuration(name, scene) for name in ("home", "inside"))
+
+
 def test_a_near_goal_is_chosen_where_trees_that_are_led_to_all_meet_a_far_one():
     longer, better = [], []
     for seed in range(6):
@@ -43,10 +50,8 @@ def test_a_nearest_goal_that_is_not_reached_soon_gives_way_to_all(monkeypatch):
     start, *goals = free(world, 7, 2)
     goals = np.array([goal for goal in goals if not world.motion_valid(start[None], goal[None])[0]])
     monkeypatch.setattr(import_module("evenroad.planning.trees"), "TO_NEAREST", 1)
-    result, alone = (
-        plan(world, start, goals),
-        connect(world, start, goals, most_motions=10**6, seconds=20),
-    )
+    result = plan(world, start, goals)
+    alone = connect(world, start, goals, most_motions=10**6, seconds=20)
     assert (result.solved, result.goal_index) == (True, alone.goal)
     np.testing.assert_array_equal(result.path, shorten(world, alone.path)[0])
     # What was asked in vain counts.
@@ -54,10 +59,7 @@ def test_a_nearest_goal_that_is_not_reached_soon_gives_way_to_all(monkeypatch):
 
 
 def test_a_goal_that_is_near_and_cannot_be_reached_does_not_keep_from_others():
-    scene = load_scene("box-reach")
-    world = ArmWorld(in_scene(load_robot("ur5"), scene), scene)
-    start = world.robot.configuration("home", scene)
-    inside = world.robot.configuration("inside", scene)
+    world, start, inside = reach()
     blocked = start + 0.01
     blocked[2] = 3.0
     assert not world.valid(blocked[None])[0]
@@ -77,10 +79,7 @@ def test_the_same_goals_give_the_same_path_in_any_order(smooth):
 
 
 def test_a_start_in_collision_and_motions_that_do_not_suffice_are_answers():
-    scene = load_scene("box-reach")
-    world = ArmWorld(in_scene(load_robot("ur5"), scene), scene)
-    start = world.robot.configuration("home", scene)
-    inside = world.robot.configuration("inside", scene)
+    world, start, inside = reach()
     goals = np.array([inside, inside])
     few = plan(world, start, goals, seconds=9, limits={"motions": 2})
     assert few.status is er.Status.BUDGET_SPENT

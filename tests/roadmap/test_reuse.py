@@ -1,5 +1,4 @@
 import pickle
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -205,27 +204,9 @@ def test_the_graph_of_a_set_from_a_pool_is_joined_once_and_others_each_time():
         assert different.edges is not roadmap_of_points(space, banked).edges
 
 
-def test_threads_that_share_a_roadmap_get_the_answers_that_each_would_get_alone():
-    maze = load_maze(2)
-    world = maze.world()
-    known = roadmap_of_points(world.space, draw("sobol", 256, 2, rng=1), KNearest(10)).within(world)
-    places = world.space.from_cube(draw("uniform", 400, 2, rng=5).points)
-    queries = places[world.valid(places)][:120].reshape(-1, 2, 2)
-    alone = [known.plan(start, goal, shorten=False) for start, goal in queries]
-    shared = known.roadmap.within(world)
-    with ThreadPoolExecutor(8) as pool:
-        together = list(
-            pool.map(lambda query: shared.plan(*query, shorten=False), [*queries, *queries, *queries])
-        )
-    for mine, expected in zip(together, 3 * alone, strict=True):
-        assert (mine.status, mine.cost) == (expected.status, expected.cost)
-        assert mine.path is expected.path or mine.path.tobytes() == expected.path.tobytes()
-
-
 def test_a_roadmap_in_a_world_can_be_sent_to_another_process():
-    known = roadmap_of_points(SQUARE, draw("sobol", 32, 2), KNearest(6)).within(
-        GridMap(np.zeros((1, 1), dtype=bool)).world(0.01)
-    )
+    roadmap = roadmap_of_points(SQUARE, draw("sobol", 32, 2), KNearest(6))
+    known = roadmap.within(GridMap(np.zeros((1, 1), dtype=bool)).world(0.01))
     known.plan((0.1, 0.1), (0.9, 0.9))
     sent = pickle.loads(pickle.dumps(known))
     assert sent.plan((0.1, 0.1), (0.9, 0.9)).cost == known.plan((0.1, 0.1), (0.9, 0.9)).cost
