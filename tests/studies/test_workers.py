@@ -9,8 +9,7 @@ import time
 
 import pytest
 
-from evenroad.errors import InvalidValue
-from evenroad_studies.workers import ProcessPool, SerialExecutor, processes
+from evenroad_studies.workers import ProcessPool, SerialExecutor
 
 PATIENCE = 60.0
 
@@ -74,11 +73,6 @@ def test_processes_that_are_not_waited_for_are_ended_in_what_they_do():
     pool.shutdown(wait=False, cancel_futures=True)
     process.join(60.0)
     assert process.exitcode == -signal.SIGTERM
-
-
-def test_the_number_of_processes_is_a_positive_integer():
-    with pytest.raises(InvalidValue, match="jobs"):
-        processes(0)
 
 
 def test_a_call_in_this_process_that_dropped_an_interrupt_has_no_result():

@@ -145,44 +145,29 @@ def _written(tmp_path, **changed):
     return path
 
 
-WRONG = {
-    "protocol": lambda a: a + 1,
-    "generators": lambda a: a[::-1],
-    "ways": lambda a: np.array([a[0], a[0]]),
-    "sizes": lambda a: np.array([-1, 5]),
-    "problems": lambda a: a[::-1],
-    "draws": lambda a: np.array(1),
-    "solved": lambda a: a.astype(np.int64),
-    "ran": np.zeros_like,
-    "costs": lambda a: -a,
-}
+WRONG = [
+    ("protocol", lambda a: a + 1, ""),
+    ("generators", lambda a: a[::-1], ""),
+    ("ways", lambda a: np.array([a[0], a[0]]), ""),
+    ("ways", lambda ways: ways[:, :5], "ways"),
+    ("ways", lambda ways: np.array("ways"), "ways"),
+    ("ways", lambda ways: np.char.replace(ways, "64", "many"), "ways"),
+    ("ways", lambda ways: np.zeros((2, 6), dtype=np.int64), "ways"),
+    ("sizes", lambda a: np.array([-1, 5]), ""),
+    ("problems", lambda a: a[::-1], ""),
+    ("problems", lambda a: a + np.array([9, 0]), "a generator that is none"),
+    ("draws", lambda a: np.array(1), ""),
+    ("draws", lambda a: np.repeat(a, 2, axis=0), "draws out of order"),
+    ("solved", lambda a: a.astype(np.int64), ""),
+    ("ran", np.zeros_like, ""),
+    ("costs", lambda a: -a, ""),
+]
 
 
-@pytest.mark.parametrize(("name", "change"), WRONG.items(), ids=WRONG)
-def test_a_file_of_outcomes_that_cannot_be_is_refused(tmp_path, name, change):
-    with pytest.raises(BrokenFile, match=r"o\.npz"):
+@pytest.mark.parametrize(("name", "change", "says"), WRONG)
+def test_a_file_of_outcomes_that_cannot_be_is_refused(tmp_path, name, change, says):
+    with pytest.raises(BrokenFile, match=rf"o\.npz.*{says}"):
         read_outcomes(_written(tmp_path, **{name: change}))
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda ways: ways[:, :5],
-        lambda ways: np.array("ways"),
-        lambda ways: np.char.replace(ways, "64", "many"),
-        lambda ways: np.zeros((2, 6), dtype=np.int64),
-    ],
-)
-def test_ways_of_planning_that_cannot_be_are_refused(tmp_path, change):
-    with pytest.raises(BrokenFile, match=r"o\.npz: ways"):
-        read_outcomes(_written(tmp_path, ways=change))
-
-
-def test_a_generator_that_is_none_and_a_draw_that_comes_twice_are_refused(tmp_path):
-    with pytest.raises(BrokenFile, match="a generator that is none"):
-        read_outcomes(_written(tmp_path, problems=lambda a: a + np.array([9, 0])))
-    with pytest.raises(BrokenFile, match="draws out of order"):
-        read_outcomes(_written(tmp_path, draws=lambda a: np.repeat(a, 2, axis=0)))
 
 
 @pytest.mark.parametrize("harm", ["cut", "flipped", "other"])

@@ -7,11 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evenroad.points import PointSet
 from evenroad.roadmap import rule_named
 from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld
-from evenroad.world.gridmap.shipped import load_maze
 from evenroad_studies.bench import execute
 from evenroad_studies.bench.execute import OverTime, run_task, time_limit
 from evenroad_studies.bench.samplers import SAMPLERS, draw_set
@@ -95,12 +93,6 @@ def test_runs_of_a_block_protocol_are_other_points_of_one_sequence_whatever_the_
     by_seed = [[_steady(run_task(replace(task, run=run, seed=seed))) for run in range(4)] for seed in (1, 2)]
     assert by_seed[0] == by_seed[1]
     assert len(set(by_seed[0])) > 1
-
-
-def test_a_pool_set_is_named_in_the_outcome():
-    outcome = run_task(replace(TASK, sampler="hickernell"))
-    assert 0 <= int(outcome.set_id) < 64
-    assert run_task(TASK).set_id == ""
 
 
 @pytest.mark.parametrize(
@@ -199,11 +191,3 @@ def test_no_alarm_is_left_behind():
     time.sleep(0.1)
     with pytest.raises(OverTime), time_limit(0.05):
         time.sleep(5.0)
-
-
-def test_a_problem_maps_a_set_as_its_space_does():
-    maze = load_maze(1)
-    problem = source_named("maze-1").make(0)
-    points = PointSet(np.random.default_rng(0).random((5, 2)))
-    configurations = problem.configurations(points, np.random.default_rng(0))
-    np.testing.assert_array_equal(configurations, maze.world().space.from_cube(points.points))

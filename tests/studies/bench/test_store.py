@@ -371,24 +371,6 @@ def test_rows_that_a_locked_file_cannot_take_are_left_beside_it_and_taken_in_the
     assert sorted(each.name for each in path.parent.iterdir()) == ["calm.db", "results.db"]
 
 
-def test_a_locked_file_is_waited_for_once(path, monkeypatch):
-    monkeypatch.setattr("evenroad_studies.bench.store_file.PATIENCE", 0.01)
-    begun = []
-    _write(path, [])
-    other = sqlite3.connect(path, isolation_level=None)
-
-    def write_while_locked(store):
-        other.execute("BEGIN EXCLUSIVE")
-        store._connection.set_trace_callback(begun.append)
-        store.add("paper", TASK, SOLVED, "")
-        store.commit()
-
-    with pytest.raises(BrokenFile, match="locked"):
-        _during(path, write_while_locked)
-    other.close()
-    assert sum("BEGIN" in statement for statement in begun) == 1
-
-
 def test_a_store_that_stays_locked_keeps_what_was_left_beside_it(path, monkeypatch):
     monkeypatch.setattr("evenroad_studies.bench.store_file.PATIENCE", 0.01)
     _write(path, [])

@@ -1,7 +1,6 @@
 """The verb that makes sets: train."""
 
 import json
-import os
 import re
 import signal
 import subprocess
@@ -11,7 +10,6 @@ import pytest
 
 from evenroad.points import load_points
 from evenroad.points.measures import star_discrepancy
-from evenroad_studies.workers import interrupt_between_steps
 
 MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "--jobs", 1, "-o", "sets")
 
@@ -56,27 +54,11 @@ def test_orders_are_what_is_searched_for_the_star_discrepancy_of_the_plane(run, 
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
+        (("-n", 0), "n must be"),
         (("--objective", "hickernel"), "known: .*hickernell"),
         (("--objective", "hickernell+"), "column"),
         (("--steps", 0), "steps"),
-        (("--sets", 0), "sets"),
         (("-o", "no/where"), "does not exist"),
-        (("-o", "file"), "not a folder"),
-    ],
-)
-def test_bad_requests_to_train_get_one_line(run, tmp_path, arguments, says):
-    (tmp_path / "file").write_text("")
-    line = ["train", "-n", 8, "-d", 2, "--jobs", 1, *arguments]
-    code, out, err = run(*line, *(() if "-o" in arguments else ("-o", "sets")))
-    assert (code, out) == (2, "")
-    assert err.strip().count("\n") == 0
-    assert re.search(says, err)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (("-n", 0), "n must be"),
         (("--sets", 0), "sets must be"),
         (("-n", 1, "--objective", "riesz"), "at least 2 points"),
         (("--seed", -1), "seed must be"),
@@ -116,6 +98,12 @@ def test_an_error_repeats_a_little_of_what_was_asked_for(run, arguments):
     code, out, err = run("train", "-n", 8, "-d", 2, "-o", "sets", *arguments)
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert len(err) < 400
+
+
+def test_a_file_in_the_place_of_the_folder_is_refused(run, tmp_path):
+    (tmp_path / "sets").write_text("")
+    code, out, err = run("train", "-n", 8, "-d", 2, "-o", "sets")
+    assert (code, out, err.count("\n"), "not a folder" in err) == (2, "", 1, True)
 
 
 def test_a_request_that_was_written_by_hand_is_repeated_in_short(run, tmp_path):
@@ -175,15 +163,3 @@ def test_refined_sets_are_kept_one_by_one_and_read_back(run, tmp_path, monkeypat
     code, _, err = run(*MPMC, "--steps", 3, "--refine", 21)
     assert code == 2
     assert "steps=20, asked for steps=21; use another folder (what there is: refined.json)" in err
-
-
-def test_the_first_ctrl_c_waits_for_the_step_and_the_second_does_not():
-    before = signal.getsignal(signal.SIGINT)
-    with interrupt_between_steps() as check:
-        check()
-        os.kill(os.getpid(), signal.SIGINT)
-        with pytest.raises(KeyboardInterrupt):
-            check()
-        with pytest.raises(KeyboardInterrupt):
-            os.kill(os.getpid(), signal.SIGINT)
-    assert signal.getsignal(signal.SIGINT) == before

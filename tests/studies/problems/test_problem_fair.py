@@ -33,18 +33,12 @@ ONE_OF_EACH = ["fair-balls-5d-50", "fair-boxes-5d-50", "fair-maze-50", "fair-se2
 
 
 @pytest.mark.parametrize("name", ONE_OF_EACH)
-def test_the_same_number_makes_the_same_problem(name):
-    first, again = PROBLEMS[name].make(3), PROBLEMS[name].make(3)
+def test_the_same_number_makes_the_same_problem_and_another_one_another(name):
+    first, again, other = (PROBLEMS[name].make(number) for number in (3, 3, 4))
     np.testing.assert_array_equal(first.start, again.start)
     np.testing.assert_array_equal(first.goal, again.goal)
     q = first.world.space.from_cube(np.random.default_rng(0).random((300, first.set_dim)))
     np.testing.assert_array_equal(first.world.valid(q), again.world.valid(q))
-
-
-@pytest.mark.parametrize("name", ONE_OF_EACH)
-def test_another_number_makes_another_world(name):
-    first, other = PROBLEMS[name].make(3), PROBLEMS[name].make(4)
-    q = first.world.space.from_cube(np.random.default_rng(0).random((300, first.set_dim)))
     assert (first.world.valid(q) != other.world.valid(q)).any()
     assert (first.start != other.start).any()
 
@@ -102,33 +96,27 @@ def test_the_sizes_are_those_of_the_calibration_that_is_kept():
             assert abs(float(row["uniform"]) - difficulty) < 7
 
 
-@pytest.mark.parametrize("draw", [draw_balls, draw_boxes])
-def test_no_place_of_the_cube_is_freer_than_another(draw):
-    random = np.random.default_rng(5)
-    size = SIZES[Family.BALLS if draw is draw_balls else Family.BOXES, 3][1]
+@pytest.mark.parametrize(
+    ("draw", "dim", "cell", "worlds", "share"),
+    [
+        (draw_balls, 3, (Family.BALLS, 3), 300, 0.02),
+        (draw_boxes, 3, (Family.BOXES, 3), 300, 0.02),
+        (draw_clutter, 2, (Family.SE2, 3), 60, 0.0),
+        (draw_clutter, 3, (Family.SE3, 6), 60, 0.0),
+    ],
+    ids=["balls", "boxes", "clutter in the plane", "clutter in space"],
+)
+def test_no_place_is_freer_than_another_at_the_faces_and_in_the_middle(draw, dim, cell, worlds, share):
+    random, size = np.random.default_rng(5), SIZES[cell][1]
     at_face, in_middle = [], []
-    for _ in range(300):
-        world = draw(3, size, random)
-        q = random.random((50, 3))
-        at_face.append(world.valid(q * [0.02, 1, 1]).mean())
-        in_middle.append(world.valid(q * [0.02, 1, 1] + [0.49, 0, 0]).mean())
-    difference = np.array(at_face) - in_middle
-    assert abs(difference.mean()) < 4 * difference.std() / np.sqrt(len(difference))
-
-
-@pytest.mark.parametrize("dim", [2, 3])
-def test_the_clutter_is_as_dense_at_the_bounds_as_in_the_middle(dim):
-    random = np.random.default_rng(6)
-    size = SIZES[Family.SE2 if dim == 2 else Family.SE3, 3 if dim == 2 else 6][1]
-    at_bound, in_middle = [], []
-    for _ in range(60):
-        world = draw_clutter(dim, size, random)
+    for _ in range(worlds):
+        world = draw(dim, size, random)
         cube = random.random((50, world.space.cube_dim))
-        cube[:, 0] = 0.0
-        at_bound.append(world.valid(world.space.from_cube(cube)).mean())
-        cube[:, 0] = 0.5
+        cube[:, 0] *= share
+        at_face.append(world.valid(world.space.from_cube(cube)).mean())
+        cube[:, 0] += 0.5 - share / 2
         in_middle.append(world.valid(world.space.from_cube(cube)).mean())
-    difference = np.array(at_bound) - in_middle
+    difference = np.array(at_face) - in_middle
     assert abs(difference.mean()) < 4 * difference.std() / np.sqrt(len(difference))
 
 

@@ -8,7 +8,7 @@ from concurrent.futures.process import BrokenProcessPool
 import numpy as np
 import pytest
 
-from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, WorkerLost
+from evenroad.errors import EvenroadError, InvalidValue, WorkerLost
 from evenroad.points import load_points
 from evenroad.points.measures import MEASURES
 from evenroad_studies.anneal import SCHEDULE, anneal
@@ -154,11 +154,6 @@ def test_a_strange_set_in_the_folder_is_refused(tmp_path):
     os.rename(other / "set-0000.npz", ours / "set-0000.npz")
     with pytest.raises(InvalidValue, match="holds another set"):
         anneal_many(**SMALL, rng=0, folder=ours, workers=1)
-
-
-def test_a_missing_folder_is_refused_before_any_work(tmp_path):
-    with pytest.raises(BrokenFile, match="does not exist"):
-        anneal_many(**SMALL, folder=tmp_path / "missing", workers=1)
 
 
 @pytest.mark.parametrize(("changes", "text"), [

@@ -97,27 +97,23 @@ def test_an_empty_folder_is_an_empty_bank(tmp_path):
     assert not Bank(tmp_path).has("hickernell", 8, 2)
 
 
+ARRAY = "hickernell/d02-n0008.npy"
+
+
 def _damage_array(folder):
-    path = folder / "hickernell" / "d02-n0008.npy"
-    sets = np.load(path)
+    sets = np.load(folder / ARRAY)
     sets[1, 0, 0] = 0.123
-    np.save(path, sets)
+    np.save(folder / ARRAY, sets)
 
 
 @pytest.mark.parametrize(
     ("damage", "says"),
     [
         (_damage_array, "set 1 does not match the hash"),
-        (lambda folder: (folder / "hickernell" / "d02-n0008.npy").unlink(), "cannot be read"),
-        (lambda folder: (folder / "hickernell" / "d02-n0008.npy").write_bytes(b"no"), "cannot be read"),
-        (
-            lambda folder: np.save(folder / "hickernell" / "d02-n0008.npy", np.zeros((3, 8, 2))),
-            "not a float32 array",
-        ),
-        (
-            lambda folder: np.save(folder / "hickernell" / "d02-n0008.npy", np.zeros((2, 8, 2), "f4")),
-            "of shape",
-        ),
+        (lambda folder: (folder / ARRAY).unlink(), "cannot be read"),
+        (lambda folder: (folder / ARRAY).write_bytes(b"no"), "cannot be read"),
+        (lambda folder: np.save(folder / ARRAY, np.zeros((3, 8, 2))), "not a float32 array"),
+        (lambda folder: np.save(folder / ARRAY, np.zeros((2, 8, 2), "f4")), "of shape"),
         (lambda folder: (folder / INDEX).write_text("{"), "index"),
         (lambda folder: (folder / INDEX).write_text('{"hickernell": {"2": {"8": {}}}}'), "no record"),
         (lambda folder: (folder / INDEX).write_text("[]"), "JSON object"),
