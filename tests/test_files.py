@@ -84,29 +84,20 @@ def test_whatever_is_read_the_error_is_ours(tmp_path, what, reader):
 
 
 @pytest.mark.parametrize(
-    ("text", "says"), [("a: [1, 2\n", "line 2, column 1: "), ("a: 1\n b: 2", "line 2, column 3: ")]
+    ("reader", "text", "says"),
+    [
+        ("YAML", "a: [1, 2\n", "is not YAML, as a scene is: line 2, column 1: "),
+        ("YAML", "a: 1\n b: 2", "is not YAML, as a scene is: line 2, column 3: "),
+        ("JSON", "{", "is not JSON, as a plan is: line 1, column 2"),
+        ("JSON", '{"a":\n 1,}', "is not JSON, as a plan is: line 2, column "),
+    ],
 )
-def test_yaml_that_does_not_parse_is_said_with_its_place(tmp_path, text, says):
-    (tmp_path / "a.yaml").write_text(text)
-    with pytest.raises(yaml.YAMLError):
-        yaml.safe_load(text)
-    with pytest.raises(BrokenFile, match=f"is not YAML, as a scene is: {says}"):
-        read_mapping(tmp_path / "a.yaml", "scene")
-
-
-@pytest.mark.parametrize(("text", "place"), [("{", "line 1, column 2"), ('{"a":\n 1,}', "line 2, column ")])
-def test_json_that_does_not_parse_is_said_with_its_place(tmp_path, text, place):
-    (tmp_path / "a.json").write_text(text)
-    with pytest.raises(json.JSONDecodeError):
-        json.loads(text)
-    with pytest.raises(BrokenFile, match=f"a.json is not JSON, as a plan is: {place}"):
-        read_json_file(tmp_path / "a.json", "plan")
-
-
-def test_json_that_is_nested_too_deep_is_a_broken_file(tmp_path):
-    (tmp_path / "a.json").write_text("[" * 200_000)
-    with pytest.raises(BrokenFile, match="is not JSON"):
-        read_json_file(tmp_path / "a.json", "plan")
+def test_what_does_not_parse_is_said_with_its_place(tmp_path, reader, text, says):
+    (tmp_path / "a").write_text(text)
+    with pytest.raises((yaml.YAMLError, json.JSONDecodeError)):
+        (yaml.safe_load if reader == "YAML" else json.loads)(text)
+    with pytest.raises(BrokenFile, match=says):
+        READERS[reader](tmp_path / "a")
 
 
 def test_a_missing_file_is_said_to_be_missing(tmp_path):

@@ -25,10 +25,6 @@ class TestBox(SpaceContract):
     space = BoxSpace([-1.0, 10.0, 0.0], [2.0, 11.0, 1e-3])
 
 
-class TestBoxOnALine(SpaceContract):
-    space = BoxSpace([-3.0], [4.0])
-
-
 class TestWeightedBox(SpaceContract):
     space = BoxSpace([0.0] * 6, [1.0] * 6, weights=[1, 2, 3, 4, 5, 6])
 

@@ -54,14 +54,10 @@ def test_idle_workers_end_when_their_parent_is_killed(tmp_path, number):
         time.sleep(0.05)
 
 
-def test_each_process_is_set_up_once_before_its_first_call():
+def test_each_process_has_one_thread_and_is_set_up_once_before_its_first_call():
     with ProcessPool(1, os.putenv, ("EVENROAD_SET_UP", "yes")) as pool:
         shell = pool.submit(subprocess.check_output, "echo $EVENROAD_SET_UP", shell=True)
         assert shell.result() == b"yes\n"
-
-
-def test_worker_processes_have_one_thread_each():
-    with ProcessPool(1) as pool:
         assert pool.submit(os.getenv, "NUMBA_NUM_THREADS").result() == "1"
 
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from PIL import Image, ImageColor
 
-from evenroad.errors import BrokenFile
 from evenroad.planning import PRM, plan
 from evenroad.points import draw
 from evenroad.robot import (
@@ -149,8 +148,3 @@ def test_an_empty_scene_and_a_huge_floor_are_drawn_too(tmp_path):
         goal = np.full(7, 0.5)
         save_arm_picture(tmp_path / "a.png", plan(world, np.zeros(7), goal, PRM(draw("halton", 8, 7))), world)
         assert (tmp_path / "a.png").exists()
-
-
-def test_a_picture_that_cannot_be_written_is_our_error(reach, tmp_path):
-    with pytest.raises(BrokenFile, match="does not exist"):
-        save_arm_picture(tmp_path / "no" / "a.png", _planned(reach, n=8), reach)

@@ -30,14 +30,6 @@ class TestChainOfTen(SpaceContract):
         pytest.skip("angles turn evenly, joints in the plane do not")
 
 
-class TestOneLink(SpaceContract):
-    space = ChainSpace(1)
-    measure_is_the_metrics = False
-
-    def test_interpolation_covers_the_distance_evenly(self):
-        pytest.skip("angles turn evenly, joints in the plane do not")
-
-
 @pytest.mark.parametrize("links", [1, 2, 3, 10])
 def test_the_distance_is_how_far_all_joints_are_apart(links):
     space = ChainSpace(links)

@@ -75,11 +75,6 @@ class TestChainOfTen(WorldContract):
     free_between = False
 
 
-class TestChainOfThree(WorldContract):
-    world = ChainWorld(3)
-    free_between = False
-
-
 @pytest.mark.parametrize("links", [2, 3, 6, 10])
 def test_a_chain_is_free_iff_nothing_crosses(links):
     world = ChainWorld(links)

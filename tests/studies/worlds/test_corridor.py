@@ -51,11 +51,6 @@ class TestCorridorInThePlane(WorldContract):
     free_between = False
 
 
-class TestCorridorInSixDimensions(WorldContract):
-    world = Corridor(6, 0.6)
-    free_between = False
-
-
 class TestLegacyCorridor(WorldContract):
     world = Corridor(10, 0.5, checked=6, side="demo")
     free_between = False

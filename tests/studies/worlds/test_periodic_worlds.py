@@ -57,10 +57,6 @@ class TestBoxesKeepTheContract(WorldContract):
     world = some_boxes(4, 12, 3, 0.25)
 
 
-class TestBoxesInAPlaneKeepTheContract(WorldContract):
-    world = some_boxes(2, 4, 2, 0.15)
-
-
 @pytest.mark.parametrize(("d", "n", "radius"), [(1, 2, 0.1), (2, 5, 0.2), (3, 6, 0.3), (4, 2, 0.6)])
 def test_a_motion_is_free_iff_it_misses_every_copy_of_every_ball(d, n, radius):
     world = some_balls(d, n, radius, seed=d)

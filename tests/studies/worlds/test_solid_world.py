@@ -17,8 +17,6 @@ from tests.studies.worlds.solids_oracle import (
     ELL,
     FLAT_ELL,
     IN_SPACE,
-    IN_THE_PLANE,
-    SHIFTED,
     SHIFTED_IN_THE_PLANE,
     WORLDS,
     a_turn,
@@ -29,16 +27,6 @@ from tests.studies.worlds.solids_oracle import (
 
 class TestBodyInSpace(WorldContract):
     world = IN_SPACE
-    free_between = False
-
-
-class TestBodyInThePlane(WorldContract):
-    world = IN_THE_PLANE
-    free_between = False
-
-
-class TestBodyThatDoesNotTurn(WorldContract):
-    world = SHIFTED
     free_between = False
 
 
