@@ -5,6 +5,7 @@ import struct
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 typesys = pytest.importorskip("rosbags.typesys")
@@ -65,7 +66,29 @@ def store():
 
 @pytest.fixture(scope="module")
 def make(store):
-    return lambda kind, **fields: store.types[kind](**fields)
+    """Make a message: fields that are not given are zeros, empty, or messages of such."""
+
+    def make(kind, **fields):
+        unknown = fields.keys() - {name for name, _ in store.fielddefs[kind][1]}
+        assert not unknown, f"{kind} has no {unknown}"
+        return store.types[kind](
+            **{name: _nothing(make, *of) for name, of in store.fielddefs[kind][1]} | fields
+        )
+
+    return make
+
+
+def _nothing(make, node, of):
+    """Return the value of a field that nobody gave."""
+    if node == typesys.base.Nodetype.BASE:
+        kind = of[0]
+        return "" if kind == "string" else False if kind == "bool" else 0.0 if "float" in kind else 0
+    if node == typesys.base.Nodetype.NAME:
+        return make(of)
+    kind, count = of
+    if kind[0] == typesys.base.Nodetype.BASE and kind[1][0] != "string":
+        return np.zeros(count, dtype={"byte": "uint8"}.get(kind[1][0], kind[1][0]))
+    return [_nothing(make, *kind) for _ in range(count)]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -123,6 +146,4 @@ def _pose(make, xyz, quaternion=(0.0, 0.0, 0.0, 1.0)):
 
 
 def _header(make, frame=""):
-    return make(
-        "std_msgs/msg/Header", stamp=make("builtin_interfaces/msg/Time", sec=0, nanosec=0), frame_id=frame
-    )
+    return make("std_msgs/msg/Header", frame_id=frame)

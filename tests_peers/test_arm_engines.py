@@ -33,11 +33,6 @@ CASES = {
 engines = pytest.mark.parametrize("engine", ENGINES)
 
 
-@pytest.fixture(autouse=True)
-def _a_cache_of_its_own(tmp_path_factory, monkeypatch):
-    monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path_factory.mktemp("cache")))
-
-
 class TestKlampt(WorldContract):
     world = KlamptWorld(*CASES["ur5"])
     free_between = False

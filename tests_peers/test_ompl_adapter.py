@@ -13,6 +13,7 @@ from evenroad.space import SE2, SE3, SO3, BoxSpace, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
 from evenroad.world.gridmap.shipped import load_maze
+from evenroad_studies.worlds import Corridor
 
 ob = pytest.importorskip("ompl.base")
 og = pytest.importorskip("ompl.geometric")
@@ -179,22 +180,49 @@ def test_the_sampler_hands_out_the_free_points_in_their_order():
     assert sampler.used_up
 
 
+def solved_alike(world, start, goal, points):
+    """Return how long the paths are that both find on these points, or None: OMPL's rule is k earlier, ends first."""
+    ours = er.plan(world, start, goal, er.PRM(points, rule=KEarlier(10), links=None), smooth=False)
+    theirs = plan_on_points(space_information(world), start, goal, points)
+    assert ours.solved == (theirs is not None)
+    if theirs is None:
+        return None
+    assert world.motion_valid(theirs[:-1], theirs[1:]).all()
+    return ours.cost, world.space.distance(theirs[:-1], theirs[1:]).sum()
+
+
 @pytest.mark.parametrize("level", [1, 2])
 @pytest.mark.parametrize("n", [32, 64, 128])
 def test_prm_on_our_points_solves_what_our_roadmap_does(level, n):
-    """OMPL's rule is k earlier, start and goal first."""
     maze = load_maze(level)
-    world = maze.world()
     for seed in range(4):
-        points = er.draw("halton", n, 2, rng=seed)
-        ours = er.plan(
-            world, maze.start, maze.goal, er.PRM(points, rule=KEarlier(10), links=None), smooth=False
-        )
-        theirs = plan_on_points(space_information(world), maze.start, maze.goal, points)
-        assert ours.solved == (theirs is not None)
-        if theirs is not None:
-            assert world.motion_valid(theirs[:-1], theirs[1:]).all()
-            assert world.space.distance(theirs[:-1], theirs[1:]).sum() == pytest.approx(ours.cost, rel=1e-9)
+        costs = solved_alike(maze.world(), maze.start, maze.goal, er.draw("halton", n, 2, rng=seed))
+        assert costs is None or costs[1] == pytest.approx(costs[0], rel=1e-9)
+
+
+@pytest.mark.parametrize(("d", "lam", "n"), [(2, 0.1, 128), (3, 0.2, 128), (3, 0.15, 256)])
+def test_prm_on_our_points_solves_what_our_roadmap_does_in_corridors(d, lam, n):
+    world = Corridor(d, lam)
+    for seed in range(4):
+        solved_alike(world, world.start, world.goal, er.draw("uniform", n, d, rng=seed))
+
+
+def test_prm_on_our_points_solves_what_our_roadmap_does_among_random_balls():
+    outcomes = set()
+    for seed in range(80):
+        random = np.random.default_rng(seed)
+        d = int(random.integers(2, 4))
+        centres = random.random((int(random.integers(4, 12)), d))
+        radius = random.uniform(0.1, 0.3 if d == 3 else 0.22)
+
+        def free(q, centres=centres, radius=radius):
+            return (((q[:, None, :] - centres) ** 2).sum(axis=2) > radius**2).all(axis=1)
+
+        start, goal = np.full(d, 0.02), np.full(d, 0.98)
+        if free(np.stack([start, goal])).all():
+            world = FunctionWorld(BoxSpace(np.zeros(d), np.ones(d)), free, 0.01 * np.sqrt(d))
+            outcomes.add(solved_alike(world, start, goal, er.draw("uniform", 40, d, rng=seed)) is not None)
+    assert outcomes == {True, False}
 
 
 def test_prm_star_takes_our_points_too():

@@ -41,11 +41,6 @@ BRANCHING = urdf(
 )
 
 
-@pytest.fixture(autouse=True)
-def _a_cache_of_its_own(tmp_path_factory, monkeypatch):
-    monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path_factory.mktemp("cache")))
-
-
 def random_configurations(robot, count=200):
     limits = {joint.name: joint for joint in robot.joints}
     low, high = np.array(

@@ -24,134 +24,55 @@ def test_a_trajectory_is_written_byte_for_byte(store, make):
     message = joint_trajectory(trajectory, make, ("bc", "d", "a"))
     cdr = Cdr().header(0, 0, "").put("I", 3).text("bc").text("d").text("a").put("I", len(trajectory.times))
     for i, time in enumerate(trajectory.times):
-        for table, held in (
-            (trajectory.positions, 0.25),
-            (trajectory.velocities, 0.0),
-            (trajectory.accelerations, 0.0),
-        ):
-            cdr.row([table[i, 1], held, table[i, 0]])
+        cdr.row([trajectory.positions[i, 1], 0.25, trajectory.positions[i, 0]])
+        for table in (trajectory.velocities, trajectory.accelerations):
+            cdr.row([table[i, 1], 0.0, table[i, 0]])
         cdr.row([]).put("i", int(time // 1)).put("I", round((time % 1) * 1e9))
     assert _written(store, message) == cdr.message()
 
 
 def _solid(make, kind, dimensions):
-    polygon = make("geometry_msgs/msg/Polygon", points=[])
-    return make(
-        "shape_msgs/msg/SolidPrimitive", type=kind, dimensions=np.array(dimensions, float), polygon=polygon
-    )
+    return make("shape_msgs/msg/SolidPrimitive", type=kind, dimensions=np.array(dimensions, float))
 
 
-def _collision_object(make, name, solids, poses, pose=None, frame="", meshes=(), mesh_poses=(), planes=()):
-    return make(
-        "moveit_msgs/msg/CollisionObject",
-        header=_header(make, frame),
-        pose=pose or _pose(make, (0, 0, 0)),
-        id=name,
-        type=make("object_recognition_msgs/msg/ObjectType", key="", db=""),
-        primitives=list(solids),
-        primitive_poses=list(poses),
-        meshes=list(meshes),
-        mesh_poses=list(mesh_poses),
-        planes=list(planes),
-        plane_poses=[_pose(make, (0, 0, 0)) for _ in planes],
-        subframe_names=[],
-        subframe_poses=[],
-        operation=0,
-    )
+def _collision_object(make, name, solids=(), poses=(), frame="", **more):
+    lists = {key: list(value) for key, value in (("primitives", solids), ("primitive_poses", poses))}
+    more = {"pose": _pose(make, (0, 0, 0))} | more
+    return make("moveit_msgs/msg/CollisionObject", header=_header(make, frame), id=name, **lists, **more)
 
 
 def _planning_scene(make, joints, objects, attached=(), allowed=(), octomap=(), **changes):
+    values = np.array([*joints.values()], float)
     state = make(
         "moveit_msgs/msg/RobotState",
-        joint_state=make(
-            "sensor_msgs/msg/JointState",
-            header=_header(make),
-            name=list(joints),
-            position=np.array([*joints.values()], float),
-            velocity=np.zeros(0),
-            effort=np.zeros(0),
-        ),
-        multi_dof_joint_state=make(
-            "sensor_msgs/msg/MultiDOFJointState",
-            header=_header(make),
-            joint_names=[],
-            transforms=[],
-            twist=[],
-            wrench=[],
-        ),
+        joint_state=make("sensor_msgs/msg/JointState", name=list(joints), position=values),
         attached_collision_objects=[
-            make(
-                "moveit_msgs/msg/AttachedCollisionObject",
-                link_name=link,
-                object=thing,
-                touch_links=list(touches),
-                detach_posture=make(
-                    "trajectory_msgs/msg/JointTrajectory", header=_header(make), joint_names=[], points=[]
-                ),
-                weight=0.0,
-            )
+            make("moveit_msgs/msg/AttachedCollisionObject", link_name=link, object=thing, touch_links=touches)
             for link, thing, touches in attached
         ],
-        is_diff=False,
     )
     names = sorted({name for pair in allowed for name in pair})
-    rows = [
-        make(
-            "moveit_msgs/msg/AllowedCollisionEntry",
-            enabled=np.array([(one, other) in allowed or (other, one) in allowed for other in names]),
-        )
-        for one in names
-    ]
-    map_message = make(
-        "octomap_msgs/msg/OctomapWithPose",
-        header=_header(make),
-        origin=_pose(make, (0, 0, 0)),
-        octomap=make(
-            "octomap_msgs/msg/Octomap",
-            header=_header(make),
-            binary=True,
-            id="",
-            resolution=0.0,
-            data=np.array(octomap, dtype=np.int8),
-        ),
-    )
+    rows = [np.array([(a, b) in allowed or (b, a) in allowed for b in names]) for a in names]
+    entries = [make("moveit_msgs/msg/AllowedCollisionEntry", enabled=row) for row in rows]
+    cells = make("octomap_msgs/msg/Octomap", binary=True, data=np.array(octomap, dtype=np.int8))
     fields = dict(
         name="today",
         robot_state=state,
-        robot_model_name="",
-        fixed_frame_transforms=[],
         allowed_collision_matrix=make(
-            "moveit_msgs/msg/AllowedCollisionMatrix",
-            entry_names=names,
-            entry_values=rows,
-            default_entry_names=[],
-            default_entry_values=np.zeros(0, dtype=bool),
+            "moveit_msgs/msg/AllowedCollisionMatrix", entry_names=names, entry_values=entries
         ),
-        link_padding=[],
-        link_scale=[],
-        object_colors=[],
         world=make(
-            "moveit_msgs/msg/PlanningSceneWorld", collision_objects=list(objects), octomap=map_message
+            "moveit_msgs/msg/PlanningSceneWorld",
+            collision_objects=list(objects),
+            octomap=make("octomap_msgs/msg/OctomapWithPose", octomap=cells),
         ),
-        is_diff=False,
     )
     return make("moveit_msgs/msg/PlanningScene", **{**fields, **changes})
 
 
-START = dict(
-    zip(
-        (
-            "shoulder_pan_joint",
-            "shoulder_lift_joint",
-            "elbow_joint",
-            "wrist_1_joint",
-            "wrist_2_joint",
-            "wrist_3_joint",
-        ),
-        (0.0, -1.9, 1.6, -1.3, -1.57, 0.0),
-        strict=True,
-    )
-)
+NAMES = ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
+VALUES = (0.0, -1.9, 1.6, -1.3, -1.57, 0.0)
+START = {f"{name}_joint": value for name, value in zip(NAMES, VALUES, strict=True)}
 TURNED = (0.0, 0.0, math.sin(0.25), math.cos(0.25))
 
 
@@ -166,34 +87,21 @@ def _things(make):
         triangles=[_triangle(make, *row) for row in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))],
         vertices=[make("geometry_msgs/msg/Point", x=float(x), y=float(y), z=float(z)) for x, y, z in corners],
     )
+    solids = [_solid(make, 3, (0.5, 0.05)), _solid(make, 2, (0.06,))]
+    poses = [_pose(make, (0.0, 0.0, 0.25)), _pose(make, (0.1, 0.2, 0.3))]
+    at, wedge = _pose(make, (0.45, 0.3, 0.0), TURNED), _pose(make, (0.6, -0.4, 0.1), (0.0, 0.0, 0.0, 0.0))
+    table = _solid(make, 1, (1.0, 2.0, 0.04))
     return [
-        _collision_object(
-            make, "table", [_solid(make, 1, (1.0, 2.0, 0.04))], [_pose(make, (0.3, 0.0, -0.03))]
-        ),
-        _collision_object(
-            make,
-            "posts",
-            [_solid(make, 3, (0.5, 0.05)), _solid(make, 2, (0.06,))],
-            [_pose(make, (0.0, 0.0, 0.25)), _pose(make, (0.1, 0.2, 0.3))],
-            pose=_pose(make, (0.45, 0.3, 0.0), TURNED),
-            frame="base_link",
-        ),
-        _collision_object(
-            make,
-            "wedge",
-            [],
-            [],
-            meshes=[mesh],
-            mesh_poses=[_pose(make, (0.6, -0.4, 0.1), (0.0, 0.0, 0.0, 0.0))],
-        ),
+        _collision_object(make, "table", [table], [_pose(make, (0.3, 0.0, -0.03))]),
+        _collision_object(make, "posts", solids, poses, frame="base_link", pose=at),
+        _collision_object(make, "wedge", meshes=[mesh], mesh_poses=[wedge]),
     ]
 
 
 def test_a_planning_scene_is_the_scene_that_it_says(store, make):
     robot = load_robot("ur5")
-    message = _planning_scene(
-        make, START, _things(make), allowed={("base_link", "table"), ("table", "wedge")}
-    )
+    allowed = {("base_link", "table"), ("table", "wedge")}
+    message = _planning_scene(make, START, _things(make), allowed=allowed)
     scene = _module("messages").planning_scene(_sent(store, message), robot)
     assert scene.name == "today"
     assert [each.name for each in scene.obstacles] == ["table", "posts/0", "posts/1", "wedge"]
@@ -212,9 +120,8 @@ def test_a_planning_scene_is_the_scene_that_it_says(store, make):
 
 def test_what_the_robot_holds_is_held(store, make):
     robot = load_robot("ur5")
-    box = _collision_object(
-        make, "box", [_solid(make, 1, (0.1, 0.1, 0.2))], [_pose(make, (0.0, 0.0, 0.1))], frame="tool0"
-    )
+    solid, pose = _solid(make, 1, (0.1, 0.1, 0.2)), _pose(make, (0.0, 0.0, 0.1))
+    box = _collision_object(make, "box", [solid], [pose], frame="tool0")
     message = _planning_scene(make, START, _things(make), attached=[("tool0", box, ["wrist_3_link"])])
     scene = _module("messages").planning_scene(_sent(store, message), robot)
     [held] = scene.attached
@@ -256,11 +163,13 @@ def test_no_path_is_an_answer(store, make):
 
 
 def _far(make):
-    return _collision_object(make, "far", [], [], frame="camera")
+    return _collision_object(make, "far", frame="camera")
 
 
 def _floor(make):
-    return _collision_object(make, "floor", [], [], planes=[make("shape_msgs/msg/Plane", coef=np.zeros(4))])
+    return _collision_object(
+        make, "floor", planes=[make("shape_msgs/msg/Plane")], plane_poses=[_pose(make, (0, 0, 0))]
+    )
 
 
 def _padded(make):

@@ -18,7 +18,6 @@ from tests_peers.ros2_messages import store as store
 def _occupancy(make, cells, origin=(1.0, -2.0), yaw=0.0):
     info = make(
         "nav_msgs/msg/MapMetaData",
-        map_load_time=make("builtin_interfaces/msg/Time", sec=0, nanosec=0),
         resolution=0.05,
         width=cells.shape[1],
         height=cells.shape[0],

@@ -23,7 +23,6 @@ NOTHING = Scene((), name="nothing")
 
 @pytest.fixture
 def arm(tmp_path, monkeypatch):
-    monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path / "cache"))
     monkeypatch.chdir(tmp_path)
     return write_fork_arm(tmp_path)
 
@@ -37,11 +36,8 @@ def test_states_are_those_at_which_a_motion_is_checked(arm):
     assert steps.max() <= 0.05 + 1e-12
     lengths = space.distance(path[:-1], path[1:])
     assert lengths[0] < 0.6, "the first joint turns on through pi"
-    assert np.bincount(motions).tolist() == [
-        1 + int(np.ceil(lengths[0] / 0.05)),
-        1,
-        int(np.ceil(lengths[2] / 0.05)),
-    ]
+    counts = [1 + int(np.ceil(lengths[0] / 0.05)), 1, int(np.ceil(lengths[2] / 0.05))]
+    assert np.bincount(motions).tolist() == counts
     np.testing.assert_allclose(space.distance(states[-1:], path[-1:]), 0.0, atol=1e-12)
 
 
@@ -135,18 +131,8 @@ def test_a_plan_into_what_only_the_shapes_see_is_not_handed_out(arm, tmp_path, c
     write_plate_arm(tmp_path)
     (tmp_path / "empty.yaml").write_text("obstacles: {}\n")
     (tmp_path / "bodies.yaml").write_text("tip: [{centre: [0.02, 0, 0], radius: 0.001}]\n")
-    words = [
-        "plan",
-        "empty.yaml",
-        "--robot",
-        "plate.urdf",
-        "--bodies",
-        "bodies.yaml",
-        "-n",
-        "64",
-        "--out",
-        "b",
-    ]
+    robot = ["--robot", "plate.urdf", "--bodies", "bodies.yaml"]
+    words = ["plan", "empty.yaml", *robot, "-n", "64", "--out", "b"]
     assert main([*words, "--start", "0", "-1", "0", "--goal", "1", "0.2", "0"]) == 0
     assert json.loads((tmp_path / "b.json").read_text())["meshes"]["verdict"] == "free"
     assert main([*words, "--start", "0", "-1", "0", "--goal", "1", "1.6", "0"]) == 1
@@ -164,20 +150,8 @@ states:
   home: {turn: 0.0, bend: 0.0, slide: 0.1}
   away: {turn: 1.6, bend: 0.0, slide: 0.1}
 """
-PLAN = [
-    "plan",
-    "desk.yaml",
-    "--robot",
-    "arm.urdf",
-    "--start",
-    "home",
-    "--goal",
-    "away",
-    "-n",
-    "256",
-    "--out",
-    "a",
-]
+ENDS = ["--start", "home", "--goal", "away"]
+PLAN = ["plan", "desk.yaml", "--robot", "arm.urdf", *ENDS, "-n", "256", "--out", "a"]
 
 
 def planned(capsys, tmp_path, *more):

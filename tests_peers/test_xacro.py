@@ -24,11 +24,6 @@ XACRO = """<?xml version="1.0"?>
 """
 
 
-@pytest.fixture(autouse=True)
-def _a_cache_of_its_own(tmp_path_factory, monkeypatch):
-    monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path_factory.mktemp("cache")))
-
-
 @pytest.mark.parametrize("name", ["arm.urdf.xacro", "arm.urdf"])
 def test_a_xacro_is_read_whatever_it_is_called(tmp_path, name):
     (tmp_path / name).write_text(XACRO)

@@ -84,35 +84,15 @@ def test_arrays_may_have_fields(tmp_path):
         ("mesh.ply", b"solid\nend_header\n", "begin with 'ply'"),
         ("none.ply", ply("ascii", POINTS[:0]), "is empty"),
         ("cut.ply", ply("binary_little_endian", count=50), "cut off: 50 points were announced"),
-        (
-            "negative.ply",
-            ply("binary_little_endian", count=-1),
-            "element vertex must be a number >= 0, got .-1.",
-        ),
+        ("negative.ply", ply("binary_little_endian", count=-1), "element vertex must be a number >= 0, got .-1."),
         ("lost.ply", ply("ascii", count=-5), "element vertex must be a number >= 0, got .-5."),
         ("few.ply", ply("ascii", count=2), "3 lines were announced, 4 are there"),
-        (
-            "few_bare.ply",
-            ply("binary_big_endian", extra=False, count=2),
-            "2 points were announced, 3 are there",
-        ),
+        ("few_bare.ply", ply("binary_big_endian", extra=False, count=2), "2 points were announced, 3 are there"),
         ("few.pcd", pcd("binary", count=2), "2 points were announced, 3 are there"),
         ("few_words.pcd", pcd("ascii", count=2), "2 points were announced, 3 are there"),
-        (
-            "wide.pcd",
-            pcd("binary").replace(b"WIDTH 3", b"WIDTH 4"),
-            "4 x 1 points by WIDTH and HEIGHT, and 3 by",
-        ),
-        (
-            "high.pcd",
-            pcd("binary").replace(b"HEIGHT 1", b"HEIGHT 2"),
-            "3 x 2 points by WIDTH and HEIGHT, and 3 by",
-        ),
-        (
-            "gap.pcd",
-            pcd("ascii").replace(b"1 1 3", b"1 1 300000000"),
-            "cut off: 3 points of 300000004 numbers",
-        ),
+        ("wide.pcd", pcd("binary").replace(b"WIDTH 3", b"WIDTH 4"), "4 x 1 points by WIDTH and HEIGHT, and 3 by"),
+        ("high.pcd", pcd("binary").replace(b"HEIGHT 1", b"HEIGHT 2"), "3 x 2 points by WIDTH and HEIGHT, and 3 by"),
+        ("gap.pcd", pcd("ascii").replace(b"1 1 3", b"1 1 300000000"), "cut off: 3 points of 300000004 numbers"),
         ("less.pcd", pcd("ascii").replace(b"1 1 3", b"1 1 -3"), "COUNT must be a number >= 0"),
         ("cut.pcd", pcd("binary")[:-30], "cut off: 3 points were announced, 1 are there"),
         ("words.pcd", pcd("ascii", count=9), "cut off"),
@@ -131,7 +111,7 @@ def test_arrays_may_have_fields(tmp_path):
         ("none.xyz", b"# nothing\n", "is empty"),
         ("broken.npy", b"\x93NUMPY", "not a readable cloud"),
     ],
-)
+)  # fmt: skip
 def test_a_broken_file_is_refused_in_one_line(tmp_path, name, content, says):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(BrokenFile, match=says) as caught:

@@ -1,5 +1,4 @@
 import math
-import sys
 
 import numpy as np
 import pytest
@@ -8,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from evenroad.errors import BrokenFile, NotAvailable
 from evenroad.geometry.fit import MOST_CAPSULES, capsules_around_mesh, fit_capsules, smallest_around_prism
 from evenroad.geometry.fit_points import capsule_around, union_volume, volume
 from evenroad.geometry.mesh import load_mesh
@@ -22,16 +20,15 @@ lengths = st.floats(0.005, 2.0)
 
 
 def _outside(points, capsules):
-    """How far each point is outside of the union of the capsules; point by point."""
-    worst = []
-    for point in points:
-        gaps = []
-        for capsule in capsules:
-            a, b = np.array(capsule.a), np.array(capsule.b)
-            t = np.clip((point - a) @ (b - a) / max((b - a) @ (b - a), 1e-300), 0, 1)
-            gaps.append(np.linalg.norm(point - a - t * (b - a)) - capsule.radius)
-        worst.append(min(gaps))
-    return np.array(worst)
+    """How far each point is outside of the union of the capsules."""
+    least = np.full(len(points), np.inf)
+    for capsule in capsules:
+        a, way = np.array(capsule.a), np.subtract(capsule.b, capsule.a)
+        t = np.clip((points - a) @ way / max(way @ way, 1e-300), 0, 1)
+        least = np.minimum(
+            least, np.linalg.norm(points - a - t[:, np.newaxis] * way, axis=1) - capsule.radius
+        )
+    return least
 
 
 def _in_link(points, shape):
@@ -51,14 +48,11 @@ def test_capsules_contain_every_corner_and_face_of_a_box(size):
 @given(radius=lengths, length=lengths)
 def test_a_capsule_contains_the_rims_of_a_cylinder(radius, length):
     shape = Cylinder(radius, length, pose=PLACE, link="x")
-    angle = np.linspace(0, 2 * np.pi, 24)
-    rims = [
-        np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(24, z)])
-        for z in (-length / 2, length / 2)
-    ]
+    angle = np.tile(np.linspace(0, 2 * np.pi, 24), 2)
+    rims = np.c_[radius * np.cos(angle), radius * np.sin(angle), np.repeat([-length / 2, length / 2], 24)]
     capsules = fit_capsules(shape)
     assert len(capsules) == 1
-    assert (_outside(_in_link(np.concatenate(rims), shape), capsules) <= 0).all()
+    assert (_outside(_in_link(rims, shape), capsules) <= 0).all()
 
 
 def test_a_sphere_and_a_capsule_are_kept():
@@ -78,7 +72,7 @@ def test_a_flat_box_gets_capsules_side_by_side_and_they_add_less_than_one():
     assert union_volume(capsules) < 0.7 * union_volume([one])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(
     points=arrays(np.float64, st.tuples(st.integers(1, 30), st.just(3)), elements=st.floats(-1, 1, width=32))
 )
@@ -87,10 +81,9 @@ def test_a_capsule_around_points_contains_every_one(points):
     assert (_outside(points, [Capsule(tuple(a), tuple(b), radius, link="x")]) <= 1e-9).all()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(
-    vertices=arrays(np.float64, (12, 3), elements=st.floats(-1, 1, width=32)),
-    seed=st.integers(0, 2**32 - 1),
+    vertices=arrays(np.float64, (12, 3), elements=st.floats(-1, 1, width=32)), seed=st.integers(0, 2**32 - 1)
 )
 def test_every_triangle_of_a_mesh_lies_within_one_of_its_capsules_union(vertices, seed):
     """Any soup of triangles: points all over the surface are in the union of the capsules."""
@@ -137,37 +130,11 @@ def test_the_same_mesh_gives_the_same_capsules():
     assert [(*a, *b, r) for a, b, r in first] == [(*a, *b, r) for a, b, r in second]
 
 
-@pytest.mark.parametrize("suffix", ["stl", "obj", "ply"])
-def test_a_mesh_file_is_contained_with_its_scale_and_place(tmp_path, suffix):
-    file = tmp_path / f"part.{suffix}"
-    trimesh.creation.capsule(0.5, 0.1).export(file)
+def test_a_mesh_file_is_contained_with_its_scale_and_place(tmp_path):
+    trimesh.creation.capsule(0.5, 0.1).export(file := tmp_path / "part.stl")
     shape = Mesh(file, (1.0, 2.0, -1.0), pose=PLACE, link="x")
     vertices = load_mesh(file).vertices
     assert (_outside(_in_link(vertices * shape.scale, shape), fit_capsules(shape)) <= 0).all()
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "says"),
-    [
-        ("empty.stl", b"", "empty.stl"),
-        ("none.obj", b"v 0 0 0\n", "none.obj"),
-        ("text.stl", b"hello", "text.stl"),
-        ("odd.xyzzy", b"hello", "cannot read the mesh .*odd.xyzzy"),
-        ("nan.obj", b"v nan 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", "nan.obj"),
-    ],
-)
-def test_a_mesh_that_is_broken_or_empty_is_an_error_and_never_a_free_pass(tmp_path, name, content, says):
-    (tmp_path / name).write_bytes(content)
-    with pytest.raises(BrokenFile, match=says):
-        load_mesh(tmp_path / name)
-
-
-def test_without_what_reads_a_mesh_the_extra_is_named(tmp_path, monkeypatch):
-    trimesh.creation.box((1, 2, 3)).export(tmp_path / "part.stl")
-    shape = Mesh(tmp_path / "part.stl", pose=PLACE, link="x")
-    monkeypatch.setitem(sys.modules, "trimesh", None)
-    with pytest.raises(NotAvailable, match=r"part\.stl needs the extra: pip install 'evenroad\[mesh\]'"):
-        fit_capsules(shape)
 
 
 def test_volumes_are_those_of_the_shapes(tmp_path):

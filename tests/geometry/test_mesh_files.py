@@ -127,6 +127,7 @@ def test_files_that_hold_no_mesh_are_refused(tmp_path):
         ("empty.stl", b""),
         ("noise.stl", b"\x00\xff" * 300),
         ("text.obj", b"hello"),
+        ("text.stl", b"hello"),
         ("points.obj", b"v 0 0 0\nv 1 0 0\n"),
         ("nan.obj", b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
         ("what.xyz3", b"1 2 3"),

@@ -186,17 +186,62 @@ def random_scene(seed, count=12, spread=0.8, sizes=(0.05, 0.2), clear=0.3):
     return Scene(tuple(obstacles), name=f"random{seed}")
 
 
-def edge(world, q, most=2_000):
+def edge(world, q, most=2_000, least=40):
     """Return configurations that a world calls free and others, each next to one, that it calls blocked: by bisection.
 
     Random configurations are never so near to contact that a rounding decides; these all are.
     """
     valid = world.valid(q)
     count = min(valid.sum(), (~valid).sum(), most)
-    assert count > 50
+    assert count > least
     free, blocked = q[valid][:count], q[~valid][:count]
     for _ in range(60):
         middle = 0.5 * (free + blocked)
         valid = world.valid(middle)[:, np.newaxis]
         free, blocked = np.where(valid, middle, free), np.where(valid, blocked, middle)
     return free, blocked
+
+
+def proof_edge(world, a, b, tolerance=1e-6, steps=30):
+    """Ends of the longest beginnings of motions that are proved, from `a` towards `b`, by bisection.
+
+    They end as near to contact as proofs go: where those are wrong by little, it shows there.
+    """
+    low, high = np.zeros(len(a)), np.ones(len(a))
+    low[world.motion_certified(a, b, tolerance)] = 1.0
+    for _ in range(steps):
+        middle = 0.5 * (low + high)
+        proved = world.motion_certified(a, world.space.interpolate(a, b, middle), tolerance)
+        low, high = np.where(proved, middle, low), np.where(proved, high, middle)
+    return world.space.interpolate(a, b, low)
+
+
+def states_along(world, a, b, rng, count=12):
+    """States of motions at random, half of them near their ends, which come first and last: (motions * count, dim)."""
+    shares = rng.random((len(a), count))
+    shares[:, 1::2] = 1.0 - shares[:, 1::2] ** 6
+    shares[:, 0], shares[:, -1] = 0.0, 1.0
+    ends = (np.repeat(each, count, axis=0) for each in (a, b))
+    return world.space.interpolate(*ends, shares.ravel())
+
+
+def through_contact(world, apart, rng, edges=150, count=500):
+    """Motions with free ends through places that touch by less than 5 mm, two (n, dim): none may be proved.
+
+    `apart` says by how much configurations are clear of contact.  Half of the motions are of one joint alone.
+    """
+    space = world.space
+    x = np.repeat(edge(world, space.from_cube(rng.random((4000, space.dim))), edges)[0], 3, axis=0)
+    x += rng.normal(size=x.shape) * 10.0 ** rng.uniform(-6.0, -2.0, (len(x), 1))
+    x = x[space.contains(x)]
+    depth = -apart(x)
+    x = x[(depth > 1e-7) & (depth < 5e-3)]
+    x = x[rng.integers(len(x), size=20 * count)]
+    way, alone = rng.normal(size=x.shape), rng.integers(2 * space.dim, size=(len(x), 1))
+    way[(alone < space.dim) & (np.arange(space.dim) != alone)] = 0.0
+    way *= 10.0 ** rng.uniform(-2.0, 0.3, (len(x), 1)) / np.linalg.norm(way, axis=1, keepdims=True)
+    share = rng.random((len(x), 1))
+    a, b = x - share * way, x + (1.0 - share) * way
+    free = space.contains(a) & space.contains(b)
+    free[free] = world.valid(a[free]) & world.valid(b[free])
+    return a[free][:count], b[free][:count]

@@ -3,6 +3,7 @@
 import numpy as np
 import trimesh
 
+from evenroad.robot.kinematics import link_poses
 from tests.robot.urdf_texts import joint, link, urdf
 
 WIDE = "<limit lower='-2.8' upper='2.8' velocity='2' effort='1'/>"
@@ -77,3 +78,39 @@ def write_plate_arm(folder):
     path = folder / "plate.urdf"
     path.write_text(text)
     return path
+
+
+ROD = (0.03, 0.04, 0.3), (0.0, 0.0, -0.03)
+"""A box that fits into the gap of the fork: full extents and centre."""
+
+
+def write_fork_and_rod(folder):
+    """Write a fork that turns about z, and the rod on a second joint that swings through its gap; return the URDF."""
+    fork().export(folder / "fork.stl")
+    wide = "<limit lower='-3' upper='3' velocity='2' effort='1'/>"
+    text = urdf(
+        link("fork", "<collision><geometry><mesh filename='fork.stl'/></geometry></collision>"),
+        link("arm", ""),
+        link("rod", "<collision><origin xyz='0 0 -0.03'/><geometry><box size='0.03 0.04 0.3'/></geometry></collision>"),
+        joint("turn", "fork", "arm", "revolute", wide, "0 0 0.2", "0 0 1"),
+        joint("lift", "arm", "rod", "revolute", wide, "0 0.02 0", "1 0.3 0"),
+        name="fork and rod",
+    )  # fmt: skip
+    (folder / "fork.urdf").write_text(text)
+    return folder / "fork.urdf"
+
+
+def rod_touches(robot, q):
+    """Whether the rod touches a box of the fork, (n,): two boxes are apart where one of fifteen axes parts them."""
+    poses = link_poses(robot, q)[:, robot.links.index("rod")]
+    turn, half = poses[:, :3, :3], 0.5 * np.array(ROD[0])
+    centre = turn @ np.array(ROD[1]) + poses[:, :3, 3]
+    touches = np.zeros(len(q), dtype=bool)
+    for size, place in FORK:
+        own = np.broadcast_to(np.eye(3), turn.shape)
+        crossed = [np.cross(own[:, :, i], turn[:, :, k]) for i in range(3) for k in range(3)]
+        axes = np.stack([*own.transpose(2, 0, 1), *turn.transpose(2, 0, 1), *crossed], axis=1)
+        reach = np.abs(axes) @ (0.5 * np.array(size)) + np.abs(axes @ turn) @ half
+        apart = np.abs(np.einsum("nax,nx->na", axes, centre - place)) > reach
+        touches |= ~apart.any(axis=1)
+    return touches

@@ -129,6 +129,7 @@ def clearance(robot, scene, q, samples=None):
                         radii = capsule.radius + other.radius
                         middle = np.linalg.norm(a + b - c - d, axis=1) - np.linalg.norm(b - a, axis=1)
                         near = np.flatnonzero(0.5 * (middle - np.linalg.norm(d - c, axis=1)) - radii < least)
-                        apart = segment_distance(a[near], b[near], c[near], d[near]) - radii
-                        least[near] = np.minimum(least[near], apart)
+                        if near.size:
+                            apart = segment_distance(a[near], b[near], c[near], d[near]) - radii
+                            least[near] = np.minimum(least[near], apart)
     return least

@@ -1,46 +1,60 @@
 """What touches points and triangles, worked out slowly in double precision; see ``oracle``."""
 
-from dataclasses import replace
-
 import numpy as np
+from scipy.spatial import cKDTree
 
-from evenroad.geometry.shapes import PointCloud
-from tests.robot.oracle import clearance, link_poses, segment_distance
+from tests.robot.oracle import clearance, link_poses, point_segment_distance, segment_distance
 
 
-def point_clearance(robot, scene, q):
-    """By how much the nearest ball of a cloud stays apart from the capsules, (n,)."""
-    poses, least = link_poses(robot, q), np.full(len(q), np.inf)
-    for obstacle in scene.obstacles:
-        if not isinstance(obstacle.body, PointCloud):
-            continue
-        points = obstacle.body.points @ np.reshape(obstacle.rotation, (3, 3)).T + obstacle.xyz
+def all_clearance(robot, scene, q, solid=True):
+    """By how much the nearest bodies of any kind stay apart, (n,); negative where they touch.
+
+    `solid`: whether what a mesh winds around is a part of it.
+    """
+    surfaces = [obstacle for obstacle in scene.obstacles if obstacle.shape in ("cloud", "mesh")]
+    plain = scene.without(*(obstacle.name for obstacle in surfaces))
+    least, poses = clearance(robot, plain, q), link_poses(robot, q)
+    for obstacle in surfaces:
+        tree = cKDTree(obstacle.body.pose.apply(obstacle.body.points)) if obstacle.shape == "cloud" else None
         for capsule in robot.capsules:
             if (capsule.link, obstacle.name) in scene.allowed:
                 continue
             rotation, origin = poses[capsule.link]
-            a, b = (origin + rotation @ np.array(end) for end in (capsule.a, capsule.b))
-            half, reach = 0.5 * np.linalg.norm(b[0] - a[0]), capsule.radius + obstacle.body.radius
-            for i in range(len(q)):
-                away = np.linalg.norm(points - 0.5 * (a[i] + b[i]), axis=1)
-                if away.min() - half - reach >= least[i]:
-                    continue
-                # Nearest to the segment is none of those that are farther from its middle than another by its length.
-                apart, along = points[away <= away.min() + 2.0 * half + 1e-9] - a[i], b[i] - a[i]
-                share = np.clip(apart @ along / max(along @ along, 1e-300), 0.0, 1.0)
-                squared = ((apart - share[:, None] * along) ** 2).sum(axis=1).min()
-                least[i] = min(least[i], np.sqrt(squared) - reach)
+            ends = [origin + rotation @ np.array(end) for end in (capsule.a, capsule.b)]
+            if tree is not None:
+                _nearer_to_points(least, *ends, capsule.radius + obstacle.body.radius, tree)
+            else:
+                _nearer_to_triangles(least, *ends, capsule.radius, obstacle.body, solid)
     return least
 
 
-def all_clearance(robot, scene, q):
-    """By how much the nearest bodies of any kind stay apart, (n,)."""
-    clouds = [obstacle.name for obstacle in scene.obstacles if isinstance(obstacle.body, PointCloud)]
-    solid = replace(
-        scene, obstacles=tuple(o for o in scene.obstacles if o.name not in clouds), allowed=frozenset()
-    )
-    solid = replace(solid, allowed=frozenset(pair for pair in scene.allowed if pair[1] not in clouds))
-    return np.minimum(point_clearance(robot, scene, q), clearance(robot, solid, q))
+def _nearer_to_points(least, a, b, reach, tree):
+    """Lower `least` to how far segments, two (n, 3), are from any point beyond `reach`."""
+    middle, length = 0.5 * (a + b), np.linalg.norm(b - a, axis=1).max()
+    nearest = tree.query(middle)[0]
+    some = np.flatnonzero(nearest - 0.5 * length - reach < least)
+    # Nearest to the segment is none of those that are farther from its middle than another by its length.
+    near = tree.query_ball_point(middle[some], nearest[some] + length + 1e-9)
+    rows = np.repeat(some, [len(each) for each in near])
+    points = tree.data[np.concatenate([*near, []]).astype(int)]
+    np.minimum.at(least, rows, point_segment_distance(points, a[rows], b[rows]) - reach)
+
+
+def _nearer_to_triangles(least, a, b, radius, body, solid):
+    """Lower `least` to how far capsules around segments, two (n, 3), are from the triangles of a mesh."""
+    corners = body.pose.apply(body.triangles.vertices)[body.triangles.triangles]
+    low, high, middle = corners.min(axis=1), corners.max(axis=1), 0.5 * (a + b)
+    bottom, top = np.minimum(a, b)[:, np.newaxis], np.maximum(a, b)[:, np.newaxis]
+    gap = np.linalg.norm(np.maximum(np.maximum(low - top, bottom - high), 0.0), axis=2)
+    at_corner = np.linalg.norm(corners[:, 0] - middle[:, np.newaxis], axis=2).min(axis=1)
+    least[:] = np.minimum(least, at_corner - radius)
+    rows, near = np.nonzero(gap < np.maximum(least, 0.0)[:, np.newaxis] + radius)
+    apart = segment_triangle(a[rows], b[rows], *corners[near].transpose(1, 0, 2)) - radius
+    np.minimum.at(least, rows, apart)
+    if solid:
+        within = np.flatnonzero(((middle >= low.min(axis=0)) & (middle <= high.max(axis=0))).all(axis=1))
+        inside = within[np.abs(windings(middle[within], corners)) > 0.5]
+        least[inside] = np.minimum(least[inside], -1.0)
 
 
 def point_triangle(p, a, b, c):
@@ -71,37 +85,9 @@ def segment_triangle(p, q, a, b, c):
 
 
 def windings(p, corners):
-    """How often triangles wind around a place, by solid angles (A. van Oosterom and J. Strackee, 1983)."""
-    a, b, c = (corners - p).transpose(1, 0, 2)
-    la, lb, lc = (np.linalg.norm(each, axis=1) for each in (a, b, c))
-    volume = (a * np.cross(b, c)).sum(1)
-    flat = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
-    return 2.0 * np.arctan2(volume, flat).sum() / (4.0 * np.pi)
-
-
-def mesh_clearance(robot, scene, q, solid):
-    """By how much the nearest bodies stay apart, (n,); `solid`: whether what a mesh winds around is a part of it."""
-    boxes = replace(
-        scene, obstacles=tuple(o for o in scene.obstacles if o.shape != "mesh"), allowed=frozenset()
-    )
-    least, poses = clearance(robot, boxes, q), link_poses(robot, q)
-    for obstacle in (each for each in scene.obstacles if each.shape == "mesh"):
-        mesh = obstacle.body.triangles
-        corners = obstacle.body.pose.apply(mesh.vertices)[mesh.triangles]
-        low, high = corners.min(axis=1), corners.max(axis=1)
-        for capsule in robot.capsules:
-            if (capsule.link, obstacle.name) in scene.allowed:
-                continue
-            rotation, origin = poses[capsule.link]
-            a, b = (origin + rotation @ np.array(end) for end in (capsule.a, capsule.b))
-            for i in range(len(q)):
-                bottom, top = np.minimum(a[i], b[i]), np.maximum(a[i], b[i])
-                gap = np.linalg.norm(np.maximum(np.maximum(low - top, bottom - high), 0.0), axis=1)
-                near = corners[gap < max(least[i], 0.0) + capsule.radius]
-                if len(near):
-                    p, q_ = (np.broadcast_to(end, (len(near), 3)) for end in (a[i], b[i]))
-                    apart = segment_triangle(p, q_, *near.transpose(1, 0, 2)).min() - capsule.radius
-                    least[i] = min(least[i], apart)
-                if solid and abs(windings(0.5 * (a[i] + b[i]), corners)) > 0.5:
-                    least[i] = min(least[i], -1.0)
-    return least
+    """How often triangles wind around places (n, 3), by solid angles (A. van Oosterom and J. Strackee, 1983)."""
+    a, b, c = (corners - p[:, np.newaxis, np.newaxis]).transpose(2, 0, 1, 3)
+    la, lb, lc = (np.linalg.norm(each, axis=-1) for each in (a, b, c))
+    volume = (a * np.cross(b, c)).sum(axis=-1)
+    flat = la * lb * lc + (a * b).sum(axis=-1) * lc + (b * c).sum(axis=-1) * la + (c * a).sum(axis=-1) * lb
+    return 2.0 * np.arctan2(volume, flat).sum(axis=-1) / (4.0 * np.pi)

@@ -58,6 +58,9 @@ def scene(**more):
     return Scene((Obstacle("scan", PointCloud(scanned(), RADIUS)),), name="desk", attached=(BLOCK,), **more)
 
 
+NEAR_ENDS = scene(near_ends=frozenset({("block", "scan", NEAR)}))
+
+
 def poses_along(path):
     """Poses of the block at states close together, (s, 4, 4)."""
     robot = in_scene(UR5, Scene(name="air", attached=(BLOCK,)))
@@ -79,7 +82,7 @@ def deepest(path, points):
 def test_what_may_touch_near_the_ends_touches_nothing_else(ends):
     points = scanned()
     assert er.plan(scene(), ends[0], ends[1], robot=UR5).status == "start_invalid"
-    result = er.plan(scene(near_ends=frozenset({("block", "scan", NEAR)})), ends[0], ends[1], robot=UR5)
+    result = er.plan(NEAR_ENDS, ends[0], ends[1], robot=UR5)
     assert result.solved, result.message
     assert "not tested" not in result.message
     first, last = poses_along(result.path)[[0, -1]]
@@ -101,9 +104,7 @@ def test_an_allowance_with_a_whole_cloud_lets_a_block_pass_through_and_is_said(e
 
 def test_a_goal_that_is_a_pose_has_its_ends_where_it_is_reached(ends):
     goal = Pose.from_rpy((0.5, -0.2, 0.2), DOWN)
-    result = er.plan(
-        scene(near_ends=frozenset({("block", "scan", NEAR)})), ends[0], goal, robot=UR5, tip="tool0"
-    )
+    result = er.plan(NEAR_ENDS, ends[0], goal, robot=UR5, tip="tool0")
     assert result.solved, result.message
     points = scanned()
     goals = link_poses(in_scene(UR5, scene()), result.goals)[:, UR5.links.index("tool0")]
@@ -117,25 +118,21 @@ def test_in_a_region_a_link_may_touch_and_others_may_not(ends):
     low = Box((0.4, 0.8, 0.02), pose=Pose((0.5, 0.0, 0.1)))
     divided = allowed_within(scene(), "block", "scan", low)
     parts = {each.name: each.body.points for each in divided.obstacles}
-    assert {name: len(each) > 0 for name, each in parts.items()} == {
-        "scan": True,
-        "scan, open to block": True,
-    }
+    assert parts.keys() == {"scan", "scan, open to block"}
     joined = np.concatenate([*parts.values()])
     assert sorted(map(tuple, joined)) == sorted(map(tuple, scanned()))
-    inside = (np.abs(parts["scan, open to block"] - [0.5, 0, 0.1]) <= [0.2, 0.4, 0.01]).all(axis=1)
-    outside = (np.abs(parts["scan"] - [0.5, 0, 0.1]) <= [0.2, 0.4, 0.01]).all(axis=1)
-    assert inside.all()
-    assert not outside.any()
+    for name, part in parts.items():
+        within = (np.abs(part - [0.5, 0, 0.1]) <= [0.2, 0.4, 0.01]).all(axis=1)
+        assert len(part)
+        assert (within == (name != "scan")).all()
     world = ArmWorld(robot, divided)
     assert world.valid(ends).all()
     result = er.plan(divided, ends[0], ends[1], robot=UR5)
     assert result.solved, result.message
     assert deepest(result.path, parts["scan"]).max() < 0.0
     # The same place is closed to the other links.
-    assert (
-        ArmWorld(robot, replace(divided, allowed=frozenset())).explain(ends[0]).startswith("'block' touches")
-    )
+    closed = ArmWorld(robot, replace(divided, allowed=frozenset()))
+    assert closed.explain(ends[0]).startswith("'block' touches")
 
 
 def test_two_links_may_have_parts_that_overlap():
@@ -172,20 +169,19 @@ def test_a_part_of_anything_else_is_refused():
 
 
 def test_a_world_that_does_not_know_the_ends_says_so(ends):
-    near = scene(near_ends=frozenset({("block", "scan", NEAR)}))
-    robot = in_scene(UR5, near)
+    robot = in_scene(UR5, NEAR_ENDS)
     with pytest.raises(
-        er.errors.InvalidValue, match="allows contacts near start and goals, which a world does not know"
+        er.errors.InvalidValue, match="contacts near start and goals, which a world does not know"
     ):
-        ArmWorld(robot, near)
-    divided = allowed_near_ends(robot, near, ends)
+        ArmWorld(robot, NEAR_ENDS)
+    divided = allowed_near_ends(robot, NEAR_ENDS, ends)
     assert ArmWorld(robot, divided).valid(ends).all()
     places = link_poses(robot, ends)[:, robot.links.index("block")]
     distances = np.min([away(place, scanned()) for place in places], axis=0)
     strict, open_ = (each.body.points for each in divided.obstacles)
     assert sorted(map(tuple, open_)) == sorted(map(tuple, scanned()[distances <= NEAR]))
     assert len(strict) + len(open_) == len(scanned())
-    assert near.fingerprint() != scene().fingerprint()
+    assert NEAR_ENDS.fingerprint() != scene().fingerprint()
 
 
 def test_what_is_held_is_cut_out_of_the_scan_where_it_is_grasped(ends):
@@ -201,10 +197,9 @@ def test_what_is_held_is_cut_out_of_the_scan_where_it_is_grasped(ends):
     assert away(pose, points).min() > 0.025
     assert len(points) == (away(pose, cloud.points) > 0.025).sum()
     assert ArmWorld(robot, left).valid(ends[:1])[0]
+    cup = replace(grown, cuts=(Cut("cup", text),))
     with pytest.raises(er.errors.UnknownName, match="attached, to be cut out of 'scan': 'cup'"):
-        scene_seen_by(
-            robot, Scene((replace(grown, cuts=(Cut("cup", text),)),), name="desk", attached=(BLOCK,))
-        )
+        scene_seen_by(robot, Scene((cup,), name="desk", attached=(BLOCK,)))
 
 
 def test_a_start_inside_of_the_scan_is_said_to_be_one():
@@ -212,76 +207,71 @@ def test_a_start_inside_of_the_scan_is_said_to_be_one():
     poses = link_poses(UR5, q[np.newaxis])[0]
     cloud = PointCloud(np.concatenate([scanned(), poses[[UR5.links.index("forearm_link")], :3, 3]]), RADIUS)
     scan = Obstacle("scan", cloud)
-    result = er.plan(Scene((scan,), name="desk"), q, [0.0, -1.57, 0, -1.57, 0, 0], robot=UR5)
+    away = [0.0, -1.57, 0, -1.57, 0, 0]
+    result = er.plan(Scene((scan,), name="desk"), q, away, robot=UR5)
     assert result.status == "start_invalid"
     assert "the robot stands in its scan, " in result.message
     assert "touches 'scan': seen_at" in result.message
     seen = replace(scan, seen=Seen(",".join(map(str, START))))
-    assert (
-        er.plan(Scene((seen,), name="desk"), q, [0.0, -1.57, 0, -1.57, 0, 0], robot=UR5).status
-        != "start_invalid"
-    )
+    assert er.plan(Scene((seen,), name="desk"), q, away, robot=UR5).status != "start_invalid"
 
 
-def test_scene_files_say_all_of_this(tmp_path, ends):
+CUT = {"shape": "box", "size": [0.1, 0.1, 0.1], "xyz": [0.4, 0.25, 0.1], "grow": 0.01}
+LOW = {"shape": "box", "size": [0.4, 0.8, 0.02], "xyz": [0.5, 0, 0.1]}
+SCAN = {
+    "shape": "cloud",
+    "file": "scan.npy",
+    "radius": RADIUS,
+    "cut": [CUT, {"attached": "block", "at": "grasp"}],
+}
+HELD = {"shape": "box", "size": [0.06, 0.06, 0.1], "link": "tool0", "xyz": [0, 0, 0.05]}
+ALLOWED = ["base_link", {"link": "block", "near_ends": 0.02}, {"link": "block", "within": LOW, "grow": 0.001}]
+
+
+@pytest.fixture
+def desk(tmp_path):
+    """Write a scene that has all of this, with changes, and return its file."""
     np.save(tmp_path / "scan.npy", scanned())
-    cut = {"shape": "box", "size": [0.1, 0.1, 0.1], "xyz": [0.4, 0.25, 0.1], "grow": 0.01}
-    scan = {
-        "shape": "cloud",
-        "file": "scan.npy",
-        "radius": RADIUS,
-        "cut": [cut, {"attached": "block", "at": "grasp"}],
-    }
-    low = {"shape": "box", "size": [0.4, 0.8, 0.02], "xyz": [0.5, 0, 0.1]}
-    allowed = [
-        "base_link",
-        {"link": "block", "near_ends": 0.02},
-        {"link": "block", "within": low, "grow": 0.001},
-    ]
-    document = {
-        "obstacles": {"scan": scan},
-        "allowed": {"scan": allowed},
-        "attach": {
-            "block": {"shape": "box", "size": [0.06, 0.06, 0.1], "link": "tool0", "xyz": [0, 0, 0.05]}
-        },
-    }
-    file = tmp_path / "desk.yaml"
-    file.write_text(yaml.safe_dump(document))
-    loaded = load_scene(file)
+    document = {"obstacles": {"scan": SCAN}, "allowed": {"scan": ALLOWED}, "attach": {"block": HELD}}
+
+    def written(**changes):
+        (tmp_path / "desk.yaml").write_text(yaml.safe_dump(document | changes))
+        return tmp_path / "desk.yaml"
+
+    return written
+
+
+def test_scene_files_say_all_of_this(desk):
+    loaded = load_scene(desk())
     assert loaded.near_ends == {("block", "scan", 0.02)}
     assert {each.name for each in loaded.obstacles} == {"scan", "scan, open to block"}
     assert all(each.cuts == (Cut("block", "grasp"),) for each in loaded.obstacles)
     points = np.concatenate([each.body.points for each in loaded.obstacles])
     box = Box((0.1, 0.1, 0.1), pose=Pose((0.4, 0.25, 0.1)))
     assert len(points) == (point_distance(box, scanned()) > 0.01).sum() < len(scanned())
-    for change, error, says in (
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "says"),
+    [
         ({"allowed": {"scan": [{"link": "block"}]}}, er.errors.InvalidValue, "one of near_ends and within"),
         ({"allowed": {"scan": [{"near_ends": 1}]}}, er.errors.BrokenFile, "link"),
-        (
-            {"allowed": {"scan": [{"link": "block", "near_ends": -1}]}},
-            er.errors.InvalidValue,
-            "near_ends .* got -1",
-        ),
-        (
-            {"allowed": {"scan": [{"link": "block", "within": {"shape": "mesh"}}]}},
-            er.errors.UnknownName,
-            "within of",
-        ),
-        (
-            {"obstacles": {"scan": scan | {"cut": [cut | {"grow": 9}]}}},
-            er.errors.InvalidValue,
-            "leaves nothing",
-        ),
-        ({"obstacles": {"scan": scan | {"cut": "block"}}}, er.errors.InvalidValue, "must be a list"),
-        (
-            {"obstacles": {"scan": {"shape": "sphere", "radius": 1}}},
-            er.errors.InvalidValue,
-            "of a cloud alone",
-        ),
-    ):
-        file.write_text(yaml.safe_dump(document | change))
-        with pytest.raises(error, match=says):
-            load_scene(file)
+        ({"allowed": {"scan": [{"link": "block", "near_ends": -1}]}}, er.errors.InvalidValue, "near_ends .* got -1"),
+        ({"allowed": {"scan": [{"link": "block", "within": {"shape": "mesh"}}]}}, er.errors.UnknownName, "within of"),
+        ({"obstacles": {"scan": SCAN | {"cut": [CUT | {"grow": 9}]}}}, er.errors.InvalidValue, "leaves nothing"),
+        ({"obstacles": {"scan": SCAN | {"cut": "block"}}}, er.errors.InvalidValue, "must be a list"),
+        ({"obstacles": {"scan": {"shape": "sphere", "radius": 1}}}, er.errors.InvalidValue, "of a cloud alone"),
+    ],
+)  # fmt: skip
+def test_what_a_scene_file_says_wrongly_of_them_is_refused(desk, change, error, says):
+    with pytest.raises(error, match=says):
+        load_scene(desk(**change))
+
+
+def segment_to_points(points, a, b):
+    """Distances of points (n, 3) from many places of a segment."""
+    places = np.linspace(a, b, 200)
+    return np.min([np.linalg.norm(points - place, axis=1) for place in places], axis=0)
 
 
 @pytest.mark.parametrize(
@@ -292,22 +282,13 @@ def test_scene_files_say_all_of_this(tmp_path, ends):
 def test_distances_from_shapes_are_those_from_all_that_is_in_them(shape):
     rng = np.random.default_rng(5)
     shape = replace(shape, pose=Pose.from_rpy((0.1, -0.2, 0.3), (0.4, 0.5, 0.6)))
-    filled = rng.uniform(-0.4, 0.4, (60_000, 3))
+    filled = rng.uniform(-0.4, 0.4, (30_000, 3))
     body = replace(shape, pose=Pose())
     inside = {
         "box": lambda p: (np.abs(p) <= [0.1, 0.2, 0.05]).all(axis=1),
         "sphere": lambda p: np.linalg.norm(p, axis=1) <= 0.2,
         "cylinder": lambda p: (np.hypot(p[:, 0], p[:, 1]) <= 0.1) & (np.abs(p[:, 2]) <= 0.2),
-        "capsule": lambda p: (
-            np.min(
-                [
-                    np.linalg.norm(p - [0.2 * t, 0.1 - 0.1 * t, 0.1 * t], axis=1)
-                    for t in np.linspace(0, 1, 200)
-                ],
-                axis=0,
-            )
-            <= 0.1
-        ),
+        "capsule": lambda p: segment_to_points(p, (0, 0.1, 0), (0.2, 0, 0.1)) <= 0.1,
     }[shape.kind](filled)
     assert (point_distance(body, filled[inside]) == 0.0).all()
     points = rng.uniform(-0.6, 0.6, (200, 3))
@@ -315,7 +296,7 @@ def test_distances_from_shapes_are_those_from_all_that_is_in_them(shape):
     nearest = np.min(np.linalg.norm(points[:, np.newaxis] - within, axis=2), axis=1)
     found = point_distance(shape, points)
     assert (found <= nearest + 1e-12).all()
-    assert (found >= nearest - 0.04).all()
+    assert (found >= nearest - 0.05).all()
 
 
 def test_nothing_is_left_where_all_is_cut():

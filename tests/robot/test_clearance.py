@@ -5,21 +5,18 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-import trimesh
 
 from evenroad.errors import InvalidValue
-from evenroad.geometry.mesh import TriangleMesh
-from evenroad.geometry.pose import Pose
-from evenroad.geometry.shapes import Box, Mesh, PointCloud
 from evenroad.planning import plan
 from evenroad.planning.arm_trees import connect, shorten
 from evenroad.robot import configuration, load_robot, load_scene
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kinematics import capsule_endpoints
 from evenroad.robot.scene import Obstacle, Scene
 from tests.robot.kernel_arms import box_scene, edge, random_scene, random_tree, ur5
 from tests.robot.oracle import clearance
-from tests.robot.test_trees import GOAL, START, dense_states
+from tests.robot.paths import GOAL, START, dense_states
+from tests.robot.surface_oracle import all_clearance
+from tests.robot.surface_scenes import BOXES, cloud_scene, scene_of
 
 BAND = 2e-4
 """Verdicts of single precision may be on the safe side by this [m]."""
@@ -68,42 +65,18 @@ def test_every_state_of_a_path_keeps_the_clearance():
     assert not world.validate(tight).all()
 
 
-def distances_from(robot, q, points):
-    """Distances of points (n, 3) from the robot's capsules, the least of each configuration."""
-    ends = capsule_endpoints(robot, q)
-    a, way = ends[:, :, 0], ends[:, :, 1] - ends[:, :, 0]
-    squares = np.maximum((way**2).sum(axis=-1), 1e-300)
-    share = np.einsum("nkc,nkpc->nkp", way, points - a[:, :, None]) / squares[..., None]
-    nearest = a[:, :, None] + np.clip(share, 0.0, 1.0)[..., None] * way[:, :, None]
-    radii = np.array([capsule.radius for capsule in robot.capsules])
-    return (np.linalg.norm(points - nearest, axis=-1) - radii[:, None]).min(axis=(1, 2))
-
-
 @pytest.mark.parametrize("backend", ["auto", "scalar"])
-@pytest.mark.parametrize("kind", ["cloud", "mesh"])
-def test_clouds_and_meshes_are_kept_clear_of(kind, backend):
-    robot, kept, rng = ur5(np.pi), 0.02, np.random.default_rng(2)
-    robot = replace(robot, pairs=())
-    box = Box((0.3, 0.3, 0.3), pose=Pose((0.5, 0.1, 0.3)))
-    points = rng.uniform(-0.15, 0.15, (60, 3))
-    if kind == "mesh":
-        form = trimesh.creation.box((0.3, 0.3, 0.3))
-        body, radius = Mesh(TriangleMesh(form.vertices, form.faces), pose=box.pose), 0.0
-        # All over its surface.
-        points = rng.uniform(-0.15, 0.15, (300, 3))
-        points[np.arange(300), rng.integers(0, 3, 300)] = rng.choice([-0.15, 0.15], 300)
-    else:
-        body, radius = PointCloud(points, 0.01, pose=box.pose), 0.01
-    scene = Scene((Obstacle("it", body),), name="s")
+@pytest.mark.parametrize("scene", [cloud_scene(3, 257, 0.05), scene_of(*BOXES)], ids=["cloud", "mesh"])
+def test_clouds_and_meshes_are_kept_clear_of(scene, backend):
+    robot, kept = replace(ur5(np.pi), pairs=()), 0.02
     world = ArmWorld(robot, scene, clearance=kept, backend=backend)
-    q = world.space.from_cube(rng.random((3000, 6)))
-    free, plain = world.valid(q), ArmWorld(robot, scene, backend=backend).valid(q)
-    near = distances_from(robot, q, box.pose.apply(points)) - radius
-    assert not free[near < kept].any()
-    assert free[near > kept + 0.06].all()
+    q = world.space.from_cube(np.random.default_rng(2).random((600, 6)))
+    q = np.concatenate([q[:200], *edge(world, q, 100)])
+    free, near = world.valid(q), all_clearance(robot, scene, q)
+    assert not free[near < kept - ROUNDING].any()
+    assert free[near > kept + BAND].all()
     # What is given up lies near.
-    assert (plain & ~free).sum() > 20
-    assert near[plain & ~free].max() < kept + 0.06
+    assert np.sum((near > 0.0) & ~free) > 50
 
 
 def test_what_is_nearer_than_the_clearance_is_told_so_and_what_touches_is_told_that():

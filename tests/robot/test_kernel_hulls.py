@@ -11,7 +11,8 @@ from evenroad.geometry.distance import segment_distance
 from evenroad.robot import ArmWorld, Scene, load_model, load_robot
 from evenroad.robot.kernel.hull_trees import contacts, hull_trees
 from evenroad.robot.kinematics import link_poses
-from tests.robot.mesh_arms import FORK, fork
+from tests.robot.kernel_arms import edge, states_along, through_contact
+from tests.robot.mesh_arms import rod_touches
 from tests.robot.urdf_texts import joint, link, urdf
 
 EMPTY = Scene((), name="empty")
@@ -31,11 +32,6 @@ def gap(first, second):
     )
     found = linprog(np.r_[np.zeros(n + m), 1.0], A_eq=equal, b_eq=[0, 0, 0, 1, 1], bounds=(0, None))
     return found.fun * np.linalg.norm(towards) if found.status == 0 else np.inf
-
-
-def corners_of_box(size, centre=(0, 0, 0)):
-    signs = np.array(np.meshgrid(*[(-0.5, 0.5)] * 3)).reshape(3, -1).T
-    return signs * np.array(size) + np.array(centre)
 
 
 def placed(rng, count, spread):
@@ -87,10 +83,10 @@ def test_widened_segments_are_capsules():
 
 def test_of_many_hulls_the_tree_finds_those_that_touch():
     rng = np.random.default_rng(2)
-    triangles = [rng.normal(size=(200, 3, 3)) * 0.02 + rng.normal(size=(200, 1, 3)) * 0.2 for _ in range(2)]
+    triangles = [rng.normal(size=(100, 3, 3)) * 0.02 + rng.normal(size=(100, 1, 3)) * 0.2 for _ in range(2)]
     trees = hull_trees({name: [(t, 0.01)] for name, t in zip("ab", triangles, strict=True)})
     one_by_one = [
-        hull_trees({"a": [(triangles[0][i : i + 1], 0.01)], "b": [(triangles[1], 0.01)]}) for i in range(200)
+        hull_trees({"a": [(triangles[0][i : i + 1], 0.01)], "b": [(triangles[1], 0.01)]}) for i in range(100)
     ]
     poses, others = placed(rng, 30, 0.05), placed(rng, 30, 0.5)
     found = contacts(trees, "a", "b", poses, others)
@@ -101,38 +97,12 @@ def test_of_many_hulls_the_tree_finds_those_that_touch():
         assert leaf < 0 or expected[leaf, row]
 
 
-@pytest.fixture(scope="module")
-def fork_file(tmp_path_factory):
-    """A fork that turns about z, and a rod on a second joint that swings through the gap between its prongs."""
-    folder = tmp_path_factory.mktemp("fork")
-    fork().export(folder / "fork.stl")
-    wide = "<limit lower='-3' upper='3' velocity='2' effort='1'/>"
-    text = urdf(
-        link("fork", "<collision><geometry><mesh filename='fork.stl'/></geometry></collision>"),
-        link("arm", ""),
-        link("rod", "<collision><origin xyz='0 0 -0.03'/><geometry><box size='0.03 0.04 0.3'/></geometry></collision>"),
-        joint("turn", "fork", "arm", "revolute", wide, "0 0 0.2", "0 0 1"),
-        joint("lift", "arm", "rod", "revolute", wide, "0 0.02 0", "1 0.3 0"),
-        name="fork and rod",
-    )  # fmt: skip
-    (folder / "fork.urdf").write_text(text)
-    return folder / "fork.urdf"
-
-
-def rod_gap(robot, q):
-    """The gap of the fork's boxes and the rod, 0 where they touch, by linear programs."""
-    poses = link_poses(robot, q[np.newaxis])[0, robot.links.index("rod")]
-    rod = corners_of_box((0.03, 0.04, 0.3), (0, 0, -0.03)) @ poses[:3, :3].T + poses[:3, 3]
-    return min(gap(corners_of_box(*box), rod) for box in FORK)
-
-
 def test_a_rod_in_the_gap_of_a_fork_is_free_and_nowhere_free_where_it_touches(fork_file):
     robot = load_robot(fork_file)
     assert robot.pairs == (("fork", "rod"),)
     world, plain = ArmWorld(robot, EMPTY), ArmWorld(robot, EMPTY, backend="scalar")
-    q = world.space.from_cube(np.random.default_rng(0).random((600, 2)))
-    free = world.valid(q)
-    touches = np.array([rod_gap(robot, row) == 0.0 for row in q])
+    q = world.space.from_cube(np.random.default_rng(0).random((2000, 2)))
+    free, touches = world.valid(q), rod_touches(robot, q)
     assert not (free & touches).any()
     assert (~free & ~touches).mean() < 0.01
     assert 0.1 < free.mean() < 0.9
@@ -141,29 +111,26 @@ def test_a_rod_in_the_gap_of_a_fork_is_free_and_nowhere_free_where_it_touches(fo
     assert not (free & ~exact).any()
     assert (exact & ~free).mean() < 0.01
     assert world.valid(np.zeros((1, 2)))[0], "between the prongs"
-    a, b = q[free][:100], q[~free][np.arange(100) % (~free).sum()]
-    for _ in range(40):
-        middle = 0.5 * (a + b)
-        ok = world.valid(middle)[:, np.newaxis]
-        a, b = np.where(ok, middle, a), np.where(ok, b, middle)
-    assert all(rod_gap(robot, row) > 0.0 for row in a)
-    assert "'fork' touches 'rod'" in world.explain(b[0])
+    last, first = edge(world, q, 200)
+    assert not rod_touches(robot, last).any()
+    assert "'fork' touches 'rod'" in world.explain(first[0])
 
 
 @pytest.mark.parametrize("backend", ["auto", "scalar"])
 def test_motions_that_are_proved_free_are_free_between_their_states(fork_file, backend):
-    robot = load_robot(fork_file)
-    world = ArmWorld(robot, EMPTY, backend=backend)
+    world = ArmWorld(load_robot(fork_file), EMPTY, backend=backend)
     rng = np.random.default_rng(3)
     q = world.space.from_cube(rng.random((400, 2)))
-    a = q[world.valid(q)][:60]
+    a = q[world.valid(q)][:100]
     b = a + rng.normal(size=a.shape) * 0.3
     proved = world.motion_certified(a, b, 1e-5)
     assert 0.3 < proved.mean() < 1.0
     assert not (proved & ~world.motion_valid(a, b)).any()
-    for first, second in zip(a[proved][:25], b[proved][:25], strict=True):
-        for share in np.linspace(0, 1, 15):
-            assert rod_gap(robot, first + share * (second - first)) > 0.0
+    assert not rod_touches(world.robot, states_along(world, a[proved], b[proved], rng)).any()
+    a, b = through_contact(world, lambda q: np.where(rod_touches(world.robot, q), -1e-3, 1.0), rng)
+    assert len(a) > 100
+    for tolerance in (1e-6, 0.01):
+        assert not world.motion_certified(a, b, tolerance).any()
 
 
 @pytest.fixture(scope="module")
@@ -202,11 +169,7 @@ def at_the_edge(world, count):
     a[:, 0], b[:, 0] = 1.0, 0.0
     assert world.valid(a).all()
     assert not world.valid(b).any()
-    for _ in range(60):
-        middle = 0.5 * (a + b)
-        ok = world.valid(middle)[:, np.newaxis]
-        a, b = np.where(ok, middle, a), np.where(ok, b, middle)
-    return a, b
+    return edge(world, np.concatenate([a, b]))
 
 
 def test_stones_are_blocked_where_they_touch_and_hardly_before(stones):

@@ -1,98 +1,259 @@
-"""Proofs in lanes: a motion that they call free is free at every state, also of robots of many bodies."""
+"""Proofs: a motion that they call free is free at every state, what is refused is in contact or nearly so."""
 
-from types import SimpleNamespace
+import math
+import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+import evenroad as er
+from evenroad.errors import InvalidValue
+from evenroad.geometry.shapes import Capsule
+from evenroad.planning import PRM, plan
+from evenroad.points import draw
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel import motion_proof
-from evenroad.robot.scene import Scene
-from tests.robot.kernel_arms import as_balls, random_scene, random_tree, seven_joint_arm, ur5
+from evenroad.robot.certified import CertifiedWorld
+from evenroad.robot.joint import Joint, Mimic
+from evenroad.robot.robot import Robot
+from evenroad.robot.scene import Obstacle, Scene
+from evenroad.testing import WorldContract
+from evenroad.world import FunctionWorld
+from evenroad.world.protocol import ValidatesPaths
+from tests.robot.kernel_arms import (
+    STRAIGHT,
+    Z,
+    as_balls,
+    box_scene,
+    proof_edge,
+    random_scene,
+    random_tree,
+    seven_joint_arm,
+    states_along,
+    through_contact,
+    ur5,
+)
 from tests.robot.oracle import clearance
+from tests.robot.paths import dense_states
 
-NOTHING = Scene((), name="nothing")
+NOTHING = Scene(name="nothing")
 WORLDS = {
+    "five joints in a box": (ur5(math.pi, joints=5), box_scene()),
     "capsules among obstacles": (ur5(np.pi), random_scene(5)),
     "balls among obstacles": (as_balls(ur5(np.pi)), random_scene(5)),
     "balls, many obstacles": (as_balls(ur5(np.pi)), random_scene(7, count=40, spread=1.1)),
     "capsules alone": (ur5(np.pi), NOTHING),
     "balls alone": (as_balls(ur5(np.pi)), NOTHING),
-    "five balls a capsule alone": (as_balls(seven_joint_arm(), 5), NOTHING),
-    "tree": (random_tree(8), random_scene(108, spread=0.7, clear=0.45)),
-    "tree with a joint that wraps": (random_tree(13), random_scene(113, spread=0.7, clear=0.45)),
+    "five balls a capsule alone": (as_balls(ur5(np.pi), 5), NOTHING),
+} | {
+    # Of every kind of joint.
+    f"tree {seed}": (random_tree(seed), random_scene(100 + seed, spread=0.7, clear=0.45))
+    for seed in (0, 5, 8, 12, 13)
 }
-FINER = 20
+IN_BOX = ArmWorld(*WORLDS["five joints in a box"])
+
+
+class TestContract(WorldContract):
+    world = CertifiedWorld(IN_BOX)
 
 
 @pytest.fixture(scope="module", params=WORLDS)
 def motions(request):
-    """A world, motions between free configurations, which states call free, and which are proved."""
-    robot, scene = WORLDS[request.param]
-    world = ArmWorld(robot, scene)
-    q = world.space.from_cube(np.random.default_rng(11).random((40_000, world.space.dim)))
-    q = q[world.valid(q)]
-    a, b = q[0::2][:2_000], q[1::2][:2_000]
-    a = a[: len(b)]
-    # Long ones and short ones: bodies are made larger by much, and by little.
+    """A world, motions between free configurations, and which of them are proved."""
+    world = ArmWorld(*WORLDS[request.param])
+    q = world.space.from_cube(np.random.default_rng(11).random((8_000, world.space.dim)))
+    q = q[world.valid(q)][:800]
+    a, b = q[: len(q) // 2 * 2 : 2], q[1::2]
+    # Of one joint and of all, long and short: bodies are made larger by as much as they move, by more, by little.
+    alone = np.arange(len(a)) % (2 * world.space.dim)
+    b = np.where(
+        (alone[:, np.newaxis] < world.space.dim) & (np.arange(world.space.dim) != alone[:, np.newaxis]), a, b
+    )
     b = world.space.interpolate(a, b, np.linspace(0.05, 1.0, len(b)) ** 2)
     return world, a, b, world.motion_certified(a, b, 1e-6)
 
 
-def fine_states(world, a, b, finer=FINER):
-    count = 1 + finer * int(np.ceil(world.space.distance(a[None], b[None])[0] / world.resolution))
-    ends = (np.broadcast_to(end, (count, len(a))) for end in (a, b))
-    return world.space.interpolate(*ends, np.linspace(0.0, 1.0, count))
-
-
-def test_what_is_proved_is_free_in_double_precision_at_a_twentieth_of_the_resolution(motions):
+def test_what_is_proved_is_free_for_the_oracle_and_ends_next_to_contact(motions):
     world, a, b, proved = motions
     assert 0.05 < proved.mean() < 1.0
-    scalar = ArmWorld(world.robot, world.scene, world.resolution / FINER, backend="scalar")
-    assert scalar.motion_valid(a[proved], b[proved]).all()
+    some = np.concatenate([np.flatnonzero(proved)[-20:], np.flatnonzero(~proved)[:60]])
+    a, b = a[some], proof_edge(world, a[some], b[some])
+    apart = clearance(world.robot, world.scene, states_along(world, a, b, np.random.default_rng(1)))
+    assert apart.min() > 0.0
+    assert np.median(apart.reshape(len(a), -1)[20:, -1]) < 1e-4
 
 
-def test_what_is_proved_is_free_for_the_oracle(motions):
+def test_no_motion_through_a_place_in_contact_is_proved(motions):
+    world = motions[0]
+    a, b = through_contact(world, lambda q: clearance(world.robot, world.scene, q), np.random.default_rng(3))
+    assert len(a) > 10
+    for tolerance in (1e-6, 0.03):
+        assert not world.motion_certified(a, b, tolerance).any()
+
+
+def test_what_the_states_say_is_blocked_is_not_proved_and_little_else(motions):
     world, a, b, proved = motions
-    states = [fine_states(world, *motion) for motion in zip(a[proved][-10:], b[proved][-10:], strict=True)]
-    assert clearance(world.robot, world.scene, np.concatenate(states)).min() > 0.0
+    sampled = world.motion_valid(a, b)
+    assert not (proved & ~sampled).any()
+    assert proved.sum() > 0.97 * sampled.sum()
 
 
 def test_lanes_and_double_precision_prove_the_same_but_for_micrometres(motions):
     world, a, b, proved = motions
-    scalar = ArmWorld(world.robot, world.scene, world.resolution, backend="scalar")
-    a, b, proved = a[-300:], b[-300:], proved[-300:]
-    wide, near = (scalar.motion_certified(a, b, tolerance) for tolerance in (1e-4, 1e-7))
-    assert not (proved & ~near).any()
-    assert not (wide & ~proved).any()
+    scalar = replace(world, backend="scalar")
+    wide, near = (scalar.motion_certified(a[-200:], b[-200:], tolerance) for tolerance in (1e-4, 1e-7))
+    assert not (proved[-200:] & ~near).any()
+    assert not (wide & ~proved[-200:]).any()
 
 
-@pytest.mark.parametrize("name", ["capsules among obstacles", "balls among obstacles", "tree"])
-def test_every_length_that_decides_a_test_is_made_larger_and_nothing_else(name, monkeypatch):
-    world = ArmWorld(*WORLDS[name])
-    robot, lanes = world.robot_tables, world.tables.lanes
-    ints, table = lanes[: lanes[at.INTEGERS]], lanes[lanes[at.INTEGERS] :].view(np.float32)
-    speeds = robot.speeds @ np.linspace(1.0, 2.0, world.space.dim)
-    pair_speeds = robot.pair_speeds @ np.linspace(1.0, 2.0, world.space.dim)
-    motion = SimpleNamespace(speeds=speeds, pair_speeds=pair_speeds)
-    wide = table.copy()
-    for helper in ("_wider", "_largest"):
-        monkeypatch.setattr(motion_proof, helper, getattr(motion_proof, helper).py_func)
-    monkeypatch.setattr(motion_proof, "row", lambda array, place, count: array[place : place + count])
-    motion_proof._enlarge.py_func(0.25, motion, SimpleNamespace(ints=ints, table=table, enlarged=wide))
-    least = np.zeros(len(table))
-    for i, speed in enumerate(speeds):
-        least[ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6] = 0.25 * speed
-    for i in range(ints[at.BODIES]):
-        _, first, end = ints[ints[at.BODY_INTS] + at.BODY_INT_ROW * i :][:3]
-        place = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * i
-        least[place + 3 : place + 7] = 0.25 * speeds[first:end].max()
-    for p in range(ints[at.BODY_PAIRS]):
-        _, _, first, end = ints[ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * p :][:4]
-        least[ints[at.BODY_PAIR_FLOATS] + p] = 0.25 * pair_speeds[first:end].max()
-    for i, speed in enumerate(pair_speeds):
-        place = ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * i
-        least[place : place + 2] = 0.25 * speed
-    assert (wide.astype(np.float64) >= table + least).all()
-    np.testing.assert_allclose(wide, table + least, rtol=1e-6)
+def needle(gap, half_width=1e-3):
+    """A wheel's rim, a ball of 1 mm, and a post of 1 mm in its way or `gap` beside it."""
+    turn = Joint("turn", "revolute", "base", "wheel", (0.0, 0.0, 0.0), STRAIGHT, Z, 0.0, 2.0)
+    rim = Capsule((1.0, 0.0, 0.0), (1.0, 0.0, 0.0), 1e-3, link="wheel")
+    robot = Robot("wheel", ("base", "wheel"), (turn,), (rim,), (), ("turn",))
+    reach = 1.0 - 1e-3 - half_width - gap
+    post = Obstacle.of("post", "sphere", (half_width,), (reach * math.cos(0.97), reach * math.sin(0.97), 0.0))
+    return ArmWorld(robot, Scene((post,), name="post"), resolution=0.05)
+
+
+AHEAD = (1.0, 0.0, 0.0)
+TURN = Joint("turn", "revolute", "base", "wheel", (0.0, 0.0, 0.0), STRAIGHT, Z, -2.0, 2.0)
+OUT = Joint("out", "prismatic", "wheel", "sled", (0.0, 0.0, 0.0), STRAIGHT, AHEAD, 0.8, 0.9)
+FOLLOWER = replace(TURN, name="follower", mimic=Mimic("turn", -2.0))
+UP, ASIDE = (replace(TURN, kind="prismatic", axis=axis) for axis in (Z, (0.0, 1.0, 0.0)))
+GAUGES = {
+    "a wheel": ((TURN,), 1.0),
+    "its own post": ((TURN,), 1.0),
+    "its own rod": ((TURN,), 1.0),
+    "a slide": ((ASIDE,), 1.0),
+    "a slide of many balls": ((ASIDE,), 1.0),
+    "a lift of many balls": ((UP,), 1.0),
+    "many balls past its own post": ((UP,), 1.0),
+    "a slide on a wheel": ((TURN, OUT), 0.1),
+    "a follower": ((replace(TURN, child="lever"), FOLLOWER), 1.0),
+}
+"""Joints, and how far ahead on the last link a ball is, which the first joint moves by a known length and no less."""
+
+
+@pytest.mark.parametrize("backend", ["lanes", "scalar"])
+@pytest.mark.parametrize("kind", GAUGES)
+def test_a_post_of_a_millimetre_is_not_missed_wherever_it_is_in_a_motion(kind, backend):
+    """Bodies must be made larger by all that a joint moves them: a tenth less, and some motions would be proved."""
+    joints, far = GAUGES[kind]
+    half = 0.02 if kind == "its own rod" else 0.0
+    # Balls that lie in line ahead: a motion of one hits the post, of the others none.
+    places = far + 0.01 * np.arange(20 if "many" in kind else 1)
+    balls = [Capsule((x, 0.0, -half), (x, 0.0, half), 1e-3, link=joints[-1].child) for x in places.tolist()]
+    links, group = (
+        ("base", *(each.child for each in joints)),
+        tuple(j.name for j in joints if j.mimic is None),
+    )
+    robot, scene = Robot(kind, links, joints, tuple(balls), (), group), Scene([er.Sphere(1e-3, xyz=AHEAD)])
+    if "own" in kind:
+        own = Capsule((1.0, 0.0, -half), (1.0, 0.0, half), 1e-3, link="base")
+        robot, scene = replace(robot, capsules=(*balls, own), pairs=(("base", "wheel"),)), NOTHING
+    world, rng = ArmWorld(robot, scene, resolution=0.5, backend=backend), np.random.default_rng(1)
+    a = np.full((2000, world.space.dim), 0.9)
+    b, share, length = a.copy(), rng.random(2000), rng.uniform(0.1, 1.9, 2000)
+    a[:, 0], b[:, 0] = -share * length, (1.0 - share) * length
+    missed = world.motion_valid(a, b)
+    assert missed.mean() > 0.9
+    for tolerance in (1e-6, 1e-2):
+        assert not world.motion_certified(a[missed], b[missed], tolerance).any()
+    # Beside it all are.
+    a[:, 0], b[:, 0] = 0.0025, 0.0025 + 0.5 * length
+    assert world.motion_certified(a, b, 1e-4).all()
+
+
+ROUND = np.array([[0.0], [1.9]])
+
+
+@pytest.mark.parametrize("world", [needle(gap=-1e-3), CertifiedWorld(needle(gap=-1e-3))])
+def test_a_post_between_two_states_is_missed_by_them_but_not_by_the_proof(world):
+    assert needle(gap=-1e-3).motion_valid(ROUND[:1], ROUND[1:])[0]
+    assert not CertifiedWorld(needle(gap=-1e-3)).motion_valid(ROUND[:1], ROUND[1:])[0]
+    assert isinstance(world, ValidatesPaths)
+    assert world.proof == "certified"
+    assert world.validate(np.array([[0.0], [0.9], [1.1], [1.9]])).tolist() == [True, False, True]
+
+
+@pytest.mark.parametrize(
+    ("gap", "tolerance", "proved"), [(1e-3, 1e-4, True), (1e-5, 1e-4, False), (1e-5, 1e-6, True)]
+)
+def test_the_tolerance_says_how_near_a_proof_goes(gap, tolerance, proved):
+    assert CertifiedWorld(needle(gap), tolerance).validate(ROUND).tolist() == [proved]
+    assert needle(gap).validate(ROUND)[0]
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, math.nan])
+def test_a_tolerance_out_of_range_is_named(tolerance):
+    with pytest.raises(InvalidValue, match="tolerance"):
+        CertifiedWorld(IN_BOX, tolerance)
+
+
+def test_explain_is_that_of_the_world_inside():
+    q = [0.0, 0.5, 0.0, 0.0, 0.0]
+    assert CertifiedWorld(IN_BOX).explain(q) == IN_BOX.explain(q)
+
+
+# ---- the strict check of a path that is handed out
+
+
+class Careless(FunctionWorld):
+    """A world without a strict check: there is something to find then."""
+
+    validate = None
+
+
+@pytest.mark.parametrize(
+    "robot", [ur5(3.2), seven_joint_arm(), random_tree(8)], ids=["ur5", "seven", "tree 8"]
+)
+def test_shortcuts_touch_and_what_passes_is_free_for_the_oracle_at_a_twentieth_of_the_resolution(robot):
+    passed, refused = [], []
+    for seed in range(6):
+        world = ArmWorld(robot, random_scene(1000 + seed, count=10, spread=1.0, clear=0.35))
+        q = world.space.from_cube(np.random.default_rng(seed).random((100, world.space.dim)))
+        q = q[world.valid(q)]
+        points = draw("sobol", 128, world.space.cube_dim, rng=0)
+        weak = Careless(world.space, world.valid, world.resolution)
+        for start, goal in zip(q[0:4:2], q[1:4:2], strict=True):
+            path = plan(weak, start, goal, PRM(points, search="lazy")).path
+            if path is None:
+                continue
+            assert world.motion_valid(path[:-1], path[1:]).all()
+            for i, free in enumerate(world.validate(path)):
+                states = dense_states(world, path[i : i + 2])
+                (passed if free else refused).append(clearance(robot, world.scene, states).min())
+    assert len(passed) > 15
+    assert min(passed) > 0.0
+    assert all(apart < 1e-5 for apart in refused), "what is refused touches, or as good as does"
+    assert refused or robot.name != "ur5", "there was something to find"
+
+
+def test_one_verdict_a_motion():
+    home = np.array([0.0, -math.pi / 2, 0.0, -math.pi / 2, 0.0])
+    path = np.stack([home, home + 0.1, home + 0.1])
+    assert IN_BOX.validate(path).tolist() == [True, True]
+    assert IN_BOX.validate(path[:1]).shape == (0,)
+    with pytest.raises(InvalidValue, match="path must have shape"):
+        IN_BOX.validate(path[0])
+
+
+@pytest.mark.parametrize("backend", ["lanes", "scalar"])
+def test_what_states_call_blocked_is_not_passed(backend):
+    world = replace(IN_BOX, backend=backend)
+    path = world.space.from_cube(np.random.default_rng(3).random((200, 5)))
+    assert not (world.validate(path) & ~world.motion_valid(path[:-1], path[1:])).any()
+
+
+def test_a_motion_of_thirty_thousand_turns_is_refused_in_bounded_time():
+    """It would take some hundred thousand intervals to prove it."""
+    wheel = needle(gap=0.1)
+    turn = replace(wheel.robot.joints[0], lower=-1e5, upper=1e5)
+    world = ArmWorld(replace(wheel.robot, joints=(turn,)), wheel.scene, resolution=100.0)
+    path = np.array([[-1e5], [1e5]])
+    assert world.motion_valid(path[:1], path[1:])[0]
+    assert world.validate(np.array([[-10.0], [10.0]]))[0]
+    begin = time.process_time()
+    assert not world.validate(path)[0]
+    assert time.process_time() - begin < 2.0

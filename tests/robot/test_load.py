@@ -5,6 +5,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from importlib import resources
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,33 +15,17 @@ from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.robot import load, load_model, load_robot, with_group, with_limits
 from evenroad.robot.robot import in_scene
 from evenroad.robot.scene import Scene
+from tests.robot.kernel_arms import CAPSULES, LINKS
 from tests.robot.urdf_texts import joint, link, two_joints, urdf, write
-
-CAPSULES = """base      -.0183 -.0145  -.0183  .0285   .0919
-shoulder  -.0004 -.0201  -.0004  .0185   .0741
-shoulder  -.0003 -.0001   .0319 -.0001   .0722
-upper_arm -.0207 -.0005   .0218 -.0005   .0739
-upper_arm -.0008 -.0003  -.0008  .4265   .0595
-upper_arm -.0216  .4231   .0179  .4231   .0745
-forearm   -.0153  .0007   .0226  .0007   .0672
-forearm    .0007 -.0005   .0007  .3666   .0403
-forearm   -.0292  .3924   .0225  .3924   .0456
-wrist_1    .0798 -.0001   .0799 -.0001   .0506
-wrist_1    .0925 -.0210   .0925  .0116   .0524
-wrist_2    .0023  .0603   .0023  .1113   .0408
-wrist_2   -.0189  .0946   .0143  .0946   .0510
-wrist_3    .0630  .0013   .0630  .0013   .0420"""
-"""Of the UR5: link, then y and z of both ends, then the radius."""
 
 
 def test_the_ur5_has_its_capsules_its_limits_and_its_names():
     robot = load_robot("ur5")
-    for capsule, row in zip(robot.capsules, CAPSULES.splitlines(), strict=True):
-        name, *numbers = row.split()
-        ay, az, by, bz, radius = map(float, numbers)
-        assert capsule.link == f"{name}_link"
-        np.testing.assert_allclose([*capsule.a, *capsule.b], [0, ay, az, 0, by, bz], atol=1e-15)
-        assert capsule.radius == radius
+    for capsule, (link_number, a, b, radius) in zip(robot.capsules, CAPSULES, strict=True):
+        assert capsule.link.replace("_", "") == f"{LINKS[link_number]}link"
+        np.testing.assert_allclose(
+            [*capsule.a, *capsule.b, capsule.radius], [0, *a, 0, *b, radius], atol=1e-15
+        )
     names = ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
     assert robot.group == tuple(f"{name}_joint" for name in names)
     moving = [joint for joint in robot.joints if joint.kind != "fixed"]
@@ -137,35 +122,21 @@ def test_bodies_of_the_user_take_the_place_of_a_links_own(tmp_path):
     ("text", "kind", "says"),
     [
         ("ghost: [{centre: [0, 0, 0], radius: 1}]", UnknownName, "link in .*'ghost'; known: base"),
-        (
-            "lower: [{centre: [0, 0, 0], radius: 1, colour: red}]",
-            UnknownName,
-            "'colour'; known: centre, radius",
-        ),
+        ("lower: [{centre: [0, 0, 0], radius: 1, colour: red}]", UnknownName, "'colour'; known: centre, radius"),
         ("lower: [{a: [0, 0, 0], radius: 1}]", BrokenFile, "a body of link 'lower' in .* lacks b"),
-        (
-            "lower: [{centre: [0, 0], radius: 1}]",
-            InvalidValue,
-            r"must be a list of 3 finite numbers, got \[0, 0\]",
-        ),
+        ("lower: [{centre: [0, 0], radius: 1}]", InvalidValue, r"must be a list of 3 finite numbers, got \[0, 0\]"),
         ("lower: [{centre: [0, 0, 0], radius: 0}]", InvalidValue, "radius of .* > 0, got 0.0"),
         ("lower: [{centre: [0, 0, 0], radius: 1e-2}]", InvalidValue, "got '1e-2' .*decimal point"),
         ("lower: []", InvalidValue, "has no body"),
-        (
-            "lower: [{centre: [0, 0, 0], radius: 1}]\nlower: [{centre: [0, 0, 0], radius: 2}]\n",
-            BrokenFile,
-            "bodies.yaml has the key 'lower' twice, in lines 1 and 2",
-        ),
-        (
-            "lower: [{centre: [0, 0, 0], radius: 1, radius: 2}]",
-            BrokenFile,
-            "has the key 'radius' twice, in lines 1 and 1",
-        ),
+        ("lower: [{centre: [0, 0, 0], radius: 1}]\nlower: [{centre: [0, 0, 0], radius: 2}]\n", BrokenFile,
+            "bodies.yaml has the key 'lower' twice, in lines 1 and 2"),
+        ("lower: [{centre: [0, 0, 0], radius: 1, radius: 2}]", BrokenFile,
+            "has the key 'radius' twice, in lines 1 and 1"),
         ("lower: 3", BrokenFile, "must have a list"),
         ("hello", BrokenFile, "is not a file of bodies"),
         ("a: [", BrokenFile, "is not YAML"),
     ],
-)
+)  # fmt: skip
 def test_bodies_that_are_wrong_are_named(tmp_path, text, kind, says):
     with pytest.raises(EvenroadError, match=says) as caught:
         load_robot(write(tmp_path, two_joints()), bodies=write(tmp_path, text, "bodies.yaml"))
@@ -190,27 +161,23 @@ def test_a_robot_of_meshes_says_how_much_its_capsules_add(tmp_path):
 def test_a_robot_from_the_cache_is_the_one_that_was_put_there(tmp_path):
     path = _with_mesh(tmp_path)
     first = load_model(path)
-    (kept,) = (tmp_path_of_cache() / "robots").iterdir()
+    (kept,) = kept_robots()
     assert load_model(path) == first
     assert load_model("ur5") == load_model("ur5")
     kept.write_text("{")
     assert load_model(path) == first
 
 
-def tmp_path_of_cache():
-    from evenroad._files import cache_folder
-
-    return cache_folder()
+def kept_robots():
+    """The files of the cache."""
+    return {*(Path(os.environ["EVENROAD_CACHE"]) / "robots").iterdir()}
 
 
 @pytest.mark.parametrize("changed", ["urdf", "mesh", "srdf", "bodies", "group"])
 def test_the_cache_takes_notice_of_every_change(tmp_path, changed):
     path = _with_mesh(tmp_path)
-    srdf = write(
-        tmp_path,
-        "<robot name='a'><group name='g'><joint name='a'/><joint name='b'/></group></robot>",
-        "a.srdf",
-    )
+    group = "<robot name='a'><group name='g'><joint name='a'/><joint name='b'/></group></robot>"
+    srdf = write(tmp_path, group, "a.srdf")
     bodies = write(tmp_path, BODIES.replace("lower", "upper"), "bodies.yaml")
     options = {"srdf": srdf, "bodies": bodies, "group": "g"}
     before = load_robot(path, **options)
@@ -279,15 +246,13 @@ def test_a_cached_robot_waits_for_no_library_of_meshes_or_fits(tmp_path):
         "print([name for name in ('trimesh', 'scipy.optimize') if name in sys.modules])"
     )
     load_robot("ur5")
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=os.environ
-    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
 
 def test_the_record_in_the_cache_is_plain_json():
     load_robot("arm7")
-    (kept,) = (tmp_path_of_cache() / "robots").iterdir()
+    (kept,) = kept_robots()
     seal, _, record = kept.read_text().partition("\n")
     assert seal.startswith("evenroad-kept:")
     assert json.loads(record)["robot"]["name"] == "arm7"
@@ -317,7 +282,7 @@ def damaged(content, rng):
 def test_of_a_damaged_cache_comes_the_right_robot_and_one_line(tmp_path, monkeypatch, caplog):
     path = write(tmp_path, two_joints())
     right = load_model(path)
-    (kept,) = (tmp_path_of_cache() / "robots").iterdir()
+    (kept,) = kept_robots()
     content, made = kept.read_bytes(), []
     monkeypatch.setattr(
         load, "_build", lambda *arguments: made.append(arguments) or replace(right, file=None)
@@ -335,14 +300,12 @@ def test_of_a_damaged_cache_comes_the_right_robot_and_one_line(tmp_path, monkeyp
 
 
 def test_a_robot_that_is_kept_under_the_name_of_another_is_not_taken(tmp_path):
-    first, second = (
-        write(tmp_path, two_joints()),
-        write(tmp_path, urdf(link("x"), link("y"), joint("a", "x", "y")), "b.urdf"),
-    )
+    first = write(tmp_path, two_joints())
+    second = write(tmp_path, urdf(link("x"), link("y"), joint("a", "x", "y")), "b.urdf")
     load_model(first)
-    (kept,) = (tmp_path_of_cache() / "robots").iterdir()
+    (kept,) = kept_robots()
     right = load_model(second)
-    (other,) = {*(tmp_path_of_cache() / "robots").iterdir()} - {kept}
+    (other,) = kept_robots() - {kept}
     other.write_bytes(kept.read_bytes())
     assert load_model(second) == right
 

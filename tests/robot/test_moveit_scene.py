@@ -116,20 +116,12 @@ BROKEN = {
     "shapes without a number": ("a.scene", OLD.replace("\n2\n", "\ntwo\n"), BrokenFile, "number of shapes, got 'two'"),
     "no object": ("a.yaml", "world: 3", BrokenFile, "'world' in .* got 3"),
     "no id": ("a.yaml", _yaml("primitives: []"), BrokenFile, "must have an 'id'"),
-    "a mesh in YAML": (
-        "a.yaml",
-        _yaml("id: cup, meshes: [{resource: a.stl}]"),
-        InvalidValue,
-        "mesh of object 'cup' .* must have vertices",
-    ),
-    "a cone in YAML": (
-        "a.yaml", _yaml(f"id: hat, primitives: [{{type: 4, dimensions: [1, 1]}}], {POSE}"),
-        UnknownName, "'hat' .*'cone'",
-    ),
-    "too few dimensions": (
-        "a.yaml", _yaml(f"id: a, primitives: [{{type: box, dimensions: [1]}}], {POSE}"),
-        InvalidValue, "dimensions of 'a'",
-    ),
+    "a mesh in YAML": ("a.yaml", _yaml("id: cup, meshes: [{resource: a.stl}]"), InvalidValue,
+        "mesh of object 'cup' .* must have vertices"),
+    "a cone in YAML": ("a.yaml", _yaml(f"id: hat, primitives: [{{type: 4, dimensions: [1, 1]}}], {POSE}"),
+        UnknownName, "'hat' .*'cone'"),
+    "too few dimensions": ("a.yaml", _yaml(f"id: a, primitives: [{{type: box, dimensions: [1]}}], {POSE}"),
+        InvalidValue, "dimensions of 'a'"),
     "no pose": ("a.yaml", _yaml("id: a, primitives: [{type: box, dimensions: [1, 1, 1]}]"), BrokenFile, "1 and 0"),
 }  # fmt: skip
 

@@ -2,36 +2,20 @@ import numpy as np
 import pytest
 import trimesh
 
-from evenroad.geometry.distance import segment_distance
-from evenroad.robot import ArmWorld, Scene, load_model, load_robot, with_group
+from evenroad.robot import ArmWorld, load_model, load_robot, with_group
 from evenroad.robot.pairs import CONTAINED
+from tests.robot.kernel_arms import PAIRS
 from tests.robot.mesh_arms import write_plate_arm
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 
 
-def test_points_and_parallel_segments_are_segments_too():
-    point, along, beside = (np.array([row], dtype=float) for row in (
-        [[0, 0, 2], [0, 0, 2]], [[0, 0, 0], [0, 0, 1]], [[3, 0, -5], [3, 0, 5]],
-    ))  # fmt: skip
-    assert segment_distance(point, along) == 1
-    assert segment_distance(along, point) == 1
-    assert segment_distance(along, beside) == 3
-    assert segment_distance(point, point) == 0
-
-
 def test_the_ur5s_pairs_are_those_of_its_srdf():
     model = load_model("ur5")
-    links = (
-        "base_link",
-        "shoulder_link",
-        "upper_arm_link",
-        "forearm_link",
-        "wrist_1_link",
-        "wrist_2_link",
-        "wrist_3_link",
-    )
-    by_number = ("03", "04", "05", "06", "13", "14", "15", "16", "24", "25", "26", "35", "36")
-    assert model.robot.pairs == tuple((links[int(i)], links[int(j)]) for i, j in by_number)
+    names = [
+        f"{name}_link"
+        for name in ("base", "shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
+    ]
+    assert model.robot.pairs == tuple((names[int(i)], names[int(j)]) for i, j in PAIRS)
     assert model.pairs_from == "SRDF"
     assert len(model.dropped) == 8
 
@@ -143,7 +127,7 @@ def test_a_pair_that_an_srdf_leaves_and_that_always_touches_is_named_when_the_ro
 
 def test_a_pair_is_tested_whose_capsules_always_touch_but_not_its_shapes(tmp_path):
     robot = load_model(write_plate_arm(tmp_path)).robot
-    world = ArmWorld(robot, Scene((), name="empty"))
+    world = ArmWorld(robot)
     turn, bend = np.zeros((90, 3)), np.zeros((90, 3))
     turn[:, 0], bend[:, 1] = np.linspace(-2.8, 2.8, 90), np.linspace(-2.8, 2.8, 90)
     assert world.valid(turn).all()
@@ -171,10 +155,10 @@ def test_fingers_that_touch_where_they_are_held_do_not_block_the_arm_that_holds_
     path = write(tmp_path, _gripper(opening=0.03))
     robot = load_model(path, group="j,w").robot
     assert ("left", "right") not in robot.pairs
-    assert ArmWorld(robot, Scene((), name="empty")).valid(np.zeros((1, 2))).all()
+    assert ArmWorld(robot).valid(np.zeros((1, 2))).all()
     opened = with_group(robot, robot.group, {"l": 0.02, "r": 0.02})
-    assert ArmWorld(opened, Scene((), name="empty")).valid(np.zeros((1, 2))).all()
-    whole = ArmWorld(with_group(robot, ("j", "w", "l", "r")), Scene((), name="empty"))
+    assert ArmWorld(opened).valid(np.zeros((1, 2))).all()
+    whole = ArmWorld(with_group(robot, ("j", "w", "l", "r")))
     assert not whole.valid(np.zeros((1, 4))).any()
     assert whole.valid(np.array([[0, 0, 0.01, 0.01]])).all()
 
@@ -184,9 +168,9 @@ def test_two_links_that_an_srdf_lets_be_tested_block_the_arm_where_they_are_held
     path = write(tmp_path, _gripper(opening=0.03))
     robot = load_model(path, srdf=write(tmp_path, srdf, "arm.srdf"), group="j,w").robot
     closed = with_group(robot, robot.group, {"l": 0.0, "r": 0.0})
-    assert ArmWorld(closed, Scene((), name="empty")).fixed_contact == ("left", "right")
+    assert ArmWorld(closed).fixed_contact == ("left", "right")
     # Where nobody says how, they are held open.
-    assert ArmWorld(robot, Scene((), name="empty")).fixed_contact is None
+    assert ArmWorld(robot).fixed_contact is None
 
 
 def test_a_robot_of_which_no_configuration_is_free_says_so_and_names_the_pair_that_blocks_most(tmp_path):
@@ -209,9 +193,7 @@ def test_a_robot_of_which_no_configuration_is_free_says_so_and_names_the_pair_th
         load_robot(path)
 
 
-def test_a_pair_that_touches_only_where_another_joint_is_held_comes_back_when_that_is_held_elsewhere(
-    tmp_path,
-):
+def test_a_pair_that_touches_only_where_another_joint_is_held_comes_back_elsewhere(tmp_path):
     slide = "<limit lower='0' upper='1' velocity='1' effort='1'/>"
     text = urdf(
         link("base", _ball(0.1)), link("trolley", ""), link("arm", _ball(0.1, "0.1 0 0")), link("tip", _ball(0.02)),
@@ -227,7 +209,7 @@ def test_a_pair_that_touches_only_where_another_joint_is_held_comes_back_when_th
     assert with_group(robot, ("turn", "nod"), {"lift": 0.0}).pairs == robot.pairs
     lifted = with_group(robot, ("turn", "nod"), {"lift": 0.5})
     assert set(lifted.pairs) == {("base", "tip"), ("base", "arm")}
-    assert ArmWorld(lifted, Scene((), name="empty")).valid(np.zeros((1, 2))).all()
+    assert ArmWorld(lifted).valid(np.zeros((1, 2))).all()
     assert ("base", "arm") in with_group(robot, ("lift", "turn", "nod")).pairs
     assert ("base", "arm") in load_model(path).robot.pairs
 
@@ -243,7 +225,7 @@ def _crossing(tmp_path, outer):
         joint("across", "outer", "rod", "prismatic", slide, "0 0 0", "1 0 0"),
         joint("up", "rod", "block", "prismatic", slide, "0 0 0", "0 0 1"),
     )  # fmt: skip
-    return ArmWorld(load_model(write(tmp_path, text)).robot, Scene((), name="empty"))
+    return ArmWorld(load_model(write(tmp_path, text)).robot)
 
 
 BESIDE = np.stack(np.meshgrid(np.linspace(-0.9, 0.9, 37), np.linspace(-0.9, 0.9, 37)), axis=-1).reshape(-1, 2)
@@ -286,9 +268,7 @@ def _bellows(into, upper=0.4, glue="fixed"):
     )  # fmt: skip
 
 
-def test_a_bellows_that_goes_into_its_base_as_drawn_is_named_and_left_out_unless_an_srdf_says_otherwise(
-    tmp_path,
-):
+def test_a_bellows_in_its_base_as_drawn_is_named_and_left_out_unless_an_srdf_says_otherwise(tmp_path):
     path = write(tmp_path, _bellows(0.26))
     model = load_model(path)
     assert ("base", "bellows", CONTAINED) in model.dropped
@@ -297,12 +277,8 @@ def test_a_bellows_that_goes_into_its_base_as_drawn_is_named_and_left_out_unless
         " that disables other pairs alone has them tested",
     )
     assert load_model(path) == model, "as it comes out of the cache"
-    space = ArmWorld(model.robot, Scene(name="empty")).space
-    assert (
-        ArmWorld(model.robot, Scene(name="empty"))
-        .valid(space.from_cube(np.random.default_rng(0).random((50, 2))))
-        .all()
-    )
+    world = ArmWorld(model.robot)
+    assert world.valid(world.space.from_cube(np.random.default_rng(0).random((50, 2)))).all()
     disabled = "<disable_collisions link1='base' link2='mast' reason='Adjacent'/>"
     srdf = write(tmp_path, f"<robot name='arm'>{disabled}</robot>", "arm.srdf")
     assert ("base", "bellows") in load_model(path, srdf=srdf).robot.pairs

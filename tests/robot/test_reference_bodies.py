@@ -8,11 +8,7 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Capsule, Sphere
 from evenroad.robot.load import load_robot
-from evenroad.robot.reference.coal_world import (
-    capsule_shapes,
-    original_shapes,
-    sound_shapes,
-)
+from evenroad.robot.reference.coal_world import capsule_shapes, original_shapes, sound_shapes
 from evenroad.robot.urdf import read_urdf
 from tests.robot.kernel_arms import ur5
 from tests.robot.mesh_arms import fork, write_fork_arm

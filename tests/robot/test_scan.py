@@ -27,6 +27,7 @@ from evenroad.robot_roadmap.recipe import Recipe
 from tests.robot.surface_oracle import all_clearance
 
 UPRIGHT = "0,-1.5707963,0,-1.5707963,0,0"
+HOME = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
 
 
 def table(count=30_000, seed=0):
@@ -148,67 +149,50 @@ def test_where_a_robot_cannot_stand_it_has_seen_nothing(ur5, seen_at, error, say
 
 def test_the_command_plans_above_a_scanned_table(tmp_path, monkeypatch, ur5, capsys):
     monkeypatch.chdir(tmp_path)
-    home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
-    np.save("scan.npy", np.concatenate([table(), skin(ur5, home)]).astype(np.float32))
+    np.save("scan.npy", np.concatenate([table(), skin(ur5, HOME)]).astype(np.float32))
     entry = dict(shape="cloud", file="scan.npy", radius=0.006, seen_at=UPRIGHT)
     goals = {"low": dict.fromkeys(ur5.group, 0.0) | {"shoulder_lift_joint": -0.7, "elbow_joint": 0.7}}
     file = write_scene(tmp_path, entry, states=goals)
-    assert main(["plan", str(file), "--robot", "ur5", "--start", UPRIGHT, "--goal", "low", "--out", "a"]) == 0
+    line = ["plan", str(file), "--robot", "ur5", "--start", UPRIGHT, "--goal", "low"]
+    assert main([*line, "--out", "a"]) == 0
     assert "certified" in capsys.readouterr().out
     assert (tmp_path / "a.png").stat().st_size > 10_000
     # A roadmap of points does as well, and so does a start that it was not seen at: in its own points.
-    assert (
-        main(
-            [
-                "plan",
-                str(file),
-                "--robot",
-                "ur5",
-                "--start",
-                UPRIGHT,
-                "--goal",
-                "low",
-                "-n",
-                "64",
-                "--out",
-                "b",
-            ]
-        )
-        == 0
-    )
+    assert main([*line, "-n", "64", "--out", "b"]) == 0
     del entry["seen_at"]
-    file = write_scene(tmp_path, entry, states=goals)
-    assert main(["plan", str(file), "--robot", "ur5", "--start", UPRIGHT, "--goal", "low", "--out", "c"]) == 1
+    write_scene(tmp_path, entry, states=goals)
+    assert main([*line, "--out", "c"]) == 1
     assert "touches 'scan'" in " ".join(capsys.readouterr().out.split())
 
 
-def test_a_roadmap_of_a_robot_serves_in_a_scan(ur5):
-    home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
+@pytest.fixture(scope="module")
+def scanned(ur5):
+    """A table that was scanned with the robot in front of it, as a scene, and without the robot."""
+    cloud = PointCloud(np.concatenate([table(), skin(ur5, HOME)]), 0.006)
+    scene = Scene((Obstacle("scan", cloud, seen=Seen(UPRIGHT)),), name="s")
+    return scene, scene_seen_by(ur5, scene)
+
+
+def solves(roadmap, world):
+    result = roadmap.within(world).plan(HOME, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
+    return result.solved and world.validate(result.path).all()
+
+
+def test_a_roadmap_of_a_robot_serves_in_a_scan(ur5, scanned):
     roadmap = arm_roadmap(ArmWorld(ur5), 32, recipe=Recipe(4.0, 100))
-    cloud = PointCloud(np.concatenate([table(), skin(ur5, home)]), 0.006)
-    scene = scene_seen_by(ur5, Scene((Obstacle("scan", cloud, seen=Seen(UPRIGHT)),), name="s"))
-    result = roadmap.within(ArmWorld(ur5, scene)).plan(home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
-    assert result.solved
-    assert ArmWorld(ur5, scene).validate(result.path).all()
+    assert solves(roadmap, ArmWorld(ur5, scanned[1]))
 
 
-def test_a_cell_that_was_scanned_is_made_without_the_robot_in_it(ur5):
-    home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
-    cloud = PointCloud(np.concatenate([table(), skin(ur5, home)]), 0.006)
-    cell = Scene((Obstacle("scan", cloud, seen=Seen(UPRIGHT)),), name="s")
+def test_a_cell_that_was_scanned_is_made_without_the_robot_in_it(ur5, scanned):
+    cell, without = scanned
     roadmap = arm_roadmap(ArmWorld(ur5, cell), 32, recipe=Recipe(4.0, 20))
-    without = scene_seen_by(ur5, cell)
     assert roadmap.scene == without
     assert all_clearance(ur5, without, roadmap.milestones).min() > 0.0
-    result = roadmap.within(ArmWorld(ur5, without)).plan(home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
-    assert result.solved
-    assert ArmWorld(ur5, without).validate(result.path).all()
+    assert solves(roadmap, ArmWorld(ur5, without))
 
 
 def test_clouds_tell_scenes_apart(ur5):
-    scenes = [
-        Scene((Obstacle("scan", PointCloud(table(50), radius)),), name="s") for radius in (0.01, 0.01, 0.02)
-    ]
+    scenes = [Scene((Obstacle("scan", PointCloud(table(50), radius)),)) for radius in (0.01, 0.01, 0.02)]
     first, again, other = (scene.fingerprint() for scene in scenes)
     assert first == again != other
     assert er.plan(scenes[0].without("scan"), UPRIGHT, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0], robot=ur5).solved
@@ -216,18 +200,14 @@ def test_clouds_tell_scenes_apart(ur5):
 
 def shelf_file(folder, suffix):
     """A board of 0.4 m as a mesh in millimetres."""
-    mesh = trimesh.creation.box((400, 600, 20))
-    (folder / f"board{suffix}").write_bytes(mesh.export(file_type=suffix[1:]) if suffix != ".obj" else b"")
-    if suffix == ".obj":
-        (folder / "board.obj").write_text(mesh.export(file_type="obj"))
+    trimesh.creation.box((400, 600, 20)).export(folder / f"board{suffix}")
     return f"board{suffix}"
 
 
 @pytest.mark.parametrize("suffix", [".stl", ".obj", ".ply", ".dae"])
 def test_meshes_of_every_format_are_the_box_that_they_are(tmp_path, ur5, suffix):
-    entry = dict(
-        shape="mesh", file=shelf_file(tmp_path, suffix), scale=0.001, xyz=[0.6, 0, 0.3], rpy=[0, 0, 0.5]
-    )
+    mesh = shelf_file(tmp_path, suffix)
+    entry = dict(shape="mesh", file=mesh, scale=0.001, xyz=[0.6, 0, 0.3], rpy=[0, 0, 0.5])
     scene = load_scene(write_scene(tmp_path, entry))
     board = Obstacle("scan", Box((0.4, 0.6, 0.02), pose=Pose.from_rpy((0.6, 0, 0.3), (0, 0, 0.5))))
     of_mesh, of_box = ArmWorld(ur5, scene), ArmWorld(ur5, Scene((board,), name="s"))

@@ -32,13 +32,8 @@ limits:
 def test_everything_in_a_scene_is_read(tmp_path):
     scene = load_scene(write(tmp_path, GOOD, "a.yaml"))
     table, ball, post, pipe = scene.obstacles
-    assert (table.name, table.shape, table.size, table.xyz, table.cell) == (
-        "table",
-        "box",
-        (1, 2, 0.1),
-        (0, 0, -0.05),
-        True,
-    )
+    assert (table.name, table.shape, table.size) == ("table", "box", (1, 2, 0.1))
+    assert (table.xyz, table.cell) == ((0, 0, -0.05), True)
     assert table.rotation == rotation_from_rpy(0, 0, 0.3)
     assert (ball.shape, ball.size, ball.xyz, ball.cell) == ("sphere", (0.1,), (0.5, 0, 0.5), False)
     assert (post.shape, post.size, post.xyz) == ("cylinder", (0.05, 1.0), (0, 0, 0))
@@ -62,26 +57,14 @@ def test_a_scene_is_told_from_a_map(tmp_path):
 
 
 BROKEN = {
-    "an unknown key": (
-        GOOD + "colour: red\n",
-        UnknownName,
-        "key of the scene .*'colour'; known: allowed, attach, limits, name, obstacles, states",
-    ),
-    "an unknown key of an obstacle": (
-        "obstacles: {a: {shape: sphere, radius: 1, size: 2}}",
-        UnknownName,
-        "key of obstacle 'a' in .*'size'; known: cell, radius, rpy, shape, xyz, xyzw",
-    ),
-    "an unknown shape": (
-        "obstacles: {a: {shape: cone}}",
-        UnknownName,
-        "shape of obstacle 'a' in .*'cone'; known: box, capsule, cloud, cylinder, mesh, sphere",
-    ),
-    "a shape that is no name": (
-        "obstacles: {a: {shape: [box]}}",
-        UnknownName,
-        r"shape of obstacle 'a' in .*\['box'\]; known: box",
-    ),
+    "an unknown key": (GOOD + "colour: red\n", UnknownName,
+        "key of the scene .*'colour'; known: allowed, attach, limits, name, obstacles, states"),
+    "an unknown key of an obstacle": ("obstacles: {a: {shape: sphere, radius: 1, size: 2}}", UnknownName,
+        "key of obstacle 'a' in .*'size'; known: cell, radius, rpy, shape, xyz, xyzw"),
+    "an unknown shape": ("obstacles: {a: {shape: cone}}", UnknownName,
+        "shape of obstacle 'a' in .*'cone'; known: box, capsule, cloud, cylinder, mesh, sphere"),
+    "a shape that is no name": ("obstacles: {a: {shape: [box]}}", UnknownName,
+        r"shape of obstacle 'a' in .*\['box'\]; known: box"),
     "two obstacles of one name": (
         "obstacles:\n  wall: {shape: sphere, radius: 1}\n  wall: {shape: sphere, radius: 2}\n",
         BrokenFile,
@@ -92,84 +75,40 @@ BROKEN = {
         BrokenFile,
         "has the key '1' twice, in lines 2 and 4",
     ),
-    "keys that are one to Python": (
-        "obstacles:\n  true: {shape: sphere, radius: 1}\n  1: {shape: sphere, radius: 2}\n",
-        BrokenFile,
-        "has the key '1' twice, in lines 2 and 3",
-    ),
+    "keys that are one to Python": ("obstacles:\n  true: {shape: sphere, radius: 1}\n  1: {shape: sphere, radius: 2}\n",
+        BrokenFile, "has the key '1' twice, in lines 2 and 3"),
     "nested too deep": ("a: " + 100_000 * "[", BrokenFile, "nested more than 100 levels deep"),
     "a tag that does not fit": ("obstacles: !!bool q", BrokenFile, "is not YAML"),
     "a section given twice": (GOOD + "states: {}\n", BrokenFile, "has the key 'states' twice"),
-    "a size given twice": (
-        "obstacles: {a: {shape: sphere, radius: 1, radius: 0.1}}",
-        BrokenFile,
-        "has the key 'radius' twice, in lines 1 and 1",
-    ),
-    "a number of 400 digits": (
-        f"obstacles: {{a: {{shape: sphere, radius: 1{'0' * 400}}}}}",
-        InvalidValue,
-        "radius of obstacle 'a' in .* must be a finite number",
-    ),
+    "a size given twice": ("obstacles: {a: {shape: sphere, radius: 1, radius: 0.1}}", BrokenFile,
+        "has the key 'radius' twice, in lines 1 and 1"),
+    "a number of 400 digits": (f"obstacles: {{a: {{shape: sphere, radius: 1{'0' * 400}}}}}", InvalidValue,
+        "radius of obstacle 'a' in .* must be a finite number"),
     "no shape": ("obstacles: {a: {radius: 1}}", UnknownName, "shape of obstacle 'a' in .*: None"),
     "no obstacles": ("states: {}", BrokenFile, "the scene .* lacks obstacles"),
-    "a length that is missing": (
-        "obstacles: {a: {shape: cylinder, radius: 1}}",
-        BrokenFile,
-        "obstacle 'a' in .* lacks length",
-    ),
-    "a size of two numbers": (
-        "obstacles: {a: {shape: box, size: [1, 2]}}",
-        InvalidValue,
-        r"size of obstacle 'a' in .* 3 finite numbers, got \[1, 2\]",
-    ),
-    "a size of zero": (
-        "obstacles: {a: {shape: box, size: [1, 0, 1]}}",
-        InvalidValue,
-        "size of obstacle 'a' .* > 0, got 0.0",
-    ),
-    "a place that is not finite": (
-        "obstacles: {a: {shape: sphere, radius: 1, xyz: [.nan, 0, 0]}}",
-        InvalidValue,
-        "xyz of obstacle 'a'",
-    ),
-    "a number as text": (
-        "obstacles: {a: {shape: sphere, radius: 1e-1}}",
-        InvalidValue,
-        "got '1e-1' .*decimal point",
-    ),
-    "a cell that is no bool": (
-        "obstacles: {a: {shape: sphere, radius: 1, cell: 2}}",
-        InvalidValue,
-        "cell of obstacle 'a' .* true or false, got 2",
-    ),
-    "an obstacle that is no mapping": (
-        "obstacles: {a: 3}",
-        BrokenFile,
-        "obstacle 'a' in .* 'key: value' entries, got 3",
-    ),
-    "a contact with nothing": (
-        "obstacles: {}\nallowed: {a: [b]}",
-        UnknownName,
-        "obstacle in 'allowed' of .*'a'",
-    ),
-    "a contact that is no list": (
-        "obstacles: {a: {shape: sphere, radius: 1}}\nallowed: {a: b}",
-        InvalidValue,
-        "must be a list of links, got 'b'",
-    ),
-    "a state that is no number": (
-        "obstacles: {}\nstates: {home: {a: b}}",
-        InvalidValue,
-        "joint 'a' of state 'home' in .* a finite number, got 'b'",
-    ),
-    "limits the wrong way round": (
-        "obstacles: {}\nlimits: {a: [2, 1]}",
-        InvalidValue,
-        "limits of joint 'a' in .* lower < upper",
-    ),
+    "a length that is missing": ("obstacles: {a: {shape: cylinder, radius: 1}}", BrokenFile,
+        "obstacle 'a' in .* lacks length"),
+    "a size of two numbers": ("obstacles: {a: {shape: box, size: [1, 2]}}", InvalidValue,
+        r"size of obstacle 'a' in .* 3 finite numbers, got \[1, 2\]"),
+    "a size of zero": ("obstacles: {a: {shape: box, size: [1, 0, 1]}}", InvalidValue,
+        "size of obstacle 'a' .* > 0, got 0.0"),
+    "a place that is not finite": ("obstacles: {a: {shape: sphere, radius: 1, xyz: [.nan, 0, 0]}}", InvalidValue,
+        "xyz of obstacle 'a'"),
+    "a number as text": ("obstacles: {a: {shape: sphere, radius: 1e-1}}", InvalidValue, "got '1e-1' .*decimal point"),
+    "a cell that is no bool": ("obstacles: {a: {shape: sphere, radius: 1, cell: 2}}", InvalidValue,
+        "cell of obstacle 'a' .* true or false, got 2"),
+    "an obstacle that is no mapping": ("obstacles: {a: 3}", BrokenFile,
+        "obstacle 'a' in .* 'key: value' entries, got 3"),
+    "a contact with nothing": ("obstacles: {}\nallowed: {a: [b]}", UnknownName, "obstacle in 'allowed' of .*'a'"),
+    "a contact that is no list": ("obstacles: {a: {shape: sphere, radius: 1}}\nallowed: {a: b}", InvalidValue,
+        "must be a list of links, got 'b'"),
+    "a state that is no number": ("obstacles: {}\nstates: {home: {a: b}}", InvalidValue,
+        "joint 'a' of state 'home' in .* a finite number, got 'b'"),
+    "limits the wrong way round": ("obstacles: {}\nlimits: {a: [2, 1]}", InvalidValue,
+        "limits of joint 'a' in .* lower < upper"),
     "no YAML": ("a: [", BrokenFile, "is not YAML"),
     "a list": ("- a", BrokenFile, "is not a scene"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", BROKEN)
@@ -303,16 +242,13 @@ def test_a_capsule_as_an_obstacle_is_along_z_whatever_its_ends():
         (lambda: Obstacle.of("x", "sphere", (-1.0,)), InvalidValue, "obstacle 'x': .* > 0, got -1"),
         (lambda: Obstacle.of("x", "sphere", (1.0,), (0, np.inf, 0)), InvalidValue, "'x': xyz .*inf"),
         (lambda: Obstacle.of("x", "sphere", (1.0,), (0, 0, 0), (2.0,) * 9), InvalidValue, "'x': rotation"),
-        (
-            lambda: Obstacle("x", PointCloud(np.zeros((1, 3)), 0.0)),
-            InvalidValue,
-            "radius of a cloud must be a finite number > 0",
-        ),
+        (lambda: Obstacle("x", PointCloud(np.zeros((1, 3)), 0.0)), InvalidValue,
+            "radius of a cloud must be a finite number > 0"),
         (lambda: Obstacle("x", Mesh("part.stl")), BrokenFile, "mesh part.stl is missing"),
         (lambda: Obstacle("x", "box"), InvalidValue, "cylinder, capsule, cloud, mesh, got a box"),
         (lambda: Obstacle("x", Sphere(1.0, link="hand")), InvalidValue, "not to a link, got 'hand'"),
     ],
-)
+)  # fmt: skip
 def test_an_obstacle_that_is_not_sound_is_refused(make, error, says):
     with pytest.raises(error, match=says) as caught:
         make()
@@ -375,10 +311,7 @@ def test_two_scenes_share_nothing_that_can_change():
     ("call", "words"),
     [
         (lambda: Scene("table.yaml"), "is read from its file by load_scene"),
-        (
-            lambda: Scene([TABLE], obstacle=1),
-            "states; did you mean 'obstacles'",
-        ),
+        (lambda: Scene([TABLE], obstacle=1), "states; did you mean 'obstacles'"),
         (lambda: Scene([TABLE], obstacles=[TABLE]), "Scene is called as Scene(obstacles, *, name, allowed"),
         (lambda: Scene("cell", [TABLE]), "Scene is called as Scene(obstacles, *, name, allowed"),
         (lambda: Scene(["table"]), "er.Box((x, y, z), xyz=...)"),
@@ -398,7 +331,7 @@ def test_two_scenes_share_nothing_that_can_change():
         (lambda: Capsule(0.1, 0.2, 0.3, 0.4), "each once"),
         (lambda: Mesh(7), "vertices (v, 3)"),
     ],
-)
+)  # fmt: skip
 def test_a_scene_that_is_none_is_told_what_to_write(call, words):
     with pytest.raises(EvenroadError) as error:
         call()

@@ -103,28 +103,18 @@ def test_a_joint_locked_by_its_limits_is_in_no_group(tmp_path):
 
 BROKEN = {
     "a group that is not there": ("<group name='g'><group name='h'/></group>", UnknownName, "'h'; known: g"),
-    "groups in a circle": (
-        "<group name='g'><group name='h'/></group><group name='h'><group name='g'/></group>",
-        BrokenFile,
-        "contain each other: g -> h -> g",
-    ),
-    "a chain that is none": (
-        "<group name='g'><chain base_link='left' tip_link='right'/></group>",
-        BrokenFile,
-        "'right' does not hang on 'left'",
-    ),
+    "groups in a circle": ("<group name='g'><group name='h'/></group><group name='h'><group name='g'/></group>",
+        BrokenFile, "contain each other: g -> h -> g"),
+    "a chain that is none": ("<group name='g'><chain base_link='left' tip_link='right'/></group>", BrokenFile,
+        "'right' does not hang on 'left'"),
     "a state of no group": ("<group_state name='s' group='g'/>", UnknownName, "unknown group in .*: 'g'"),
     "a value that is no number": (
         "<group name='g'/><group_state name='s' group='g'><joint name='elbow' value='much'/></group_state>",
         InvalidValue,
         "joint 'elbow' of a state in .* must be a finite number, got 'much'",
     ),
-    "a pair of one": (
-        "<disable_collisions link1='base'/>",
-        BrokenFile,
-        "<disable_collisions> in .* lacks 'link2'",
-    ),
-}
+    "a pair of one": ("<disable_collisions link1='base'/>", BrokenFile, "<disable_collisions> in .* lacks 'link2'"),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", BROKEN)
@@ -263,13 +253,10 @@ def test_a_group_that_cannot_be_planned_for_is_refused(read, wanted, kind, says)
     [
         # The arm, its hand, and both: the chain that is no gripper's.
         ({"both": "shoulder elbow grip", "arm": "shoulder elbow", "hand": "grip"}, ("shoulder", "elbow")),
-        (
-            {"forearm": "elbow", "arm": "shoulder elbow", "manipulator": "shoulder elbow"},
-            ("shoulder", "elbow"),
-        ),
+        ({"forearm": "elbow", "arm": "shoulder elbow", "manipulator": "shoulder elbow"}, ("shoulder", "elbow")),
         ({"both": "shoulder grip", "hand": "grip"}, ("grip",)),
     ],
-)
+)  # fmt: skip
 def test_of_several_groups_the_longest_chain_is_the_arm(read, groups, joints):
     inside = "".join(
         f"<group name='{name}'>{''.join(f'<joint name={each!r}/>' for each in members.split())}</group>"

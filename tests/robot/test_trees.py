@@ -14,36 +14,14 @@ from evenroad.geometry.shapes import Box
 from evenroad.planning import plan
 from evenroad.planning.arm_trees import connect, grown_trees, shorten
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.robot import Robot, with_limits
+from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
-from evenroad.robot.tree_sequences import ball_points, cube_points, reversed_halton
-from tests.robot.kernel_arms import STRAIGHT, box_scene, random_scene, random_tree, seven_joint_arm, ur5
+from evenroad.robot.tree_sequences import ball_points, cube_points, reversed_halton, sphere_points
+from tests.robot.kernel_arms import STRAIGHT, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
-from tests.robot.plain_trees import grown
-
-START = np.array([0.0, -np.pi / 2, 0.0, -np.pi / 2, 0.0])
-GOAL = np.array([-0.1216, -0.6993, 1.2160, -2.1070, 2.3023])
-"""Of scene "c": the flange 25 cm deep in the box."""
-
-
-def box_world(backend="auto", inner=0.36):
-    pi = np.pi
-    bounds = [(-pi, pi), (-1.3 * pi, 0.3 * pi), (-pi, pi), (-pi, pi), (-pi, pi)]
-    robot = ur5(joints=5)
-    return ArmWorld(
-        with_limits(robot, dict(zip(robot.group, bounds, strict=True))), box_scene(inner), backend=backend
-    )
-
-
-def joined(world, start, goal, most_motions=1_000_000, seconds=60.0):
-    """What the trees find: those in compiled code, or for the slow backend the oracle's."""
-    if world.backend == "scalar":
-        ends = np.stack([start, goal])
-        return grown(world, ends, cube_points(world.space.dim), most_motions, seconds)
-    return connect(world, start, [goal], most_motions=most_motions, seconds=seconds)
+from tests.robot.paths import GOAL, START, box_world, dense_states, proved
 
 
 @pytest.fixture(scope="module")
@@ -56,31 +34,13 @@ def found(world):
     return connect(world, START, [GOAL])
 
 
-def dense_states(world, path, share=20):
-    """States of a path at a share of the world's resolution, (n, dim)."""
-    pieces = []
-    for a, b in pairwise(path):
-        count = int(np.ceil(world.space.distance(a[None], b[None])[0] / (world.resolution / share))) + 1
-        t = np.linspace(0.0, 1.0, count)
-        ends = np.broadcast_to(a, (count, len(a))), np.broadcast_to(b, (count, len(b)))
-        pieces.append(world.space.interpolate(*ends, t))
-    return np.concatenate(pieces)
-
-
-@pytest.mark.parametrize("backend", ["lanes", "scalar"])
-def test_a_goal_deep_in_a_box_is_reached(backend):
-    world = box_world(backend)
-    connection = joined(world, START, GOAL)
-    assert connection.goal == 0
-    np.testing.assert_array_equal(connection.path[[0, -1]], [START, GOAL])
-    assert (
-        CertifiedWorld(replace(world, backend="scalar"), 1e-6)
-        .motion_valid(connection.path[:-1], connection.path[1:])
-        .all()
-    )
-    assert clearance(world.robot, world.scene, dense_states(world, connection.path)).min() > 0.0
-    assert connection.nodes >= len(connection.path)
-    assert connection.configurations > connection.motions > len(connection.path) - 1
+def test_a_goal_deep_in_a_box_is_reached(world, found):
+    assert found.goal == 0
+    np.testing.assert_array_equal(found.path[[0, -1]], [START, GOAL])
+    assert proved(world, found.path)
+    assert clearance(world.robot, world.scene, dense_states(world, found.path)).min() > 0.0
+    assert found.nodes >= len(found.path)
+    assert found.configurations > found.motions > len(found.path) - 1
 
 
 def test_the_same_arguments_give_the_same_path_however_long_there_is(world, found):
@@ -100,14 +60,11 @@ def split():
     return ArmWorld(ur5(), Scene((plate,), name="plate", allowed=frozenset({("base", "plate")})))
 
 
-def test_slices_change_nothing(split, monkeypatch):
-    from evenroad.planning import arm_trees as trees
-
-    whole = connect(split, ABOVE, [BELOW], most_motions=2_000, seconds=60)
-    monkeypatch.setattr(trees, "_SLICE", 1)
-    sliced = connect(split, ABOVE, [BELOW], most_motions=2_000, seconds=60)
-    assert whole.goal == -1
-    assert counts_of(sliced) == counts_of(whole)
+def test_trees_of_many_thousand_nodes_grow_alike_each_time(split):
+    first, again = (connect(split, ABOVE, [BELOW], most_motions=20_000, seconds=60) for _ in range(2))
+    assert first.goal == -1
+    assert first.nodes > 2 * 2048
+    assert counts_of(first) == counts_of(again)
 
 
 def counts_of(connection):
@@ -152,13 +109,11 @@ def test_more_goals_than_fit_a_batch(world):
     np.testing.assert_array_equal(several.path[-1], goals[several.goal])
 
 
-@pytest.mark.parametrize("backend", ["lanes", "scalar"])
-def test_ends_that_are_not_free_give_no_path(backend):
-    world = box_world(backend)
+def test_ends_that_are_not_free_give_no_path(world):
     blocked = np.array([0.0, 0.9, 0.0, 0.0, 0.0])
     beyond = START + np.array([0.0, 9.0, 0.0, 0.0, 0.0])
     for start, goal in ((blocked, GOAL), (START, blocked), (beyond, GOAL), (START, beyond)):
-        none = joined(world, start, goal)
+        none = connect(world, start, [goal])
         assert (none.goal, len(none.path), none.motions) == (-1, 0, 0)
 
 
@@ -177,16 +132,15 @@ def test_start_and_goal_may_be_one(world):
     np.testing.assert_array_equal(same.path, [START, START])
 
 
-@pytest.mark.parametrize("backend", ["lanes", "scalar"])
 @pytest.mark.parametrize("seed", [0, 3, 4, 5, 8, 13])
-def test_any_robot_gets_from_place_to_place(seed, backend):
+def test_any_robot_gets_from_place_to_place(seed):
     robot, scene = random_tree(seed), random_scene(100 + seed, spread=0.7, clear=0.45)
-    world = ArmWorld(robot, scene, backend=backend)
+    world = ArmWorld(robot, scene)
     q = world.space.from_cube(np.random.default_rng(seed).random((2000, world.space.dim)))
     q = q[world.valid(q)][:4]
     solved = 0
     for start, goal in pairwise(q):
-        connection = joined(world, start, goal, 3_000, 20.0)
+        connection = connect(world, start, [goal], most_motions=3_000, seconds=20.0)
         if connection.goal < 0:
             continue
         solved += 1
@@ -308,7 +262,7 @@ def test_arguments_that_make_no_sense_are_refused(world, change, text):
         connect(world, arguments.pop("start"), arguments.pop("goals"), **arguments)
 
 
-def test_points_in_a_ball_of_few_dimensions_are_spread_evenly():
+def test_points_in_a_ball_and_directions_are_spread_evenly():
     for dim in (1, 2, 6, 7):
         points = ball_points(dim)
         radii = np.linalg.norm(points, axis=1)
@@ -317,18 +271,19 @@ def test_points_in_a_ball_of_few_dimensions_are_spread_evenly():
         # The r-th part of the volume holds the r-th part of the points.
         assert np.mean(radii**dim < 0.5) == pytest.approx(0.5, abs=0.01)
         np.testing.assert_allclose((points**2).mean(axis=0), 1.0 / (dim + 2), rtol=0.1)
-
-
-def test_in_many_dimensions_steps_of_all_lengths_lead_everywhere():
-    for dim in (8, 14):
-        points = ball_points(dim)
-        lengths = np.linalg.norm(points, axis=1)
-        # As many from .1 to .2 as from .5 to 1.
-        np.testing.assert_allclose(np.quantile(lengths, [0.0, 0.5, 1.0]), [0.1, 0.1**0.5, 1.0], rtol=0.01)
-        assert np.mean(lengths < 0.2) == pytest.approx(np.mean(lengths > 0.5), abs=0.01)
-        directions = points / lengths[:, np.newaxis]
-        np.testing.assert_allclose(directions.mean(axis=0), 0.0, atol=0.03)
-        np.testing.assert_allclose((directions**2).mean(axis=0), 1.0 / dim, rtol=0.1)
+    for dim in (1, 2, 6, 8, 14):
+        lengths = np.linalg.norm(ball_points(dim), axis=1)
+        all_sizes = [sphere_points(dim)]
+        if dim > 7:
+            # In many dimensions, steps of all lengths: as many from .1 to .2 as from .5 to 1.
+            np.testing.assert_allclose(np.quantile(lengths, [0.0, 0.5, 1.0]), [0.1, 0.1**0.5, 1.0], rtol=0.01)
+            assert np.mean(lengths < 0.2) == pytest.approx(np.mean(lengths > 0.5), abs=0.01)
+            all_sizes.append(ball_points(dim) / lengths[:, np.newaxis])
+        for directions in all_sizes:
+            assert directions.shape == ball_points(dim).shape
+            np.testing.assert_allclose(np.linalg.norm(directions, axis=1), 1.0, rtol=1e-12)
+            np.testing.assert_allclose(directions.mean(axis=0), 0.0, atol=0.03)
+            np.testing.assert_allclose((directions**2).mean(axis=0), 1.0 / dim, rtol=0.1)
 
 
 def test_halton_points_are_those_of_the_definition():

@@ -147,18 +147,10 @@ def test_a_body_that_is_flat_is_thin_and_not_left_out(tmp_path):
 @pytest.mark.parametrize(
     ("inside", "limits", "says"),
     [
-        (
-            "<limit effort='1' velocity='1'/>",
-            (0.0, 0.0),
-            "has no lower and upper limit: 0 by .*, so that it cannot",
-        ),
-        (
-            "<limit lower='-1' effort='1' velocity='1'/>",
-            (-1.0, 0.0),
-            "has no upper limit: 0 by the specification$",
-        ),
+        ("<limit effort='1' velocity='1'/>", (0.0, 0.0), "has no lower and upper limit: 0 by .*, so that it cannot"),
+        ("<limit lower='-1' effort='1' velocity='1'/>", (-1.0, 0.0), "has no upper limit: 0 by the specification$"),
     ],
-)
+)  # fmt: skip
 def test_limits_that_are_not_given_are_0_as_the_specification_says(tmp_path, inside, limits, says):
     text = urdf(link("x"), link("y"), joint("a", "x", "y", inside=inside))
     robot = read_urdf(write(tmp_path, text))
@@ -241,208 +233,93 @@ def test_a_package_is_where_it_is_said_to_be(tmp_path):
         find_mesh("package://parts/part.stl", RobotFile(tmp_path / "arm.urdf"), "x")
 
 
-def _mesh(attributes):
-    return urdf(link("x", f"<collision><geometry><mesh filename={attributes}/></geometry></collision>"))
+def of(*joints, links="xy", more=""):
+    """A robot of these joints, and of links of one letter each."""
+    return urdf(*map(link, links), *joints, more)
 
 
+def a(inside=LIMIT, **changes):
+    """A robot of two links and a joint between them."""
+    return of(joint("a", "x", "y", inside=inside, **changes))
+
+
+def shaped(element):
+    """A robot of one link with this geometry."""
+    return urdf(link("x", f"<collision><geometry>{element}</geometry></collision>"))
+
+
+AXB, AYB = joint("a", "x", "y"), joint("b", "y", "x")
+TWO_ORIGINS = SPHERE.replace("<geometry>", "<origin/><origin xyz='0 0 1'/><geometry>")
+MIMIC = LIMIT + "<mimic joint='{}'/>"
+FOLLOWS_FIXED = joint("a", "x", "y", "fixed", ""), joint("b", "y", "z", inside=MIMIC.format("a"))
+IN_A_CIRCLE = joint("a", "x", "y", inside=MIMIC.format("b")), joint("b", "y", "z", inside=MIMIC.format("a"))
+CYCLE = "form a cycle: (a -> b -> a|b -> a -> b)"
 BROKEN = {
-    "a mesh scaled to a point": (
-        _mesh("'a.stl' scale='0 0 0'"),
-        InvalidValue,
-        "link 'x' in .*: scale of <mesh> must not be 0, got '0 0 0'",
-    ),
-    "a mesh scaled flat": (
-        _mesh("'a.stl' scale='1 -1 -0.0'"),
-        InvalidValue,
-        "must not be 0, got '1 -1 -0.0'",
-    ),
-    "a mesh scaled by one 0": (_mesh("'a.stl' scale='0'"), InvalidValue, "must not be 0, got '0'"),
-    "a mesh in pieces": (
-        _mesh("'a.GLTF'"),
-        BrokenFile,
-        "link 'x' in .*: 'a.GLTF' has its triangles in other files; make a .glb of it",
-    ),
-    "a number as only Python writes it": (
-        urdf(link("x", "<collision><geometry><sphere radius='1_0'/></geometry></collision>")),
-        InvalidValue,
-        "link 'x' in .*: radius of <sphere> must be a finite number, got '1_0'",
-    ),
-    "two origins of a body": (
-        urdf(link("x", SPHERE.replace("<geometry>", "<origin/><origin xyz='0 0 1'/><geometry>"))),
-        BrokenFile,
-        "link 'x' in .*: <collision> has more than one <origin>",
-    ),
-    "two origins of a joint": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside=LIMIT + "<origin/>")),
-        BrokenFile,
-        "joint 'a' in .*: <joint> has more than one <origin>",
-    ),
-    "two limits": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside=LIMIT + LIMIT.replace("1", "2"))),
-        BrokenFile,
-        "joint 'a' in .*: <joint> has more than one <limit>",
-    ),
+    # Files and trees.
     "no XML": ("<robot name='a'><link", BrokenFile, "is not XML"),
     "an empty file": ("", BrokenFile, "is empty, not XML"),
     "another kind of XML": ("<sdf/>", BrokenFile, "not a URDF: its outermost element is <sdf>"),
     "no links": (urdf(), BrokenFile, "has no links"),
-    "a cycle": (
-        urdf(link("x"), link("y"), joint("a", "x", "y"), joint("b", "y", "x")),
-        BrokenFile,
-        "form a cycle: (a -> b -> a|b -> a -> b)",
-    ),
-    "a cycle beside the tree": (
-        urdf(
-            link("w"),
-            link("x"),
-            link("y"),
-            link("z"),
-            joint("t", "w", "z"),
-            joint("a", "x", "y"),
-            joint("b", "y", "x"),
-        ),
-        BrokenFile,
-        "form a cycle: (a -> b -> a|b -> a -> b)",
-    ),
-    "a link that hangs on itself": (
-        urdf(link("x"), joint("a", "x", "x")),
-        BrokenFile,
-        "form a cycle: a -> a",
-    ),
-    "a loop": (
-        urdf(
-            link("x"), link("y"), link("z"), joint("a", "x", "y"), joint("b", "x", "z"), joint("c", "y", "z")
-        ),
-        BrokenFile,
-        "link 'z' in .* hangs on two joints, 'b' and 'c'",
-    ),
-    "two roots": (urdf(link("x"), link("y")), BrokenFile, "more than one root: no joint leads to 'x', 'y'"),
-    "two links of one name": (urdf(link("x"), link("x")), BrokenFile, "more than one link named 'x'"),
-    "two joints of one name": (
-        urdf(link("x"), link("y"), link("z"), joint("a", "x", "y"), joint("a", "y", "z")),
-        BrokenFile,
-        "more than one joint named 'a'",
-    ),
-    "a child that is not there": (
-        urdf(link("x"), joint("a", "x", "ghost")),
-        BrokenFile,
-        "joint 'a' in .* has the child 'ghost', which is no link; links: x",
-    ),
-    "no parent": (
-        urdf(link("x"), "<joint name='a' type='fixed'><child link='x'/></joint>"),
-        BrokenFile,
-        "joint 'a' in .* lacks <parent>",
-    ),
+    "a cycle": (of(AXB, AYB), BrokenFile, CYCLE),
+    "a cycle beside the tree": (of(joint("t", "w", "z"), AXB, AYB, links="wxyz"), BrokenFile, CYCLE),
+    "a link that hangs on itself": (of(joint("a", "x", "x"), links="x"), BrokenFile, "form a cycle: a -> a"),
+    "a loop": (of(AXB, joint("b", "x", "z"), joint("c", "y", "z"), links="xyz"), BrokenFile,
+        "link 'z' in .* hangs on two joints, 'b' and 'c'"),
+    "two roots": (of(), BrokenFile, "more than one root: no joint leads to 'x', 'y'"),
+    "two links of one name": (of(links="xx"), BrokenFile, "more than one link named 'x'"),
+    "two joints of one name": (of(AXB, joint("a", "y", "z"), links="xyz"), BrokenFile, "one joint named 'a'"),
+    "a child that is not there": (of(joint("a", "x", "ghost"), links="x"), BrokenFile,
+        "joint 'a' in .* has the child 'ghost', which is no link; links: x"),
+    "no parent": (of(more="<joint name='a' type='fixed'><child link='x'/></joint>", links="x"), BrokenFile,
+        "joint 'a' in .* lacks <parent>"),
     "no name": (urdf("<link/>"), BrokenFile, "<link> lacks 'name'"),
-    "no type": (
-        urdf(link("x"), link("y"), "<joint name='a'><parent link='x'/><child link='y'/></joint>"),
-        BrokenFile,
-        "joint 'a' in .*: <joint> lacks 'type'",
-    ),
-    "a type that is not supported": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", "floating")),
-        UnknownName,
-        "type of joint 'a' in .*: 'floating'; known: continuous, fixed, prismatic, revolute",
-    ),
-    "no limits": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside="")),
-        BrokenFile,
-        "joint 'a' in .* has no limits: a revolute joint needs <limit lower=... upper=...>; one that rotates",
-    ),
-    "half a limit": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='1' velocity='1' effort='1'/>")),
-        InvalidValue,
-        "lower <= upper, got 1, 0 .upper is not given: 0 by the specification",
-    ),
-    "limits the wrong way round": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='1' upper='-1'/>")),
-        InvalidValue,
-        "limits of joint 'a' in .* must satisfy lower <= upper, got 1, -1",
-    ),
-    "a limit that is no number": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='low' upper='1'/>")),
-        InvalidValue,
-        "joint 'a' in .*: lower of <limit> must be a finite number, got 'low'",
-    ),
-    "a limit that is not finite": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='nan' upper='1'/>")),
-        InvalidValue,
-        "got 'nan'",
-    ),
-    "a negative velocity": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='0' upper='1' velocity='-1'/>")),
-        InvalidValue,
-        "velocity limit of joint 'a' in .* must be >= 0, got -1",
-    ),
-    "an axis of zero": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", axis="0 0 0")),
-        InvalidValue,
-        "axis of joint 'a' in .* must not be zero",
-    ),
-    "an origin of two numbers": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", xyz="0 1")),
-        InvalidValue,
-        "joint 'a' in .*: xyz of <origin> must be 3 finite numbers, got '0 1'",
-    ),
-    "a mimic of nobody": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside=LIMIT + "<mimic joint='b'/>")),
-        BrokenFile,
-        "joint 'a' in .* mimics 'b', which is no joint",
-    ),
-    "a mimic of a joint that does not move": (
-        urdf(
-            *(link(name) for name in "xyz"),
-            joint("a", "x", "y", "fixed", ""),
-            joint("b", "y", "z", inside=LIMIT + "<mimic joint='a'/>"),
-        ),
-        BrokenFile,
-        "joint 'b' in .* mimics 'a', which is fixed",
-    ),
-    "mimics in a circle": (
-        urdf(
-            *(link(name) for name in "xyz"),
-            joint("a", "x", "y", inside=LIMIT + "<mimic joint='b'/>"),
-            joint("b", "y", "z", inside=LIMIT + "<mimic joint='a'/>"),
-        ),
-        BrokenFile,
-        "mimic each other in a circle: a -> b -> a",
-    ),
-    "geometry that is missing": (
-        urdf(link("x", "<collision/>")),
-        BrokenFile,
-        "link 'x' in .*: the geometry of a <collision> is empty",
-    ),
-    "geometry that is empty": (
-        urdf(link("x", "<collision><geometry/></collision>")),
-        BrokenFile,
-        "the geometry of a <collision> is empty; it must be one of box, sphere",
-    ),
-    "an unknown shape": (
-        urdf(link("x", "<collision><geometry><cone/></geometry></collision>")),
-        BrokenFile,
-        "has <cone>; it must be one of",
-    ),
-    "a sphere without radius": (
-        urdf(link("x", "<collision><geometry><sphere/></geometry></collision>")),
-        BrokenFile,
-        "link 'x' in .*: <sphere> lacks 'radius'",
-    ),
-    "a box turned inside out": (
-        urdf(link("x", "<collision><geometry><box size='1 -1 1'/></geometry></collision>")),
-        InvalidValue,
-        "size of <box> must be >= 0, got '1 -1 1'",
-    ),
-    "a mesh that is missing": (
-        urdf(link("x", "<collision><geometry><mesh filename='no.stl'/></geometry></collision>")),
-        BrokenFile,
-        "the mesh 'no.stl' of link 'x' in .* is missing; looked for .*no.stl",
-    ),
-    "a mesh without a file name": (
-        urdf(link("x", "<collision><geometry><mesh/></geometry></collision>")),
-        BrokenFile,
-        "<mesh> lacks 'filename'",
-    ),
-}
+    # Joints.
+    "no type": (of(more="<joint name='a'><parent link='x'/><child link='y'/></joint>"), BrokenFile,
+        "joint 'a' in .*: <joint> lacks 'type'"),
+    "a type that is not supported": (a(kind="floating"), UnknownName,
+        "type of joint 'a' in .*: 'floating'; known: continuous, fixed, prismatic, revolute"),
+    "two origins of a joint": (a(LIMIT + "<origin/>"), BrokenFile, "joint 'a' .*: <joint> has more than one <origin>"),
+    "two limits": (a(LIMIT + LIMIT.replace("1", "2")), BrokenFile, "joint 'a' .*: <joint> has more than one <limit>"),
+    "no limits": (a(""), BrokenFile,
+        "joint 'a' in .* has no limits: a revolute joint needs <limit lower=... upper=...>; one that rotates"),
+    "half a limit": (a("<limit lower='1' velocity='1' effort='1'/>"), InvalidValue,
+        "lower <= upper, got 1, 0 .upper is not given: 0 by the specification"),
+    "limits the wrong way round": (a("<limit lower='1' upper='-1'/>"), InvalidValue,
+        "limits of joint 'a' in .* must satisfy lower <= upper, got 1, -1"),
+    "a limit that is no number": (a("<limit lower='low' upper='1'/>"), InvalidValue,
+        "joint 'a' in .*: lower of <limit> must be a finite number, got 'low'"),
+    "a limit that is not finite": (a("<limit lower='nan' upper='1'/>"), InvalidValue, "got 'nan'"),
+    "a negative velocity": (a("<limit lower='0' upper='1' velocity='-1'/>"), InvalidValue,
+        "velocity limit of joint 'a' in .* must be >= 0, got -1"),
+    "an axis of zero": (a(axis="0 0 0"), InvalidValue, "axis of joint 'a' in .* must not be zero"),
+    "an origin of two numbers": (a(xyz="0 1"), InvalidValue,
+        "joint 'a' in .*: xyz of <origin> must be 3 finite numbers, got '0 1'"),
+    "a mimic of nobody": (a(MIMIC.format("b")), BrokenFile, "joint 'a' in .* mimics 'b', which is no joint"),
+    "a mimic of a joint that does not move": (of(*FOLLOWS_FIXED, links="xyz"), BrokenFile,
+        "joint 'b' in .* mimics 'a', which is fixed"),
+    "mimics in a circle": (of(*IN_A_CIRCLE, links="xyz"), BrokenFile, "mimic each other in a circle: a -> b -> a"),
+    # Bodies.
+    "two origins of a body": (urdf(link("x", TWO_ORIGINS)), BrokenFile,
+        "link 'x' in .*: <collision> has more than one <origin>"),
+    "a number as only Python writes it": (shaped("<sphere radius='1_0'/>"), InvalidValue,
+        "link 'x' in .*: radius of <sphere> must be a finite number, got '1_0'"),
+    "geometry that is missing": (urdf(link("x", "<collision/>")), BrokenFile,
+        "link 'x' in .*: the geometry of a <collision> is empty"),
+    "geometry that is empty": (urdf(link("x", "<collision><geometry/></collision>")), BrokenFile,
+        "the geometry of a <collision> is empty; it must be one of box, sphere"),
+    "an unknown shape": (shaped("<cone/>"), BrokenFile, "has <cone>; it must be one of"),
+    "a sphere without radius": (shaped("<sphere/>"), BrokenFile, "link 'x' in .*: <sphere> lacks 'radius'"),
+    "a box turned inside out": (shaped("<box size='1 -1 1'/>"), InvalidValue, "<box> must be >= 0, got '1 -1 1'"),
+    "a mesh that is missing": (shaped("<mesh filename='no.stl'/>"), BrokenFile,
+        "the mesh 'no.stl' of link 'x' in .* is missing; looked for .*no.stl"),
+    "a mesh without a file name": (shaped("<mesh/>"), BrokenFile, "<mesh> lacks 'filename'"),
+    "a mesh in pieces": (shaped("<mesh filename='a.GLTF'/>"), BrokenFile,
+        "link 'x' in .*: 'a.GLTF' has its triangles in other files; make a .glb of it"),
+    "a mesh scaled to a point": (shaped("<mesh filename='a.stl' scale='0 0 0'/>"), InvalidValue,
+        "link 'x' in .*: scale of <mesh> must not be 0, got '0 0 0'"),
+    "a mesh scaled flat": (shaped("<mesh filename='a.stl' scale='1 -1 -0.0'/>"), InvalidValue, "got '1 -1 -0.0'"),
+    "a mesh scaled by one 0": (shaped("<mesh filename='a.stl' scale='0'/>"), InvalidValue, "must not be 0, got '0'"),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", BROKEN)

@@ -1,11 +1,12 @@
 """Ends in pockets at random, and milestones that are chosen for what such ends see."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from itertools import starmap
 
 import numpy as np
 import pytest
 
-from evenroad import _threads
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, with_group, with_limits
 from evenroad.robot_roadmap import narrow_passages
 from evenroad.robot_roadmap.build import arm_roadmap
@@ -75,16 +76,14 @@ def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, mo
     monkeypatch.setattr(narrow_passages, "NEAR", 60)
     cell = Scene((Obstacle.of("post", "box", (0.1, 0.1, 1.0), (0.5, 0.3, 0.5)),), name="post")
     pool = pool[ArmWorld(arm, cell).valid(pool)]
-    kept = []
-    seen_of = narrow_passages._seen
+    kept, joined_to = [], narrow_passages.joined_to
 
-    def noting(world, inside, pool, scaled, end):
-        found = seen_of(world, inside, pool, scaled, end)
-        kept.append((world.scene.obstacles, end, found))
-        return found
+    def noting(pocket, inside, pool, end, rows):
+        kept.append((pocket.scene.obstacles, end, joined_to(pocket, inside, pool, end, rows)))
+        return kept[-1][-1]
 
-    monkeypatch.setattr(narrow_passages, "_seen", noting)
-    monkeypatch.setattr(_threads, "processors", lambda: 1)
+    monkeypatch.setattr(narrow_passages, "joined_to", noting)
+    monkeypatch.setattr(narrow_passages, "in_order", starmap)
     seen = hard_queries(arm, cell, pool, 2.0 * pool, 30, np.random.default_rng(1))
     assert len(seen.first) == 31
     assert seen.first[-1] == len(seen.which) > 0
@@ -107,15 +106,15 @@ def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, mo
         assert set(found.tolist()) == (set(reached.tolist()) & set(tried.tolist())) - {end}
 
 
-def test_the_same_generator_gives_the_same_ends(arm, pool):
-    first, again = (hard_queries(arm, NOTHING, pool, pool, 10, np.random.default_rng(2)) for _ in range(2))
-    assert first.which.tolist() == again.which.tolist()
-
-
 def test_the_number_of_processors_changes_nothing(arm, pool, monkeypatch):
+    def by_threads(function, tasks):
+        with ThreadPoolExecutor(3) as pool:
+            yield from pool.map(lambda task: function(*task), tasks)
+
     seen, chances = [], []
-    for count in (1, 3):
-        monkeypatch.setattr(_threads, "processors", lambda count=count: count)
+    for in_order in (starmap, by_threads):
+        for module in ("narrow_passages", "free_probability"):
+            monkeypatch.setattr(f"evenroad.robot_roadmap.{module}.in_order", in_order)
         seen.append(hard_queries(arm, NOTHING, pool, pool, 40, np.random.default_rng(2)))
         chances.append(free_probability(arm, pool, 40, np.random.default_rng(2)))
     assert len(seen[0].own) == 40
@@ -140,16 +139,6 @@ def test_what_ends_see_comes_first_and_each_end_counts_less_once_it_is_served():
     assert order[0] // 10 != order[1] // 10
     # Served, they leave the rest to spreading.
     assert set(order[20:].tolist()) - set(range(20))
-
-
-def test_an_order_without_ends_is_the_farthest_first():
-    points = np.random.default_rng(1).random((100, 3))
-    plain = spread_order(points, np.full(3, np.inf), np.ones(100), 20)
-    chosen = [0]
-    while len(chosen) < 20:
-        apart = np.linalg.norm(points[:, np.newaxis] - points[chosen], axis=2).min(axis=1)
-        chosen.append(int(apart.argmax()))
-    assert plain.tolist() == chosen
 
 
 def test_more_ends_see_a_roadmap_that_learned_from_others():

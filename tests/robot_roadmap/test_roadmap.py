@@ -17,7 +17,7 @@ from evenroad.robot_roadmap.spread import displacement_weights, spread_order
 from evenroad.robot_roadmap.static_scene import joined_scenes
 from evenroad.robot_roadmap.turns import whole_turns
 from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, box_scene, ur5
-from tests.robot.surface_oracle import mesh_clearance, point_clearance
+from tests.robot.surface_oracle import all_clearance
 from tests.robot_roadmap.worlds import within
 
 
@@ -49,8 +49,7 @@ def test_clouds_and_meshes_of_a_cell_are_kept_in_its_file(tmp_path):
     )
     robot = ur5(joints=3)
     made = arm_roadmap(ArmWorld(robot, cell), 40, 4, recipe=Recipe(4.0, 20))
-    assert mesh_clearance(robot, cell.without("scan", "table"), made.milestones, True).min() > 0.0
-    assert point_clearance(robot, cell, made.milestones).min() > 0.0
+    assert all_clearance(robot, cell, made.milestones).min() > 0.0
     plain = arm_roadmap(ArmWorld(robot, TABLE), 40, 4, recipe=Recipe(4.0, 20))
     assert not ArmWorld(robot, cell).valid(plain.milestones).all(), "they are in the way of something"
     made.save(tmp_path / "a.roadmap")
@@ -139,16 +138,11 @@ def test_a_turn_of_a_joint_that_others_follow_is_not_nothing():
     assert whole_turns(robot).tolist() == [True] * 5 + [False]
 
 
-def test_a_slider_that_goes_straight_up_has_a_roadmap():
+def test_a_slider_that_goes_straight_up_has_a_roadmap(monkeypatch):
+    monkeypatch.setattr("evenroad.robot_roadmap.recipe.SCENES", 20)
     joint = Joint("lift", "prismatic", "base", "sled", (0, 0, 0), STRAIGHT, Z, 0.0, 1.0)
-    robot = er.Robot(
-        "lift",
-        ("base", "sled"),
-        (joint,),
-        (Capsule((0, 0, 0), (0, 0, 0.1), 0.05, link="sled"),),
-        (),
-        ("lift",),
-    )
+    body = Capsule((0, 0, 0), (0, 0, 0.1), 0.05, link="sled")
+    robot = er.Robot("lift", ("base", "sled"), (joint,), (body,), (), ("lift",))
     roadmap = arm_roadmap(ArmWorld(robot), 16, recipe=Recipe(4.0, 100))
     assert displacement_weights(robot, roadmap.milestones).tolist() == [1.0]
     lid = Scene((Obstacle.of("lid", "box", (1, 1, 0.1), (0, 0, 0.8)),), name="lid")
@@ -204,27 +198,18 @@ def lifted(joint):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (
-            lambda r: with_group(r, r.group[:2]),
-            "for another group of .* without elbow_joint among its joints of the group",
-        ),
-        (
-            lambda r: r.with_tool([Capsule((0, 0, 0), (0, 0, 0.1), 0.02)], "wrist3"),
-            "with tool among its links",
-        ),
+        (lambda r: with_group(r, r.group[:2]),
+            "for another group of .* without elbow_joint among its joints of the group"),
+        (lambda r: r.with_tool([Capsule((0, 0, 0), (0, 0, 0.1), 0.02)], "wrist3"), "with tool among its links"),
         (lambda r: replace(r, pairs=r.pairs[1:]), "among its tested pairs"),
         (lambda r: replace(r, held={"wrist_1_joint": 1.0}), "'wrist_1_joint' was held at 0, now at 1"),
         (lambda r: replace(r, capsules=r.capsules[:-1]), r"'wrist3' differ: it had 1, .*; this one has none"),
-        (
-            lambda r: replace(r, capsules=(*r.capsules[:-1], thick(r.capsules[-1]))),
-            "this one has 1, a capsule of radius 0.2 from",
-        ),
-        (
-            lambda r: replace(r, joints=(lifted(r.joints[0]), *r.joints[1:])),
-            r"'shoulder_pan_joint' had xyz \(.*\), now \(",
-        ),
+        (lambda r: replace(r, capsules=(*r.capsules[:-1], thick(r.capsules[-1]))),
+            "this one has 1, a capsule of radius 0.2 from"),
+        (lambda r: replace(r, joints=(lifted(r.joints[0]), *r.joints[1:])),
+            r"'shoulder_pan_joint' had xyz \(.*\), now \("),
     ],
-)
+)  # fmt: skip
 def test_another_robot_is_refused_with_what_differs(roadmap, change, said):
     with pytest.raises(er.errors.InvalidValue, match=said):
         within(roadmap, TABLE, change(ur5(joints=3)))
