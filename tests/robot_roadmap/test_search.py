@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evenroad._native.robot_roadmap import TURN_BITS, ProvedSearch
+from evenroad.planning.arm_trees import checks_of
 from evenroad.robot import ArmWorld, Scene, with_limits
 from evenroad.robot.arm_world import VALIDATION_TOLERANCE
 from evenroad.robot_roadmap.build import arm_roadmap
-from evenroad.robot_roadmap.metric import BITS
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.turns import MOST_MULTI_TURN, MOST_TURNS, one_turn
 from evenroad.space import JointSpace
@@ -198,7 +199,24 @@ def test_of_very_many_joints_only_those_turn_on_that_the_search_can_follow():
     )
     assert not one.wraps[~one.multi_turn].any()
     # Each has four bits of a whole number, of which none is the sign.
-    assert 2 ** (BITS * MOST_MULTI_TURN) < 2**62
+    assert 2 ** (TURN_BITS * MOST_MULTI_TURN) < 2**62
+
+
+def test_a_search_in_slices_finds_what_it_finds_in_one_go(roadmap):
+    start, goal = far_apart(within(roadmap))
+    found = []
+    for batches in (1, 10**9):
+        known = within(roadmap)
+        checks = [checks_of(world) for world in known._worlds]
+        search = ProvedSearch(
+            known._graph, np.concatenate([start[np.newaxis], goal]), (48, 3.0, 1.0), *checks
+        )
+        calls = 1
+        while search.go_on(10**7, batches) == "paused":
+            calls += 1
+        assert (calls > 1) == (batches == 1)
+        found.append((search.goal, search.counts, search.path.tolist()))
+    assert found[0] == found[1]
 
 
 def test_checks_run_out_and_come_back(roadmap):
@@ -247,7 +265,6 @@ def test_a_copy_of_a_kept_scene_answers_alike_from_memory_of_its_own(roadmap, co
 
 
 def test_there_is_room_for_more_milestones_than_the_roadmap_has(roadmap, monkeypatch):
-    monkeypatch.setattr("evenroad.robot_roadmap.scene_graph.GROWTH", 2)
     monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.TRIED_MOTIONS", 1)
     known = within(roadmap)
     some = list(itertools.islice(hard(known), 6))

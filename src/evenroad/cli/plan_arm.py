@@ -30,10 +30,8 @@ from evenroad.planning.request import Goal, Reading, Request
 from evenroad.roadmap import PlanResult
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.cartesian_line import CartesianLine
-from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
-from evenroad.robot_roadmap.query import prepare as prepare_roadmap
 from evenroad.robot_roadmap.static_scene import joined_scenes
 
 
@@ -50,9 +48,7 @@ def plan_arm(plan: PlanArm) -> int:
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
     kept = None if plan.roadmap is None else kept_roadmap(plan)
-    if kept is not None:
-        prepare_roadmap()
-    elif not wants_points(plan):
+    if kept is not None or not wants_points(plan):
         prepare()
     _say_if_compiling(plan)
     robot = kept.robot if kept is not None and plan.robot is None else plan.robot
@@ -175,12 +171,7 @@ def _constraints(plan: PlanArm) -> tuple[CartesianLine | None, OrientationConstr
 
 
 def _say_if_compiling(plan: PlanArm) -> None:
-    kernel, points = "evenroad.robot.kernel", wants_points(plan)
+    kernel = "evenroad.robot.kernel"
     if plan.goal_pose or plan.straight or plan.upright:
         say_if_compiling(f"{kernel}.reach", "solve", 5)
-    said = say_if_compiling(f"{kernel}.batch", "check_configurations", 10 if plan.roadmap is None else 20)
-    # Where the lanes do not work, the search and the trees are never compiled; to find that out, other things are.
-    if said or points or lanes_failure() is not None:
-        return
-    if plan.roadmap is None or not say_if_compiling("evenroad.robot_roadmap.lane_search", "find_path", 10):
-        say_if_compiling(f"{kernel}.trees", "grow", 5)
+    say_if_compiling(f"{kernel}.batch", "check_configurations", 10)

@@ -10,11 +10,12 @@ import numpy as np
 
 from evenroad._above import above
 from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._native.robot_roadmap import SceneGraph
 from evenroad._npz import Path
 from evenroad.roadmap.point_roadmap import Roadmap, WorldRoadmap
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.prepared_robots import prepared
-from evenroad.robot_roadmap.scene_graph import SceneGraph
+from evenroad.robot_roadmap.scene_graph import scene_graph
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
 
 
@@ -70,8 +71,8 @@ class ArmRoadmap(Roadmap):
 
     @cached_property
     def graph(self) -> SceneGraph:
-        """The roadmap by node, for the compiled search."""
-        return SceneGraph(self.milestones, self.edges, self.turns, self.one_turn)
+        """The roadmap by milestone, for the native search."""
+        return scene_graph(self.milestones, self.edges, self.turns, self.one_turn)
 
     def within(self, world: Any) -> WorldRoadmap:
         """Return a planner in a world of this arm, which keeps the result of every check.

@@ -7,16 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad._native import robot_roadmap
 from evenroad.robot import ArmWorld, Robot
 from evenroad.robot.arm_world import VALIDATION_TOLERANCE
 from evenroad.space import JointSpace
 
 TURN = 2.0 * np.pi
 
-MOST_TURNS = 6
-"""Largest number of turns to either side; the packed form of the search has space for one more."""
+MOST_TURNS = robot_roadmap.MOST_TURNS
+"""Largest number of turns to either side."""
 
-MOST_MULTI_TURN = 14
+MOST_MULTI_TURN = robot_roadmap.MOST_MULTI_TURN
 """Largest number of joints with more than one turn: the first ones."""
 
 

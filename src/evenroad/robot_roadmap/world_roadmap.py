@@ -13,7 +13,7 @@ from evenroad._arrays import Floats
 from evenroad._checks import counted, require_count
 from evenroad._clock import now
 from evenroad._shared import OwnLock, one_at_a_time
-from evenroad.planning.arm_trees import smooth
+from evenroad.planning.arm_trees import prepare, smooth
 from evenroad.planning.connectors import ArmTrees
 from evenroad.planning.trees import RRTConnect
 from evenroad.roadmap import Budget, PlanResult, Status
@@ -26,9 +26,7 @@ from evenroad.roadmap.query import Query as PlanQuery
 from evenroad.roadmap.result import NO_POINTS, make_result
 from evenroad.robot import ArmWorld
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
-from evenroad.robot_roadmap.memory import NONE, TAKEN
-from evenroad.robot_roadmap.query import Checks, SearchResult, prepare, search
-from evenroad.robot_roadmap.scene_graph import EXPENSIVE, GREED, Query
+from evenroad.robot_roadmap.query import EXPENSIVE, GREED, Checks, Query, SearchResult, search
 from evenroad.robot_roadmap.start_and_goals import (
     ConfigurationLike,
     Goal,
@@ -129,9 +127,8 @@ class ArmWorldRoadmap(WorldRoadmap):
         first = int(np.argmax(world.valid(milestones[:_SOME])))
         here = milestones[first : first + 1]
         found = search(self._graph, self._worlds, Query(here[0], here, 1), 0, math.inf)
-        self._graph.insert(milestones[:0])
         smooth(self.capsules, np.repeat(here, 2, axis=0), batches=0)
-        if found.ended != TAKEN:
+        if found.ended != "not free":
             _ready.add(world.backend)
 
     @property
@@ -233,7 +230,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         found = self._search(first, goals, most, deadline, links)
         if found.goal < 0 and (refused := refusal(attempt)) is not None:
             return refused
-        if found.ended == TAKEN:
+        if found.ended == "not free":
             # Only the free goals.
             found = self._search(first, goals[attempt.goals], most, deadline, links)
             found = found._replace(goal=int(attempt.goals[found.goal]) if found.goal >= 0 else -1)
@@ -249,7 +246,7 @@ class ArmWorldRoadmap(WorldRoadmap):
                 assert result.path is not None
                 return replace(result, proof=self._proof(result.path))
         failed = gave_up(attempt, connection)
-        if not follow and found.ended == NONE:
+        if not follow and found.ended == "no path":
             text = f"the roadmap of {counted(self._size, 'milestone')} does not lead from start to goal"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
         return failed

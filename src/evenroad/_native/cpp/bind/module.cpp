@@ -26,6 +26,7 @@ NB_MODULE(EVENROAD_MODULE, module) {
   evenroad::bind::add_planning(module);
   evenroad::bind::add_points(module);
   evenroad::bind::add_roadmap(module);
+  evenroad::bind::add_robot_roadmap(module);
   evenroad::bind::add_space(module);
   evenroad::bind::add_trajectory(module);
   evenroad::bind::add_world(module);

@@ -85,6 +85,8 @@ bool CompiledChecks::is_free(ConstConfiguration a, ConstConfiguration b, Known k
   return ask(a, b, static_cast<std::int64_t>(known), {}) != 0;
 }
 
+bool CompiledChecks::is_free_coarsely(ConstConfiguration a, ConstConfiguration b) { return ask(a, b, COARSE, {}) != 0; }
+
 bool CompiledChecks::is_proved(ConstConfiguration a, ConstConfiguration b, ProofLimits limits) {
   return ask(a, b, PROOF, limits) != 0;
 }

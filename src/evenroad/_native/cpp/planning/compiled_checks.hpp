@@ -34,6 +34,7 @@ class CompiledChecks final : public MotionChecks {
 
   Touching touching() override;
   bool is_free(ConstConfiguration a, ConstConfiguration b, Known known) override;
+  bool is_free_coarsely(ConstConfiguration a, ConstConfiguration b) override;
   bool is_proved(ConstConfiguration a, ConstConfiguration b, ProofLimits limits) override;
   bool is_shortcut(ConstConfiguration a, ConstConfiguration b, ProofLimits limits) override;
   void keep_away(double margin) override;

@@ -52,6 +52,9 @@ class MotionChecks {
   /// Return whether a motion between configurations within bounds is free at its states.
   virtual bool is_free(ConstConfiguration a, ConstConfiguration b, Known known) = 0;
 
+  /// Return whether no more than sixteen states of a motion between free ends are free: enough before a proof.
+  virtual bool is_free_coarsely(ConstConfiguration a, ConstConfiguration b) = 0;
+
   /// Return whether a motion is proved free throughout, not at its states alone.
   virtual bool is_proved(ConstConfiguration a, ConstConfiguration b, ProofLimits limits) = 0;
 

@@ -1,0 +1,235 @@
+// evenroad._native.robot_roadmap: a robot's roadmap in a scene, and its search.
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "bind/arrays.hpp"
+#include "planning/compiled_checks.hpp"
+#include "robot_roadmap/proved_search.hpp"
+
+namespace evenroad::bind {
+
+namespace {
+
+using planning::CompiledChecks;
+using robot_roadmap::Check;
+using robot_roadmap::Ended;
+using robot_roadmap::Graph;
+using robot_roadmap::HalfEdge;
+using robot_roadmap::Joint;
+using robot_roadmap::Joints;
+using robot_roadmap::Number;
+using robot_roadmap::Progress;
+using robot_roadmap::ProvedSearch;
+using robot_roadmap::Question;
+using robot_roadmap::SceneGraph;
+using robot_roadmap::Search;
+using robot_roadmap::Verdict;
+
+void require_finite(std::span<const double> numbers, const char* name) {
+  for (const double number : numbers) require(std::isfinite(number), std::string(name) + " must be finite");
+}
+
+/// Return joints of (limits, middles of the ranges of milestones, which have more than one turn, which are endless).
+Joints joints_of(nb::tuple given, std::size_t dim) {
+  require(given.size() == 4, "joints must be (limits, middle, multi_turn, endless)");
+  const Array<const double, 2> limits(given[0], "limits");
+  const Array<const double, 1> middle(given[1], "middle");
+  const Array<const bool, 1> multi_turn(given[2], "multi_turn"), endless(given[3], "endless");
+  limits.of_shape({2, dim}), middle.of_shape({dim}), multi_turn.of_shape({dim}), endless.of_shape({dim});
+  require_finite(middle.span(), "middle");
+  std::vector<Joint> joints;
+  for (std::size_t k = 0; k < dim; k++) {
+    const bool is_counted = multi_turn.span()[k];
+    require(!is_counted || k < robot_roadmap::MOST_MULTI_TURN, "only the first joints may have more than one turn");
+    joints.push_back(
+        {limits.matrix()(0, k), limits.matrix()(1, k), middle.span()[k], is_counted, endless.span()[k] && !is_counted});
+  }
+  return Joints(std::move(joints));
+}
+
+void make_scene_graph(SceneGraph* self, nb::handle milestones, nb::handle edges, nb::handle turns, nb::tuple joints) {
+  const Array<const double, 2> points(milestones, "milestones");
+  const Array<const std::int32_t, 2> ends(edges, "edges");
+  const Array<const std::int8_t, 2> past(turns, "turns");
+  const std::size_t dim = points.shape(1);
+  ends.of_shape({ends.shape(0), 2}), past.of_shape({ends.shape(0), dim});
+  require(points.shape(0) >= 1, "milestones must be one or more");
+  require_finite(points.span(), "milestones");
+  require_below(ends.span(), points.shape(0), "edges");
+  for (const int turn : past.span()) require(-1 <= turn && turn <= 1, "turns must be -1, 0 or 1");
+  Joints of = joints_of(joints, dim);
+  auto graph = std::make_shared<const Graph>(points.matrix(), ends.matrix(), past.matrix(), of);
+  new (self) SceneGraph(std::move(graph), std::move(of), ends.shape(0));
+}
+
+SceneGraph within(const SceneGraph& graph, nb::handle low, nb::handle high) {
+  const Array<const double, 1> lower(low, "low"), upper(high, "high");
+  lower.of_shape({graph.joints.size()}), upper.of_shape({graph.joints.size()});
+  return graph.within(lower.span(), upper.span());
+}
+
+void insert(SceneGraph& graph, nb::handle path) {
+  const Array<const double, 2> points(path, "path");
+  points.of_shape({points.shape(0), graph.joints.size()});
+  require_finite(points.span(), "path");
+  without_gil([&] { graph.insert(points.matrix()); });
+}
+
+template <class T>
+nb::bytes as_bytes(const std::vector<T>& values) {
+  return nb::bytes(values.data(), values.size() * sizeof(T));
+}
+
+template <class T>
+std::vector<T> from_bytes(nb::handle given) {
+  const auto bytes = nb::cast<nb::bytes>(given);
+  std::vector<T> values(bytes.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), bytes.c_str(), values.size() * sizeof(T));
+  return values;
+}
+
+nb::tuple state_of(const SceneGraph& graph) {
+  const Graph& own = graph.graph();
+  return nb::make_tuple(as_bytes(graph.joints.all()), as_bytes(own.milestones()), as_bytes(own.first_halves()),
+                        as_bytes(own.halves()), as_bytes(graph.milestones), as_bytes(graph.edges),
+                        graph.roadmap_edges());
+}
+
+void restore(SceneGraph* self, nb::tuple state) {
+  require(state.size() == 7, "this is not the state of a SceneGraph");
+  Joints joints(from_bytes<Joint>(state[0]));
+  const auto milestones = from_bytes<double>(state[1]);
+  auto first = from_bytes<Number>(state[2]);
+  auto halves = from_bytes<HalfEdge>(state[3]);
+  auto nodes = from_bytes<Verdict>(state[4]), edges = from_bytes<Verdict>(state[5]);
+  const bool is_whole = milestones.size() == first.size() * joints.size() && nodes.size() == first.size() &&
+                        2 * edges.size() == halves.size();
+  require(is_whole, "this is not the state of a SceneGraph");
+  const Matrix<const double> rows{milestones.data(), first.size(), joints.size()};
+  auto graph = std::make_shared<const Graph>(rows, std::move(first), std::move(halves));
+  new (self) SceneGraph(std::move(graph), std::move(joints), nb::cast<std::size_t>(state[6]));
+  self->milestones = std::move(nodes), self->edges = std::move(edges);
+}
+
+/// A question with the array that it reads.
+struct Asked {
+  Array<const double, 2> rows;
+  Question question;
+
+  Asked(const SceneGraph& graph, nb::handle start_and_goals, nb::tuple rules)
+      : rows(start_and_goals, "start_and_goals") {
+    rows.of_shape({rows.shape(0), graph.joints.size()});
+    require(rows.shape(0) >= 2, "start_and_goals must be a start and one goal or more");
+    require_finite(rows.span(), "start_and_goals");
+    require(rules.size() == 3, "rules must be (links, greed, check_cost)");
+    question = {rows.matrix(), nb::cast<std::size_t>(rules[0]), nb::cast<double>(rules[1]), nb::cast<double>(rules[2])};
+    require(question.links >= 1, "links must be 1 or more");
+  }
+};
+
+/// What a search was made for must not change under it.
+void require_unchanged(const Search& search) {
+  require(search.size() == search.graph().size(), "milestones were inserted since the search began");
+}
+
+nb::object path_of(const Search& search) {
+  std::vector<double> points;
+  if (search.has_found()) points = search.path();
+  const std::size_t dim = search.graph().joints.size(), rows = points.size() / dim;
+  return as_numpy(std::move(points), {rows, dim});
+}
+
+Number goal_of(const Search& search) { return search.has_found() ? search.goal() : robot_roadmap::NONE; }
+
+const char* in_words(Ended ended) {
+  switch (ended) {
+    case Ended::FOUND:
+      return "found";
+    case Ended::NO_PATH:
+      return "no path";
+    case Ended::NOT_FREE:
+      return "not free";
+    case Ended::SPENT:
+      return "spent";
+    case Ended::PAUSED:
+      return "paused";
+  }
+  return "";
+}
+
+/// Return what has to be evaluated, in words, whether the roadmap knows it to be free of robot and static scene, and
+/// where it begins and ends; None where the search has ended.
+nb::object next_check(Search& search) {
+  require_unchanged(search);
+  const Progress progress = without_gil([&] { return search.advance(); });
+  if (progress != Progress::CHECK) return nb::none();
+  const std::size_t dim = search.graph().joints.size();
+  const auto row = [dim](std::span<const double> q) {
+    return as_numpy(std::vector<double>(q.begin(), q.end()), {1, dim});
+  };
+  const Check& check = search.check();
+  const bool is_milestone = check.kind == Check::Kind::MILESTONE;
+  const bool is_edge = check.kind == Check::Kind::EDGE && search.graph().is_of_roadmap(check.edge);
+  const nb::object from = row(search.from());
+  return nb::make_tuple(is_milestone ? "milestone" : "motion", is_milestone || is_edge, from,
+                        is_milestone ? from : row(search.to()));
+}
+
+}  // namespace
+
+void add_robot_roadmap(nb::module_& module) {
+  nb::module_ part = module.def_submodule("robot_roadmap", "A robot's roadmap in a scene, and its search.");
+  part.attr("TURN_BITS") = robot_roadmap::TURN_BITS;
+  part.attr("MOST_TURNS") = robot_roadmap::MOST_TURNS;
+  part.attr("MOST_MULTI_TURN") = robot_roadmap::MOST_MULTI_TURN;
+  nb::class_<SceneGraph>(part, "SceneGraph")
+      .def("__init__", &make_scene_graph)
+      .def("__getstate__", &state_of)
+      .def("__setstate__", [](SceneGraph& self, nb::tuple state) { restore(&self, state); })
+      .def("within", &within)
+      .def("insert", &insert)
+      .def_prop_ro("size", &SceneGraph::size);
+  nb::class_<Search>(part, "Search")
+      .def(
+          "__init__",
+          [](Search* self, SceneGraph& graph, nb::handle start_and_goals, nb::tuple rules) {
+            new (self) Search(graph, Asked(graph, start_and_goals, rules).question);
+          },
+          nb::keep_alive<1, 2>())
+      .def("next_check", &next_check)
+      .def("record",
+           [](Search& search, bool is_free) {
+             require_unchanged(search);
+             require(search.is_asking(), "nothing is to be evaluated");
+             search.record(is_free ? Verdict::PROVED : Verdict::BLOCKED);
+           })
+      .def_prop_ro("path", &path_of)
+      .def_prop_ro("goal", &goal_of)
+      .def_prop_ro("counts",
+                   [](const Search& search) { return nb::make_tuple(search.configurations, search.motions); });
+  nb::class_<ProvedSearch>(part, "ProvedSearch")
+      .def(
+          "__init__",
+          [](ProvedSearch* self, SceneGraph& graph, nb::handle start_and_goals, nb::tuple rules, CompiledChecks& all,
+             CompiledChecks& moved) {
+            for (const CompiledChecks* checks : {&all, &moved}) {
+              require(checks->joints.size() == graph.joints.size(), "checks must be of the roadmap's joints");
+            }
+            new (self) ProvedSearch(graph, Asked(graph, start_and_goals, rules).question, {all, moved});
+          },
+          nb::keep_alive<1, 2>(), nb::keep_alive<1, 5>(), nb::keep_alive<1, 6>())
+      .def("go_on",
+           [](ProvedSearch& search, std::int64_t most_motions, std::int64_t batches) {
+             require_unchanged(search.search());
+             return in_words(without_gil([&] { return search.go_on(most_motions, batches); }));
+           })
+      .def_prop_ro("path", [](const ProvedSearch& search) { return path_of(search.search()); })
+      .def_prop_ro("goal", [](const ProvedSearch& search) { return goal_of(search.search()); })
+      .def_prop_ro("counts", [](const ProvedSearch& search) {
+        const Search& own = search.search();
+        return nb::make_tuple(own.configurations, own.motions, search.batches());
+      });
+}
+
+}  // namespace evenroad::bind
