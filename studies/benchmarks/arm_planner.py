@@ -4,14 +4,12 @@
 
 Times are milliseconds of CPU time of one thread, each the best of a few runs of a query, which are all the same;
 printed as median / mean / 95 %.  "query" is everything, from a robot and a Scene to the shortened path; "again" is a
-second query in the same world: path and shortening.  Beside them stands the time, Python included, as a multiple of
-what a query's batches of sixteen checks take by themselves, in one compiled loop.  Problems that are not solved are
-left out of the figures and named.
+second query in the same world: path and shortening.  Problems that are not solved are left out of the figures and
+named.
 """
 
 from __future__ import annotations
 
-import ctypes
 import os
 import subprocess
 import sys
@@ -25,7 +23,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 from studies.benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm_named, problems
 from studies.benchmarks.rows import parser_of
 
@@ -33,8 +30,6 @@ from evenroad.planning.arm_trees import connect, shorten
 from evenroad.roadmap.connector import Connection
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kernel import lane_world, layout
-from evenroad.robot.kernel.addresses import address, call_at
 from evenroad.space.path import path_length
 
 Path = npt.NDArray[np.float64]
@@ -45,8 +40,7 @@ FIRST_PLAN = """
 import time
 begin = time.perf_counter()
 from studies.benchmarks.arm_planner import first_problem
-from evenroad.planning.arm_trees import connect, prepare, shorten
-prepare()
+from evenroad.planning.arm_trees import connect, shorten
 world, start, goals = first_problem()
 world.valid(goals), world.motion_valid(goals, goals)
 before = time.perf_counter()
@@ -55,80 +49,6 @@ between = time.perf_counter()
 shorten(world, path)
 print(before - begin, between - before, time.perf_counter() - between)
 """
-
-
-_CHECK = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 4, ctypes.c_int64)
-
-
-class Log:
-    """The batches of sixteen that a query tests, to be tested again by themselves."""
-
-    def __init__(self, world: ArmWorld) -> None:
-        self.lanes, self.dim = world.tables.lanes, world.space.dim
-        self.header = int(self.lanes[layout.INTEGERS])
-        self.states: list[bytes] = []
-        self.tables: list[bytes] = []
-        self.table: list[int] = []
-        self.enough: list[int] = []
-        self.addresses = lane_world.check_addresses(int(self.lanes[layout.HULL_PAIRS]) > 0)
-        self._check = _CHECK(int(self.addresses[1]))
-        self._callback = _CHECK(self._noted)
-
-    def _noted(self, scratch: int, states: int, ints: int, table: int, enough: int) -> int:
-        if enough == 0:
-            return int(self._check(scratch, states, ints, table, enough))
-        self.states.append(ctypes.string_at(states, 8 * layout.LANES * self.dim))
-        radii = ctypes.string_at(table, 8 * (len(self.lanes) - self.header))
-        if not self.tables or self.tables[-1] != radii:
-            self.tables.append(radii)
-        self.table.append(len(self.tables) - 1)
-        self.enough.append(enough)
-        return int(self._check(scratch, states, ints, table, enough))
-
-    def filled_by(self, task: Callable[[], Any]) -> None:
-        """Run a task whose batches are noted."""
-        own = int(self.addresses[1])
-        self.addresses[1] = ctypes.cast(self._callback, ctypes.c_void_p).value or 0
-        try:
-            task()
-        finally:
-            self.addresses[1] = own
-
-    def time_again(self) -> float:
-        """Return how long the batches take by themselves, bodies as large as they were [ms]."""
-        states = np.frombuffer(b"".join(self.states)).reshape(len(self.states), -1)
-        tables = np.frombuffer(b"".join(self.tables), dtype=np.float32).reshape(len(self.tables), -1)
-        memory = np.empty(layout.LANES * self.dim + int(self.lanes[layout.SCRATCH]) // 2 + 16)
-        # As programs have it: lanes begin on a cache line.
-        skip = -address(memory) % 64 // 8
-        room, scratch = np.split(memory[skip:], [layout.LANES * self.dim])
-        ints, floats = self.lanes[: self.header], self.lanes[self.header :].view(np.float32)
-        arguments = (states, tables, np.array(self.table), np.array(self.enough), ints, floats)
-        return best_time(partial(_again, *arguments, room, scratch, self.addresses))[1]
-
-
-@njit(nogil=True)
-def _again(
-    states: Any,
-    tables: Any,
-    table: Any,
-    enough: Any,
-    ints: Any,
-    floats: Any,
-    room: Any,
-    scratch: Any,
-    addresses: Any,
-) -> int:
-    radii, current, blocked = floats.copy(), -1, 0
-    address = addresses[1]
-    call_at(address, (scratch, addresses[2], ints, radii, 0))
-    for i in range(len(states)):
-        if table[i] != current:
-            current = table[i]
-            radii[:] = tables[current]
-        room[:] = states[i]
-        blocked += call_at(address, (scratch, room, ints, radii, enough[i]))
-    return blocked
 
 
 def best_time(task: Callable[[], Any]) -> tuple[Any, float]:
@@ -165,8 +85,6 @@ def measure(problem: Problem) -> dict[str, float] | None:
     (short, _), short_time = best_time(partial(shorten, world, connection.path))
     _, again = best_time(partial(answer, world, problem))
     _, query = best_time(lambda: answer(ArmWorld(problem.robot, problem.scene), problem))
-    log = Log(world)
-    log.filled_by(partial(answer, world, problem))
     theirs, _ = shortcut(world, connection.path)
     return {
         "scene": scene_time,
@@ -174,7 +92,6 @@ def measure(problem: Problem) -> dict[str, float] | None:
         "shorten": short_time,
         "again": again,
         "query": query,
-        "checks": log.time_again(),
         "motions": connection.motions,
         "raw": path_length(connection.path, world.space),
         "short": path_length(short, world.space),
@@ -193,7 +110,6 @@ def report(title: str, rows: list[dict[str, float]]) -> None:
     print(
         f"{title}: {len(rows)} solved; scene {spread('scene')}, path {spread('path')}, shorten {spread('shorten')},"
         f" query {spread('query')}, again {spread('again')} ms; motions {spread('motions')};"
-        f" query / checks {total['query'] / total['checks']:.2f}, again {total['again'] / total['checks']:.2f};"
         f" length {total['raw'] / len(rows):.2f} -> {total['short'] / len(rows):.2f}"
         f" (all pairs {total['all pairs'] / len(rows):.2f}: {total['short'] / total['all pairs'] - 1:+.1%})",
         flush=True,

@@ -8,12 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.shapes import Capsule
-from evenroad.robot import arm_world
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.joint import Joint, Mimic
-from evenroad.robot.kernel import batch, selftest
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.testing import WorldContract
@@ -199,33 +197,6 @@ def test_a_robot_of_lists_is_as_good_as_one_of_tuples():
     lists = replace(robot, capsules=[replace(c, a=list(c.a)) for c in robot.capsules])
     q = np.random.default_rng(1).uniform(-3.0, 3.0, (500, 6))
     np.testing.assert_array_equal(ArmWorld(lists, scene).valid(q), ArmWorld(robot, scene).valid(q))
-
-
-# ---- backends
-
-
-def test_where_the_lanes_do_not_work_the_fallback_is_taken_and_said(monkeypatch):
-    assert five_joints().checked_with == "lanes"
-    assert five_joints(backend="scalar").checked_with == "scalar"
-    for module in (selftest, arm_world):
-        monkeypatch.setattr(module, "lanes_failure", lambda: "no vectors")
-    assert five_joints().backend == "scalar"
-    assert five_joints().checked_with == "scalar (lanes do not work here: no vectors)"
-    assert five_joints().valid(HOME[np.newaxis])[0]
-    with pytest.raises(NotAvailable, match="[(]no vectors[)]; backend='scalar'"):
-        five_joints(backend="lanes")
-
-
-def test_wrong_verdicts_of_the_lanes_and_what_goes_wrong_in_compiling_them_are_found_out(monkeypatch):
-    def broken(*arguments):
-        raise RuntimeError("no such instruction\nin line 3 of something long")
-
-    # Asked anew: what is kept is the answer of this machine.
-    ask = selftest.lanes_failure.__wrapped__
-    monkeypatch.setattr(selftest, "expected_results", lambda: np.zeros(64, dtype=bool))
-    assert "wrong" in ask()
-    monkeypatch.setattr(batch, "configurations_free", broken)
-    assert ask() == "RuntimeError: no such instruction"
 
 
 def test_a_world_can_be_sent_to_another_process():

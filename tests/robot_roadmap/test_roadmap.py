@@ -328,9 +328,8 @@ def test_what_touches_the_base_leaves_no_configuration_free(roadmap, cloud):
     assert known.connect(roadmap.milestones[0], roadmap.milestones[1:2]).goal == -1
 
 
-def test_where_trees_do_not_grow_the_roadmap_is_asked_at_once(roadmap, monkeypatch):
-    monkeypatch.setattr("evenroad.robot.arm_world.chosen_backend", lambda backend: "scalar")
-    result = within(roadmap, box_scene()).plan([0.0, -1.5, 0.0], [2.0, -1.0, 1.0])
+def test_where_trees_do_not_grow_the_roadmap_is_asked_at_once(roadmap):
+    result = within(roadmap, box_scene(), backend="scalar").plan([0.0, -1.5, 0.0], [2.0, -1.0, 1.0])
     assert (result.solved, result.planner) == (True, "roadmap")
 
 

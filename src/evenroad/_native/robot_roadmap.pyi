@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad._native.planning import CompiledChecks
+from evenroad._native.planning import Checks
 
 Int8s: TypeAlias = npt.NDArray[np.int8]
 
@@ -49,8 +49,8 @@ class ProvedSearch:
         graph: SceneGraph,
         start_and_goals: Floats,
         rules: tuple[int, float, float],
-        everything: CompiledChecks,
-        moved: CompiledChecks,
+        everything: Checks,
+        moved: Checks,
     ) -> None: ...
     def go_on(
         self, most_motions: int, batches: int

@@ -24,7 +24,6 @@ from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.planning.arm_request import arm_request
-from evenroad.planning.arm_trees import prepare
 from evenroad.planning.plan import Options, finished, solve
 from evenroad.planning.request import Goal, Reading, Request
 from evenroad.roadmap import PlanResult
@@ -48,8 +47,6 @@ def plan_arm(plan: PlanArm) -> int:
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
     kept = None if plan.roadmap is None else kept_roadmap(plan)
-    if kept is not None or not wants_points(plan):
-        prepare()
     _say_if_compiling(plan)
     robot = kept.robot if kept is not None and plan.robot is None else plan.robot
     assert robot is not None
@@ -171,7 +168,5 @@ def _constraints(plan: PlanArm) -> tuple[CartesianLine | None, OrientationConstr
 
 
 def _say_if_compiling(plan: PlanArm) -> None:
-    kernel = "evenroad.robot.kernel"
     if plan.goal_pose or plan.straight or plan.upright:
-        say_if_compiling(f"{kernel}.reach", "solve", 5)
-    say_if_compiling(f"{kernel}.batch", "check_configurations", 10)
+        say_if_compiling("evenroad.robot.kernel.reach", "solve", 5)

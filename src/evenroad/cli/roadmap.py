@@ -11,7 +11,6 @@ from typing import Annotated
 import tyro
 
 from evenroad._checks import counted, require_positive
-from evenroad._compiled import say_if_compiling
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table, progress_shown
 from evenroad.cli.plan import PlanArm, RobotOptions
@@ -64,7 +63,6 @@ class MakeRoadmap(RobotOptions):
             raise InvalidValue(f"--out {out} would overwrite one of the files that it is made from")
         require_writable_folder(out)
         cell = Scene(name="nothing") if self.cell is None else load_scene(self.cell)
-        say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 10)
         model = load_model(self.robot, **self.options())
         began = time.perf_counter()
         with progress_shown("roadmap") as shown:

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 import tyro
 
-from evenroad._compiled import say_if_compiling
 from evenroad._files import atomic_write, require_writable_folder
 from evenroad._rng import generator
 from evenroad._terminal import print_table
@@ -48,7 +47,6 @@ class Robot(RobotOptions):
         if self.write_srdf is not None:
             require_writable_folder(self.write_srdf)
         model = load_model(self.robot, **self.options())
-        say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 10)
         scene = Scene((), name="empty space") if self.scene is None else load_scene(self.scene)
         # No path, no ends: contacts that are allowed near them are none here.
         scene = replace(scene, near_ends=frozenset())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -11,11 +10,10 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count, require_positive
 from evenroad._clock import now
-from evenroad._compiled import compile_beside
 from evenroad._native import planning
+from evenroad._native.robot import Checker
 from evenroad.errors import InvalidValue
 from evenroad.roadmap.connector import Connection
-from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
@@ -42,7 +40,7 @@ class PlansWithTrees(Protocol):
     def space(self) -> JointSpace: ...  # noqa: D102
 
     @property
-    def lanes(self) -> LaneWorld: ...  # noqa: D102
+    def checker(self) -> Checker: ...  # noqa: D102
 
     @property
     def backend(self) -> str: ...  # noqa: D102
@@ -51,13 +49,6 @@ class PlansWithTrees(Protocol):
     def fixed_contact(self) -> tuple[str, str] | None: ...  # noqa: D102
 
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> npt.NDArray[np.bool_]: ...  # noqa: D102
-
-
-def prepare() -> None:
-    """Compile the checks that tree planning needs, in processes beside this one, unless they are cached."""
-    # The one that is needed last takes longest and goes first; this process begins at the other end.
-    kernels = ("lane_check", "motion_checks", "hull_lanes")
-    compile_beside(*(f"evenroad.robot.kernel.{kernel}" for kernel in kernels))
 
 
 def connect(
@@ -149,17 +140,14 @@ def smooth(
     path = _as_path(world, path)
     if world.backend == "scalar":
         return shorten(world, path)
-    checks = checks_of(world, planning.CLEARANCES)
     guides = share_pairs(), sphere_points(world.space.dim)
-    smoothed, motions = planning.smooth(checks, path, guides, batches, proved)
+    smoothed, motions = planning.smooth(checks_of(world), path, guides, batches, proved)
     return np.empty((0, world.space.dim)) if smoothed is None else smoothed, motions
 
 
-def checks_of(world: PlansWithTrees, margins: Sequence[float] = ()) -> planning.CompiledChecks:
-    """Return the checks of a world for one planner, also with bodies larger by margins."""
-    lanes = world.lanes
-    wider = {margin: lanes.wider(margin) for margin in margins}
-    return planning.CompiledChecks(lanes.addresses, lanes.resolution, wider)
+def checks_of(world: PlansWithTrees) -> planning.Checks:
+    """Return the checks of a world for one planner."""
+    return planning.Checks(world.checker)
 
 
 def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:

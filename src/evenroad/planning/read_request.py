@@ -8,10 +8,8 @@ from difflib import get_close_matches
 from typing import Any
 
 from evenroad.errors import InvalidValue, shown
-from evenroad.planning import arm_trees
 from evenroad.planning.arm_request import arm_request, request_in
 from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request
-from evenroad.planning.trees import RRTConnect
 from evenroad.roadmap.point_roadmap import Roadmap
 from evenroad.roadmap.problem import Planner
 from evenroad.roadmap.query import as_start_and_goals
@@ -51,8 +49,6 @@ def read_request(
             raise InvalidValue(
                 "a scene goes with robot=, the arm that moves in it: a name, a file or a Robot"
             )
-        if planner is None or isinstance(planner, RRTConnect):
-            arm_trees.prepare()
         return arm_request(of_world.pop("robot"), world, start, goal, reading, **of_world)
     if of_world:
         what = "a world that is made says all of itself"

@@ -6,25 +6,28 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._call import explains_calls
-from evenroad._checks import require_positive
+from evenroad._checks import require_known, require_positive
 from evenroad._fingerprint import fingerprint_of
+from evenroad._native.robot import Checker
+from evenroad._shared import once_property
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import PointCloud
 from evenroad.robot.given import as_robot, as_scene
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.lane_world import LaneWorld
+from evenroad.robot.kernel.native_scene import native_scene
 from evenroad.robot.kernel.obstacles import obstacle_rows, refuse, tested_contacts
 from evenroad.robot.kernel.robot_tables import RobotTables, enlarged
 from evenroad.robot.kernel.scene_surfaces import scene_surfaces
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
-from evenroad.robot.kernel.selftest import chosen_backend, lanes_failure
-from evenroad.robot.kernel.surface_scalar import fixed_contact, scalar_check_address
+from evenroad.robot.kernel.surface_scalar import scalar_check_address
 from evenroad.robot.planes import with_planes
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot, within_scene
@@ -38,6 +41,8 @@ from evenroad.world.bisection import require_few_segments
 from evenroad.world.clearance import largest_kept
 from evenroad.world.one_or_many import OneOrMany, one_or_many
 from evenroad.world.protocol import Apart
+
+_BACKENDS = ("auto", "lanes", "scalar")
 
 MOST_CLEARANCE = 1.0
 """Largest clearance that a world can have [m]."""
@@ -72,7 +77,7 @@ class ArmWorld(OneOrMany):
         Least distance from obstacles, >= 0 [m]: bodies are larger by it against obstacles, not against each other.
     backend : {"auto", "lanes", "scalar"}
         Sixteen checks at once in single precision, with radii enlarged by some micrometres to be safe, or one after the
-        other in double precision; "auto" is the lanes where a test finds that they work.
+        other in double precision; "auto" is the lanes.
 
     Attributes
     ----------
@@ -87,8 +92,6 @@ class ArmWorld(OneOrMany):
         If a number is invalid, a joint of the group has no finite range, or robot or scene is inconsistent.
     UnknownName
         If the robot or the scene names something that does not exist, or there is no such backend.
-    NotAvailable
-        If the lanes are requested where they do not work.
 
     Examples
     --------
@@ -112,6 +115,7 @@ class ArmWorld(OneOrMany):
         scene = as_scene(self.scene)
         apart = require_positive("clearance", self.clearance, or_zero=True, at_most=MOST_CLEARANCE)
         resolution = require_positive("resolution", self.resolution)
+        require_known("backend", self.backend, _BACKENDS)
         robot = within_scene(as_robot(self.robot), scene)
         set_fields(self, robot=robot, scene=scene, resolution=resolution, clearance=apart)
         for held in self.scene.attached:
@@ -126,7 +130,7 @@ class ArmWorld(OneOrMany):
                 f"scene {self.scene.name!r} allows contacts near start and goals, which a world does not know:"
                 " plan does, or give it allowed_near_ends(robot, scene, start_and_goals)"
             )
-        space, longest, of_robot, by_joint, bounds, by_joint_at = prepared(self.robot)
+        space, longest, of_robot, by_joint, bounds, by_joint_at, _ = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         if self.clearance:
             of_robot = enlarged(of_robot, self.clearance)
@@ -146,7 +150,7 @@ class ArmWorld(OneOrMany):
             robot_tables=of_robot,
             tables=tables,
             lanes=lanes,
-            backend=chosen_backend(self.backend),
+            backend="lanes" if self.backend == "auto" else self.backend,
         )
 
     @property
@@ -156,9 +160,8 @@ class ArmWorld(OneOrMany):
 
     @property
     def checked_with(self) -> str:
-        """The backend, and why the lanes do not work where it is the slow one."""
-        failure = lanes_failure() if self.backend == "scalar" else None
-        return self.backend if failure is None else f"{self.backend} (lanes do not work here: {failure})"
+        """The backend."""
+        return self.backend
 
     @property
     def excess(self) -> float:
@@ -176,42 +179,61 @@ class ArmWorld(OneOrMany):
     def __repr__(self) -> str:
         return f"ArmWorld({self.robot!r}, {self.scene!r})"
 
-    @one_or_many
-    def valid(self, q: Floats) -> Bools:
+    @once_property
+    def checker(self) -> Checker:
+        """The native checks of this world."""
+        made = prepared(self.robot)
+        scene = native_scene(made.native, made.tables, self.robot.links, self.scene, self.clearance)
+        touches_itself = self.robot_tables.fixed_contact is not None
+        return Checker(made.native, scene, self.resolution, self.clearance, touches_itself)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy is made of: it makes checks of its own."""
+        return {name: value for name, value in self.__dict__.items() if name != "checker"}
+
+    def valid(self, q: Any) -> Any:
         """Return which configurations, (n, dim), are within the limits, up to 1e-5, and touch nothing: (n,).
 
         Of one configuration, (dim,), joint -> value, or a named state, a bool; `motion_valid`, too.
 
         Raises InvalidValue if `q` has another shape or an entry that is not finite.
         """
+        if self.backend == "scalar":
+            return self._slowly_valid(q)
+        free = self.checker.valid(q)
+        return self._read_and_valid(q) if free is None else free
+
+    @one_or_many
+    def _read_and_valid(self, q: Floats) -> Bools:
+        """Return the same of what is no array of floats, or not such a one as it should be."""
+        return self.checker.valid(as_batch("q", q, self._space.dim))
+
+    @one_or_many
+    def _slowly_valid(self, q: Floats) -> Bools:
         configurations = as_batch("q", q, self._space.dim)
         if self.fixed_contact is not None:
             return np.zeros(len(configurations), dtype=np.bool_)
-        tables = self.tables
-        if self.backend == "scalar":
-            return scalar.configurations_free(configurations, self.bounds, self._ints, tables.floats)
-        # Imported late: where the vector type cannot even be defined, all else still works.
-        from evenroad.robot.kernel.batch import configurations_free
+        return scalar.configurations_free(configurations, self.bounds, self._ints, self.tables.floats)
 
-        return configurations_free(self.lanes, configurations)
-
-    @one_or_many
-    def motion_valid(self, a: Floats, b: Floats) -> Bools:
+    def motion_valid(self, a: Any, b: Any) -> Any:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
 
         Raises InvalidValue as `valid`, or if the two differ in length.
         """
+        free = None if self.backend == "scalar" else self.checker.motion_valid(a, b)
+        return self._read_and_motion_valid(a, b) if free is None else free
+
+    @one_or_many
+    def _read_and_motion_valid(self, a: Floats, b: Floats) -> Bools:
         return self._motions_free(a, b, 0.0)
 
     def _motions_free(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions are free at their states and, by the lanes, proved where `tolerance` is > 0."""
         first, second = as_batch_pair(a, b, self._space.dim)
+        if self.backend == "lanes":
+            return self.checker.motion_valid(first, second, tolerance)
         if self.fixed_contact is not None:
             return np.zeros(len(first), dtype=np.bool_)
-        if self.backend == "lanes":
-            from evenroad.robot.kernel.batch import motions_free
-
-            return motions_free(self.lanes, first, second, tolerance)
         tables = self.tables
         return scalar.motions_free(first, second, self.resolution, self.bounds, self._ints, tables.floats)
 
@@ -329,8 +351,10 @@ class ArmWorld(OneOrMany):
         if self.tables.fixed_contact is not None:
             capsule, obstacle = self.tables.fixed_contact
             return of_capsules[capsule].link, self._solid(obstacle)
-        if surfaces is not None and (found := fixed_contact(surfaces, self.robot_tables)) is not None:
-            return of_capsules[found[0]].link, self.scene.obstacles[found[1]].name
+        if surfaces is not None:
+            kind, capsule, number = self.checker.fixed_contact
+            if kind == "surface":
+                return of_capsules[capsule].link, self.scene.obstacles[number].name
         return self.robot_tables.fixed_contact
 
     def _solid(self, number: int) -> str:
@@ -344,19 +368,13 @@ class ArmWorld(OneOrMany):
         return ints if surfaces is None else surfaces.added_to(ints, scalar_check_address())
 
     def _touching(self, q: Floats) -> tuple[str, str] | None:
-        """Return two bodies that touch, or are as near as single precision may call touching."""
-        of_robot, tables, of_capsules = self.robot_tables, self.tables, self.robot_tables.capsules
-        # A copy: an array that cannot be written to would be another type for compiled code.
-        margins, pair_margins = np.full(len(of_capsules), tables.margin), of_robot.pair_margins.copy()
-        frames, capsules = np.empty((len(of_robot.tree.frames) + 1, 12)), np.empty((len(of_capsules), 6))
-        kind, capsule, other = scalar.first_contact(
-            q, self._ints, tables.floats, margins, pair_margins, frames, capsules
-        )
-        if kind == scalar.MEETS_OBSTACLE:
-            return of_capsules[capsule].link, self._solid(tables.kept[other])
-        if kind == scalar.MEETS_SURFACE:
-            return of_capsules[capsule].link, self.scene.obstacles[other].name
-        if kind == scalar.MEETS_ITSELF:
-            first, second = of_robot.capsule_pairs[other]
-            return of_capsules[first].link, of_capsules[second].link
-        return None
+        """Return two bodies that touch at a configuration within the limits."""
+        capsules = self.robot_tables.capsules
+        kind, capsule, other = self.checker.find_contact(q)
+        if kind == "nothing":
+            return None
+        if kind == "itself":
+            first, second = self.robot_tables.capsule_pairs[other]
+            return capsules[first].link, capsules[second].link
+        name = self._solid(other) if kind == "obstacle" else self.scene.obstacles[other].name
+        return capsules[capsule].link, name

@@ -11,8 +11,10 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_known
+from evenroad._native.robot import Robot as NativeRobot
 from evenroad.errors import InvalidValue
 from evenroad.robot.kernel.addresses import address
+from evenroad.robot.kernel.native_robot import native_robot
 from evenroad.robot.kernel.robot_tables import RobotTables, robot_tables
 from evenroad.robot.robot import Robot
 from evenroad.space import JointSpace
@@ -48,7 +50,7 @@ def joint_space(robot: Robot) -> JointSpace:
 class Prepared(NamedTuple):
     """Tables of a robot for every scene: `longest` bounds the length of a motion, `by_joint` is as in ``LaneWorld``.
 
-    `bounds`, (3, dim), are its first rows; `address` is its address.
+    `bounds`, (3, dim), are its first rows; `address` is its address.  `native` is the robot of the native kernel.
     """
 
     space: JointSpace
@@ -57,6 +59,7 @@ class Prepared(NamedTuple):
     by_joint: Floats
     bounds: Floats
     address: int
+    native: NativeRobot
 
 
 _recent: dict[int, tuple[Robot, dict[str, float], Prepared]] = {}
@@ -92,4 +95,5 @@ def _kept(values: tuple[Any, ...], held: tuple[tuple[str, float], ...]) -> Prepa
     by_joint = np.concatenate([low, high, space.flat.period, arms, pair_arms])
     by_joint.setflags(write=False)
     bounds = by_joint[: 3 * space.dim].reshape(3, space.dim)
-    return Prepared(space, float(np.linalg.norm(high - low)), tables, by_joint, bounds, address(by_joint))
+    longest, native = float(np.linalg.norm(high - low)), native_robot(tables, bounds)
+    return Prepared(space, longest, tables, by_joint, bounds, address(by_joint), native)

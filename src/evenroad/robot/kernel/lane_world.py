@@ -62,35 +62,6 @@ class LaneWorld:
         given = checks, self.resolution, tables, by_joint, begin, begin + 8 * doubles
         return array[doubles : doubles + more], given
 
-    def wider(self, margin: float) -> int:
-        """Return the address of the tables' lengths with bodies larger by a margin [m], for obstacles alone.
-
-        Bodies beside each other may be nearer for good.
-        """
-        if (cached := self._wider.get(margin)) is None:
-            # Of several threads one makes them: what another was given must last.
-            with _enlarging:
-                if (cached := self._wider.get(margin)) is None:
-                    table = self._enlarged(margin)
-                    cached = self._wider[margin] = table, address(table)
-        return cached[1]
-
-    def _enlarged(self, margin: float) -> npt.NDArray[np.float32]:
-        """Return what `wider` tells the address of."""
-        header = self.tables[: at.HEADER].tolist()
-        floats = header[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * header[at.BLOCKS]
-        table = self.tables[header[at.INTEGERS] :].view(np.float32)[:floats].copy()
-        capsules = table[header[at.CAPSULE_FLOATS] :][: at.CAPSULE_FLOAT_ROW * header[at.CAPSULES]]
-        capsules.reshape(-1, at.CAPSULE_FLOAT_ROW)[:, 6] += np.float32(margin)
-        bodies = table[header[at.BODY_FLOATS] :][: at.BODY_FLOAT_ROW * header[at.BODIES]]
-        bodies.reshape(-1, at.BODY_FLOAT_ROW)[:, 3:7] += np.float32(margin)
-        return table
-
-    @once_property
-    def _wider(self) -> dict[float, tuple[npt.NDArray[np.float32], int]]:
-        """Tables that were enlarged, by their margin, and where they are."""
-        return {}
-
     @once_property
     def addresses(self) -> tuple[int, int, int, int]:
         """Addresses of the checks and of the two arrays, and how much memory a program's checks need."""
@@ -121,7 +92,6 @@ class _Memory(threading.local):
 
 
 _memory = _Memory()
-_enlarging = threading.Lock()
 
 
 @once

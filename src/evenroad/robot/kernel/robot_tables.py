@@ -58,6 +58,10 @@ class RobotTables:
         How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
     fixed_contact : tuple of 2 str, or None
         Two links that no joint moves on each other and that touch, though they are to be tested.
+    body_pairs : tuple of pairs of str
+        Links that are tested against each other; of the last `by_hulls` the hulls decide.
+    hulls : mapping of str to PlacedHulls
+        The hulls of all links, of none where all are round.
     """
 
     tree: MovingTree
@@ -71,6 +75,9 @@ class RobotTables:
     speeds: Floats
     pair_speeds: Floats
     fixed_contact: tuple[str, str] | None
+    body_pairs: tuple[tuple[str, str], ...]
+    by_hulls: int
+    hulls: Mapping[str, PlacedHulls]
 
 
 @lru_cache(maxsize=32)
@@ -147,6 +154,9 @@ def robot_tables(robot: Robot) -> RobotTables:
         np.ascontiguousarray(speeds),
         np.ascontiguousarray(pair_speeds),
         _fixed_contact(capsules, hulls, fixed) if robot.pairs_given else None,
+        tuple(pairs),
+        len(of_hulls),
+        hulls,
     )
     arrays = ints, floats, tables.singles, tables.pair_margins, tables.speeds, tables.pair_speeds
     for array in arrays:

@@ -18,7 +18,7 @@ from evenroad.robot.kernel.placed_capsules import PlacedCapsule
 from evenroad.robot.kernel.robot_tables import RobotTables
 from evenroad.robot.kernel.scene_tables import OBSTACLE_PADDING
 from evenroad.robot.kernel.surface_around import surface_around
-from evenroad.robot.kernel.surface_grid import grid_of_points, grid_of_triangles
+from evenroad.robot.kernel.surface_grid import Grid, grid_of_points, grid_of_triangles
 from evenroad.robot.kernel.surface_tree import surface_array
 from evenroad.robot.scene import Scene
 
@@ -137,13 +137,23 @@ def _around(bodies: tuple[PointCloud | Mesh, ...], reach: float) -> Ints:
 @lru_cache(maxsize=64)
 def surface_of(body: PointCloud | Mesh, reach: float) -> Ints | None:
     """Return what a robot of this reach can touch of a body; kept, since the next scene often has it, too."""
+    reached = reached_parts(body, reach)
+    return None if reached is None else surface_array(*reached)
+
+
+@lru_cache(maxsize=4)
+def reached_parts(body: PointCloud | Mesh, reach: float) -> tuple[Floats, float, Grid] | None:
+    """Return what a robot of this reach can touch of a body, None where that is nothing.
+
+    These are points, (n, 1, 3), or triangles, (n, 3, 3), the radius by which they are widened, and the grid around.
+    """
     if isinstance(body, PointCloud):
         points = body.pose.apply(body.points)
         points = points[np.linalg.norm(points, axis=1) <= reach + body.radius]
         if len(points) == 0:
             return None
         padding = OBSTACLE_PADDING * (float(np.linalg.norm(points, axis=1).max()) + body.radius)
-        return surface_array(points[:, np.newaxis], body.radius + padding, grid_of_points(points))
+        return points[:, np.newaxis], body.radius + padding, grid_of_points(points)
     mesh = body.triangles
     corners = body.pose.apply(mesh.vertices)[mesh.triangles]
     near = _within_reach(corners, reach)
@@ -151,7 +161,7 @@ def surface_of(body: PointCloud | Mesh, reach: float) -> Ints | None:
     if len(near) == 0:
         return None
     padding = OBSTACLE_PADDING * float(np.linalg.norm(near, axis=2).max())
-    return surface_array(near, padding, grid_of_triangles(near, corners[solid], turned, reach))
+    return near, padding, grid_of_triangles(near, corners[solid], turned, reach)
 
 
 def _within_reach(corners: Floats, reach: float) -> Floats:

@@ -1,5 +1,6 @@
 // One extension module: the bindings, which are compiled once, with the kernels of one instruction set.
 #include <exception>
+#include <stdexcept>
 
 #include "bind/parts.hpp"
 
@@ -7,11 +8,11 @@ namespace nb = nanobind;
 
 namespace {
 
-/// Raise evenroad.errors.InvalidValue for what the bindings refuse.
+/// Raise evenroad.errors.InvalidValue for what the bindings, or the tables of a kernel, refuse.
 void translate(const std::exception_ptr& thrown, void*) {
   try {
     std::rethrow_exception(thrown);
-  } catch (const evenroad::bind::InvalidValue& error) {
+  } catch (const std::invalid_argument& error) {
     nb::object kind = nb::module_::import_("evenroad.errors").attr("InvalidValue");
     PyErr_SetString(kind.ptr(), error.what());
   }
@@ -26,6 +27,7 @@ NB_MODULE(EVENROAD_MODULE, module) {
   evenroad::bind::add_planning(module);
   evenroad::bind::add_points(module);
   evenroad::bind::add_roadmap(module);
+  evenroad::bind::add_robot(module);
   evenroad::bind::add_robot_roadmap(module);
   evenroad::bind::add_space(module);
   evenroad::bind::add_trajectory(module);

@@ -15,6 +15,7 @@ struct InvalidValue : std::invalid_argument {
 void add_planning(nanobind::module_& module);
 void add_points(nanobind::module_& module);
 void add_roadmap(nanobind::module_& module);
+void add_robot(nanobind::module_& module);
 void add_robot_roadmap(nanobind::module_& module);
 void add_space(nanobind::module_& module);
 void add_trajectory(nanobind::module_& module);

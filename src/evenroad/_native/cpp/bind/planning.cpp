@@ -1,6 +1,8 @@
 // evenroad._native.planning: trees and smoothing of arms.
+#include <nanobind/stl/shared_ptr.h>
+
 #include "bind/arrays.hpp"
-#include "planning/compiled_checks.hpp"
+#include "planning/native_checks.hpp"
 #include "planning/path_proof.hpp"
 #include "planning/smoother.hpp"
 #include "planning/tree.hpp"
@@ -10,27 +12,9 @@ namespace evenroad::bind {
 
 namespace {
 
-using planning::CompiledChecks;
+using planning::NativeChecks;
 using planning::Path;
 using planning::TreePlanner;
-
-template <class T>
-const T* at(std::int64_t address) {
-  return reinterpret_cast<const T*>(address);
-}
-
-planning::CompiledWorld compiled_world(nb::tuple addresses, double resolution, nb::dict wider) {
-  planning::CompiledWorld world{at<std::int64_t>(nb::cast<std::int64_t>(addresses[0])),
-                                at<std::int64_t>(nb::cast<std::int64_t>(addresses[1])),
-                                at<double>(nb::cast<std::int64_t>(addresses[2])),
-                                nb::cast<std::size_t>(addresses[3]),
-                                resolution,
-                                {}};
-  for (const auto& [margin, table] : wider) {
-    world.wider.emplace_back(nb::cast<double>(margin), at<float>(nb::cast<std::int64_t>(table)));
-  }
-  return world;
-}
 
 const char* in_words(planning::Growth growth) {
   switch (growth) {
@@ -63,7 +47,7 @@ struct Trees {
   Problem problem;
   TreePlanner planner;
 
-  Trees(CompiledChecks& checks, nb::handle ends, nb::handle samples, nb::handle steps)
+  Trees(NativeChecks& checks, nb::handle ends, nb::handle samples, nb::handle steps)
       : problem(ends, samples, steps, checks.joints.size()),
         planner(problem.ends.matrix(), {problem.samples.matrix(), problem.steps.matrix()}, checks) {}
 
@@ -89,7 +73,7 @@ nb::tuple tree_of(const planning::Tree& tree, std::size_t dim) {
   return nb::make_tuple(as_numpy(std::move(nodes), {size, dim}), as_numpy(std::move(parents), {size}));
 }
 
-Path path_from(const Array<const double, 2>& points, const CompiledChecks& checks) {
+Path path_from(const Array<const double, 2>& points, const NativeChecks& checks) {
   require(points.shape(0) >= 2, "path must have 2 waypoints or more");
   points.of_shape({points.shape(0), checks.joints.size()});
   return {points.span(), checks.joints};
@@ -101,7 +85,7 @@ nb::object points_of(const Path& path) {
   return as_numpy(std::move(points), {size, path.points().size() / size});
 }
 
-nb::tuple shorten(CompiledChecks& checks, nb::handle path, nb::handle pairs, std::int64_t most_shortcuts) {
+nb::tuple shorten(NativeChecks& checks, nb::handle path, nb::handle pairs, std::int64_t most_shortcuts) {
   const Array<const double, 2> points(path, "path"), shares(pairs, "pairs");
   shares.of_shape({shares.shape(0), 2});
   Path shorter = path_from(points, checks);
@@ -109,7 +93,7 @@ nb::tuple shorten(CompiledChecks& checks, nb::handle path, nb::handle pairs, std
   return nb::make_tuple(points_of(shorter), checks.counts.motions);
 }
 
-nb::tuple smooth(CompiledChecks& checks, nb::handle path, nb::tuple guides, std::int64_t most_batches, bool proved) {
+nb::tuple smooth(NativeChecks& checks, nb::handle path, nb::tuple guides, std::int64_t most_batches, bool proved) {
   require(guides.size() == 2, "guides must be (pairs, directions)");
   const Array<const double, 2> points(path, "path"), shares(guides[0], "pairs"), sphere(guides[1], "directions");
   shares.of_shape({shares.shape(0), 2}), sphere.of_shape({sphere.shape(0), checks.joints.size()});
@@ -121,7 +105,7 @@ nb::tuple smooth(CompiledChecks& checks, nb::handle path, nb::tuple guides, std:
   return nb::make_tuple(found, checks.counts.motions);
 }
 
-nb::object prove_or_bend(CompiledChecks& checks, nb::handle path, double margin, nb::handle directions) {
+nb::object prove_or_bend(NativeChecks& checks, nb::handle path, double margin, nb::handle directions) {
   const Array<const double, 2> points(path, "path"), sphere(directions, "directions");
   sphere.of_shape({sphere.shape(0), checks.joints.size()});
   Path bent = path_from(points, checks);
@@ -166,12 +150,12 @@ void add_tree(nb::module_& part) {
 
 void add_planning(nb::module_& module) {
   nb::module_ part = module.def_submodule("planning", "Trees and smoothing of arms.");
-  nb::class_<CompiledChecks>(part, "CompiledChecks")
-      .def("__init__", [](CompiledChecks* checks, nb::tuple addresses, double resolution,
-                          nb::dict wider) { new (checks) CompiledChecks(compiled_world(addresses, resolution, wider)); })
-      .def_prop_ro("counts", [](const CompiledChecks& checks) { return counts_of(checks.counts); });
+  nb::class_<NativeChecks>(part, "Checks")
+      .def("__init__",
+           [](NativeChecks* checks, std::shared_ptr<robot::Checker> of) { new (checks) NativeChecks(std::move(of)); })
+      .def_prop_ro("counts", [](const NativeChecks& checks) { return counts_of(checks.counts); });
   nb::class_<Trees>(part, "Trees")
-      .def(nb::init<CompiledChecks&, nb::handle, nb::handle, nb::handle>(), nb::keep_alive<1, 2>())
+      .def(nb::init<NativeChecks&, nb::handle, nb::handle, nb::handle>(), nb::keep_alive<1, 2>())
       .def("grow",
            [](Trees& trees, std::int64_t most_motions, std::int64_t batches) {
              return in_words(without_gil([&] { return trees.planner.grow(most_motions, batches); }));

@@ -4,14 +4,14 @@
 #include <memory>
 
 #include "bind/arrays.hpp"
-#include "planning/compiled_checks.hpp"
+#include "planning/native_checks.hpp"
 #include "robot_roadmap/proved_search.hpp"
 
 namespace evenroad::bind {
 
 namespace {
 
-using planning::CompiledChecks;
+using planning::NativeChecks;
 using robot_roadmap::Check;
 using robot_roadmap::Ended;
 using robot_roadmap::Graph;
@@ -211,9 +211,9 @@ void add_robot_roadmap(nb::module_& module) {
   nb::class_<ProvedSearch>(part, "ProvedSearch")
       .def(
           "__init__",
-          [](ProvedSearch* self, SceneGraph& graph, nb::handle start_and_goals, nb::tuple rules, CompiledChecks& all,
-             CompiledChecks& moved) {
-            for (const CompiledChecks* checks : {&all, &moved}) {
+          [](ProvedSearch* self, SceneGraph& graph, nb::handle start_and_goals, nb::tuple rules, NativeChecks& all,
+             NativeChecks& moved) {
+            for (const NativeChecks* checks : {&all, &moved}) {
               require(checks->joints.size() == graph.joints.size(), "checks must be of the roadmap's joints");
             }
             new (self) ProvedSearch(graph, Asked(graph, start_and_goals, rules).question, {all, moved});

@@ -33,8 +33,8 @@ struct OwnMatrix {
   OwnMatrix(std::size_t rows, std::size_t columns) : rows(rows), columns(columns), values(rows * columns) {}
 
   std::span<T> operator[](std::size_t row) { return {values.data() + row * columns, columns}; }
-  T& operator()(std::size_t row, std::size_t column) { return values[row * columns + column]; }
   std::span<const T> operator[](std::size_t row) const { return {values.data() + row * columns, columns}; }
+  T& operator()(std::size_t row, std::size_t column) { return values[row * columns + column]; }
   const T& operator()(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
   operator Matrix<T>() { return {values.data(), rows, columns}; }
 };

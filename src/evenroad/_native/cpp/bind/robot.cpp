@@ -1,0 +1,243 @@
+// evenroad._native.robot: a robot in a scene, and the checks of its configurations and motions.
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/unique_ptr.h>
+
+#include <algorithm>
+
+#include "bind/arrays.hpp"
+#include "robot/motion_check.hpp"
+
+namespace evenroad::bind {
+
+namespace {
+
+using robot::Checker;
+using robot::Robot;
+using robot::Scene;
+using robot::Surface;
+
+/// Arrays by their names, kept as long as this is: `of["centre"]`.
+class Named {
+ public:
+  Named(nb::handle given, const char* name) : name_(name) {
+    require(nb::isinstance<nb::dict>(given), std::string(name) + " must be a dictionary of arrays");
+    given_ = nb::cast<nb::dict>(given);
+  }
+
+  template <class T, int Axes = 1>
+  Array<const T, Axes> array(const char* key) const {
+    require(given_.contains(key), std::string(name_) + " must have " + key);
+    return {given_[key], key};
+  }
+  /// Return all entries of an array; the dictionary keeps it alive.
+  template <class T, int Axes = 1>
+  std::span<const T> span(const char* key) const {
+    return array<T, Axes>(key).span();
+  }
+
+ private:
+  nb::dict given_;
+  const char* name_;
+};
+
+void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle capsules, nb::handle pairs,
+                nb::handle hulls, nb::handle limits) {
+  const Named of_frames(frames, "frames"), of_bodies(bodies, "bodies"), of_capsules(capsules, "capsules");
+  const Named of_pairs(pairs, "pairs"), of_hulls(hulls, "hulls"), of_limits(limits, "limits");
+  robot::GivenRobot given;
+  given.frames = {of_frames.span<std::int64_t>("parent"),  of_frames.span<std::int64_t>("coordinate"),
+                  of_frames.span<bool>("slides"),          of_frames.span<double>("multiplier"),
+                  of_frames.span<double>("offset"),        of_frames.span<double, 3>("rotation"),
+                  of_frames.span<double, 2>("translation")};
+  given.bodies = {of_bodies.span<std::int64_t>("frame"), of_bodies.span<std::int64_t>("hulls")};
+  given.capsules = {of_capsules.span<std::int64_t>("body"), of_capsules.span<std::int64_t>("first_sample"),
+                    of_capsules.span<double, 2>("centre"),  of_capsules.span<double, 2>("half"),
+                    of_capsules.span<double>("radius"),     of_capsules.span<double>("covering"),
+                    of_capsules.span<double>("samples")};
+  const auto by_hulls = of_pairs.span<std::int64_t>("by_hulls");
+  require(by_hulls.size() == 1, "pairs.by_hulls must be one number");
+  given.pairs = {of_pairs.span<std::int64_t, 2>("bodies"), by_hulls[0]};
+  given.hulls = {of_hulls.span<std::int64_t, 2>("children"), of_hulls.span<std::int64_t, 2>("spans"),
+                 of_hulls.span<double, 2>("boxes"), of_hulls.span<double, 2>("points")};
+  given.arms = {of_capsules.span<double, 2>("speeds"), of_pairs.span<double, 2>("speeds")};
+  given.bounds = of_limits.span<double, 2>("bounds");
+  const auto padding = of_limits.span<double>("padding"), reach = of_limits.span<double>("reach");
+  require(padding.size() == 1 && reach.size() == 1, "limits.padding and limits.reach must be one number each");
+  given.padding = padding[0], given.reach = reach[0];
+  new (self) Robot(robot::make_robot(given));
+}
+
+void make_surface(Surface* self, nb::handle corners, double radius, nb::dict grid) {
+  const Array<const double, 3> of(corners, "corners");
+  require(of.shape(2) == 3 && (of.shape(1) == 1 || of.shape(1) == 3), "corners must be (n, 1, 3) or (n, 3, 3)");
+  const Named of_grid(grid, "grid");
+  const auto distances = of_grid.array<std::uint8_t, 3>("distances");
+  const auto cell = of_grid.span<double>("cell");
+  require(cell.size() == 2, "grid.cell must be its side, and by how much distances may be too small");
+  robot::GivenSurface given{
+      of.span(), of.shape(1) == 3, radius, of_grid.span<double>("low"), cell[0], cell[1], {}, distances.span(), {},
+      false};
+  for (int axis = 0; axis < 3; axis++) given.cells[axis] = static_cast<int>(distances.shape(axis));
+  if (grid.contains("windings")) {
+    given.windings = of_grid.span<std::int8_t, 3>("windings");
+    given.turned = nb::cast<bool>(grid["turned"]);
+  }
+  new (self) Surface(robot::make_surface(given));
+}
+
+/// Return the grid around surfaces, without leaves.
+std::unique_ptr<Surface> surface_around(nb::list surfaces) {
+  std::vector<std::shared_ptr<const Surface>> all;
+  for (nb::handle each : surfaces) all.push_back(nb::cast<std::shared_ptr<Surface>>(each));
+  require(!all.empty(), "surfaces must be one or more");
+  return std::make_unique<Surface>(robot::make_surface_around(all));
+}
+
+/// A scene is given its obstacles, (n, 16), its surfaces, each with its number and the capsules tested against it, and
+/// the grid around these, or None.
+void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle tested, nb::list surfaces,
+                nb::object around, double clearance) {
+  const Array<const double, 2> rows(obstacles, "obstacles");
+  require(rows.shape(1) == sizeof(robot::GivenObstacle) / sizeof(double), "obstacles must have 16 numbers each");
+  std::vector<robot::GivenObstacle> given(rows.shape(0));
+  if (!given.empty()) __builtin_memcpy(given.data(), rows.data(), given.size() * sizeof(robot::GivenObstacle));
+  const Array<const bool, 2> flags(tested, "tested");
+  Scene scene = robot::make_scene(of, given, flags.matrix(), clearance);
+  if (!around.is_none()) scene.around = nb::cast<std::shared_ptr<Surface>>(around);
+  for (nb::handle each : surfaces) {
+    const auto part = nb::cast<nb::tuple>(each);
+    require(part.size() == 3, "surfaces must be (surface, number, tested) each");
+    const Array<const bool, 1> capsules(part[2], "tested");
+    capsules.of_shape({of.capsules.size()});
+    scene.surfaces.push_back({nb::cast<std::shared_ptr<Surface>>(part[0]),
+                              nb::cast<int>(part[1]),
+                              {capsules.span().begin(), capsules.span().end()}});
+    for (std::size_t i = 0; i < of.capsules.size(); i++) scene.surfaces_tested[i] += capsules.span()[i];
+  }
+  new (self) Scene(std::move(scene));
+}
+
+void make_checker(Checker* self, std::shared_ptr<Robot> of, std::shared_ptr<Scene> scene, double resolution,
+                  double clearance, bool touches_itself) {
+  require(resolution > 0, "resolution must be > 0");
+  require(scene->tested.rows == of->capsules.size(), "the scene must be one of this robot");
+  new (self) Checker(std::move(of), std::move(scene), resolution, clearance, touches_itself);
+}
+
+/// Doubles of an array as a caller gives it, seen without a copy: nothing where it is another kind of thing.
+class Doubles {
+ public:
+  explicit Doubles(nb::handle given) {
+    if (PyObject_GetBuffer(given.ptr(), &view_, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT) != 0) {
+      PyErr_Clear();
+      view_.obj = nullptr;
+    }
+  }
+  Doubles(const Doubles&) = delete;
+  Doubles& operator=(const Doubles&) = delete;
+  ~Doubles() {
+    if (view_.obj != nullptr) PyBuffer_Release(&view_);
+  }
+
+  int axes() const { return view_.ndim; }
+  std::size_t shape(int axis) const { return view_.shape[axis]; }
+  const double* data() const { return static_cast<const double*>(view_.buf); }
+
+  /// Return whether these are rows of `columns` finite numbers, or one such row.
+  bool are_rows_of(std::size_t columns) const {
+    if (view_.obj == nullptr || view_.format[0] != 'd' || view_.format[1] != 0 || view_.ndim < 1 || view_.ndim > 2 ||
+        shape(view_.ndim - 1) != columns) {
+      return false;
+    }
+    const auto count = static_cast<std::size_t>(view_.len) / sizeof(double);
+    double sum = 0;
+    for (std::size_t i = 0; i < count; i++) sum += data()[i] * 0.0;
+    return sum == 0.0;
+  }
+
+ private:
+  Py_buffer view_{};
+};
+
+std::size_t dim(const Checker& checker) { return static_cast<std::size_t>(checker.robot().dim()); }
+
+/// Return a NumPy array of flags, and let `write` fill them while other threads of Python run.
+template <class Write>
+nb::object flags(std::size_t count, Write&& write) {
+  // Kept for good: at the end of a process there is no Python any more that could take them back.
+  static const auto* empty = new nb::object(nb::module_::import_("numpy").attr("empty"));
+  static const auto* kind = new nb::object(nb::module_::import_("numpy").attr("bool_"));
+  const nb::object made = (*empty)(count, *kind);
+  Py_buffer view;
+  if (PyObject_GetBuffer(made.ptr(), &view, PyBUF_WRITABLE) != 0) throw nb::python_error();
+  const std::span<bool> all(static_cast<bool*>(view.buf), count);
+  if (count > 0) without_gil([&] { write(all); });
+  PyBuffer_Release(&view);
+  return made;
+}
+
+/// Return which configurations are free, or whether one is; None where `q` is not an array of finite float64, (n, dim)
+/// or (dim,), C-contiguous.
+nb::object valid(const Checker& checker, nb::handle q) {
+  const Doubles given(q);
+  if (!given.are_rows_of(dim(checker))) return nb::none();
+  if (given.axes() == 1) {
+    bool free = false;
+    robot::configurations_free(checker, {given.data(), 1, dim(checker)}, {&free, 1});
+    return nb::bool_(free);
+  }
+  const Matrix<const double> rows{given.data(), given.shape(0), dim(checker)};
+  return flags(rows.rows, [&](std::span<bool> free) { robot::configurations_free(checker, rows, free); });
+}
+
+/// Return the same of motions; where the tolerance is > 0 they must be proved free, too.
+nb::object motion_valid(const Checker& checker, nb::handle a, nb::handle b, double tolerance) {
+  const Doubles starts(a), ends(b);
+  if (!starts.are_rows_of(dim(checker)) || !ends.are_rows_of(dim(checker)) || starts.axes() != ends.axes()) {
+    return nb::none();
+  }
+  if (starts.axes() == 1) {
+    bool free = false;
+    const Matrix<const double> from{starts.data(), 1, dim(checker)}, to{ends.data(), 1, dim(checker)};
+    robot::motions_free(checker, from, to, tolerance, {&free, 1});
+    return nb::bool_(free);
+  }
+  const Matrix<const double> from{starts.data(), starts.shape(0), dim(checker)};
+  const Matrix<const double> to{ends.data(), ends.shape(0), dim(checker)};
+  if (from.rows != to.rows) return nb::none();
+  return flags(from.rows, [&](std::span<bool> free) { robot::motions_free(checker, from, to, tolerance, free); });
+}
+
+nb::tuple in_words(const robot::Contact& contact) {
+  constexpr const char* WITH[] = {"nothing", "obstacle", "surface", "itself"};
+  return nb::make_tuple(WITH[static_cast<int>(contact.with)], contact.capsule, contact.other);
+}
+
+nb::tuple find_contact(const Checker& checker, nb::handle q) {
+  const Array<const double, 1> given(q, "q");
+  given.of_shape({dim(checker)});
+  return in_words(robot::find_contact(checker, given.span()));
+}
+
+}  // namespace
+
+void add_robot(nb::module_& module) {
+  nb::module_ part = module.def_submodule("robot", "Checks of a robot's configurations and motions.");
+  nb::class_<Robot>(part, "Robot")
+      .def("__init__", &make_robot, nb::arg("frames"), nb::arg("bodies"), nb::arg("capsules"), nb::arg("pairs"),
+           nb::arg("hulls"), nb::arg("limits"));
+  nb::class_<Surface>(part, "Surface").def("__init__", &make_surface).def_static("around", &surface_around);
+  nb::class_<Scene>(part, "Scene")
+      .def("__init__", &make_scene, nb::arg("robot"), nb::arg("obstacles"), nb::arg("tested"), nb::arg("surfaces"),
+           nb::arg("around").none(), nb::arg("clearance"))
+      .def_ro("added", &Scene::added)
+      .def_ro("too_far", &Scene::too_far);
+  nb::class_<Checker>(part, "Checker")
+      .def("__init__", &make_checker)
+      .def("valid", &valid, nb::arg("q").none())
+      .def("motion_valid", &motion_valid, nb::arg("a").none(), nb::arg("b").none(), nb::arg("tolerance") = 0.0)
+      .def("find_contact", &find_contact)
+      .def_prop_ro("fixed_contact", [](const Checker& checker) { return in_words(checker.fixed_contact()); });
+}
+
+}  // namespace evenroad::bind

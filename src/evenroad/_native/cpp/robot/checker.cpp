@@ -1,0 +1,147 @@
+// Sixteen configurations at once: obstacles first, then surfaces, then the robot itself.
+#include "robot/checker.hpp"
+
+namespace evenroad::robot {
+
+namespace {
+
+Contact find_fixed_contact(const Robot& robot, const Scene& scene, double clearance) {
+  const auto [capsule, obstacle] = scene.fixed_contact;
+  if (capsule >= 0) return {Contact::With::OBSTACLE, capsule, obstacle};
+  return scene.surfaces.empty() ? Contact{} : fixed_surface_contact(robot, scene, Places(robot), clearance);
+}
+
+}  // namespace
+
+Checker::Checker(std::shared_ptr<const Robot> robot, std::shared_ptr<const Scene> scene, double resolution,
+                 double clearance, bool touches_itself)
+    : robot_(std::move(robot)),
+      scene_(std::move(scene)),
+      resolution_(resolution),
+      clearance_(clearance),
+      lengths_(clearance > 0 ? robot_->lengths.enlarged(static_cast<float>(clearance)) : robot_->lengths),
+      fixed_contact_(find_fixed_contact(*robot_, *scene_, clearance)),
+      never_free_(touches_itself || fixed_contact_.with != Contact::With::NOTHING) {}
+
+Checker::~Checker() = default;
+
+const Lengths& Checker::wider(float margin) const {
+  const std::lock_guard lock(guard_);
+  for (const auto& [known, lengths] : wider_) {
+    if (known == margin) return *lengths;
+  }
+  wider_.emplace_back(margin, std::make_unique<Lengths>(lengths_.enlarged(margin)));
+  return *wider_.back().second;
+}
+
+Borrowed Checker::borrow() const {
+  {
+    const std::lock_guard lock(guard_);
+    if (!free_.empty()) {
+      Workspace* workspace = free_.back().release();
+      free_.pop_back();
+      workspace->counts = {};
+      workspace->judge_by(nullptr);
+      return {workspace, Return{this}};
+    }
+  }
+  return {new Workspace(*this), Return{this}};
+}
+
+void Return::operator()(Workspace* workspace) const {
+  std::unique_ptr<Workspace> owned(workspace);
+  const std::lock_guard lock(checker->guard_);
+  checker->free_.push_back(std::move(owned));
+}
+
+Workspace::Workspace(const Checker& checker)
+    : checker(checker),
+      lengths(&checker.lengths()),
+      states(checker.robot().dim(), Doubles16{}),
+      places(checker.robot()),
+      enlarged(checker.lengths()),
+      motion(checker.robot().dim()),
+      waiting(MOST_WAITING),
+      speeds(checker.robot().arms.columns),
+      pair_speeds(checker.robot().pair_arms.columns) {}
+
+void Workspace::set(int lane, std::span<const double> q) {
+  for (std::size_t k = 0; k < states.size(); k++) states[k][lane] = q[k];
+}
+
+void Workspace::set_all(std::span<const double> q) {
+  for (std::size_t k = 0; k < states.size(); k++) states[k] = Doubles16{} + q[k];
+}
+
+namespace {
+
+Mask blocked_lanes(Workspace& workspace, const Lengths& lengths, Wanted wanted, Contact* found) {
+  const Robot& robot = workspace.checker.robot();
+  const Scene& scene = workspace.checker.scene();
+  Places& places = workspace.places;
+  places.place(robot, lengths, workspace.states);
+  Mask mask = meeting_obstacles(robot, lengths, scene, places, wanted, found);
+  if (is_enough(mask, wanted)) return mask;
+  if (!scene.surfaces.empty()) {
+    mask |= meeting_surfaces(robot, lengths, scene, places, mask, wanted, found);
+    if (is_enough(mask, wanted)) return mask;
+  }
+  return meeting_itself(robot, lengths, places, mask, wanted, found);
+}
+
+}  // namespace
+
+Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted) {
+  workspace.counts.batches++;
+  return blocked_lanes(workspace, lengths, wanted, nullptr);
+}
+
+Mask blocked(Workspace& workspace, Wanted wanted) { return blocked(workspace, *workspace.lengths, wanted); }
+
+namespace {
+
+/// Write sixteen configurations, and return the mask of those that are out of bounds.
+Mask take(Workspace& workspace, Matrix<const double> rows, std::size_t first, std::size_t count) {
+  const Bounds& bounds = workspace.checker.robot().bounds;
+  Mask outside = 0;
+  for (std::size_t k = 0; k < rows.columns; k++) {
+    double values[LANES];
+    // Lanes to spare repeat the last row.
+    for (std::size_t lane = 0; lane < LANES; lane++) values[lane] = rows(first + std::min(lane, count - 1), k);
+    if (wraps(bounds, k)) {
+      for (double& value : values) value = into_range(value, bounds, k);
+    }
+    // What is out of bounds may be too large for single precision.
+    const auto value = load<Doubles16>(values);
+    const double low = bounds.low[k] - BOUNDS_SLACK, high = bounds.high[k] + BOUNDS_SLACK;
+    workspace.states[k] = ((value >= low) & (value <= high)) ? value : Doubles16{} + bounds.low[k];
+    outside |= below_zero(__builtin_convertvector(min(value - low, high - value), Floats16));
+  }
+  return outside;
+}
+
+}  // namespace
+
+void configurations_free(const Checker& checker, Matrix<const double> rows, std::span<bool> free) {
+  if (rows.rows == 0 || checker.is_never_free()) {
+    std::fill(free.begin(), free.end(), false);
+    return;
+  }
+  const Borrowed workspace = checker.borrow();
+  for (std::size_t first = 0; first < rows.rows; first += LANES) {
+    const std::size_t count = std::min<std::size_t>(LANES, rows.rows - first);
+    Mask taken = take(*workspace, rows, first, count);
+    taken |= blocked(*workspace, Wanted::ALL);
+    for (std::size_t lane = 0; lane < count; lane++) free[first + lane] = (taken >> lane & 1) == 0;
+  }
+}
+
+Contact find_contact(const Checker& checker, std::span<const double> q) {
+  const Borrowed workspace = checker.borrow();
+  workspace->set_all(q);
+  Contact found;
+  blocked_lanes(*workspace, checker.lengths(), Wanted::FIRST, &found);
+  return found;
+}
+
+}  // namespace evenroad::robot

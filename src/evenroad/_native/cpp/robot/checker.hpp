@@ -1,0 +1,111 @@
+// A robot in a scene, and the memory in which one thread checks its configurations and motions.
+//
+// How planners sit on this (trees, smoothing, roadmaps): `planning/native_checks.hpp` says it in their words.  What is
+// here of one thread's checks:
+//
+//   const Borrowed workspace = checker.borrow();    memory, given back at the end of the scope
+//   workspace->set(lane, q), ->set_all(q)           write configurations, within bounds, into the sixteen lanes
+//   blocked(*workspace, Wanted::ALL)                which of the sixteen touch something, as bits
+//   motion_free, motion_proved, is_shortcut         one motion, see motion_check.hpp
+//   enter, make_canonical, way_between              bounds and the short way, see motion.hpp
+//   workspace->counts                               how many motions, configurations and batches were checked
+//   workspace->judge_by(&checker.wider(margin))     larger bodies until judge_by(nullptr)
+//
+// Results depend on the arguments alone, not on what the workspace was used for before.  Nothing here throws, and
+// nothing takes memory, once a workspace is made.
+#pragma once
+
+#include <memory>
+#include <mutex>
+
+#include "robot/motion.hpp"
+#include "robot/self_contact.hpp"
+#include "robot/surface_contact.hpp"
+
+namespace evenroad::robot {
+
+/// What was checked.
+struct Counts {
+  std::int64_t motions = 0, configurations = 0, batches = 0;
+};
+
+struct Workspace;
+class Checker;
+
+/// Gives a workspace back to its checker.
+struct Return {
+  const Checker* checker;
+  void operator()(Workspace* workspace) const;
+};
+using Borrowed = std::unique_ptr<Workspace, Return>;
+
+class Checker {
+ public:
+  /// Bodies are larger by `clearance` where obstacles are concerned.  Nothing is free where `touches_itself`, bodies
+  /// that no joint moves against each other, or what does not move touches the scene.
+  Checker(std::shared_ptr<const Robot> robot, std::shared_ptr<const Scene> scene, double resolution, double clearance,
+          bool touches_itself);
+  Checker(const Checker&) = delete;
+  Checker& operator=(const Checker&) = delete;
+  ~Checker();
+
+  const Robot& robot() const { return *robot_; }
+  const Scene& scene() const { return *scene_; }
+  const Lengths& lengths() const { return lengths_; }
+  double resolution() const { return resolution_; }  // largest distance between neighbouring states of a motion
+  double clearance() const { return clearance_; }
+  const Contact& fixed_contact() const { return fixed_contact_; }  // of what does not move with the scene
+  bool is_never_free() const { return never_free_; }
+
+  /// Return lengths larger by a margin, for obstacles alone; they last as long as the checker.
+  const Lengths& wider(float margin) const;
+
+  /// Return memory for one thread: one that was given back, or a new one.
+  Borrowed borrow() const;
+
+ private:
+  friend struct Return;
+  std::shared_ptr<const Robot> robot_;
+  std::shared_ptr<const Scene> scene_;
+  double resolution_, clearance_;
+  Lengths lengths_;
+  Contact fixed_contact_;
+  bool never_free_;
+  mutable std::mutex guard_;
+  mutable std::vector<std::unique_ptr<Workspace>> free_;
+  mutable std::vector<std::pair<float, std::unique_ptr<Lengths>>> wider_;
+};
+
+/// The memory of one thread's checks of a checker.
+struct Workspace {
+  explicit Workspace(const Checker& checker);
+
+  /// Write a configuration, within bounds, into one of the sixteen lanes, or into all.
+  void set(int lane, std::span<const double> q);
+  void set_all(std::span<const double> q);
+
+  /// Let states be judged by these lengths, which must outlive that; without any by those of the checker.
+  void judge_by(const Lengths* other) { lengths = other != nullptr ? other : &checker.lengths(); }
+
+  const Checker& checker;
+  const Lengths* lengths;         // that decide states
+  std::vector<Doubles16> states;  // sixteen configurations: sixteen numbers a coordinate
+  Places places;
+  Lengths enlarged;  // that decide stretches of a motion in a proof
+  Motion motion;
+  std::vector<Stretch> waiting;
+  std::vector<double> speeds, pair_speeds;  // how far a motion moves each capsule, and each pair, at most [m]
+  Counts counts;
+};
+
+/// Return the mask of the sixteen states that touch something; with Wanted::FIRST of some of them.
+Mask blocked(Workspace& workspace, Wanted wanted);
+Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted);
+
+/// Write which rows, (n, dim), are within bounds and free.
+void configurations_free(const Checker& checker, Matrix<const double> rows, std::span<bool> free);
+
+/// Return what touches first at a configuration within bounds.
+Contact find_contact(const Checker& checker, std::span<const double> q);
+
+}  // namespace evenroad::robot

@@ -1,0 +1,204 @@
+// Contact of two bodies of convex hulls at sixteen configurations.
+//
+// Boxes and planes in single precision rule out nearly all pairs of hulls, for all lanes at once and by more than
+// rounding can be; of what is left `leaves_near` decides, lane by lane in double precision.  So the answer for a lane
+// does not depend on its neighbours.
+#include <bit>
+#include <cmath>
+
+#include "robot/self_contact.hpp"
+
+namespace evenroad::robot {
+
+namespace {
+
+constexpr int PLANES = 12;  // so many are tried for each two hulls before they are left to double precision
+/// By how much, of the lengths that they come of, single precision may have distances wrong: thirty roundings.
+constexpr float SLACK = 2e-6F;
+constexpr float FAR = 1e30F;
+/// Half extents of boxes [m], and squares of sines in triangles, are taken for at least that: so all stays finite.
+constexpr float THIN = 1e-4F, FLAT = 1e-7F, LEAST_SQUARE = 1e-30F;
+
+using Node = HullNode<float>;
+
+Vec3x16 spread3(const float* v) { return {spread(v[0]), spread(v[1]), spread(v[2])}; }
+
+/// The poses of one frame in another.
+struct RelativePose16 {
+  Vec3x16 rows[3], translation;
+
+  /// Return a place in the second body's frame as the first sees it.
+  EVENROAD_INLINE Vec3x16 seen(Vec3x16 place) const {
+    return translation + Vec3x16{dot(rows[0], place), dot(rows[1], place), dot(rows[2], place)};
+  }
+  /// Return a direction in the first body's frame as the second sees it.
+  EVENROAD_INLINE Vec3x16 turned_back(Vec3x16 v) const { return combine(rows[0], v.x, rows[1], v.y, rows[2], v.z); }
+};
+
+/// Return how far a body reaches from the origin of its frame, at most.
+float reach_of(const Node& root) {
+  return std::abs(root.centre[0]) + std::abs(root.centre[1]) + std::abs(root.centre[2]) + root.radius;
+}
+
+RelativePose16 relative_pose(const PlacedFrame& a, const PlacedFrame& b) {
+  const Vec3x16 apart = b.origin - a.origin;
+  const auto row = [&](Floats16 x, Floats16 y, Floats16 z) {
+    return combine(b.rows[0], x, b.rows[1], y, b.rows[2], z);
+  };
+  return {{row(a.rows[0].x, a.rows[1].x, a.rows[2].x), row(a.rows[0].y, a.rows[1].y, a.rows[2].y),
+           row(a.rows[0].z, a.rows[1].z, a.rows[2].z)},
+          combine(a.rows[0], apart.x, a.rows[1], apart.y, a.rows[2], apart.z)};
+}
+
+/// Return the same for one lane, in double precision.
+RelativePose relative_pose(const PlacedFrame& a, const PlacedFrame& b, int lane) {
+  RelativePose pose{};
+  const auto entries = [lane](const Vec3x16& v, float (&out)[3]) {
+    out[0] = v.x[lane], out[1] = v.y[lane], out[2] = v.z[lane];
+  };
+  float from[3], to[3], origin[3], other[3];
+  entries(a.origin, origin), entries(b.origin, other);
+  for (int axis = 0; axis < 3; axis++) {
+    entries(a.rows[axis], from), entries(b.rows[axis], to);
+    for (int i = 0; i < 3; i++) {
+      const double turned = from[i];
+      pose.translation[i] += turned * (other[axis] - origin[axis]);
+      for (int k = 0; k < 3; k++) pose.rotation[3 * i + k] += turned * to[k];
+    }
+  }
+  return pose;
+}
+
+/// The way from the middle of the second node's box to that of the first, as the first and as the second body sees it,
+/// and the half extents of both boxes together along the axes of the first and of the second.
+struct Boxes {
+  Vec3x16 way, turned, sizes, other_sizes;
+};
+
+EVENROAD_INLINE Boxes boxes_of(const RelativePose16& pose, const Node& a, const Node& b) {
+  const Vec3x16 way = spread3(a.centre) - pose.seen(spread3(b.centre));
+  const Vec3x16 half = spread3(a.half), other = spread3(b.half);
+  const Vec3x16 x = abs(pose.rows[0]), y = abs(pose.rows[1]), z = abs(pose.rows[2]);
+  return {way, pose.turned_back(way), Vec3x16{dot(x, other), dot(y, other), dot(z, other)} + half,
+          combine(x, half.x, y, half.y, z, half.z) + other};
+}
+
+/// Return the mask of lanes in which no side of the boxes of two nodes separates them.
+Mask boxes_near(const RelativePose16& pose, const Node& a, const Node& b, Floats16 near) {
+  const Boxes boxes = boxes_of(pose, a, b);
+  const Vec3x16 gap = abs(boxes.way) - boxes.sizes, other = abs(boxes.turned) - boxes.other_sizes;
+  return below_zero(max(largest(gap), largest(other)) - near);
+}
+
+struct Farthest {
+  Floats16 along;
+  Vec3x16 corner;
+};
+
+/// Return how far a hull reaches along directions, and its farthest corners.
+EVENROAD_INLINE Farthest farthest(Vec3x16 direction, std::span<const HullPoint<float>> points) {
+  Farthest most{spread(-FAR), {Floats16{}, Floats16{}, Floats16{}}};
+  for (const auto& [x, y, z] : points) {
+    const Vec3x16 point = spread(Vec3{x, y, z});
+    const Floats16 here = dot(direction, point);
+    most.corner = where_less(most.along, here, point, most.corner);
+    most.along = max(here, most.along);
+  }
+  return most;
+}
+
+/// Return the points of segments that are nearest to the origin.
+EVENROAD_INLINE Vec3x16 nearest_of_two(Vec3x16 a, Vec3x16 b) {
+  const Vec3x16 edge = a - b;
+  const Floats16 share = dot(a, edge) / max(dot(edge, edge), spread(LEAST_SQUARE));
+  return minus(a, edge, clamp(share, Floats16{}, spread(1)));
+}
+
+/// Return what of triangles is nearest to the origin, but for what is between the first two corners.
+EVENROAD_INLINE Vec3x16 nearest_of_three(Vec3x16 a, Vec3x16 b, Vec3x16 c) {
+  const Vec3x16 first = nearest_of_two(a, c), second = nearest_of_two(b, c);
+  const Vec3x16 nearest = where_less(dot(second, second), dot(first, first), second, first);
+  const Vec3x16 e = b - a, f = c - a;
+  const Floats16 ee = dot(e, e), ef = dot(e, f), ff = dot(f, f), ae = dot(a, e), af = dot(a, f);
+  const Floats16 square = ee * ff;
+  const Floats16 one_by = 1.0F / max(max(fma(-ef, ef, square), square * FLAT), spread(LEAST_SQUARE));
+  const Floats16 s = fma(af, ef, -(ae * ff)) * one_by, t = fma(ae, ef, -(af * ee)) * one_by;
+  const Floats16 inside = min(min(s, t), 1.0F - s - t);
+  return where_less(Floats16{}, inside, a + plus(f * t, e, s), nearest);
+}
+
+/// Return the mask of those lanes asked for in which none of some planes separates the hulls of two leaves.
+Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const Node& a, const Node& b, Floats16 near,
+               Mask asked) {
+  const std::span<const HullPoint<float>> all = tree.points;
+  const auto points = all.subspan(a.points.first, a.points.size());
+  const auto other_points = all.subspan(b.points.first, b.points.size());
+  near = near + (a.width + b.width);
+  const Floats16 near_squared = near * near;
+  const Boxes boxes = boxes_of(pose, a, b);
+  // First across where the boxes are thin; no step leaves the range of single precision.
+  const Vec3x16 thick = {max(boxes.sizes.x, spread(THIN)), max(boxes.sizes.y, spread(THIN)),
+                         max(boxes.sizes.z, spread(THIN))};
+  Vec3x16 v = {boxes.way.x / thick.x, boxes.way.y / thick.y, boxes.way.z / thick.z};
+  v = v / max(max(abs(v.x), abs(v.y)), max(abs(v.z), spread(LEAST_SQUARE)));
+  Vec3x16 way = {v.x * v.x * v.x / thick.x, v.y * v.y * v.y / thick.y, v.z * v.z * v.z / thick.z}, last = way;
+  Mask meeting = 0;
+  for (int step = 0; step < PLANES; step++) {
+    const Vec3x16 along = way * (1.0F / sqrt(max(dot(way, way), spread(LEAST_SQUARE))));
+    const Farthest back = farthest(-along, points), on = farthest(pose.turned_back(along), other_points);
+    asked &= ~below_zero(near + (back.along + on.along + dot(along, pose.translation)));
+    if (asked == 0) break;
+    // On from the way between these corners; then from what of the last two and the way so far is nearest to 0.
+    const Vec3x16 corner = back.corner - pose.seen(on.corner);
+    way = step == 0 ? corner : nearest_of_three(way, last, corner);
+    last = corner;
+    const Mask touching = asked & below_zero(dot(way, way) - near_squared);
+    meeting |= touching;
+    asked &= ~touching;
+    if (asked == 0) break;
+  }
+  return asked | meeting;
+}
+
+}  // namespace
+
+Mask hulls_meeting(const Robot& robot, const Places& places, const BodyPair& pair, float margin, Mask asked,
+                   Wanted wanted) {
+  const Body &first = robot.bodies[pair.first], &second = robot.bodies[pair.second];
+  const PlacedFrame &frame = places.frames[first.frame], &other_frame = places.frames[second.frame];
+  const HullTree<float>& tree = robot.hulls;
+  const RelativePose16 pose = relative_pose(frame, other_frame);
+  const Vec3x16 apart = abs(other_frame.origin - frame.origin);
+  const float size = reach_of(tree.nodes[first.hulls]) + reach_of(tree.nodes[second.hulls]);
+  // How near is wrong by no more than single precision loses of the lengths that it comes of.
+  const Floats16 near = spread(margin) + (apart.x + apart.y + apart.z + size) * SLACK;
+  struct Waiting {
+    int a, b;
+    Mask lanes;
+  } waiting[DEEPEST];
+  waiting[0] = {first.hulls, second.hulls, asked};
+  Mask meeting = 0;
+  for (int count = 1; count > 0;) {
+    const auto [a, b, lanes] = waiting[--count];
+    Mask left = lanes & ~meeting;
+    if (left == 0) continue;
+    const Node &p = tree.nodes[a], &q = tree.nodes[b];
+    left &= boxes_near(pose, p, q, near);
+    if (left == 0) continue;
+    if (p.is_leaf() && q.is_leaf()) {
+      for (left = not_apart(pose, tree, p, q, near, left); left != 0; left &= left - 1) {
+        const int lane = std::countr_zero(left);
+        if (!leaves_near(tree, a, b, relative_pose(frame, other_frame, lane), margin)) continue;
+        meeting |= 1U << lane;
+        if (wanted == Wanted::FIRST) return meeting;
+      }
+    } else if (q.is_leaf() || (!p.is_leaf() && p.radius >= q.radius)) {
+      for (const int child : p.children) waiting[count++] = {child, b, left};
+    } else {
+      for (const int child : q.children) waiting[count++] = {a, child, left};
+    }
+  }
+  return meeting;
+}
+
+}  // namespace evenroad::robot

@@ -1,0 +1,71 @@
+// Trees of balls and boxes over convex hulls: one tree for each body, in its frame.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace evenroad::robot {
+
+/// From a first to one before an end.
+struct Range {
+  int first = 0, end = 0;
+  int size() const { return end - first; }
+};
+
+template <class T>
+struct HullPoint {
+  T x, y, z;
+};
+
+template <class T>
+struct HullNode {
+  int children[2];  // -1 twice for a leaf
+  Range points;     // of a leaf's hull
+  T centre[3], half[3];
+  T radius;  // of a ball about the same centre
+  T width;   // by how much a leaf's hull is widened
+  bool is_leaf() const { return children[0] < 0; }
+};
+
+template <class T>
+struct HullTree {
+  std::vector<HullNode<T>> nodes;
+  std::vector<HullPoint<T>> points;
+};
+
+/// Nodes as Python names them.
+struct GivenHulls {
+  std::span<const std::int64_t> children, spans;  // (nodes, 2) each
+  std::span<const double> boxes;                  // (nodes, 8): centre, half extents, radius, width
+  std::span<const double> points;                 // (points, 3)
+};
+
+/// Pairs of nodes that may wait: at most the depths of both trees together.
+constexpr int DEEPEST = 96;
+
+/// Return trees; std::invalid_argument unless children come after their parents, and no tree is deeper than half of
+/// DEEPEST.
+template <class T>
+HullTree<T> make_hull_tree(const GivenHulls& given);
+
+/// The pose of one body in the frame of another: rotation row by row, translation.
+struct RelativePose {
+  double rotation[9], translation[3];
+};
+
+/// Two nodes, leaves, that touch; -1 twice for none.
+struct HullContact {
+  int first = -1, second = -1;
+};
+
+/// Return two hulls, below these roots, that come nearer than `margin` [m].
+template <class T>
+HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, const RelativePose& pose, double margin);
+
+/// Return whether the hulls of two leaves come within a margin; apart is only what a plane separates.
+template <class T>
+bool leaves_near(const HullTree<T>& tree, int first, int second, const RelativePose& pose, double margin);
+
+}  // namespace evenroad::robot

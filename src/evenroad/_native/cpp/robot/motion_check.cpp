@@ -1,0 +1,97 @@
+// Sixteen states of a motion at a time, until one touches something.
+#include "robot/motion_check.hpp"
+
+#include <bit>
+
+namespace evenroad::robot {
+
+namespace {
+
+/// Return whether the states of the workspace's motion from number `first` to `last` are free, or sixteen of them.
+bool are_free(Workspace& workspace, int first, int last, bool sixteen_do) {
+  Motion& motion = workspace.motion;
+  const int count = last - first + 1;
+  if (count <= 0) return true;
+  const int rest = std::max(count - LANES, 0), stretches = (rest + LANES - 1) / LANES;
+  const int level = std::bit_width(static_cast<unsigned>(std::max(stretches - 1, 0)));
+  const double segments = std::max(motion.segments, 1);
+  double numbers[LANES];
+  if (rest > 0) {
+    for (int lane = 0; lane < LANES; lane++) {
+      numbers[lane] = static_cast<double>(first + static_cast<std::int64_t>(lane) * (count - 1) / (LANES - 1));
+    }
+  } else {
+    for (int lane = 0; lane < LANES; lane++) numbers[lane] = first + std::min(lane, count - 1);
+  }
+  motion.share = load<Doubles16>(numbers) / segments;
+  motion.write_states(workspace.states);
+  if (last == motion.segments) {
+    // Exactly the end, so that a motion is free only where its end is.
+    workspace.set(LANES - 1, motion.end);
+  }
+  workspace.counts.configurations += std::min(count, LANES);
+  if (blocked(workspace, Wanted::FIRST) != 0) return false;
+  if (rest == 0 || sixteen_do) return true;
+  for (int place = 0; place < 1 << level; place++) {
+    int stretch = 0;
+    for (int bit = 0; bit < level; bit++) stretch |= (place >> bit & 1) << (level - 1 - bit);
+    if (stretch >= stretches) continue;
+    // The r-th of these has number r + 1 + gap, where gap counts the spread ones passed since the first.
+    std::int64_t gap = 0;
+    for (int lane = 0; lane < LANES; lane++) {
+      const std::int64_t rank = std::min(stretch * LANES + lane, rest - 1);
+      while ((gap + 1) * (count - 1) / (LANES - 1) - (gap + 1) <= rank) gap++;
+      numbers[lane] = static_cast<double>(first + rank + 1 + gap);
+    }
+    motion.share = load<Doubles16>(numbers) / segments;
+    workspace.counts.configurations += std::min(LANES, rest - stretch * LANES);
+    motion.write_states(workspace.states);
+    if (blocked(workspace, Wanted::FIRST) != 0) return false;
+  }
+  return true;
+}
+
+/// Make a motion the workspace's.
+void take(Workspace& workspace, std::span<const double> a, std::span<const double> b) {
+  workspace.motion.span(a, b, workspace.checker.robot().bounds, workspace.checker.resolution());
+  workspace.counts.motions++;
+}
+
+}  // namespace
+
+bool motion_free(Workspace& workspace, std::span<const double> a, std::span<const double> b, Known known) {
+  take(workspace, a, b);
+  const Motion& motion = workspace.motion;
+  const bool first_known = known == Known::BOTH_ENDPOINTS || (known == Known::START && !motion.exchanged);
+  const bool last_known = known == Known::BOTH_ENDPOINTS || (known == Known::START && motion.exchanged);
+  return are_free(workspace, first_known ? 1 : 0, motion.segments - (last_known ? 1 : 0), false);
+}
+
+bool motion_free_coarsely(Workspace& workspace, std::span<const double> a, std::span<const double> b) {
+  take(workspace, a, b);
+  return are_free(workspace, 1, workspace.motion.segments - 1, true);
+}
+
+bool is_shortcut(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits) {
+  return motion_free_coarsely(workspace, a, b) && motion_proved(workspace, a, b, limits);
+}
+
+void motions_free(const Checker& checker, Matrix<const double> a, Matrix<const double> b, double tolerance,
+                  std::span<bool> free) {
+  if (a.rows == 0 || checker.is_never_free()) {
+    std::fill(free.begin(), free.end(), false);
+    return;
+  }
+  // A motion that needs more batches is not proved: some ten milliseconds; usual ones need a few.
+  const ProofLimits limits{tolerance, 1 << 11};
+  const Borrowed workspace = checker.borrow();
+  const Bounds& bounds = checker.robot().bounds;
+  std::vector<double> start(a.columns), end(a.columns);
+  for (std::size_t row = 0; row < a.rows; row++) {
+    free[row] = enter(a[row], bounds, start) && enter(b[row], bounds, end) &&
+                motion_free(*workspace, start, end, Known::NO_ENDPOINT) &&
+                (tolerance <= 0 || motion_proved(*workspace, start, end, limits));
+  }
+}
+
+}  // namespace evenroad::robot

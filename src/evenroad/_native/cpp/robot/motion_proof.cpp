@@ -1,0 +1,101 @@
+// Proofs that a motion is free throughout, not at states alone.
+//
+// The method is that of evenroad.robot.certified, for sixteen stretches of a motion at once: every stretch is tested in
+// its middle with bodies enlarged by what half of the stretch can move them, and halved where that fails.
+#include "robot/motion_check.hpp"
+
+namespace evenroad::robot {
+
+namespace {
+
+/// What sums of single precision are multiplied by to be no less than the true ones.
+constexpr float UP = 1.0F + 3e-7F;
+
+/// Return a length of single precision that is no less than the sum of the two [m].
+float wider(float length, double margin) { return (length + static_cast<float>(margin)) * UP; }
+
+/// Write how far each body can move during the whole motion, and return the largest [m].
+double write_speeds(const OwnMatrix<double>& arms, std::span<const double> way, std::span<double> speeds) {
+  std::fill(speeds.begin(), speeds.end(), 0.0);
+  for (std::size_t k = 0; k < way.size(); k++) {
+    const double size = std::abs(way[k]);
+    const auto row = arms[k];
+    for (std::size_t i = 0; i < speeds.size(); i++) speeds[i] += row[i] * size;
+  }
+  return speeds.empty() ? 0.0 : std::max(0.0, *std::max_element(speeds.begin(), speeds.end()));
+}
+
+double largest(std::span<const double> speeds, Range range) {
+  double most = 0;
+  for (int i = range.first; i < range.end; i++) most = std::max(most, speeds[i]);
+  return most;
+}
+
+/// Write lengths that are larger by what `half` of the motion can move the bodies: all that a test is decided by.
+void enlarge(Workspace& workspace, double half) {
+  const Robot& robot = workspace.checker.robot();
+  const Lengths& from = *workspace.lengths;
+  Lengths& into = workspace.enlarged;
+  const std::vector<double>&speeds = workspace.speeds, &pair_speeds = workspace.pair_speeds;
+  for (std::size_t i = 0; i < from.capsules.size(); i++) into.capsules[i] = wider(from.capsules[i], half * speeds[i]);
+  // What is around a body moves no farther than the fastest of its capsules.
+  for (std::size_t b = 0; b < robot.bodies.size(); b++) {
+    const double margin = half * largest(speeds, robot.bodies[b].capsules);
+    const auto& [radius, extents] = from.bodies[b];
+    into.bodies[b] = {wider(radius, margin),
+                      {wider(extents.x, margin), wider(extents.y, margin), wider(extents.z, margin)}};
+  }
+  const std::size_t pairs = from.pairs.size();
+  for (std::size_t pair = 0; pair < pairs; pair++) {
+    const double margin = half * pair_speeds[pair];
+    into.pairs[pair] = {wider(from.pairs[pair].near, margin), wider(from.pairs[pair].reach, margin)};
+  }
+  for (std::size_t p = 0; p < robot.body_pairs.size(); p++) {
+    into.body_pairs[p] = wider(from.body_pairs[p], half * largest(pair_speeds, robot.body_pairs[p].pairs));
+  }
+  for (std::size_t p = 0; p < from.hull_margins.size(); p++) {
+    into.hull_margins[p] = wider(from.hull_margins[p], half * pair_speeds[pairs + p]);
+  }
+}
+
+}  // namespace
+
+bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits) {
+  const Robot& robot = workspace.checker.robot();
+  Motion& motion = workspace.motion;
+  motion.span(a, b, robot.bounds, workspace.checker.resolution());
+  workspace.counts.motions++;
+  const double fastest = std::max(write_speeds(robot.arms, motion.way, workspace.speeds),
+                                  write_speeds(robot.pair_arms, motion.way, workspace.pair_speeds));
+  std::vector<Stretch>& waiting = workspace.waiting;
+  int count = LANES, enlarged_for = -1;
+  // The first stretch is the last to be pushed and the first to be looked at.
+  for (int lane = 0; lane < LANES; lane++) waiting[lane] = {1.0 - (lane + 0.5) / LANES, 0};
+  double half = 0;
+  for (int batch = 0; batch < limits.most_batches; batch++) {
+    const int level = waiting[count - 1].level;
+    if (level != enlarged_for) {
+      half = 0.5 / static_cast<double>(std::int64_t{LANES} << level);
+      enlarge(workspace, half);
+      enlarged_for = level;
+    }
+    int taken = 0;
+    for (; taken < LANES && taken < count && waiting[count - 1 - taken].level == level; taken++) {
+      motion.share[taken] = waiting[count - 1 - taken].centre;
+    }
+    for (int lane = taken; lane < LANES; lane++) motion.share[lane] = motion.share[taken - 1];
+    motion.write_states(workspace.states);
+    workspace.counts.configurations += taken;
+    const Mask near = blocked(workspace, workspace.enlarged, Wanted::ALL) & ((1U << taken) - 1);
+    count -= taken;
+    if (near != 0 && (half * fastest < limits.tolerance || count + 2 * LANES > MOST_WAITING)) return false;
+    for (int lane = taken - 1; lane >= 0; lane--) {
+      if ((near >> lane & 1) == 0) continue;
+      for (const double side : {0.5, -0.5}) waiting[count++] = {motion.share[lane] + side * half, level + 1};
+    }
+    if (count == 0) return true;
+  }
+  return false;
+}
+
+}  // namespace evenroad::robot

@@ -1,0 +1,244 @@
+// A robot's tables from named arrays: bodies, pairs of capsules, and lengths with what single precision loses added.
+#include "robot/robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace evenroad::robot {
+
+namespace {
+
+constexpr double LEAST_SQUARE = 1e-30;  // what a squared length is taken for at least where one divides by it [m^2]
+
+/// A number of something, within 0 and `count`.
+int index(std::int64_t value, std::size_t count, const char* name) {
+  if (value < 0 || value >= static_cast<std::int64_t>(count)) {
+    throw std::invalid_argument(std::string(name) + " must be below " + std::to_string(count) + ", got " +
+                                std::to_string(value));
+  }
+  return static_cast<int>(value);
+}
+
+void require(bool holds, const char* text) {
+  if (!holds) throw std::invalid_argument(text);
+}
+
+Vec3 single(const double* v) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])}; }
+
+double norm(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+std::vector<Frame> make_frames(const GivenRobot& given, std::size_t dim) {
+  const auto& from = given.frames;
+  const std::size_t count = from.parent.size();
+  require(from.coordinate.size() == count && from.slides.size() == count && from.multiplier.size() == count &&
+              from.offset.size() == count && from.rotation.size() == 9 * count && from.translation.size() == 3 * count,
+          "arrays of frames must be equally long");
+  std::vector<Frame> frames;
+  for (std::size_t i = 0; i < count; i++) {
+    Frame frame{index(from.parent[i], i + 1, "frames.parent"),
+                index(from.coordinate[i], dim, "frames.coordinate"),
+                from.slides[i],
+                from.multiplier[i],
+                from.offset[i],
+                {},
+                single(from.translation.data() + 3 * i)};
+    for (int entry = 0; entry < 9; entry++) frame.rotation[entry] = static_cast<float>(from.rotation[9 * i + entry]);
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+/// The capsules of a robot in double precision.
+struct Shapes {
+  const GivenRobot& given;
+
+  const double* centre(int i) const { return given.capsules.centre.data() + 3 * i; }
+  const double* half(int i) const { return given.capsules.half.data() + 3 * i; }
+  double radius(int i) const { return given.capsules.radius[i]; }
+  double covering(int i) const { return given.capsules.covering[i]; }
+  Range samples(int i) const {
+    const auto& first = given.capsules.first_sample;
+    return {static_cast<int>(first[i]), static_cast<int>(first[i + 1])};
+  }
+};
+
+struct Ball {
+  double centre[3], radius;
+};
+
+/// Return a ball that holds capsules: around the middle of their box.
+Ball ball_around(const Shapes& shapes, Range capsules) {
+  Ball ball{};
+  for (int axis = 0; axis < 3; axis++) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (int i = capsules.first; i < capsules.end; i++) {
+      for (double end :
+           {shapes.centre(i)[axis] - shapes.half(i)[axis], shapes.centre(i)[axis] + shapes.half(i)[axis]}) {
+        low = std::min(low, end - shapes.radius(i)), high = std::max(high, end + shapes.radius(i));
+      }
+    }
+    ball.centre[axis] = 0.5 * (low + high);
+  }
+  for (int i = capsules.first; i < capsules.end; i++) {
+    for (double side : {-1.0, 1.0}) {
+      double apart[3];
+      for (int axis = 0; axis < 3; axis++) {
+        apart[axis] = shapes.centre(i)[axis] + side * shapes.half(i)[axis] - ball.centre[axis];
+      }
+      ball.radius = std::max(ball.radius, norm(apart) + shapes.radius(i));
+    }
+  }
+  return ball;
+}
+
+/// Return half extents of a box about a centre that holds the spheres that cover capsules, wider by `more`.
+Vec3 half_extents(const Shapes& shapes, Range capsules, const double* centre, double more) {
+  double half[3] = {0, 0, 0};
+  for (int i = capsules.first; i < capsules.end; i++) {
+    const Range samples = shapes.samples(i);
+    for (int sample = samples.first; sample < samples.end; sample++) {
+      const double place = shapes.given.capsules.samples[sample];
+      for (int axis = 0; axis < 3; axis++) {
+        const double apart = std::abs(shapes.centre(i)[axis] + place * shapes.half(i)[axis] - centre[axis]);
+        half[axis] = std::max(half[axis], apart + shapes.covering(i));
+      }
+    }
+  }
+  for (double& each : half) each += more;
+  return single(half);
+}
+
+void add_capsules(Robot& robot, const GivenRobot& given) {
+  const auto& from = given.capsules;
+  const std::size_t count = from.body.size();
+  require(from.first_sample.size() == count + 1 && from.centre.size() == 3 * count && from.half.size() == 3 * count &&
+              from.radius.size() == count && from.covering.size() == count,
+          "arrays of capsules must be equally long");
+  for (double place : from.samples) robot.samples.push_back(static_cast<float>(place));
+  for (std::size_t i = 0; i < count; i++) {
+    require(from.first_sample[i] >= 0 && from.first_sample[i] < from.first_sample[i + 1] &&
+                from.first_sample[i + 1] <= static_cast<std::int64_t>(from.samples.size()),
+            "capsules.first_sample must rise, within capsules.samples");
+    const Vec3 half = single(from.half.data() + 3 * i);
+    const double length = norm(from.half.data() + 3 * i);
+    robot.capsules.push_back({single(from.centre.data() + 3 * i), half, half.x == 0 && half.y == 0 && half.z == 0,
+                              Shapes{given}.samples(static_cast<int>(i)), static_cast<float>(length),
+                              static_cast<float>(1.0 / std::max(length * length, LEAST_SQUARE)),
+                              static_cast<float>(from.covering[i] - from.radius[i])});
+    robot.lengths.capsules.push_back(static_cast<float>(from.covering[i] + given.padding));
+  }
+}
+
+void add_fixed_spheres(Robot& robot, const GivenRobot& given) {
+  const Shapes shapes{given};
+  for (int i = 0; i < robot.fixed_capsules(); i++) {
+    for (int sample = robot.capsules[i].samples.first; sample < robot.capsules[i].samples.end; sample++) {
+      FixedSphere sphere{i, {}, shapes.covering(i)};
+      for (int axis = 0; axis < 3; axis++) {
+        sphere.centre[axis] = shapes.centre(i)[axis] + given.capsules.samples[sample] * shapes.half(i)[axis];
+      }
+      robot.fixed_spheres.push_back(sphere);
+    }
+  }
+}
+
+std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
+  const std::size_t count = given.bodies.frame.size(), nodes = robot.hulls.nodes.size();
+  require(given.bodies.hulls.size() == count, "bodies.hulls must be as long as bodies.frame");
+  std::vector<Ball> balls;
+  int capsule = 0;
+  for (std::size_t b = 0; b < count; b++) {
+    Body body{index(given.bodies.frame[b], robot.frames.size() + 1, "bodies.frame"), {capsule, capsule}, {}, -1};
+    if (given.bodies.hulls[b] >= 0) body.hulls = index(given.bodies.hulls[b], nodes, "bodies.hulls");
+    const auto& owner = given.capsules.body;
+    while (capsule < static_cast<int>(owner.size()) && owner[capsule] == static_cast<std::int64_t>(b)) capsule++;
+    body.capsules.end = capsule;
+    require(body.capsules.size() > 0, "capsules.body must rise by one from 0 and name every body");
+    const bool fixed = body.frame == 0;
+    require(!fixed || robot.fixed_bodies == static_cast<int>(b), "bodies that do not move must come first");
+    robot.fixed_bodies += fixed;
+    const Ball ball = ball_around({given}, body.capsules);
+    body.centre = single(ball.centre);
+    // Boxes are wider by twice the padding: they must not miss what the spheres, wider by one, would find.
+    robot.lengths.bodies.push_back({static_cast<float>(ball.radius + given.padding),
+                                    half_extents({given}, body.capsules, ball.centre, 2.0 * given.padding)});
+    robot.bodies.push_back(body);
+    balls.push_back(ball);
+  }
+  require(capsule == static_cast<int>(given.capsules.body.size()), "capsules.body must name bodies");
+  return balls;
+}
+
+void add_pairs(Robot& robot, const GivenRobot& given, const std::vector<Ball>& balls) {
+  const Shapes shapes{given};
+  for (std::size_t p = 0; 2 * p < given.pairs.bodies.size(); p++) {
+    const int a = index(given.pairs.bodies[2 * p], balls.size(), "pairs.bodies");
+    const int b = index(given.pairs.bodies[2 * p + 1], balls.size(), "pairs.bodies");
+    const Range first = robot.bodies[a].capsules, second = robot.bodies[b].capsules;
+    const int begin = static_cast<int>(robot.pairs.size());
+    for (int i = first.first; i < first.end; i++) {
+      for (int k = second.first; k < second.end; k++) {
+        const double e = norm(shapes.half(i)), f = norm(shapes.half(k));
+        const double reach = shapes.radius(i) + shapes.radius(k) + 2.0 * given.padding;
+        const auto one_by = [](double square) { return static_cast<float>(square > 0.0 ? 1.0 / square : 0.0); };
+        robot.pairs.push_back({i, k, one_by(e * e), one_by(f * f)});
+        robot.lengths.pairs.push_back({static_cast<float>(reach + e + f), static_cast<float>(reach)});
+      }
+    }
+    robot.body_pairs.push_back({a, b, {begin, static_cast<int>(robot.pairs.size())}});
+    robot.lengths.body_pairs.push_back(static_cast<float>(balls[a].radius + balls[b].radius + 2.0 * given.padding));
+  }
+  require(0 <= given.pairs.by_hulls && given.pairs.by_hulls <= static_cast<std::int64_t>(robot.body_pairs.size()),
+          "pairs.by_hulls must be a number of pairs");
+  robot.hull_pairs = static_cast<int>(given.pairs.by_hulls);
+  robot.lengths.hull_margins.assign(robot.hull_pairs, static_cast<float>(2.0 * given.padding));
+  for (std::size_t p = robot.first_hull_pair(); p < robot.body_pairs.size(); p++) {
+    const BodyPair& pair = robot.body_pairs[p];
+    require(robot.bodies[pair.first].hulls >= 0 && robot.bodies[pair.second].hulls >= 0,
+            "bodies of pairs that hulls decide must have hulls");
+  }
+}
+
+OwnMatrix<double> matrix(std::span<const double> from, std::size_t rows, std::size_t columns, const char* text) {
+  require(from.size() == rows * columns, text);
+  OwnMatrix<double> made(rows, columns);
+  std::copy(from.begin(), from.end(), made.values.begin());
+  return made;
+}
+
+}  // namespace
+
+Lengths Lengths::enlarged(float margin) const {
+  Lengths more = *this;
+  for (float& radius : more.capsules) radius += margin;
+  for (BodyLengths& body : more.bodies) {
+    for (float* length : {&body.radius, &body.half.x, &body.half.y, &body.half.z}) *length += margin;
+  }
+  return more;
+}
+
+Robot make_robot(const GivenRobot& given) {
+  Robot robot;
+  const std::size_t dim = given.bounds.size() / 3;
+  require(dim > 0 && given.bounds.size() == 3 * dim, "bounds must have three rows: low, high and period");
+  const auto row = [&](int i) {
+    const auto part = given.bounds.subspan(i * dim, dim);
+    return std::vector<double>(part.begin(), part.end());
+  };
+  robot.bounds = {row(0), row(1), row(2)};
+  robot.padding = given.padding, robot.reach = given.reach;
+  robot.frames = make_frames(given, dim);
+  robot.hulls = make_hull_tree<float>(given.hulls);
+  add_capsules(robot, given);
+  add_pairs(robot, given, add_bodies(robot, given));
+  add_fixed_spheres(robot, given);
+  const std::size_t pairs = robot.pairs.size() + robot.hull_pairs;
+  robot.arms = matrix(given.arms.capsules, dim, robot.capsules.size(), "arms.capsules must be (dim, capsules)");
+  robot.pair_arms = matrix(given.arms.pairs, dim, pairs, "arms.pairs must be (dim, pairs of capsules and by hulls)");
+  return robot;
+}
+
+}  // namespace evenroad::robot

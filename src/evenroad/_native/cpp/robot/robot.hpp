@@ -1,0 +1,135 @@
+// A robot as its checks read it: frames that joints move, bodies of capsules on them, pairs that may touch, and hulls.
+//
+// Frame 0 is the root link's, which does not move; every other turns about, or slides along, its own z axis.  A body is
+// a link with capsules.  Bodies of frame 0 come first, and the capsules of a body follow each other.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/float16.hpp"
+#include "common/matrix.hpp"
+#include "robot/hull_tree.hpp"
+
+namespace evenroad::robot {
+
+struct Frame {
+  int parent, coordinate;
+  bool slides;
+  double multiplier, offset;  // its value is multiplier * coordinate + offset
+  float rotation[9];          // row by row, to the parent frame
+  Vec3 translation;
+};
+
+struct Capsule {
+  Vec3 centre, half;  // middle of its segment, and from there to an end
+  bool is_ball;
+  Range samples;                      // of the spheres that cover it, in Robot::samples
+  float half_length, one_by_squared;  // of the segment: half its length, one over the square of that
+  float slack;                        // by how much the spheres are larger than the capsule
+};
+
+struct Body {
+  int frame;
+  Range capsules;
+  Vec3 centre;  // of a ball and of a box around its capsules
+  int hulls;    // root of its tree of hulls, or -1
+};
+
+struct CapsulePair {
+  int first, second;
+  float one_by_ee, one_by_ff;  // one over the squared half lengths, 0 for balls
+};
+
+struct BodyPair {
+  int first, second;
+  Range pairs;  // of capsules: those of one capsule of the first body with all of the second follow each other
+};
+
+struct BodyLengths {
+  float radius;  // of a ball around the capsules
+  Vec3 half;     // of a box around the spheres that cover them, in the frame
+};
+
+struct PairLengths {
+  float near;   // centres farther apart than this cannot touch
+  float reach;  // sum of radii
+};
+
+/// All lengths by which a check decides: of larger bodies all else stays the same.
+struct Lengths {
+  std::vector<float> capsules;  // radii of covering spheres
+  std::vector<BodyLengths> bodies;
+  std::vector<PairLengths> pairs;
+  std::vector<float> body_pairs;    // centres of balls around bodies farther apart than this: none of them touch
+  std::vector<float> hull_margins;  // hulls nearer than this count as touching
+
+  /// Bodies larger by a margin where obstacles are concerned; they may be as near to each other as before.
+  Lengths enlarged(float margin) const;
+};
+
+/// Low, high and period of each coordinate; the period is infinite where it does not wrap.
+struct Bounds {
+  std::vector<double> low, high, period;
+};
+
+/// A sphere over a capsule that does not move, as it is.
+struct FixedSphere {
+  int capsule;
+  double centre[3], radius;
+};
+
+struct Robot {
+  Bounds bounds;
+  std::vector<Frame> frames;  // parents first; without the root's
+  std::vector<Capsule> capsules;
+  std::vector<float> samples;  // along segments, from -1 to 1
+  std::vector<Body> bodies;
+  std::vector<BodyPair> body_pairs;  // the last ones are decided by hulls
+  std::vector<CapsulePair> pairs;
+  HullTree<float> hulls;
+  Lengths lengths;
+  OwnMatrix<double> arms{0, 0};       // (dim, capsules): how fast a coordinate moves a capsule at most [m/rad]
+  OwnMatrix<double> pair_arms{0, 0};  // (dim, pairs, then pairs by hulls): the two against each other
+  std::vector<FixedSphere> fixed_spheres;
+  int fixed_bodies = 0;
+  int hull_pairs = 0;
+  double padding = 0;  // by which radii are larger, so that rounding makes no verdict optimistic
+  double reach = 0;    // no point is ever farther from the root's origin
+
+  int dim() const { return static_cast<int>(bounds.low.size()); }
+  int fixed_capsules() const { return fixed_bodies == 0 ? 0 : bodies[fixed_bodies - 1].capsules.end; }
+  int first_hull_pair() const { return static_cast<int>(body_pairs.size()) - hull_pairs; }
+};
+
+/// The arrays that a robot is made of, as Python names them; sizes in metres, as they are.
+struct GivenRobot {
+  struct {
+    std::span<const std::int64_t> parent, coordinate;
+    std::span<const bool> slides;
+    std::span<const double> multiplier, offset, rotation, translation;
+  } frames;
+  struct {
+    std::span<const std::int64_t> frame, hulls;
+  } bodies;
+  struct {
+    std::span<const std::int64_t> body, first_sample;
+    std::span<const double> centre, half, radius, covering, samples;
+  } capsules;
+  struct {
+    std::span<const std::int64_t> bodies;
+    std::int64_t by_hulls;
+  } pairs;
+  GivenHulls hulls;
+  struct {
+    std::span<const double> capsules, pairs;
+  } arms;
+  std::span<const double> bounds;  // low, high, period
+  double padding = 0, reach = 0;
+};
+
+/// Return a robot; std::invalid_argument if an index is out of range or sizes do not fit.
+Robot make_robot(const GivenRobot& given);
+
+}  // namespace evenroad::robot

@@ -1,0 +1,180 @@
+// A scene's obstacles for one robot: those in its reach, boxes around sixteen of them, and who is tested against which.
+#include "robot/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace evenroad::robot {
+
+namespace {
+
+/// Single precision makes an obstacle uncertain by less than this share of its farthest point's distance from the
+/// origin.
+constexpr double OBSTACLE_PADDING = 2.5e-7;
+constexpr float NEVER_HIT = -1e30F;  // half extent that fills unused places of a block
+constexpr double FARTHEST = 1e6;     // no length may be larger [m]: single precision would leave decimetres
+
+/// An obstacle in double precision.
+struct Exact {
+  Form form;
+  double centre[3], half[3], rotation[9], rounding;
+};
+
+/// Return whether a rotation takes axes to axes, up to the rounding of sines of right angles.
+bool is_straight(const double* rotation) {
+  return std::all_of(rotation, rotation + 9, [](double entry) { return std::abs(entry - std::rint(entry)) < 1e-14; });
+}
+
+/// Return all points within a rounding of a box, or a cylinder.
+///
+/// A box along the axes loses what lies far beyond `reach`, where the robot never comes: a floor of a hundred metres
+/// would else cost digits, of which single precision has seven.
+Exact exact(const GivenObstacle& given, double reach) {
+  const auto kind = static_cast<GivenKind>(static_cast<int>(given.kind));
+  Exact made{};
+  double extents[3] = {0, 0, 0.5 * given.size[1]};
+  if (kind == GivenKind::BOX) {
+    for (int axis = 0; axis < 3; axis++) extents[axis] = 0.5 * given.size[axis];
+  } else if (kind == GivenKind::CYLINDER) {
+    extents[0] = extents[1] = given.size[0];
+  } else {
+    made.rounding = given.size[0];
+  }
+  std::copy_n(given.translation, 3, made.centre);
+  std::copy_n(given.rotation, 9, made.rotation);
+  std::copy_n(extents, 3, made.half);
+  if (kind != GivenKind::SPHERE && (kind == GivenKind::CYLINDER || !is_straight(given.rotation))) {
+    made.form = kind == GivenKind::CYLINDER ? Form::CYLINDER : Form::ROTATED;
+    return made;
+  }
+  made.form = Form::ALIGNED;
+  for (int axis = 0; axis < 3; axis++) {
+    double extent = 0;
+    for (int entry = 0; entry < 3; entry++)
+      extent += std::abs(std::rint(given.rotation[3 * axis + entry])) * extents[entry];
+    for (int entry = 0; entry < 3; entry++) made.rotation[3 * axis + entry] = axis == entry;
+    made.half[axis] = kind != GivenKind::SPHERE ? extent : 0.0;
+    if (kind == GivenKind::BOX) {
+      const double low = std::max(given.translation[axis] - extent, -2.0 * reach);
+      const double high = std::min(given.translation[axis] + extent, 2.0 * reach);
+      made.centre[axis] = 0.5 * (low + high), made.half[axis] = 0.5 * (high - low);
+    }
+  }
+  return made;
+}
+
+/// Return the squared distance of a point from an obstacle, without the rounding of its edges [m^2].
+double squared_distance(const Exact& o, const double* point) {
+  const double d[3] = {point[0] - o.centre[0], point[1] - o.centre[1], point[2] - o.centre[2]};
+  double gap[3];
+  for (int axis = 0; axis < 3; axis++) {
+    gap[axis] = std::abs(d[0] * o.rotation[axis] + d[1] * o.rotation[3 + axis] + d[2] * o.rotation[6 + axis]);
+  }
+  const double w = std::max(gap[2] - o.half[2], 0.0);
+  if (o.form == Form::CYLINDER) {
+    const double aside = std::max(std::sqrt(gap[0] * gap[0] + gap[1] * gap[1]) - o.half[0], 0.0);
+    return aside * aside + w * w;
+  }
+  const double u = std::max(gap[0] - o.half[0], 0.0), v = std::max(gap[1] - o.half[1], 0.0);
+  return u * u + v * v + w * w;
+}
+
+/// Return half extents of the box around an obstacle.
+void write_extents(const Exact& o, double (&extents)[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    const double* row = o.rotation + 3 * axis;
+    if (o.form == Form::CYLINDER) {
+      const double upright = std::abs(row[2]);
+      extents[axis] = upright * o.half[2] + std::sqrt(std::max(1.0 - upright * upright, 0.0)) * o.half[0];
+      continue;
+    }
+    extents[axis] = 0;
+    for (int entry = 0; entry < 3; entry++) extents[axis] += std::abs(row[entry]) * o.half[entry];
+    extents[axis] += o.rounding;
+  }
+}
+
+/// Return whether an obstacle is too far or too large: boxes along the axes are cut off where the robot never comes.
+bool is_too_far(const GivenObstacle& given) {
+  const double largest = std::max({std::abs(given.translation[0]), std::abs(given.translation[1]),
+                                   std::abs(given.translation[2]), given.size[0], given.size[1], given.size[2]});
+  const bool cut =
+      static_cast<GivenKind>(static_cast<int>(given.kind)) == GivenKind::BOX && is_straight(given.rotation);
+  return largest > FARTHEST && !cut;
+}
+
+void put(Vec3x16& where, int lane, float x, float y, float z) {
+  where.x[lane] = x, where.y[lane] = y, where.z[lane] = z;
+}
+
+/// Add an obstacle, larger by what single precision loses, and return by how much.
+double add(Scene& scene, const Exact& o, int number) {
+  double extents[3], squared = 0;
+  write_extents(o, extents);
+  for (int axis = 0; axis < 3; axis++) {
+    const double farthest = std::abs(o.centre[axis]) + extents[axis];
+    squared += farthest * farthest;
+  }
+  const double padding = OBSTACLE_PADDING * std::sqrt(squared);
+  const auto single = [](const double* v) {
+    return Vec3{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+  };
+  const double rounding = o.rounding + padding;
+  Obstacle obstacle{o.form, number, single(o.centre), single(o.half), {}, static_cast<float>(rounding)};
+  for (int entry = 0; entry < 9; entry++) obstacle.rotation[entry] = static_cast<float>(o.rotation[entry]);
+  const int lane = static_cast<int>(scene.obstacles.size()) % LANES;
+  if (lane == 0) {
+    const Floats16 never = spread(NEVER_HIT);
+    scene.blocks.push_back({{Floats16{}, Floats16{}, Floats16{}}, {never, never, never}});
+  }
+  for (double& extent : extents) extent += padding;
+  const Vec3 half = single(extents);
+  put(scene.blocks.back().centre, lane, obstacle.centre.x, obstacle.centre.y, obstacle.centre.z);
+  put(scene.blocks.back().half, lane, half.x, half.y, half.z);
+  scene.obstacles.push_back(obstacle);
+  return rounding - o.rounding;
+}
+
+}  // namespace
+
+Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, Matrix<const bool> tested,
+                 double clearance) {
+  if (tested.rows != robot.capsules.size() || tested.columns != obstacles.size()) {
+    throw std::invalid_argument("tested must have a row for each capsule and a column for each obstacle");
+  }
+  Scene scene;
+  std::vector<Exact> kept;
+  const double reach = robot.reach + clearance, origin[3] = {0, 0, 0};
+  for (std::size_t k = 0; k < obstacles.size(); k++) {
+    if (!(obstacles[k].kind >= 0 && obstacles[k].kind < 4))
+      throw std::invalid_argument("there are four kinds of obstacles");
+    if (scene.too_far < 0 && is_too_far(obstacles[k])) scene.too_far = static_cast<int>(k);
+    const Exact obstacle = exact(obstacles[k], reach);
+    const double far = reach + obstacle.rounding;
+    if (!(squared_distance(obstacle, origin) <= far * far)) continue;
+    scene.added = std::max(scene.added, add(scene, obstacle, static_cast<int>(k)));
+    kept.push_back(obstacle);
+  }
+  scene.tested = OwnMatrix<std::uint16_t>(tested.rows, scene.blocks.size());
+  for (std::size_t i = 0; i < tested.rows; i++) {
+    for (std::size_t k = 0; k < kept.size(); k++) {
+      if (tested(i, scene.obstacles[k].number)) {
+        scene.tested(i, k / LANES) |= static_cast<std::uint16_t>(1U << (k % LANES));
+      }
+    }
+  }
+  for (const FixedSphere& sphere : robot.fixed_spheres) {
+    for (std::size_t k = 0; k < kept.size() && scene.fixed_contact.first < 0; k++) {
+      const double near = sphere.radius + clearance + kept[k].rounding;
+      if (!tested(sphere.capsule, scene.obstacles[k].number)) continue;
+      if (squared_distance(kept[k], sphere.centre) < near * near) {
+        scene.fixed_contact = {sphere.capsule, scene.obstacles[k].number};
+      }
+    }
+  }
+  scene.surfaces_tested.assign(robot.capsules.size(), 0);
+  return scene;
+}
+
+}  // namespace evenroad::robot

@@ -1,0 +1,63 @@
+// Obstacles as checks read them: boxes, cylinders and what is round, and surfaces (clouds and meshes).
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "robot/robot.hpp"
+#include "robot/surface.hpp"
+
+namespace evenroad::robot {
+
+enum class Form : std::uint8_t {
+  ALIGNED,  // a box along the axes with its edges rounded; also a sphere
+  ROTATED,  // such a box, turned
+  CYLINDER,
+};
+
+/// All points within `rounding` of a box or a cylinder, whose radius is in the first two half extents.
+struct Obstacle {
+  Form form;
+  int number;  // in the scene, of those that are neither clouds nor meshes
+  Vec3 centre, half;
+  float rotation[9];  // to the root's frame
+  float rounding;
+};
+
+/// Boxes around sixteen obstacles.
+struct Block {
+  Vec3x16 centre, half;
+};
+
+/// An obstacle as Python gives it, sixteen doubles.
+struct GivenObstacle {
+  double kind;     // as below
+  double size[3];  // full extents of a box; radius and length without caps of the others [m]
+  double rotation[9], translation[3];
+};
+enum class GivenKind : std::uint8_t { BOX, SPHERE, CYLINDER, CAPSULE };
+
+/// A surface among the obstacles.
+struct SurfaceObstacle {
+  std::shared_ptr<const Surface> surface;
+  int number;                // in the scene
+  std::vector<bool> tested;  // capsules that are tested against it
+};
+
+struct Scene {
+  std::vector<Obstacle> obstacles;  // those that the robot can reach
+  std::vector<Block> blocks;
+  OwnMatrix<std::uint16_t> tested{0, 0};  // (capsules, blocks): bits of obstacles that a capsule is tested against
+  std::vector<SurfaceObstacle> surfaces;
+  std::vector<int> surfaces_tested;           // by capsule: how many surfaces
+  std::shared_ptr<const Surface> around;      // a grid around all surfaces, or none
+  double added = 0;                           // by how much obstacles are larger at most, for rounding [m]
+  int too_far = -1;                           // the first obstacle that is too far or too large for single precision
+  std::pair<int, int> fixed_contact{-1, -1};  // a capsule that does not move, and an obstacle that it touches
+};
+
+/// Return the scene of a robot whose bodies are larger by `clearance`; `tested` is (capsules, obstacles).
+Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, Matrix<const bool> tested,
+                 double clearance);
+
+}  // namespace evenroad::robot

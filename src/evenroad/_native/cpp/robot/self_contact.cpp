@@ -1,0 +1,83 @@
+// Pairs of bodies by balls around them, pairs of capsules by balls around these, and then segments; hulls last.
+#include "robot/self_contact.hpp"
+
+namespace evenroad::robot {
+
+namespace {
+
+constexpr float LEAST_SQUARE = 1e-30F;  // what a squared length is taken for at least where one divides by it [m^2]
+
+/// Return the mask of lanes in which two centres are nearer to each other than `near`.
+EVENROAD_INLINE Mask within(const Vec3x16& a, const Vec3x16& b, float near) {
+  const Vec3x16 apart = a - b;
+  return below_zero(dot(apart, apart) - near * near);
+}
+
+EVENROAD_INLINE Floats16 cut(Floats16 place) { return clamp(place, spread(-1), spread(1)); }
+
+}  // namespace
+
+// With segments `centre + s half`, s from -1 to 1: the best t for all s, cut to the range, then the best s for that t,
+// cut, then the best t for that s, cut again.  Without the last step contacts can be missed by millimetres where s was
+// cut (after V. Lumelsky, 1985, and C. Ericson, Real-Time Collision Detection, 2005, section 5.1.9).  The first t is
+// that of the parts across the first segment.  Written with products of lengths alone, as usual, it loses twice the
+// digits where segments are nearly parallel; so, the distance errs by about the rounding of the half lengths.
+Mask capsules_touching(const PlacedCapsule& a, const PlacedCapsule& b, const CapsulePair& pair, float reach) {
+  const Vec3x16 r = a.centre - b.centre, e = a.half, f = b.half;
+  const Floats16 ef = dot(e, f), er = dot(e, r), fr = dot(f, r);
+  const Floats16 along_f = ef * pair.one_by_ee, along_r = er * pair.one_by_ee;
+  const Vec3x16 across_f = minus(f, e, along_f), across_r = minus(r, e, along_r);
+  Floats16 t = cut(dot(across_f, across_r) / max(dot(across_f, across_f), spread(LEAST_SQUARE)));
+  const Floats16 s = cut(fma(along_f, t, -along_r));
+  t = cut(fma(ef, s, fr) * pair.one_by_ff);
+  const Vec3x16 apart = minus(plus(r, e, s), f, t);
+  return below_zero(dot(apart, apart) - reach * reach);
+}
+
+Mask meeting_itself(const Robot& robot, const Lengths& lengths, const Places& places, Mask blocked, Wanted wanted,
+                    Contact* found) {
+  const int by_hulls = robot.first_hull_pair();
+  for (int p = 0; p < static_cast<int>(robot.body_pairs.size()); p++) {
+    const auto& [a, b, pairs] = robot.body_pairs[p];
+    const Vec3x16& other = places.bodies[b].centre;
+    if ((within(places.bodies[a].centre, other, lengths.body_pairs[p]) & ~blocked) == 0) continue;
+    const int row = robot.bodies[b].capsules.size();
+    Mask undecided = 0;
+    int first_undecided = -1;
+    for (int first = pairs.first; first < pairs.end; first += row) {
+      const int i = robot.pairs[first].first;
+      if (row > FEW && robot.capsules[i].is_ball) {
+        // A ball that is far from the ball around the whole body is far from its capsules.
+        const float near = lengths.capsules[i] + lengths.bodies[b].radius;
+        if ((within(places.capsules[i].centre, other, near) & ~blocked) == 0) continue;
+      }
+      for (int k = first; k < first + row; k++) {
+        const CapsulePair& pair = robot.pairs[k];
+        const auto [near, reach] = lengths.pairs[k];
+        const PlacedCapsule &one = places.capsules[pair.first], &two = places.capsules[pair.second];
+        Mask touching = within(one.centre, two.centre, near);
+        if ((touching & ~blocked) == 0) continue;
+        // Of two balls that was all.
+        if (pair.one_by_ee + pair.one_by_ff > 0) touching = capsules_touching(one, two, pair, reach);
+        if (p >= by_hulls) {
+          if (undecided == 0 && touching != 0) first_undecided = k;
+          undecided |= touching;
+          continue;
+        }
+        if (found != nullptr && blocked == 0 && touching != 0) *found = {Contact::With::ITSELF, -1, k};
+        blocked |= touching;
+        if (is_enough(blocked, wanted)) return blocked;
+      }
+    }
+    undecided &= ~blocked;
+    if (undecided == 0) continue;
+    const float margin = lengths.hull_margins[p - by_hulls];
+    const Mask meeting = hulls_meeting(robot, places, robot.body_pairs[p], margin, undecided, wanted);
+    if (found != nullptr && blocked == 0 && meeting != 0) *found = {Contact::With::ITSELF, -1, first_undecided};
+    blocked |= meeting;
+    if (is_enough(blocked, wanted)) return blocked;
+  }
+  return blocked;
+}
+
+}  // namespace evenroad::robot

@@ -1,0 +1,75 @@
+// A surface, points or triangles, as checks read it: a grid of distances and a tree of sixteens.
+//
+// The tree is in its order alone: a leaf is sixteen neighbours, a node sixteen leaves or nodes in a row.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/float16.hpp"
+
+namespace evenroad::robot {
+
+/// Sixteen points.
+struct PointLeaf {
+  Vec3x16 points;
+};
+
+/// Sixteen triangles: a corner, the ways to the other two, and their unit normals, or 0 where they have none.
+struct TriangleLeaf {
+  Vec3x16 corner, first, second, normal;
+};
+
+/// Boxes around sixteen leaves or nodes, and radii of balls about the same centres.
+struct SurfaceNode {
+  Vec3x16 centre, half;
+  Floats16 radius;
+};
+
+/// A byte for each cell: how far all of the cell is from the surface, rounded down, counted in `step`; 255 or more.
+struct DistanceGrid {
+  int cells[3] = {0, 0, 0};
+  Vec3 low, size;  // lower corner, and extents
+  float one_by_cell = 0, step = 0;
+  float told = 0;  // by how much a distance is larger at most than a byte says
+  std::vector<std::uint8_t> distances;
+};
+
+struct Surface {
+  DistanceGrid grid;
+  std::vector<std::int8_t> windings;  // how often it winds around the middle of each cell; empty: nothing is inside
+  bool turned = false;            // inside is what it winds around, or else what it winds around an odd number of times
+  float radius = 0;               // by which points, or triangles, are widened
+  std::vector<PointLeaf> points;  // of a cloud
+  std::vector<TriangleLeaf> triangles;           // of a mesh
+  std::vector<std::vector<SurfaceNode>> levels;  // from that above the leaves to that of the root
+};
+
+/// Where the places to spare of a leaf or node are.
+constexpr float NOWHERE = 1e9F;
+
+/// A byte of a grid counts the STEPS-th part of a cell.
+constexpr int STEPS = 4;
+
+/// A surface as Python gives it.
+struct GivenSurface {
+  std::span<const double> corners;  // (n, 1, 3) points or (n, 3, 3) triangles
+  bool triangles;
+  double radius;
+  std::span<const double> low;
+  double cell, told;
+  int cells[3];
+  std::span<const std::uint8_t> distances;
+  std::span<const std::int8_t> windings;  // or none
+  bool turned;
+};
+
+/// Return a surface; std::invalid_argument if sizes do not fit.
+Surface make_surface(const GivenSurface& given);
+
+/// Return a grid around surfaces, without leaves: a byte counts how far all of a cell is from every one.
+Surface make_surface_around(std::span<const std::shared_ptr<const Surface>> surfaces);
+
+}  // namespace evenroad::robot

@@ -1,0 +1,183 @@
+// The grid first, all lanes at once; then the tree, lane by lane.
+#include "robot/surface_contact.hpp"
+
+#include <bit>
+#include <cmath>
+
+namespace evenroad::robot {
+
+namespace {
+
+constexpr float LEAST_SQUARE = 1e-30F;
+constexpr float TOLD_APART = 254.5F;
+/// Of capsules that at most so many spheres cover the grid is not asked as a whole: it would cost as much.
+constexpr int FEW_SPHERES = 2;
+
+/// Return the bytes of sixteen cells; their numbers along the axes, all >= 0, are rounded down.
+EVENROAD_INLINE Floats16 bytes_of_cells(const DistanceGrid& grid, Vec3x16 cell) {
+  const Ints16 x = __builtin_convertvector(cell.x, Ints16), y = __builtin_convertvector(cell.y, Ints16);
+  const Ints16 number = (x * grid.cells[1] + y) * grid.cells[2] + __builtin_convertvector(cell.z, Ints16);
+  Ints16 bytes{};
+  for (int lane = 0; lane < LANES; lane++) bytes[lane] = grid.distances[number[lane]];
+  return __builtin_convertvector(bytes, Floats16);
+}
+
+struct NearAndSure {
+  Mask near = 0, sure = 0;
+};
+
+/// Return the masks of lanes in which a surface may be within `near` of a place, and is within `touching` for sure.
+///
+/// Outside of the grid it is asked for the nearest place inside: what lies beyond that is farther by at least the third
+/// side of a triangle with an obtuse angle.
+EVENROAD_INLINE NearAndSure ask(const DistanceGrid& grid, Vec3x16 place, float near, float touching) {
+  const Floats16 zero{};
+  const Vec3x16 from = place - spread(grid.low);
+  const Vec3x16 inside = {clamp(from.x, zero, spread(grid.size.x)), clamp(from.y, zero, spread(grid.size.y)),
+                          clamp(from.z, zero, spread(grid.size.z))};
+  const Vec3x16 beyond = from - inside;
+  const Floats16 away = bytes_of_cells(grid, inside * spread(grid.one_by_cell)) * grid.step;
+  const Floats16 outside = dot(beyond, beyond);
+  // Of the largest byte only a lower bound is known.
+  Mask sure = below_zero(max(away + grid.told - touching, away - grid.step * TOLD_APART));
+  sure &= below_zero(outside - LEAST_SQUARE);
+  return {below_zero(fma(away, away, outside) - near * near), sure};
+}
+
+/// A capsule in sixteen lanes: how long it is, and how far its surface and that of its spheres are from its segment.
+struct Asked {
+  const PlacedCapsule& capsule;
+  std::span<const float> samples;
+  float half, covering, slack;  // spheres are larger than the capsule by the slack
+};
+
+/// Ask a grid about a long capsule as a whole first, then about the spheres that cover it.
+NearAndSure ask(const Surface& surface, const Asked& of) {
+  const float wide = of.covering + surface.radius, reach = wide - of.slack;
+  const Vec3x16 centre = of.capsule.centre, along = of.capsule.half;
+  if (static_cast<int>(of.samples.size()) > FEW_SPHERES &&
+      ask(surface.grid, centre, of.half + reach, reach).near == 0) {
+    return {};
+  }
+  NearAndSure all;
+  for (const float share : of.samples) {
+    const NearAndSure here = ask(surface.grid, plus(centre, along, spread(share)), wide, reach);
+    all.near |= here.near, all.sure |= here.sure;
+  }
+  return all;
+}
+
+/// Return the mask of lanes in which a capsule's middle is within `near` of the box that a grid fills.
+Mask beside(const DistanceGrid& grid, Vec3x16 centre, float near) {
+  const Floats16 zero{};
+  const Vec3x16 from = centre - spread(grid.low);
+  const Vec3x16 inside = {clamp(from.x, zero, spread(grid.size.x)), clamp(from.y, zero, spread(grid.size.y)),
+                          clamp(from.z, zero, spread(grid.size.z))};
+  const Vec3x16 beyond = from - inside;
+  return below_zero(dot(beyond, beyond) - near * near);
+}
+
+/// Return whether the box around a capsule in all lanes meets that around a leaf.
+bool reaches(const Surface& surface, const PlacedCapsule& capsule, float reach) {
+  const Box16 around = around_all(capsule.centre, abs(capsule.half) + spread(Vec3{reach, reach, reach}));
+  const auto near = [&](const SurfaceNode& node) {
+    return below_zero(largest(abs(node.centre - around.centre) - node.half - around.half));
+  };
+  return Walk(surface).next(near) >= 0;
+}
+
+/// Return whether a point or triangle touches a capsule.
+bool touches(const Surface& surface, const CapsuleAt& capsule) {
+  const bool is_mesh = !surface.triangles.empty();
+  Walk walk(surface);
+  for (int leaf = 0; (leaf = walk.next([&](const SurfaceNode& node) { return near_nodes(node, capsule); })) >= 0;) {
+    if (is_mesh) {
+      if (near_triangles(surface.triangles[leaf], capsule) != 0) return true;
+      continue;
+    }
+    const Vec3x16 along = spread(capsule.half);
+    Vec3x16 apart = surface.points[leaf].points - spread(capsule.centre);
+    apart = minus(apart, along, clamp(dot(apart, along) * capsule.one_by_squared, spread(-1), spread(1)));
+    if (below_zero(dot(apart, apart) - capsule.reach * capsule.reach) != 0) return true;
+  }
+  return false;
+}
+
+Vec3 lane_of(const Vec3x16& v, int lane) { return {v.x[lane], v.y[lane], v.z[lane]}; }
+
+/// Return the first of some lanes in which a capsule touches a surface or is inside; all of them where all are wanted.
+Mask touching_lanes(const Surface& surface, const Asked& of, float one_by_squared, Mask near, Wanted wanted) {
+  const float reach = of.covering - of.slack + surface.radius;
+  const bool alone = (near & (near - 1)) == 0;
+  const bool close = near != 0 && (alone || reaches(surface, of.capsule, reach));
+  Mask meeting = 0;
+  if (!close && surface.windings.empty()) return meeting;
+  for (; near != 0; near &= near - 1) {
+    const int lane = std::countr_zero(near);
+    const Vec3 centre = lane_of(of.capsule.centre, lane);
+    if ((close && touches(surface, {centre, lane_of(of.capsule.half, lane), one_by_squared, reach})) ||
+        (!surface.windings.empty() && is_inside(surface, centre))) {
+      meeting |= 1U << lane;
+      if (wanted == Wanted::FIRST) return meeting;
+    }
+  }
+  return meeting;
+}
+
+}  // namespace
+
+Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& scene, const Places& places,
+                      Mask blocked, Wanted wanted, Contact* found) {
+  const std::span<const float> samples = robot.samples;
+  const bool many = scene.surfaces.size() > 1;
+  Mask meeting = 0;
+  // From the outermost capsules inwards: those touch most often.
+  for (int i = static_cast<int>(robot.capsules.size()) - 1; i >= robot.fixed_capsules(); i--) {
+    if (scene.surfaces_tested[i] == 0) continue;
+    const Capsule& capsule = robot.capsules[i];
+    const Asked of{places.capsules[i], samples.subspan(capsule.samples.first, capsule.samples.size()),
+                   capsule.half_length, lengths.capsules[i], capsule.slack};
+    Mask open = ALL_LANES;
+    if (scene.around != nullptr && scene.surfaces_tested[i] > 1) {
+      open = ask(*scene.around, of).near & ~(blocked | meeting);
+      if (open == 0) continue;
+    }
+    for (const SurfaceObstacle& each : scene.surfaces) {
+      if (!each.tested[i]) continue;
+      const Surface& surface = *each.surface;
+      const float reach = of.covering - of.slack + surface.radius;
+      if (many && (beside(surface.grid, of.capsule.centre, of.half + reach) & open) == 0) continue;
+      const NearAndSure told = ask(surface, of);
+      Mask here = told.sure & ~blocked;
+      if ((meeting | here) == 0 || wanted == Wanted::ALL) {
+        const Mask near = told.near & open & ~(blocked | meeting | told.sure);
+        here |= touching_lanes(surface, of, capsule.one_by_squared, near, wanted);
+      }
+      if (found != nullptr && (meeting & ~blocked) == 0 && here != 0) *found = {Contact::With::SURFACE, i, each.number};
+      meeting |= here;
+      if (meeting != 0 && wanted == Wanted::FIRST) return meeting;
+    }
+    if ((blocked | meeting) == ALL_LANES) return meeting;
+  }
+  return meeting;
+}
+
+Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Places& places, double clearance) {
+  for (const SurfaceObstacle& each : scene.surfaces) {
+    const Surface& surface = *each.surface;
+    for (int i = robot.fixed_capsules() - 1; i >= 0; i--) {
+      if (!each.tested[i]) continue;
+      const Capsule& capsule = robot.capsules[i];
+      const Vec3 centre = lane_of(places.capsules[i].centre, 0);
+      // As it is: what does not move is placed without rounding, and may stand on what it touches nearly.
+      const auto radius = static_cast<float>(robot.lengths.capsules[i] - robot.padding - capsule.slack + clearance);
+      const CapsuleAt at{centre, lane_of(places.capsules[i].half, 0), capsule.one_by_squared, radius + surface.radius};
+      if (touches(surface, at) || (!surface.windings.empty() && is_inside(surface, centre))) {
+        return {Contact::With::SURFACE, i, each.number};
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace evenroad::robot

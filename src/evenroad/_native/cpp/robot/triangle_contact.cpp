@@ -1,0 +1,117 @@
+// Sixteen triangles at once against a segment, and whether a place is inside of a closed mesh.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include "robot/surface_contact.hpp"
+
+namespace evenroad::robot {
+
+namespace {
+
+constexpr float LEAST_SQUARE = 1e-30F;
+/// So near to a triangle's plane or side it is left open on which side of it a place is, in parts of a metre [m].
+constexpr float UNSURE = 2e-6F;
+
+EVENROAD_INLINE Floats16 cut(Floats16 place) { return clamp(place, spread(-1), spread(1)); }
+EVENROAD_INLINE Floats16 part(Floats16 share) { return clamp(share, Floats16{}, spread(1)); }
+
+/// Return which sides are within `reach` of a segment, see `capsules_touching`.
+EVENROAD_INLINE Mask near_side(Vec3x16 start, Vec3x16 way, Vec3x16 along, const CapsuleAt& capsule) {
+  const float one_by_squared = capsule.one_by_squared;
+  const Floats16 ef = dot(way, along), er = dot(start, along), fr = dot(way, start), ff = dot(way, way);
+  const Vec3x16 across = minus(way, along, ef * one_by_squared), aside = minus(start, along, er * one_by_squared);
+  Floats16 share = part(-dot(across, aside) / max(dot(across, across), spread(LEAST_SQUARE)));
+  Floats16 place = cut(fma(ef, share, er) * one_by_squared);
+  share = part(fma(ef, place, -fr) / max(ff, spread(LEAST_SQUARE)));
+  place = cut(fma(ef, share, er) * one_by_squared);
+  const Vec3x16 apart = minus(plus(start, way, share), along, place);
+  return below_zero(dot(apart, apart) - capsule.reach * capsule.reach);
+}
+
+/// Return for which triangles a place, seen from their corner, is not above them, by more than a slack [m^2].
+EVENROAD_INLINE Mask outside(const TriangleLeaf& leaf, Vec3x16 third, Vec3x16 here, float slack) {
+  const Floats16 a = dot(cross(leaf.first, here), leaf.normal), b = dot(cross(here, leaf.second), leaf.normal);
+  const Floats16 c = dot(cross(third, here - leaf.first), leaf.normal);
+  return below_zero(min(min(a, b), c) + slack);
+}
+
+/// Return how many triangles of a leaf a segment crosses along their normals, less those against them, or nothing where
+/// that cannot be told; `along` is half of the segment.
+std::optional<int> crossings(const TriangleLeaf& leaf, Vec3 begin, Vec3 half) {
+  const Vec3x16 corner = leaf.corner - spread(begin), third = leaf.second - leaf.first, along = spread(half);
+  const Floats16 before = -dot(leaf.normal, corner), slope = dot(leaf.normal, along);
+  const Floats16 after = before + slope + slope, apart = max(min(before, after), -max(before, after));
+  const Floats16 share = before / (before - after + LEAST_SQUARE);
+  const Floats16 whole = part(share);
+  const Vec3x16 here = plus(-corner, along + along, whole);
+  const Mask sized = below_zero(0.5F - dot(leaf.normal, leaf.normal));
+  const Mask maybe = ~outside(leaf, third, here, UNSURE) & ~below_zero(UNSURE - apart) & sized & ALL_LANES;
+  if (maybe == 0) return 0;
+  const Mask surely = below_zero(apart + UNSURE) & ~outside(leaf, third, here, -UNSURE);
+  if ((maybe & ~surely) != 0) return std::nullopt;
+  const Mask with_normal = below_zero(before) & maybe;
+  return std::popcount(with_normal) - std::popcount(maybe & ~with_normal);
+}
+
+}  // namespace
+
+Mask near_nodes(const SurfaceNode& node, const CapsuleAt& capsule) {
+  const auto [x, y, z] = capsule.half;
+  const float reach = capsule.reach;
+  const Vec3x16 half = spread(Vec3{std::abs(x) + reach, std::abs(y) + reach, std::abs(z) + reach});
+  const Vec3x16 along = spread(capsule.half);
+  Vec3x16 apart = node.centre - spread(capsule.centre);
+  const Mask boxes = below_zero(largest(abs(apart) - node.half - half));
+  const Floats16 near = node.radius + reach;
+  apart = minus(apart, along, cut(dot(apart, along) * capsule.one_by_squared));
+  return boxes & below_zero(fma(-near, near, dot(apart, apart)));
+}
+
+// Nearest are the segment and a side, or the place of the segment that is nearest to the plane, where it is above the
+// triangle: from any other above it, one comes nearer on the way there, or to a side.
+Mask near_triangles(const TriangleLeaf& leaf, const CapsuleAt& capsule) {
+  const Vec3x16 corner = leaf.corner - spread(capsule.centre), third = leaf.second - leaf.first;
+  const Vec3x16 along = spread(capsule.half);
+  Mask near = near_side(corner, leaf.first, along, capsule);
+  near |= near_side(corner, leaf.second, along, capsule);
+  near |= near_side(corner + leaf.first, third, along, capsule);
+  const Floats16 slope = dot(leaf.normal, along), middle = -dot(leaf.normal, corner);
+  const Floats16 share = cut(-(middle * slope) / max(slope * slope, spread(LEAST_SQUARE)));
+  const Vec3x16 here = plus(-corner, along, share);
+  const Mask above =
+      below_zero(abs(fma(slope, share, middle)) - capsule.reach) & below_zero(0.5F - dot(leaf.normal, leaf.normal));
+  return near | (above & ~outside(leaf, third, here, 0));
+}
+
+// How often the mesh winds around a place is known for the middle of its cell, and changes where the way there crosses
+// a triangle.  Where a crossing is too near to a side to tell, it counts as inside.
+bool is_inside(const Surface& mesh, Vec3 place) {
+  const DistanceGrid& grid = mesh.grid;
+  const float u = place.x - grid.low.x, v = place.y - grid.low.y, w = place.z - grid.low.z;
+  if (std::min({u, v, w}) < 0 || u > grid.size.x || v > grid.size.y || w > grid.size.z) return false;
+  const int i = static_cast<int>(u * grid.one_by_cell), j = static_cast<int>(v * grid.one_by_cell);
+  const int k = static_cast<int>(w * grid.one_by_cell);
+  const std::size_t number = (static_cast<std::size_t>(i) * grid.cells[1] + j) * grid.cells[2] + k;
+  if (grid.distances[number] != 0) return false;
+  int winding = mesh.windings[number];
+  const float cell = 1.0F / grid.one_by_cell;
+  const auto half_way = [cell](float low, int number, float from) {
+    return 0.5F * (low + (static_cast<float>(number) + 0.5F) * cell - from);
+  };
+  const Vec3 half = {half_way(grid.low.x, i, place.x), half_way(grid.low.y, j, place.y),
+                     half_way(grid.low.z, k, place.z)};
+  const float squared = half.x * half.x + half.y * half.y + half.z * half.z;
+  const CapsuleAt way{
+      {place.x + half.x, place.y + half.y, place.z + half.z}, half, 1.0F / std::max(squared, LEAST_SQUARE), UNSURE};
+  Walk walk(mesh);
+  for (int leaf = 0; (leaf = walk.next([&](const SurfaceNode& node) { return near_nodes(node, way); })) >= 0;) {
+    const std::optional<int> crossed = crossings(mesh.triangles[leaf], place, half);
+    if (!crossed) return true;
+    winding -= *crossed;
+  }
+  return mesh.turned ? winding != 0 : (winding & 1) != 0;
+}
+
+}  // namespace evenroad::robot

@@ -1,0 +1,40 @@
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Bools, Floats
+
+Arrays = Mapping[str, npt.NDArray[np.generic]]
+
+class Robot:
+    def __init__(
+        self, frames: Arrays, bodies: Arrays, capsules: Arrays, pairs: Arrays, hulls: Arrays, limits: Arrays
+    ) -> None: ...
+
+class Surface:
+    def __init__(self, corners: Floats, radius: float, grid: Mapping[str, object]) -> None: ...
+    @staticmethod
+    def around(surfaces: Sequence[Surface | None]) -> Surface: ...
+
+class Scene:
+    added: float
+    too_far: int
+    def __init__(
+        self,
+        robot: Robot,
+        obstacles: Floats,
+        tested: Bools,
+        surfaces: list[tuple[Surface, int, Bools]],
+        around: Surface | None,
+        clearance: float,
+    ) -> None: ...
+
+class Checker:
+    fixed_contact: tuple[str, int, int]
+    def __init__(
+        self, robot: Robot, scene: Scene, resolution: float, clearance: float, touches_itself: bool
+    ) -> None: ...
+    def valid(self, q: object) -> Bools | bool | None: ...
+    def motion_valid(self, a: object, b: object, tolerance: float = 0.0) -> Bools | bool | None: ...
+    def find_contact(self, q: Floats) -> tuple[str, int, int]: ...

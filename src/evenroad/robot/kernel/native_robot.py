@@ -1,0 +1,83 @@
+"""The native kernel's robot, of the arrays that it names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._native import robot as native
+from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.hull_trees import hull_trees
+from evenroad.robot.kernel.placed_capsules import PlacedCapsule
+from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+def native_robot(tables: RobotTables, bounds: Floats) -> native.Robot:
+    """Return a robot; `bounds`, (3, dim), are low, high and period of each coordinate."""
+    return native.Robot(**robot_arrays(tables, bounds))
+
+
+def robot_arrays(tables: RobotTables, bounds: Floats) -> dict[str, dict[str, npt.NDArray[np.generic]]]:
+    """Return the arrays that a native robot is made of."""
+    frames, capsules = tables.tree.frames, tables.capsules
+    bodies = list(dict.fromkeys(capsule.link for capsule in capsules))
+    number = {link: i for i, link in enumerate(bodies)}
+    trees = hull_trees({link: placed.leaves for link, placed in tables.hulls.items()})
+    nodes = trees.ints[at.HEADER :].reshape(-1, at.NODE_INT_ROW)
+    points = int(trees.ints[at.NODE_FLOATS])
+    return {
+        "frames": {
+            "parent": _ints([frame.parent for frame in frames]),
+            "coordinate": _ints([frame.coordinate for frame in frames]),
+            "slides": np.array([frame.slides for frame in frames], dtype=np.bool_),
+            "multiplier": np.array([frame.multiplier for frame in frames], dtype=np.float64),
+            "offset": np.array([frame.offset for frame in frames], dtype=np.float64),
+            "rotation": np.array([frame.rotation for frame in frames], dtype=np.float64).reshape(-1, 3, 3),
+            "translation": np.array([frame.translation for frame in frames], dtype=np.float64).reshape(-1, 3),
+        },
+        "bodies": {
+            "frame": _ints([tables.tree.links[link].frame for link in bodies]),
+            "hulls": _ints([trees.roots.get(link, -1) for link in bodies]),
+        },
+        "capsules": _capsules(capsules, number) | {"speeds": np.ascontiguousarray(tables.speeds.T)},
+        "pairs": {
+            "bodies": _ints([(number[a], number[b]) for a, b in tables.body_pairs]).reshape(-1, 2),
+            "by_hulls": _ints([tables.by_hulls]),
+            "speeds": np.ascontiguousarray(tables.pair_speeds.T),
+        },
+        "hulls": {
+            "children": np.ascontiguousarray(nodes[:, :2]),
+            "spans": np.ascontiguousarray(nodes[:, 2:]),
+            "boxes": trees.floats[points:].reshape(-1, at.NODE_FLOAT_ROW),
+            "points": trees.floats[:points].reshape(-1, 3),
+        },
+        "limits": {
+            "bounds": np.ascontiguousarray(bounds),
+            "padding": np.array([PADDING * max(1.0, tables.reach)]),
+            "reach": np.array([tables.reach]),
+        },
+    }
+
+
+def _ints(values: Sequence[object]) -> Ints:
+    return np.array(values, dtype=np.int64)
+
+
+def _capsules(
+    capsules: Sequence[PlacedCapsule], number: dict[str, int]
+) -> dict[str, npt.NDArray[np.generic]]:
+    counts = [len(capsule.cover.positions) for capsule in capsules]
+    return {
+        "body": _ints([number[capsule.link] for capsule in capsules]),
+        "first_sample": _ints([0, *np.cumsum(counts)]),
+        "centre": np.array([capsule.centre for capsule in capsules]),
+        "half": np.array([capsule.half for capsule in capsules]),
+        "radius": np.array([capsule.radius for capsule in capsules]),
+        "covering": np.array([capsule.cover.radius for capsule in capsules]),
+        "samples": np.concatenate([np.array(capsule.cover.positions) for capsule in capsules]),
+    }
