@@ -66,12 +66,12 @@ def test_an_edit_elsewhere_does_not(package):
 
 
 def test_kernels_depend_on_the_layout_of_their_tables():
-    from evenroad.robot.kernel import layout, motion_checks
+    from evenroad.robot.kernel import layout, scalar
 
-    _sources.digest_of(motion_checks.__file__)
+    _sources.digest_of(scalar.__file__)
     assert layout.__file__ in {
         file
-        for path in [motion_checks.__file__, *_sources._read(motion_checks.__file__)[1]]
+        for path in [scalar.__file__, *_sources._read(scalar.__file__)[1]]
         for file in _sources._read(path)[1]
     }
 

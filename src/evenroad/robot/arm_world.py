@@ -21,11 +21,10 @@ from evenroad.geometry.shapes import PointCloud
 from evenroad.robot.given import as_robot, as_scene
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
-from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.kernel.native_scene import native_scene
 from evenroad.robot.kernel.obstacles import obstacle_rows, refuse, tested_contacts
 from evenroad.robot.kernel.robot_tables import RobotTables, enlarged
-from evenroad.robot.kernel.scene_surfaces import scene_surfaces
+from evenroad.robot.kernel.scene_surfaces import SceneSurfaces, scene_surfaces
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.surface_scalar import scalar_check_address
 from evenroad.robot.planes import with_planes
@@ -83,7 +82,7 @@ class ArmWorld(OneOrMany):
     ----------
     bounds : float64 ndarray, shape (3, dim)
         Low, high and period of each joint; a period of inf where it does not wrap.
-    robot_tables, tables, lanes : RobotTables, ArmTables, LaneWorld
+    robot_tables, tables, surfaces : RobotTables, ArmTables, SceneSurfaces or None
         Tables for compiled code: of the robot alone, and of the robot in this scene.
 
     Raises
@@ -109,7 +108,7 @@ class ArmWorld(OneOrMany):
     bounds: Floats = field(init=False, repr=False)
     robot_tables: RobotTables = field(init=False, repr=False)
     tables: ArmTables = field(init=False, repr=False)
-    lanes: LaneWorld = field(init=False, repr=False)
+    surfaces: SceneSurfaces | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         scene = as_scene(self.scene)
@@ -130,7 +129,7 @@ class ArmWorld(OneOrMany):
                 f"scene {self.scene.name!r} allows contacts near start and goals, which a world does not know:"
                 " plan does, or give it allowed_near_ends(robot, scene, start_and_goals)"
             )
-        space, longest, of_robot, by_joint, bounds, by_joint_at, _ = prepared(self.robot)
+        space, longest, of_robot, bounds, _ = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         if self.clearance:
             of_robot = enlarged(of_robot, self.clearance)
@@ -140,16 +139,15 @@ class ArmWorld(OneOrMany):
             surfaces = scene_surfaces(self.scene, of_robot, tested)
             solid = [bool(obstacle.row) for obstacle in self.scene.obstacles]
             tested = np.ascontiguousarray(tested[:, solid])
-        tables, lanes_at, too_far = arm_tables(of_robot, rows, tested)
+        tables, _, too_far = arm_tables(of_robot, rows, tested)
         if too_far >= 0:
             refuse([obstacle for obstacle in self.scene.obstacles if obstacle.row][too_far])
-        lanes = LaneWorld(tables.lanes, by_joint, self.resolution, (lanes_at, by_joint_at), surfaces)
         self.__dict__.update(
             _space=space,
             bounds=bounds,
             robot_tables=of_robot,
             tables=tables,
-            lanes=lanes,
+            surfaces=surfaces,
             backend="lanes" if self.backend == "auto" else self.backend,
         )
 
@@ -347,7 +345,7 @@ class ArmWorld(OneOrMany):
     @cached_property
     def fixed_contact(self) -> tuple[str, str] | None:
         """Two bodies that touch at all values of the joints, or None."""
-        surfaces, of_capsules = self.lanes.surfaces, self.robot_tables.capsules
+        surfaces, of_capsules = self.surfaces, self.robot_tables.capsules
         if self.tables.fixed_contact is not None:
             capsule, obstacle = self.tables.fixed_contact
             return of_capsules[capsule].link, self._solid(obstacle)
@@ -364,7 +362,7 @@ class ArmWorld(OneOrMany):
     @property
     def _ints(self) -> Ints:
         """The integers of the tables, with the addresses of clouds and meshes, if any."""
-        surfaces, ints = self.lanes.surfaces, self.tables.ints
+        surfaces, ints = self.surfaces, self.tables.ints
         return ints if surfaces is None else surfaces.added_to(ints, scalar_check_address())
 
     def _touching(self, q: Floats) -> tuple[str, str] | None:

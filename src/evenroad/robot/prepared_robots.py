@@ -13,7 +13,6 @@ from evenroad._arrays import Floats
 from evenroad._checks import require_known
 from evenroad._native.robot import Robot as NativeRobot
 from evenroad.errors import InvalidValue
-from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.native_robot import native_robot
 from evenroad.robot.kernel.robot_tables import RobotTables, robot_tables
 from evenroad.robot.robot import Robot
@@ -48,17 +47,16 @@ def joint_space(robot: Robot) -> JointSpace:
 
 
 class Prepared(NamedTuple):
-    """Tables of a robot for every scene: `longest` bounds the length of a motion, `by_joint` is as in ``LaneWorld``.
+    """Tables of a robot for every scene.
 
-    `bounds`, (3, dim), are its first rows; `address` is its address.  `native` is the robot of the native kernel.
+    `longest` bounds the length of a motion; `bounds`, (3, dim), are low, high and period of each joint; `native` is the
+    robot of the native kernel.
     """
 
     space: JointSpace
     longest: float
     tables: RobotTables
-    by_joint: Floats
     bounds: Floats
-    address: int
     native: NativeRobot
 
 
@@ -91,9 +89,6 @@ def _kept(values: tuple[Any, ...], held: tuple[tuple[str, float], ...]) -> Prepa
     robot = Robot(**dict(zip(_FIELDS, values, strict=True)), held=dict(held))
     space = joint_space(robot)
     low, high, tables = np.array(space.low), np.array(space.high), robot_tables(robot)
-    arms, pair_arms = (np.ravel(speeds.T) for speeds in (tables.speeds, tables.pair_speeds))
-    by_joint = np.concatenate([low, high, space.flat.period, arms, pair_arms])
-    by_joint.setflags(write=False)
-    bounds = by_joint[: 3 * space.dim].reshape(3, space.dim)
-    longest, native = float(np.linalg.norm(high - low)), native_robot(tables, bounds)
-    return Prepared(space, longest, tables, by_joint, bounds, address(by_joint), native)
+    bounds = np.stack([low, high, space.flat.period])
+    bounds.setflags(write=False)
+    return Prepared(space, float(np.linalg.norm(high - low)), tables, bounds, native_robot(tables, bounds))

@@ -13,7 +13,7 @@ from evenroad._arrays import Floats
 from evenroad._checks import counted, require_count
 from evenroad._clock import now
 from evenroad._shared import OwnLock, one_at_a_time
-from evenroad.planning.arm_trees import prepare, smooth
+from evenroad.planning.arm_trees import smooth
 from evenroad.planning.connectors import ArmTrees
 from evenroad.planning.trees import RRTConnect
 from evenroad.roadmap import Budget, PlanResult, Status
@@ -123,7 +123,6 @@ class ArmWorldRoadmap(WorldRoadmap):
         world, milestones = self._worlds[0], self.roadmap.milestones
         if world.backend in _ready:
             return
-        prepare()
         first = int(np.argmax(world.valid(milestones[:_SOME])))
         here = milestones[first : first + 1]
         found = search(self._graph, self._worlds, Query(here[0], here, 1), 0, math.inf)
@@ -274,7 +273,7 @@ class ArmWorldRoadmap(WorldRoadmap):
             edges_checked=attempt.motions_checked,
         )
         if attempt.query.shorten:
-            work = WORK if capsules.lanes.surfaces is None else AMONG_SURFACES
+            work = WORK if capsules.surfaces is None else AMONG_SURFACES
             work = EXPENSIVE_WORK if self._expensive else max(LEAST_WORK, work - found.batches)
             path, counts["shortcut_motions"] = smooth(capsules, path, batches=work)
             length, attempt.watch.seconds["shortcut"] = self._length(path), now() - began
