@@ -23,12 +23,19 @@ TASKS = [
 ]
 
 
-def test_planner_arena_loads_every_run_with_its_experiment_planner_and_attributes(tmp_path):
-    store, arena = tmp_path / "results.db", tmp_path / "arena.db"
+@pytest.fixture(scope="module")
+def stores(tmp_path_factory):
+    """Our store of the runs, and the one that is exported."""
+    folder = tmp_path_factory.mktemp("runs")
+    store, arena = folder / "results.db", folder / "arena.db"
     with open_store(store) as opened:
         run_tasks("test", TASKS, opened, in_process())
     assert write_arena(store, arena) == len(TASKS)
-    rows, loaded = read_rows(store), load_database(arena)
+    return store, arena
+
+
+def test_planner_arena_loads_every_run_with_its_experiment_planner_and_attributes(stores):
+    rows, loaded = read_rows(stores[0]), load_database(stores[1])
     assert loaded["problem_names"] == ["corridor-2d-0.1", "hypercube-legacy6"]
     assert loaded["parameters"] == ["N"]
     runs = loaded["runs"]
@@ -50,12 +57,8 @@ def test_planner_arena_loads_every_run_with_its_experiment_planner_and_attribute
             assert theirs["time"].sum() == pytest.approx(rows.seconds[ours].sum())
 
 
-def test_its_plots_take_the_columns(tmp_path):
-    store, arena = tmp_path / "results.db", tmp_path / "arena.db"
-    with open_store(store) as opened:
-        run_tasks("test", TASKS, opened, in_process())
-    write_arena(store, arena)
-    loaded = load_database(arena)
+def test_its_plots_take_the_columns(stores):
+    loaded = load_database(stores[1])
     runs = loaded["runs"].filter(polars.col("experiment") == "corridor-2d-0.1")
     status = loaded["enums"].filter(polars.col("name") == "status")
     for plot in (

@@ -9,7 +9,6 @@ import time
 import numpy as np
 import pytest
 
-from evenroad.cli import main
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory import Limits, make_trajectory, save_trajectory
 from evenroad.trajectory.send import send_trajectory
@@ -98,15 +97,6 @@ def test_a_connection_that_is_lost_at_any_byte_is_one_line_and_ends(trajectory, 
         send_trajectory(trajectory, HOST, model="UR5", fastest=1.0, go=True)
     assert time.monotonic() - began < 30.0
     assert len(there.told()[1]) < len(trajectory.times)
-
-
-def test_the_command_says_what_it_did(trajectory, arm, tmp_path, capsys):
-    save_trajectory(tmp_path / "t.json", trajectory)
-    arm()
-    assert main(["send", str(tmp_path / "t.json"), "--host", HOST, "--model", "UR5"]) == 0
-    assert "dry run" in capsys.readouterr().out
-    assert main(["send", str(tmp_path / "t.json"), "--host", HOST, "--model", "UR3"]) == 2
-    assert "is a UR5, not a UR3" in capsys.readouterr().err
 
 
 def test_ctrl_c_stops_the_arm(arm, tmp_path):

@@ -34,20 +34,11 @@ def test_the_ur5_has_its_capsules_its_limits_and_its_names():
     assert [joint.velocity for joint in moving] == [3.15, 3.15, 3.15, 3.2, 3.2, 3.2]
 
 
-def test_the_arm_of_seven_joints_has_seven():
-    robot = load_robot("arm7")
-    assert len(robot.group) == 7
-    assert robot.pairs
-
-
-def test_a_file_goes_before_a_shipped_name(tmp_path, monkeypatch):
+def test_a_file_goes_before_a_shipped_name_but_no_folder_does(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write(tmp_path, two_joints(), "ur5")
     assert load_robot("ur5").group == ("a", "b")
-
-
-def test_a_folder_of_the_name_of_a_shipped_robot_does_not_hide_it(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+    (tmp_path / "ur5").unlink()
     (tmp_path / "ur5").mkdir()
     assert load_robot("ur5").name == "ur5"
 
@@ -74,12 +65,8 @@ def test_of_two_states_of_a_name_the_one_of_the_group_is_taken(tmp_path, row, gr
 def test_an_unknown_robot_gets_the_list_of_shipped_ones(name):
     with pytest.raises(UnknownName, match=f"no robot file '{name}', and none .* shipped: arm7, ur5"):
         load_robot(name)
-
-
-def test_a_robot_without_any_body_is_an_error_and_never_a_free_pass(tmp_path):
-    text = urdf(link("x", ""), link("y", ""), joint("a", "x", "y"))
-    with pytest.raises(BrokenFile, match="no collision geometry at all"):
-        load_robot(write(tmp_path, text))
+    with pytest.raises(BrokenFile, match=r"cannot read the robot no/where\.urdf"):
+        load_robot("no/where.urdf")
 
 
 DRAWN = "<visual><geometry><box size='1 1 1'/></geometry></visual>"
@@ -162,6 +149,10 @@ def test_a_robot_from_the_cache_is_the_one_that_was_put_there(tmp_path):
     path = _with_mesh(tmp_path)
     first = load_model(path)
     (kept,) = kept_robots()
+    # Under a seal, as plain JSON.
+    seal, _, record = kept.read_text().partition("\n")
+    assert seal.startswith("evenroad-kept:")
+    assert json.loads(record)["robot"]["name"] == first.robot.name
     assert load_model(path) == first
     assert load_model("ur5") == load_model("ur5")
     kept.write_text("{")
@@ -250,14 +241,6 @@ def test_a_cached_robot_waits_for_no_library_of_meshes_or_fits(tmp_path):
     assert done.stdout.strip() == "[]"
 
 
-def test_the_record_in_the_cache_is_plain_json():
-    load_robot("arm7")
-    (kept,) = kept_robots()
-    seal, _, record = kept.read_text().partition("\n")
-    assert seal.startswith("evenroad-kept:")
-    assert json.loads(record)["robot"]["name"] == "arm7"
-
-
 def damaged(content, rng):
     """Yield what may become of a file: cut off anywhere, bits flipped, bytes lost, zeroed or appended."""
     yield from (
@@ -312,9 +295,8 @@ def test_a_robot_that_is_kept_under_the_name_of_another_is_not_taken(tmp_path):
 
 def test_altering_a_robot_leaves_the_robot_as_it_was():
     robot = load_robot("ur5")
-    narrow = with_limits(
-        with_group(robot, robot.group[:2], {"elbow_joint": 1.0}), {"shoulder_pan_joint": (-1, 1)}
-    )
+    held = with_group(robot, robot.group[:2], {"elbow_joint": 1.0})
+    narrow = with_limits(held, {"shoulder_pan_joint": (-1, 1)})
     assert (narrow.joints[0].lower, narrow.joints[0].upper) == (-1, 1)
     assert narrow.held == {"elbow_joint": 1.0}
     assert robot == load_robot("ur5")
@@ -332,8 +314,6 @@ def test_a_scene_can_only_narrow_a_joints_range():
     assert (elbow.lower, elbow.upper) == (-1.0, np.pi)
     with pytest.raises(InvalidValue, match="limits of joint 'elbow_joint' must satisfy lower < upper"):
         in_scene(robot, Scene((), name="s", limits={"elbow_joint": (4.0, 9.0)}))
-    with pytest.raises(UnknownName, match="limits of scene 's': 'knee'"):
-        in_scene(robot, Scene((), name="s", limits={"knee": (4.0, 9.0)}))
 
 
 @pytest.mark.parametrize(
@@ -356,11 +336,6 @@ def test_a_joint_that_cannot_be_held_is_refused(held, says):
 def test_altering_a_joint_that_is_not_there_is_refused(alter):
     with pytest.raises(UnknownName, match="'knee'"):
         alter(load_robot("ur5"))
-
-
-def test_a_url_like_name_is_no_shipped_robot(tmp_path):
-    with pytest.raises(BrokenFile, match=r"cannot read the robot no/where\.urdf"):
-        load_robot("no/where.urdf")
 
 
 @pytest.mark.parametrize("huge", ["1e10", "1e155", "1e308"])

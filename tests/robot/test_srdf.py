@@ -23,14 +23,16 @@ ARM = urdf(
 )
 
 
+def srdf_of(folder, inside, name="arm.srdf"):
+    """Write an SRDF and return its file."""
+    return write(folder, f"<robot name='arm'>{inside}</robot>", name)
+
+
 @pytest.fixture
 def read(tmp_path):
+    """Read an SRDF for `ARM`; return both."""
     arm = read_urdf(write(tmp_path, ARM))
-
-    def read(inside):
-        return arm, read_srdf(write(tmp_path, f"<robot name='arm'>{inside}</robot>", "arm.srdf"), arm)
-
-    return read
+    return lambda inside: (arm, read_srdf(srdf_of(tmp_path, inside), arm))
 
 
 @pytest.mark.parametrize(
@@ -50,52 +52,34 @@ def test_a_group_is_what_moves_of_its_parts_in_the_order_of_the_urdf(read, insid
     assert srdf.groups["g"] == joints
 
 
-def test_states_and_disabled_pairs_are_read(read):
-    _, srdf = read(
-        "<group name='g'><joint name='elbow'/></group>"
-        "<group_state name='bent' group='g'><joint name='elbow' value='0.5'/></group_state>"
-        "<disable_collisions link1='base' link2='upper' reason='Adjacent'/><virtual_joint name='v'/>"
-    )
-    assert srdf.states == {("g", "bent"): {"elbow": 0.5}}
-    assert srdf.disabled == {frozenset(("base", "upper"))}
-
-
-def test_virtual_joints_are_skipped_wherever_they_are(read):
+def test_states_and_disabled_pairs_are_read_and_virtual_joints_skipped_wherever_they_are(read):
     arm, srdf = read(
         "<virtual_joint name='world_joint' type='planar' parent_frame='odom' child_link='base'/>"
+        "<passive_joint name='world_joint'/>"
         "<group name='base'><joint name='world_joint'/></group>"
         "<group name='all'><group name='base'/><joint name='elbow'/></group>"
         "<group_state name='s' group='all'><joint name='world_joint' value='0 0 0'/>"
         "<joint name='elbow' value='0.5'/></group_state>"
+        "<disable_collisions link1='base' link2='upper' reason='Adjacent'/>"
     )
+    assert srdf.disabled == {frozenset(("base", "upper"))}
     assert srdf.groups == {"base": (), "all": ("elbow",)}
     assert srdf.states == {("all", "s"): {"elbow": 0.5}}
     assert choose_group(arm, srdf, "all") == ("elbow",)
 
 
 def test_passive_joints_are_in_no_group(read):
-    arm, srdf = read(
-        "<group name='g'><chain base_link='base' tip_link='hand'/></group><passive_joint name='shoulder'/>"
-    )
+    chain = "<chain base_link='base' tip_link='hand'/>"
+    arm, srdf = read(f"<passive_joint name='shoulder'/><group name='g'>{chain}</group>")
     assert srdf.groups == {"g": ("elbow",)}
     assert choose_group(arm, read("<passive_joint name='shoulder'/>")[1], None) == ("elbow", "grip")
-
-
-def test_a_virtual_joint_may_be_passive(read):
-    _, srdf = read(
-        "<virtual_joint name='world_joint' type='fixed' parent_frame='world' child_link='base'/>"
-        "<passive_joint name='world_joint'/><group name='g'><joint name='elbow'/></group>"
-    )
-    assert srdf.groups == {"g": ("elbow",)}
 
 
 def test_a_joint_locked_by_its_limits_is_in_no_group(tmp_path):
     locked = "<limit lower='0.25' upper='0.25' velocity='1' effort='1'/>"
     text = urdf(*map(link, "xyz"), joint("a", "x", "y", inside=locked), joint("b", "y", "z"))
     srdf = "<group name='g'><chain base_link='x' tip_link='z'/></group>"
-    robot = load_robot(
-        write(tmp_path, text), srdf=write(tmp_path, f"<robot name='arm'>{srdf}</robot>", "arm.srdf")
-    )
+    robot = load_robot(write(tmp_path, text), srdf=srdf_of(tmp_path, srdf))
     assert robot.group == ("b",)
     assert held_values(robot) == {"a": 0.25}
     assert ArmWorld(robot, Scene((), name="empty")).space.dim == 1
@@ -150,18 +134,11 @@ def test_what_the_robot_lacks_is_noted_and_skipped(inside, read):
 
 def test_a_note_on_what_the_robot_lacks_is_one_short_line(tmp_path):
     pairs = "".join(f"<disable_collisions link1='base' link2='{'moon' * 100}{i}'/>" for i in range(500))
-    model = load_model(
-        write(tmp_path, ARM), srdf=write(tmp_path, f"<robot name='arm'>{pairs}</robot>", "arm.srdf")
-    )
+    model = load_model(write(tmp_path, ARM), srdf=srdf_of(tmp_path, pairs))
     (note,) = (note for note in model.notes if "SRDF" in note)
     assert note.endswith("and 492 more")
     assert len(note) < 800
     assert "\n" not in note
-
-
-def test_a_group_of_which_the_robot_has_nothing_is_not_chosen(read):
-    arm, srdf = read("<group name='whole'><joint name='other/elbow'/></group>")
-    assert choose_group(arm, srdf, None) == ("shoulder", "elbow", "grip")
 
 
 def test_an_srdf_that_is_no_xml_or_missing_is_named(tmp_path):
@@ -178,13 +155,16 @@ def test_without_a_wish_the_group_is_the_srdfs_only_one_or_all_that_moves_by_its
     arm, srdf = read("<group name='g'><joint name='elbow'/></group>")
     assert choose_group(arm, srdf, None) == ("elbow",)
     assert choose_group(arm, None, None) == ("shoulder", "elbow", "grip")
+    # One of which the robot has nothing is none.
+    _, srdf = read("<group name='whole'><joint name='other/elbow'/></group>")
+    assert choose_group(arm, srdf, None) == ("shoulder", "elbow", "grip")
 
 
-def test_a_list_of_joints_is_a_group_in_the_order_of_the_list(read):
-    arm, srdf = read("<group name='g'><joint name='elbow'/></group>")
-    assert choose_group(arm, srdf, "grip, shoulder") == ("grip", "shoulder")
-    assert choose_group(arm, srdf, ["grip"]) == ("grip",)
-    assert choose_group(arm, srdf, "g") == ("elbow",)
+@pytest.mark.parametrize(
+    ("wanted", "joints"), [("grip, shoulder", ("grip", "shoulder")), (["grip"], ("grip",)), ("g", ("elbow",))]
+)
+def test_a_list_of_joints_is_a_group_in_the_order_of_the_list(read, wanted, joints):
+    assert choose_group(*read("<group name='g'><joint name='elbow'/></group>"), wanted) == joints
 
 
 TWO_GROUPS = """
@@ -210,20 +190,13 @@ def test_several_groups_are_one_in_the_order_of_the_wish(read, wanted, joints):
     assert choose_group(arm, srdf, wanted) == joints
 
 
-def test_states_of_one_name_of_several_groups_are_one(tmp_path):
-    robot = load_robot(
-        write(tmp_path, ARM),
-        srdf=write(tmp_path, f"<robot name='arm'>{TWO_GROUPS}</robot>", "arm.srdf"),
-        group="fingers,arm",
-    )
-    assert robot.group == ("grip", "shoulder", "elbow")
-    assert robot.states == {"home": {"grip": 0.3, "shoulder": 0.1, "elbow": 0.2}}
-    np.testing.assert_array_equal(configuration(robot, "home"), [0.3, 0.1, 0.2])
-
-
-def test_two_groups_plan_together_in_the_order_of_the_wish(tmp_path):
+def test_two_groups_have_their_states_in_one_and_plan_together_in_the_order_of_the_wish(tmp_path):
     text = ARM.replace("radius='0.05'", "radius='0.02'")
-    path, srdf = write(tmp_path, text), write(tmp_path, f"<robot name='a'>{TWO_GROUPS}</robot>", "arm.srdf")
+    path, srdf = write(tmp_path, text), srdf_of(tmp_path, TWO_GROUPS)
+    robot = load_robot(path, srdf=srdf, group="fingers,arm")
+    assert robot.group == ("grip", "shoulder", "elbow")
+    # States of one name are one.
+    assert robot.states == {"home": {"grip": 0.3, "shoulder": 0.1, "elbow": 0.2}}
     turned = plan(Scene(name="s"), "home", "0.1,0.3,0.5", robot=path, srdf=srdf, group=("fingers", "arm"))
     assert turned.solved, turned.message
     np.testing.assert_allclose(turned.path[0], [0.3, 0.1, 0.2])
@@ -248,6 +221,14 @@ def test_a_group_that_cannot_be_planned_for_is_refused(read, wanted, kind, says)
         choose_group(arm, srdf, wanted)
 
 
+def groups_of(groups):
+    """The elements of groups, of the names of their joints."""
+    return "".join(
+        f"<group name='{name}'>{''.join(f'<joint name={each!r}/>' for each in members.split())}</group>"
+        for name, members in groups.items()
+    )
+
+
 @pytest.mark.parametrize(
     ("groups", "joints"),
     [
@@ -258,11 +239,7 @@ def test_a_group_that_cannot_be_planned_for_is_refused(read, wanted, kind, says)
     ],
 )  # fmt: skip
 def test_of_several_groups_the_longest_chain_is_the_arm(read, groups, joints):
-    inside = "".join(
-        f"<group name='{name}'>{''.join(f'<joint name={each!r}/>' for each in members.split())}</group>"
-        for name, members in groups.items()
-    )
-    arm, srdf = read(inside)
+    arm, srdf = read(groups_of(groups))
     assert choose_group(arm, srdf, None) == joints
     (note,) = group_notes(arm, srdf, None)
     assert all(name in note for name in (*groups, "--group"))
@@ -271,11 +248,7 @@ def test_of_several_groups_the_longest_chain_is_the_arm(read, groups, joints):
 
 @pytest.mark.parametrize("groups", [("shoulder", "elbow"), ("shoulder elbow grip", "elbow grip")])
 def test_where_no_group_is_the_arm_the_option_is_named(read, groups):
-    inside = "".join(
-        f"<group name='g{i}'>{''.join(f'<joint name={each!r}/>' for each in members.split())}</group>"
-        for i, members in enumerate(groups)
-    )
-    arm, srdf = read(inside)
+    arm, srdf = read(groups_of({f"g{i}": members for i, members in enumerate(groups)}))
     with pytest.raises(InvalidValue, match=r"several groups.*--group.*: g0, g1"):
         choose_group(arm, srdf, None)
 
@@ -298,8 +271,7 @@ def fingers(lower, upper):
 )
 def test_fingers_that_are_held_stand_where_they_do_not_touch(tmp_path, limits, grip):
     path, pair = write(tmp_path, fingers(*limits)), "<disable_collisions link1='base' link2='upper'/>"
-    srdf = write(tmp_path, f"<robot name='arm'>{pair}</robot>", "arm.srdf")
-    robot = load_model(path, srdf=srdf, group="shoulder,elbow").robot
+    robot = load_model(path, srdf=srdf_of(tmp_path, pair), group="shoulder,elbow").robot
     # Where they touch wherever they stand, they stay; the mimic's limits are the joint's.
     assert held_values(robot) == {"grip": grip}
 
@@ -320,15 +292,11 @@ def test_the_srdf_of_an_arm_with_a_hand_is_read_again_and_planned_with(tmp_path)
 
 def test_pairs_that_always_touch_are_disabled_in_what_is_written(tmp_path):
     # The two lie in each other, and this SRDF does not say so.
-    text = urdf(
-        *map(link, "wxyz"),
-        joint("a", "w", "x", xyz="0 0 0.5"),
-        joint("b", "x", "y", xyz="0 0 0.02"),
-        joint("c", "y", "z", xyz="0 0 0.02"),
-    )
-    path = write(tmp_path, text)
+    places = {"awx": "0 0 0.5", "bxy": "0 0 0.02", "cyz": "0 0 0.02"}
+    joints = [joint(*names, xyz=xyz) for names, xyz in places.items()]
+    path = write(tmp_path, urdf(*map(link, "wxyz"), *joints))
     adjacent = "".join(f"<disable_collisions link1='{a}' link2='{b}'/>" for a, b in ("wx", "xy", "yz"))
-    first = load_model(path, srdf=write(tmp_path, f"<robot name='r'>{adjacent}</robot>", "first.srdf"))
+    first = load_model(path, srdf=srdf_of(tmp_path, adjacent, "first.srdf"))
     assert first.always_touching == (("x", "z"),)
     again = load_model(path, srdf=write(tmp_path, srdf_text(first), "again.srdf"))
     assert not again.always_touching
@@ -349,16 +317,15 @@ TWO_ARMS = urdf(
 )
 
 
-def test_groups_are_the_chains_without_a_branch_and_grippers_apart(tmp_path):
-    robot = load_model(write(tmp_path, TWO_ARMS)).robot
-    found = {name: [joint.name for joint in joints] for name, joints in chains(robot.joints).items()}
-    assert found == {"left2": ["l1", "l2"], "finger": ["grip"], "right2": ["r1", "r2"]}
-
-
-def test_the_file_read_again_gives_the_same_pairs_groups_and_states(tmp_path):
+def test_what_is_written_has_its_reasons_and_gives_the_same_pairs_groups_and_states(tmp_path):
     path = write(tmp_path, TWO_ARMS)
     model = load_model(path)
-    srdf = write(tmp_path, srdf_text(model), "arm.srdf")
+    # Chains without a branch, and grippers apart.
+    found = {name: [joint.name for joint in joints] for name, joints in chains(model.robot.joints).items()}
+    assert found == {"left2": ["l1", "l2"], "finger": ["grip"], "right2": ["r1", "r2"]}
+    srdf = write(tmp_path, text := srdf_text(model), "arm.srdf")
+    assert '<disable_collisions link1="base" link2="left1" reason="Adjacent" />' in text
+    assert '<disable_collisions link1="base" link2="camera" reason="Never moves" />' in text
     again = load_model(path, srdf=srdf, group="planned")
     assert again.pairs_from == "SRDF"
     assert again.robot.pairs == model.robot.pairs
@@ -369,19 +336,10 @@ def test_the_file_read_again_gives_the_same_pairs_groups_and_states(tmp_path):
     assert both.states["home"] == {"r1": 0.0, "r2": 0.2, "l1": 0.0, "l2": 0.0}
 
 
-def test_every_pair_that_is_not_tested_has_its_reason(tmp_path):
-    text = srdf_text(load_model(write(tmp_path, TWO_ARMS)))
-    assert '<disable_collisions link1="base" link2="left1" reason="Adjacent" />' in text
-    assert '<disable_collisions link1="base" link2="camera" reason="Never moves" />' in text
-
-
-def test_a_robot_of_one_chain_has_one_group(tmp_path):
+def test_a_robot_of_one_chain_has_one_group_and_states_that_are_known_are_kept(tmp_path):
     text = urdf(*map(link, "xyz"), joint("a", "x", "y"), joint("b", "y", "z"))
     written = srdf_text(load_model(write(tmp_path, text)))
     assert written.count("<group name") == 1
     assert '<chain base_link="x" tip_link="z" />' in written
-
-
-def test_states_that_are_known_are_kept():
     text = srdf_text(load_model("ur5"))
     assert all(f'name="{name}"' in text for name in load_model("ur5").robot.states)

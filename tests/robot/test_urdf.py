@@ -1,6 +1,5 @@
 import math
 import re
-import warnings
 
 import numpy as np
 import pytest
@@ -46,11 +45,8 @@ def test_numbers_are_read_as_they_stand(tmp_path):
 
 
 def test_an_axis_that_is_not_given_is_x(tmp_path):
-    text = urdf(
-        link("base"),
-        link("tool"),
-        f"<joint name='j' type='revolute'><parent link='base'/><child link='tool'/>{LIMIT}</joint>",
-    )
+    axisless = f"<joint name='j' type='revolute'><parent link='base'/><child link='tool'/>{LIMIT}</joint>"
+    text = urdf(link("base"), link("tool"), axisless)
     assert read_urdf(write(tmp_path, text)).joints[0].axis == (1.0, 0.0, 0.0)
 
 
@@ -94,12 +90,6 @@ def test_what_is_not_for_collision_is_not_looked_at(tmp_path):
     body = SPHERE + "<visual><geometry><teapot/></geometry></visual><inertial><mass value='much'/></inertial>"
     text = urdf(link("base", body), "<transmission name='t'/>", "<gazebo><mesh/></gazebo>")
     assert len(read_urdf(write(tmp_path, text)).shapes) == 1
-
-
-def test_reading_gives_no_warnings(tmp_path):
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        read_urdf(write(tmp_path, two_joints()))
 
 
 def test_commas_between_numbers_are_blanks(tmp_path):
@@ -345,6 +335,7 @@ def test_a_file_that_is_missing_is_named(tmp_path):
         ("package://other/part.stl", "other/part.stl"),
         ("package://in_ros/part.stl", "ros/in_ros/part.stl"),
         ("package://my%20own/part.stl", "my own/part.stl"),
+        ("file://{}/far/part.stl", "far/part.stl"),
     ],
 )
 def test_meshes_are_found_where_urdfs_and_ros_put_them(tmp_path, monkeypatch, name, place):
@@ -353,13 +344,5 @@ def test_meshes_are_found_where_urdfs_and_ros_put_them(tmp_path, monkeypatch, na
     (tmp_path / "my_robot" / "meshes").mkdir()
     (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / place).write_bytes(b"")
-    found = find_mesh(name, RobotFile(tmp_path / "my_robot" / "urdf" / "arm.urdf"), "x")
+    found = find_mesh(name.format(tmp_path), RobotFile(tmp_path / "my_robot" / "urdf" / "arm.urdf"), "x")
     assert found.resolve() == (tmp_path / place).resolve()
-
-
-def test_a_file_url_is_absolute(tmp_path):
-    (tmp_path / "part.stl").write_bytes(b"")
-    assert (
-        find_mesh(f"file://{tmp_path}/part.stl", RobotFile(tmp_path / "far" / "arm.urdf"), "x")
-        == tmp_path / "part.stl"
-    )
