@@ -54,7 +54,7 @@ CALLS = {
     "disk.motion_valid((0, 0))": "motion_valid(a, b)",
     "disk.motion_valid((0, 0), 'goal')": "finite numbers",
     "disk.explain('here')": "finite numbers",
-    "disk.explain((1, 2, 3))": "(n, 2)",
+    "disk.explain((1, 2, 3))": "(1, 2)",
     "disk.distance('here')": "finite numbers",
     # --- results
     "result.resample('fine')": "step",
