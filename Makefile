@@ -7,13 +7,15 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constra
 CLANG  := $(if $(filter default undefined,$(origin CXX)),ziglang)
 KERNEL := $(shell find src/evenroad/_native/cpp -name '*.?pp') src/evenroad/_native/CMakeLists.txt tools/build_backend.py
 
-.PHONY: help demo test test-peers lint native docs bench bank mazes release-check clean
+.PHONY: help demo test test-peers lint native sanitize tidy docs bench bank mazes release-check clean
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
 	@echo "make test-peers  tests against OMPL, coal, pinocchio, Klamp't and Planner Arena (installs their wheels)"
 	@echo "make lint   ruff, mypy and clang-format"
 	@echo "make native  the native kernel alone, into src/evenroad/_native"
+	@echo "make sanitize  its tests under the address and undefined-behaviour sanitizers"
+	@echo "make tidy   clang-tidy over the native kernel"
 	@echo "make docs   the pages as a site -> out/docs/index.html"
 	@echo "make bench  the slow tables and timings -> out/bench/"
 	@echo "make bank   rebuild (or finish) the shipped point sets"
@@ -46,6 +48,16 @@ $(VENV)/.peers: $(VENV)/.dev
 	@touch $@
 
 native: $(VENV)/.native
+
+# Once for each state of the kernel: its tests where memory errors and undefined behaviour stop the program.
+$(VENV)/.sanitized: $(KERNEL) | $(VENV)/.dev
+	$(BIN)/python tools/build_backend.py --sanitized
+	@touch $@
+
+sanitize: $(VENV)/.sanitized
+
+tidy: $(VENV)/.dev
+	$(BIN)/python tools/tidy_native.py
 
 demo: $(VENV)/.core $(VENV)/.native
 	@mkdir -p out

@@ -1,6 +1,7 @@
 """What builds evenroad: scikit-build-core, with a compiler that comes as a wheel, and editable installs built in place.
 
-    python tools/build_backend.py            # build the native kernel into src/evenroad/_native; or: make native
+    python tools/build_backend.py              # build the native kernel into src/evenroad/_native; or: make native
+    python tools/build_backend.py --sanitized  # one more build of it, for tests: make sanitize
 
 A compiler of your own is taken where the environment variable CXX names one: `CXX=clang++ pip install .`.  Otherwise
 clang of the wheel `ziglang` compiles: nothing but Python needs to be installed.  (scikit-build-core alone would take
@@ -149,12 +150,12 @@ def announce() -> None:
     print(f"building the native kernel {how}, once", file=sys.stderr, flush=True)
 
 
-def build_in_place(*more: str) -> None:
+def build_in_place(kind: str = "native", **more: str) -> None:
     """Build the kernel into `src/evenroad/_native`, anew only what changed."""
     began = time.perf_counter()
-    folder = ROOT / "build" / f"native-{sysconfig.get_config_var('SOABI') or sys.implementation.cache_tag}"
-    defined = {**definitions(), "Python_EXECUTABLE": sys.executable, "CMAKE_BUILD_TYPE": "Release"}
-    arguments = [*(f"-D{name}={value}" for name, value in sorted(defined.items())), *more]
+    folder = ROOT / "build" / f"{kind}-{sysconfig.get_config_var('SOABI') or sys.implementation.cache_tag}"
+    defined = {**definitions(), "Python_EXECUTABLE": sys.executable, "CMAKE_BUILD_TYPE": "Release", **more}
+    arguments = [f"-D{name}={value}" for name, value in sorted(defined.items())]
     told = folder / "arguments.txt"
     if not told.exists() or told.read_text() != "\n".join(arguments):
         # Another compiler, or one in another folder: CMake would not take it in the same build.
@@ -182,5 +183,27 @@ def run(tool: str, *arguments: str) -> None:
         raise SystemExit(f"{tool} {shlex.join(arguments)}\n{done.stdout[-8000:]}")
 
 
+def build_sanitized() -> None:
+    """Build the kernel for tests with a compiler that has sanitizers, which the wheel's clang has not; or say so."""
+    compiler = os.environ.setdefault("CXX", "g++")
+    if shutil.which(shlex.split(compiler)[0]) is None:
+        print(f"no {compiler}: the kernel is not tested under sanitizers", file=sys.stderr)
+        return
+    build_in_place("sanitized", EVENROAD_SANITIZE="ON")
+    runtime = subprocess.run(
+        [*shlex.split(compiler), "-print-file-name=libasan.so"], capture_output=True, text=True, check=True
+    ).stdout.strip()
+    environment = {
+        **os.environ,
+        "EVENROAD_ARCH": "sanitized",
+        "LD_PRELOAD": runtime,
+        # Python keeps memory until it ends.
+        "ASAN_OPTIONS": "detect_leaks=0",
+        "UBSAN_OPTIONS": "print_stacktrace=1",
+    }
+    tests = [sys.executable, "-m", "pytest", "-q", "-n", "0", str(ROOT / "tests" / "native")]
+    raise SystemExit(subprocess.run(tests, env=environment, cwd=ROOT).returncode)
+
+
 if __name__ == "__main__":
-    build_in_place(*sys.argv[1:])
+    build_sanitized() if "--sanitized" in sys.argv[1:] else build_in_place()

@@ -11,6 +11,8 @@ from evenroad.errors import NotAvailable, UnknownName
 
 ENVIRONMENT = "EVENROAD_ARCH"
 """Environment variable that names the build to load; without it, the newest that the processor runs."""
+SANITIZED = "sanitized"
+"""A build for tests that stops at memory errors and undefined behaviour, never loaded unasked: `make sanitize`."""
 
 
 def module_name(variant: str) -> str:
@@ -27,7 +29,7 @@ def usable() -> tuple[str, ...]:
             "the native kernel is not built for this Python: run `make native` in a clone, or `pip install .`"
             f" ({error})"
         ) from error
-    return tuple(each for each in cpu.runnable() if find_spec(module_name(each)) is not None)
+    return tuple(each for each in (SANITIZED, *cpu.runnable()) if find_spec(module_name(each)) is not None)
 
 
 def load() -> ModuleType:

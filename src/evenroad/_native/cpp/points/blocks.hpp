@@ -9,7 +9,12 @@
 
 namespace evenroad::points {
 
+#if defined(EVENROAD_SANITIZED)
+// GCC takes minutes for wide vectors whose every lane is checked.
+constexpr std::size_t WIDTH = 8;
+#else
 constexpr std::size_t WIDTH = 32;
+#endif
 using Block = Lanes<double, WIDTH>;
 
 /// Rows in blocks, the last one filled up with zeros.

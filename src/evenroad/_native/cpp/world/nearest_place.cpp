@@ -31,7 +31,8 @@ void look_at_cell(const Disk& disk, std::int64_t row, std::int64_t column, Point
     return;
   }
   for (int i = 0; i < 25; i++) {
-    const Point near{left + 0.25 * (i % 5), top + 0.25 * (i / 5)};
+    const int across = i % 5, down = i / 5;
+    const Point near{left + 0.25 * across, top + 0.25 * down};
     const double squared = squared_distance(near, from);
     if (squared < best.squared && disk.is_free(near)) best = {near, squared};
   }
