@@ -42,8 +42,7 @@ STILL_THERE = {
     "tell": {"tell"},
     # To place a body where it is, as a verb.
     "place": {
-        *("_place_bodies", "_place_capsules", "_place_frames", "_place_tip"),
-        *("place_capsule", "place_fixed", "place_hulls", "place_moving"),
+        *("_place_capsules", "_place_frames", "_place_tip", "place_capsule", "place_hulls"),
     },
     # The key of scene files.
     "ends": {"allowed_near_ends", "near_ends"},
