@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from evenroad._compiled import say_if_compiling
+from evenroad._compiled import defer_blas, say_if_compiling
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     chosen_budget,
@@ -168,5 +168,6 @@ def _constraints(plan: PlanArm) -> tuple[CartesianLine | None, OrientationConstr
 
 
 def _say_if_compiling(plan: PlanArm) -> None:
+    defer_blas()
     if plan.goal_pose or plan.straight or plan.upright:
         say_if_compiling("evenroad.robot.kernel.reach", "solve", 5)
