@@ -131,11 +131,7 @@ def _lead_to_pages(app, document, source):
     """
     if document == "index":
         new = [path.stem for path in sorted(Path(app.srcdir).glob("*.md"))]
-        new = [
-            name
-            for name in new
-            if name != document and not re.search(rf"^(?:.* <)?{name}>?$", source[0], re.M)
-        ]
+        new = [name for name in new if name != document and not re.search(rf"^(?:.* <)?{name}>?$", source[0], re.M)]
         source[0] = source[0].replace("\nexamples\n", "\n" + "\n".join([*new, "examples"]) + "\n")
     source[0] = re.sub(r"\]\((?:\.\./)+studies/docs/", r"](/generated/studies/", source[0])
     source[0] = re.sub(r"\]\((?:\.\./)+docs/", r"](/", source[0])

@@ -19,9 +19,7 @@ table = Scene(
         Obstacle.of("post", "box", (0.08, 0.08, 0.35), (0.45, 0.45, 0.175)),
     ),
     name="one table",
-    allowed=frozenset(
-        (prefix + link, "table") for prefix in ("", "left_") for link in ("base_link", "shoulder_link")
-    ),
+    allowed=frozenset((prefix + link, "table") for prefix in ("", "left_") for link in ("base_link", "shoulder_link")),
 )
 world = ArmWorld(BOTH, table)
 

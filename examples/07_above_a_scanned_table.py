@@ -31,9 +31,7 @@ def distance(p):
 eye, middle = np.array([1.5, 0.3, 1.2]), np.array([0.3, 0.0, 0.1])
 ahead = (middle - eye) / np.linalg.norm(middle - eye)
 right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.linalg.norm(np.cross(ahead, (0.0, 0.0, 1.0)))
-u, v = (
-    each.reshape(-1, 1) for each in np.meshgrid(np.linspace(-0.6, 0.6, 200), np.linspace(-0.45, 0.45, 150))
-)
+u, v = (each.reshape(-1, 1) for each in np.meshgrid(np.linspace(-0.6, 0.6, 200), np.linspace(-0.45, 0.45, 150)))
 rays = ahead + u * right + v * np.cross(right, ahead)
 rays /= np.linalg.norm(rays, axis=1, keepdims=True)
 depth = np.zeros(len(rays))

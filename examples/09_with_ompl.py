@@ -34,13 +34,9 @@ def theirs_on_ours() -> None:
 def ours_on_theirs() -> None:
     """A disk in the plane as a program that uses OMPL has it: its space and its checker are all that we get."""
     information = ob.SpaceInformation(ompl_space(er.spaces.SE2((0, 0), (1, 1), combine="sum")))
-    information.setStateValidityChecker(
-        lambda state: (state.getX() - 0.5) ** 2 + (state.getY() - 0.5) ** 2 > 0.09
-    )
+    information.setStateValidityChecker(lambda state: (state.getX() - 0.5) ** 2 + (state.getY() - 0.5) ** 2 > 0.09)
     information.setStateValidityCheckingResolution(0.005)
-    result = er.plan(
-        OmplWorld(information), (0.1, 0.1, 0.0), (0.9, 0.9, 3.0), er.PRM(er.draw("even", 256, 3))
-    )
+    result = er.plan(OmplWorld(information), (0.1, 0.1, 0.0), (0.9, 0.9, 3.0), er.PRM(er.draw("even", 256, 3)))
     print("our roadmap, OMPL's checker:", result.message, "proof:", result.proof)
 
 

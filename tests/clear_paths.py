@@ -72,8 +72,7 @@ class DiscWorld:
     def leads(self, start: Floats, goal: Floats, clearance: float, cells: int = 800) -> bool | None:
         """Return whether a path of this clearance exists, by filling a fine grid; None where that cannot tell."""
         verdicts = [
-            _filled(plane, start[list(plane.axes)], goal[list(plane.axes)], clearance, cells)
-            for plane in self.planes
+            _filled(plane, start[list(plane.axes)], goal[list(plane.axes)], clearance, cells) for plane in self.planes
         ]
         return False if False in verdicts else None if None in verdicts else True
 

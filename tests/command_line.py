@@ -48,11 +48,7 @@ def run(capsys):
             code = leave.code
         captured = capsys.readouterr()
         # Said by whichever test is the first on a machine.
-        said = [
-            line
-            for line in captured.err.splitlines(keepends=True)
-            if "compiling for this machine" not in line
-        ]
+        said = [line for line in captured.err.splitlines(keepends=True) if "compiling for this machine" not in line]
         return code, captured.out, "".join(said)
 
     return run
@@ -75,9 +71,7 @@ def refuse(run):
     """Run what must be refused with exit code 2, in one line, and with nothing written; return the line."""
 
     def there_is():
-        return sorted(
-            (path, path.stat().st_mtime_ns) for path in Path.cwd().rglob("*") if ".cache" not in path.parts
-        )
+        return sorted((path, path.stat().st_mtime_ns) for path in Path.cwd().rglob("*") if ".cache" not in path.parts)
 
     def refuse(*words):
         before = there_is()

@@ -52,9 +52,7 @@ def _imported_parts(path):
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: imports are absolute"
             names = (
-                [f"{node.module}.{alias.name}" for alias in node.names]
-                if node.module == "evenroad"
-                else [node.module]
+                [f"{node.module}.{alias.name}" for alias in node.names] if node.module == "evenroad" else [node.module]
             )
         for name in names:
             top, _, rest = name.partition(".")
@@ -160,9 +158,7 @@ def test_test_modules_import_helpers_and_not_each_other():
 def test_all_compiled_code_is_kept_by_one_rule():
     direct = ("from numba import njit", "from numba import cfunc", "@numba.njit", "@numba.cfunc")
     around = [path for path in MODULES if any(each in path.read_text() for each in direct)]
-    assert around == [], (
-        "take njit and cfunc from evenroad._njit, which notices edits of what a function calls"
-    )
+    assert around == [], "take njit and cfunc from evenroad._njit, which notices edits of what a function calls"
 
 
 def test_importing_evenroad_loads_nothing_heavy():

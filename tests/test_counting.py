@@ -23,9 +23,7 @@ def test_answers_are_the_worlds_and_questions_are_counted():
     q = np.random.default_rng(0).random((30, 2))
     world = Counting(CORRIDOR)
     np.testing.assert_array_equal(world.valid(q), CORRIDOR.valid(q))
-    np.testing.assert_array_equal(
-        world.motion_valid(q[:10], q[10:20]), CORRIDOR.motion_valid(q[:10], q[10:20])
-    )
+    np.testing.assert_array_equal(world.motion_valid(q[:10], q[10:20]), CORRIDOR.motion_valid(q[:10], q[10:20]))
     assert (world.configurations, world.motions) == (30, 10)
     world.valid(q[:0])
     world.motion_valid(q, q)

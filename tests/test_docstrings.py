@@ -74,9 +74,7 @@ def _text(name, thing):
     owner, _, member = name.rpartition(".")
     if inspect.isclass(PUBLIC.get(owner)):
         bases = [vars(each)[member] for each in PUBLIC[owner].__mro__ if member in vars(each)]
-        texts += [
-            (each.__doc__ and inspect.cleandoc(each.__doc__)) or "" for each in bases if each is not thing
-        ]
+        texts += [(each.__doc__ and inspect.cleandoc(each.__doc__)) or "" for each in bases if each is not thing]
     return max(texts, key=lambda text: text.count("\n---"))
 
 
@@ -130,9 +128,7 @@ def test_its_example_runs(name, tmp_path, monkeypatch):
 
 
 def test_every_error_says_when_it_is_raised():
-    errors = [
-        each for each in vars(er.errors).values() if inspect.isclass(each) and issubclass(each, Exception)
-    ]
+    errors = [each for each in vars(er.errors).values() if inspect.isclass(each) and issubclass(each, Exception)]
     assert len(errors) == 7
     assert all(len(each.__doc__) > 30 for each in errors)
 

@@ -23,8 +23,6 @@ def test_one_thing_is_no_several():
 
 
 def test_a_name_that_is_nearly_known_is_asked_about():
-    assert str(UnknownName.among("sampler", "evn", ["even", "halton"])).endswith(
-        "halton; did you mean 'even'?"
-    )
+    assert str(UnknownName.among("sampler", "evn", ["even", "halton"])).endswith("halton; did you mean 'even'?")
     assert "did you mean" not in str(UnknownName.among("sampler", "zzz", ["even", "halton"]))
     assert "did you mean" not in str(UnknownName.among("sampler", 7, ["even", "halton"]))

@@ -65,10 +65,7 @@ def _free(q):
 def test_a_function_has_a_fingerprint_by_the_name_that_its_user_gives():
     space = SE2((0, 0), (1, 1))
     one = FunctionWorld(space, _free, 0.1, name="cell 7")
-    assert (
-        one.fingerprint()
-        == FunctionWorld(SE2((0, 0), (1, 1)), lambda q: _free(q), 0.1, name="cell 7").fingerprint()
-    )
+    assert one.fingerprint() == FunctionWorld(SE2((0, 0), (1, 1)), lambda q: _free(q), 0.1, name="cell 7").fingerprint()
     others = [
         FunctionWorld(space, _free, 0.1, name="cell 8"),
         FunctionWorld(space, _free, 0.2, name="cell 7"),

@@ -62,9 +62,7 @@ DRAWN = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version
 <library_visual_scenes><visual_scene id="s"><node><instance_node url="#n7"/></node></visual_scene>
 </library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
-PARTS = "".join(
-    f'<node id="n{i}">' + f'<instance_node url="#n{i - 1}"/>' * 9 + "</node>" for i in range(1, 8)
-)
+PARTS = "".join(f'<node id="n{i}">' + f'<instance_node url="#n{i - 1}"/>' * 9 + "</node>" for i in range(1, 8))
 
 
 def glb(count):
@@ -102,10 +100,7 @@ HOSTILE = {
     "itself.yaml": (load_scene, b"obstacles: &a [*a]\n"),
     "merged.yaml": (
         load_scene,
-        (
-            "a0: &a0 {x: 1}\n"
-            + "".join(f"a{i}: &a{i} {{<<: [*a{i - 1}, *a{i - 1}]}}\n" for i in range(1, 30))
-        ).encode(),
+        ("a0: &a0 {x: 1}\n" + "".join(f"a{i}: &a{i} {{<<: [*a{i - 1}, *a{i - 1}]}}\n" for i in range(1, 30))).encode(),
     ),
     "digits.yaml": (load_scene, b"name: x\nobstacles: 0x" + b"F" * 5000),
     "deep.json": (lambda path: read_json_file(path, "plan"), b"[" * 100_000),

@@ -50,9 +50,7 @@ def digest(package):
     return _sources.digest_of(str(package / "caller.py"))
 
 
-@pytest.mark.parametrize(
-    "edited", ["caller.py", "callee.py", "constants/__init__.py", "constants/numbers.py"]
-)
+@pytest.mark.parametrize("edited", ["caller.py", "callee.py", "constants/__init__.py", "constants/numbers.py"])
 def test_an_edit_of_anything_that_a_function_may_call_gives_another_name(package, edited):
     before = digest(package)
     (package / edited).write_text((package / edited).read_text() + "# edited\n")
@@ -70,9 +68,7 @@ def test_kernels_depend_on_the_layout_of_their_tables():
 
     _sources.digest_of(scalar.__file__)
     assert layout.__file__ in {
-        file
-        for path in [scalar.__file__, *_sources._read(scalar.__file__)[1]]
-        for file in _sources._read(path)[1]
+        file for path in [scalar.__file__, *_sources._read(scalar.__file__)[1]] for file in _sources._read(path)[1]
     }
 
 
@@ -150,10 +146,7 @@ DAMAGE = {
     "cut in half": lambda content: content[: len(content) // 2],
     "without its last byte": lambda content: content[:-1],
     "zeroed": lambda content: bytes(len(content)),
-    **{
-        f"flipped at {at}/8": lambda content, at=at: flipped(content, at * len(content) // 8)
-        for at in range(8)
-    },
+    **{f"flipped at {at}/8": lambda content, at=at: flipped(content, at * len(content) // 8) for at in range(8)},
 }
 
 

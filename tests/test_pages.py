@@ -23,11 +23,7 @@ def _named(page):
     return str(page.relative_to(ROOT))
 
 
-RUN = [
-    page
-    for page in PAGES
-    if any(each.language in ("python", "sh", "yaml") for each in run_pages.blocks(page))
-]
+RUN = [page for page in PAGES if any(each.language in ("python", "sh", "yaml") for each in run_pages.blocks(page))]
 
 
 @pytest.mark.parametrize("page", RUN, ids=_named)
@@ -77,9 +73,7 @@ def test_a_command_that_is_run_otherwise_is_still_there(pattern):
 
 
 def test_commands_that_are_not_ours_are_known():
-    unknown = [
-        each for each in COMMANDS if not each.startswith("evenroad ") and run_pages.instead_of(each) is None
-    ]
+    unknown = [each for each in COMMANDS if not each.startswith("evenroad ") and run_pages.instead_of(each) is None]
     assert unknown == []
 
 
@@ -131,9 +125,7 @@ def test_the_example_runs_and_prints_what_its_page_shows(path, capsys):
         pytest.importorskip(package)
     runpy.run_path(str(path), run_name="__main__")
     left = {str(each) for each in Path().rglob("*") if each.is_file()}
-    assert left == set(LEAVES.get(path.name[:2], ())), (
-        "an example leaves what its text names, and nothing else"
-    )
+    assert left == set(LEAVES.get(path.name[:2], ())), "an example leaves what its text names, and nothing else"
     kept = (run_examples.SHOWN / f"{path.stem}.txt").read_text()
     assert _words(capsys.readouterr().out) == _words(kept), "python tools/run_examples.py keeps it anew"
     for picture in run_examples.SHOWN.glob(f"{path.stem}.png"):

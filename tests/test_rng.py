@@ -6,11 +6,7 @@ from evenroad.errors import InvalidValue
 
 
 def test_equal_seeds_give_equal_streams():
-    assert (
-        generator(3).random()
-        == generator(np.int64(3)).random()
-        == generator(np.random.SeedSequence(3)).random()
-    )
+    assert generator(3).random() == generator(np.int64(3)).random() == generator(np.random.SeedSequence(3)).random()
 
 
 def test_a_generator_is_spawned_so_that_two_calls_differ():

@@ -97,9 +97,7 @@ def test_files_that_are_written_at_once_leave_the_rights_of_new_files_as_they_we
         umask(usual)
 
 
-@pytest.mark.parametrize(
-    "made", [lambda: qmc.Growing(3, rng=1), lambda: qmc.Korobov(3, n=THREADS * 20, rng=1)]
-)
+@pytest.mark.parametrize("made", [lambda: qmc.Growing(3, rng=1), lambda: qmc.Korobov(3, n=THREADS * 20, rng=1)])
 def test_an_engine_hands_out_each_point_once(made):
     alone, shared = made().random(THREADS * 20), made()
     parts = together(lambda: [row for _ in range(10) for row in shared.random(2).tolist()])

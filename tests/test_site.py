@@ -36,9 +36,7 @@ def site(tmp_path_factory):
         text=True,
     )
     assert built.returncode == 0, built.stderr
-    return {
-        str(path.relative_to(out / "html")): Page(path) for path in sorted((out / "html").rglob("*.html"))
-    }
+    return {str(path.relative_to(out / "html")): Page(path) for path in sorted((out / "html").rglob("*.html"))}
 
 
 class Page(HTMLParser):

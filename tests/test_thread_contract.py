@@ -152,17 +152,12 @@ def a_kept_roadmap():
 def a_disk_on_a_map():
     world = load_maze(2).world()
     q = ends(world)
-    asks = [
-        lambda a=a, b=b: (world.may_connect(a, b), world.component(a), world.nearest_free(b))
-        for a, b in q[:4]
-    ]
+    asks = [lambda a=a, b=b: (world.may_connect(a, b), world.component(a), world.nearest_free(b)) for a, b in q[:4]]
     return [*asks, *verdicts(world, q), *(lambda a=a, b=b: er.plan(world, a, b) for a, b in q[:4])]
 
 
 def a_function():
-    world = er.FunctionWorld(
-        er.spaces.SE2((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1 * q[:, 1], 0.02
-    )
+    world = er.FunctionWorld(er.spaces.SE2((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1 * q[:, 1], 0.02)
     q = ends(world)
     return [*verdicts(world, q[:2]), lambda: er.plan(world, *q[0], er.PRM(40))]
 

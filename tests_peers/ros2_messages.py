@@ -71,9 +71,7 @@ def make(store):
     def make(kind, **fields):
         unknown = fields.keys() - {name for name, _ in store.fielddefs[kind][1]}
         assert not unknown, f"{kind} has no {unknown}"
-        return store.types[kind](
-            **{name: _nothing(make, *of) for name, of in store.fielddefs[kind][1]} | fields
-        )
+        return store.types[kind](**{name: _nothing(make, *of) for name, of in store.fielddefs[kind][1]} | fields)
 
     return make
 

@@ -100,9 +100,7 @@ def test_no_contact_of_coal_is_missed_by_the_boxes_around_bodies(robot, scene, m
     assert any("surface" in pair for contacts in found for pair in contacts)
     skipped = 1.0 - world._near(world._poses(q)).mean()
     assert skipped > 0.5
-    monkeypatch.setattr(
-        CoalWorld, "_near", lambda self, poses: np.full((len(self._tests), poses.shape[1]), True)
-    )
+    monkeypatch.setattr(CoalWorld, "_near", lambda self, poses: np.full((len(self._tests), poses.shape[1]), True))
     assert [world.contacts(each) for each in q] == found
 
 
@@ -124,9 +122,7 @@ def balls(count=8, radius=0.06):
     """Balls around the arm, larger than a prong is thick: none is wholly inside of a surface."""
     rng = np.random.default_rng(5)
     directions = rng.normal(size=(count, 3))
-    places = (
-        directions / np.linalg.norm(directions, axis=1, keepdims=True) * rng.uniform(0.25, 0.6, (count, 1))
-    )
+    places = directions / np.linalg.norm(directions, axis=1, keepdims=True) * rng.uniform(0.25, 0.6, (count, 1))
     places[:, 2] += 0.4
     return Scene(
         tuple(Obstacle.of(f"ball {i}", "sphere", (radius,), tuple(p)) for i, p in enumerate(places)),
@@ -197,22 +193,15 @@ def test_a_mesh_is_not_made_convex_and_no_prong_is_lost(engine, fork_arm):
 def test_a_capsule_that_lies_in_the_end_of_a_cylinder_touches_it(engine, fork_arm):
     """Coal misses it, 3 cm deep, when it is not asked for contacts."""
     robot, shapes = fork_arm
-    q = np.array(
-        [[turn, -0.5 * math.pi + off, 0.1] for turn in np.linspace(-3, 3, 50) for off in (-2e-3, 0.0, 2e-3)]
-    )
+    q = np.array([[turn, -0.5 * math.pi + off, 0.1] for turn in np.linspace(-3, 3, 50) for off in (-2e-3, 0.0, 2e-3)])
     assert ("arm", "nose") in robot.pairs
-    assert (
-        not engine(replace(robot, pairs=(("arm", "nose"),)), Scene((), name="nothing"), shapes).valid(q).any()
-    )
+    assert not engine(replace(robot, pairs=(("arm", "nose"),)), Scene((), name="nothing"), shapes).valid(q).any()
 
 
 def test_self_collisions_of_meshes_are_found_by_all(fork_arm):
     robot, shapes = fork_arm
     assert ("base", "fork") in robot.pairs
-    worlds = [
-        engine(robot, Scene((), name="nothing"), shapes)
-        for engine in (CoalWorld, PinocchioWorld, KlamptWorld)
-    ]
+    worlds = [engine(robot, Scene((), name="nothing"), shapes) for engine in (CoalWorld, PinocchioWorld, KlamptWorld)]
     q = worlds[0].space.from_cube(np.random.default_rng(8).random((3_000, 3)))
     coal, pinocchio, klampt = (world.valid(q) for world in worlds)
     assert 0.5 < coal.mean() < 0.99
@@ -232,8 +221,6 @@ def test_a_mesh_that_has_become_empty_is_an_error(engine, fork_arm, content):
 @engines
 def test_a_mesh_that_is_gone_is_an_error(engine, fork_arm, tmp_path):
     robot, shapes = fork_arm
-    gone = [
-        replace(shape, source=tmp_path / "gone.stl") if isinstance(shape, Mesh) else shape for shape in shapes
-    ]
+    gone = [replace(shape, source=tmp_path / "gone.stl") if isinstance(shape, Mesh) else shape for shape in shapes]
     with pytest.raises(BrokenFile, match=r"gone\.stl is missing"):
         engine(robot, balls(), gone)

@@ -51,8 +51,7 @@ def transform(box):
 def resized(world, by):
     """The world with a body whose boxes are that much larger on all sides."""
     body = [
-        OrientedBox(box.centre, [max(half + by, 0.0) for half in box.half_extents], box.rotation)
-        for box in world.body
+        OrientedBox(box.centre, [max(half + by, 0.0) for half in box.half_extents], box.rotation) for box in world.body
     ]
     return SolidWorld(world.space, body, world.obstacles, world.resolution)
 

@@ -46,9 +46,7 @@ def _world(folder, mimic=""):
         box.setAABB([x - HALF, y - HALF, -1.0], [x + HALF, y + HALF, 1.0])
         shape = klampt.Geometry3D()
         shape.setGeometricPrimitive(box)
-        (world.makeTerrain if i else world.makeRigidObject)(f"post {i}").geometry().set(
-            shape.convert("TriangleMesh")
-        )
+        (world.makeTerrain if i else world.makeRigidObject)(f"post {i}").geometry().set(shape.convert("TriangleMesh"))
     return world
 
 
@@ -61,9 +59,7 @@ def _corners(q):
         across = np.stack([-along[:, 1], along[:, 0]], axis=1)
         middle = at + 0.5 * along
         boxes.append(
-            np.stack(
-                [middle + s * 0.45 * along + t * 0.05 * across for s in (-1, 1) for t in (-1, 1)], axis=1
-            )
+            np.stack([middle + s * 0.45 * along + t * 0.05 * across for s in (-1, 1) for t in (-1, 1)], axis=1)
         )
         at = at + along
     return np.stack(boxes, axis=1)

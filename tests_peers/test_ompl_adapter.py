@@ -228,9 +228,7 @@ def test_prm_on_our_points_solves_what_our_roadmap_does_among_random_balls():
 def test_prm_star_takes_our_points_too():
     maze = load_maze(1)
     information = space_information(maze.world())
-    path = plan_on_points(
-        information, maze.start, maze.goal, er.draw("even", 256, 2), og.PRMstar(information)
-    )
+    path = plan_on_points(information, maze.start, maze.goal, er.draw("even", 256, 2), og.PRMstar(information))
     assert path is not None
 
 

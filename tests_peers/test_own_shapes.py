@@ -78,9 +78,7 @@ def test_what_capsules_prove_is_not_asked(robot, roadmap, monkeypatch):
 
     known = roadmap.within(OwnShapesWorld(ArmWorld(robot), _thin(robot)))
     monkeypatch.setattr(CoalWorld, "valid", asked)
-    monkeypatch.setattr(
-        CoalWorld, "motion_valid", lambda self, a, b: asked() if len(a) else np.empty(0, bool)
-    )
+    monkeypatch.setattr(CoalWorld, "motion_valid", lambda self, a, b: asked() if len(a) else np.empty(0, bool))
     monkeypatch.setattr(CoalWorld, "valid", lambda self, q: asked() if len(q) else np.empty(0, bool))
     result = known.plan(START, GOAL)
     assert result.solved
@@ -89,9 +87,7 @@ def test_what_capsules_prove_is_not_asked(robot, roadmap, monkeypatch):
 
 def test_verdicts_are_those_of_either(robot):
     rng = np.random.default_rng(5)
-    boxes = [
-        Obstacle.of(str(i), "box", (0.15, 0.15, 0.15), tuple(rng.uniform(-0.6, 0.6, 3))) for i in range(8)
-    ]
+    boxes = [Obstacle.of(str(i), "box", (0.15, 0.15, 0.15), tuple(rng.uniform(-0.6, 0.6, 3))) for i in range(8)]
     scene = Scene(tuple(boxes), name="boxes")
     capsules, shapes = ArmWorld(robot, scene), CoalWorld(robot, scene, _thin(robot))
     both = OwnShapesWorld(capsules, _thin(robot))
@@ -109,9 +105,9 @@ def test_verdicts_are_those_of_either(robot):
 def test_clouds_block_as_they_do_for_capsules(robot, roadmap):
     ball = _beside(robot, START)
     cloud = Obstacle("ball", PointCloud(np.array([ball.xyz]), 0.02))
-    result = roadmap.within(
-        OwnShapesWorld(ArmWorld(robot, Scene((cloud,), name="scanned")), _thin(robot))
-    ).plan(START, GOAL)
+    result = roadmap.within(OwnShapesWorld(ArmWorld(robot, Scene((cloud,), name="scanned")), _thin(robot))).plan(
+        START, GOAL
+    )
     assert result.status == "start_invalid"
     assert "ball" in result.message
 

@@ -58,9 +58,7 @@ def test_the_slider_moves_the_arm_and_the_browser_shows_it(page, tmp_path):
     assert before != after
     goal = link_poses(page.world.robot, page.result.goal[np.newaxis])[0]
     for link, handle in page._arms["arm"].items():
-        np.testing.assert_allclose(
-            handle.position, goal[page.world.robot.links.index(link), :3, 3], atol=1e-6
-        )
+        np.testing.assert_allclose(handle.position, goal[page.world.robot.links.index(link), :3, 3], atol=1e-6)
     assert _changed(before, after) > 0.005
     # Nothing from outside of this computer: it works without a network.
     assert all(url.startswith(("http://127.0.0.1", "http://localhost", "data:", "blob:")) for url in asked)
@@ -84,9 +82,7 @@ def _changed(before, after):
 
     from PIL import Image
 
-    first, second = (
-        np.asarray(Image.open(BytesIO(raw)).convert("RGB"), dtype=float) for raw in (before, after)
-    )
+    first, second = (np.asarray(Image.open(BytesIO(raw)).convert("RGB"), dtype=float) for raw in (before, after))
     differs = np.abs(first - second).max(axis=2) > 40
     return differs[:, :550].mean()
 

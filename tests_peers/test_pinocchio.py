@@ -23,10 +23,7 @@ from tests_peers.engines.pinocchio_world import PinocchioWorld, placements
 pinocchio = pytest.importorskip("pinocchio")
 
 BRANCHING = urdf(
-    *(
-        link(name)
-        for name in ("torso", "left", "left hand", "right", "right hand", "finger", "thumb", "head")
-    ),
+    *(link(name) for name in ("torso", "left", "left hand", "right", "right hand", "finger", "thumb", "head")),
     "<joint name='l' type='revolute'><parent link='torso'/><child link='left'/><axis xyz='1 2 -0.5'/>"
     f"<origin xyz='0.1 0.3 0.4' rpy='0.3 -0.7 1.2'/>{LIMIT}</joint>",
     "<joint name='lh' type='prismatic'><parent link='left'/><child link='left hand'/><axis xyz='0 -1 1'/>"
@@ -43,17 +40,13 @@ BRANCHING = urdf(
 
 def random_configurations(robot, count=200):
     limits = {joint.name: joint for joint in robot.joints}
-    low, high = np.array(
-        [(max(limits[name].lower, -np.pi), min(limits[name].upper, np.pi)) for name in robot.group]
-    ).T
+    low, high = np.array([(max(limits[name].lower, -np.pi), min(limits[name].upper, np.pi)) for name in robot.group]).T
     return low + np.random.default_rng(0).random((count, len(low))) * (high - low)
 
 
 def poses_by_pinocchio(text, robot, q):
     """The frames of the links from the text alone, mimics and continuous joints by pinocchio's own rules."""
-    model = pinocchio.buildModelFromXML(
-        re.sub("<collision>.*?</collision>", "", text, flags=re.DOTALL), mimic=True
-    )
+    model = pinocchio.buildModelFromXML(re.sub("<collision>.*?</collision>", "", text, flags=re.DOTALL), mimic=True)
     values = joint_values(robot, q)
     coordinates = np.zeros((len(q), model.nq))
     for each in robot.joints:
@@ -99,14 +92,10 @@ def test_links_of_a_branching_robot_are_where_pinocchio_puts_them(tmp_path):
     robot = load_robot(write(tmp_path, BRANCHING))
     assert set(robot.group) == {"l", "lh", "r", "rh"}
     q = random_configurations(robot)
-    np.testing.assert_allclose(
-        link_poses(robot, q), poses_by_pinocchio(BRANCHING, robot, q), rtol=0, atol=1e-9
-    )
+    np.testing.assert_allclose(link_poses(robot, q), poses_by_pinocchio(BRANCHING, robot, q), rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize(
-    "robot", [seven_joint_arm(), *map(random_tree, range(10))], ids=lambda robot: robot.name
-)
+@pytest.mark.parametrize("robot", [seven_joint_arm(), *map(random_tree, range(10))], ids=lambda robot: robot.name)
 def test_links_of_a_robot_that_was_no_file_are_where_pinocchio_puts_them(robot):
     world = PinocchioWorld(robot, random_scene(1))
     q = random_configurations(robot, 50)

@@ -45,9 +45,7 @@ def test_planner_arena_loads_every_run_with_its_experiment_planner_and_attribute
         for sampler in ("uniform", "halton scrambled"):
             planner = f"{sampler}, k=10 earlier, stock"
             theirs = runs.filter(
-                (polars.col("experiment") == problem)
-                & (polars.col("planner") == planner)
-                & (polars.col("N") == 512)
+                (polars.col("experiment") == problem) & (polars.col("planner") == planner) & (polars.col("N") == 512)
             )
             ours = rows.problem.is_in([problem]) & rows.sampler.is_in([sampler]) & (rows.n == 512)
             ours &= rows.search.is_in(["stock"])

@@ -167,9 +167,7 @@ def _far(make):
 
 
 def _floor(make):
-    return _collision_object(
-        make, "floor", planes=[make("shape_msgs/msg/Plane")], plane_poses=[_pose(make, (0, 0, 0))]
-    )
+    return _collision_object(make, "floor", planes=[make("shape_msgs/msg/Plane")], plane_poses=[_pose(make, (0, 0, 0))])
 
 
 def _padded(make):
@@ -220,7 +218,5 @@ def test_nothing_of_ros_is_needed_until_a_node_runs():
         "import sys, map_planner, arm_planner, messages;"
         " print([m for m in ('rclpy', 'nav_msgs', 'moveit_msgs', 'rosbags') if m in sys.modules])"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=FOLDER, capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=FOLDER, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -105,9 +105,7 @@ def node(monkeypatch):
         get_logger=lambda: log,
         get_clock=lambda: clock,
     )
-    quality = SimpleNamespace(
-        DurabilityPolicy=SimpleNamespace(TRANSIENT_LOCAL=1), QoSProfile=lambda **_: None
-    )
+    quality = SimpleNamespace(DurabilityPolicy=SimpleNamespace(TRANSIENT_LOCAL=1), QoSProfile=lambda **_: None)
     kinds = SimpleNamespace(PoseStamped=0, PoseWithCovarianceStamped=0, OccupancyGrid=0, Path=0)
     ros = SimpleNamespace(init=lambda: None, create_node=lambda _: wired, spin=lambda _: None)
     for name, module in {

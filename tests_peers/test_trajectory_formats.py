@@ -42,9 +42,7 @@ def test_the_moves_of_a_program_are_those_that_ur_rtde_writes(trajectory, tmp_pa
     for q in PATH[1:]:
         values = [*q, FASTEST, min(LIMITS.acceleration), 0.0]
         theirs.addEntry(entry(entry.MoveJ, entry.PositionJoints, values))
-    assert _moves((tmp_path / "t.movej.script").read_text()) == pytest.approx(
-        _moves(theirs.toScriptCode()), abs=1e-5
-    )
+    assert _moves((tmp_path / "t.movej.script").read_text()) == pytest.approx(_moves(theirs.toScriptCode()), abs=1e-5)
 
 
 def _moves(script):

@@ -74,9 +74,7 @@ def build_sdist(sdist_directory: str, config_settings: Settings = None) -> str:
     return build.build_sdist(sdist_directory, config_settings)
 
 
-def build_wheel(
-    wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None
-) -> str:
+def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None) -> str:
     """Build a wheel."""
     from scikit_build_core import build
 
@@ -99,9 +97,7 @@ def build_editable(
             if path.is_file() and path.name not in ("WHEEL", "RECORD")
         }
     files["__editable__.evenroad.pth"] = f"{ROOT / 'src'}\n".encode()
-    files[f"{info}/WHEEL"] = (
-        b"Wheel-Version: 1.0\nGenerator: evenroad\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
-    )
+    files[f"{info}/WHEEL"] = b"Wheel-Version: 1.0\nGenerator: evenroad\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
     wheel = f"{name}-py3-none-any.whl"
     with zipfile.ZipFile(Path(wheel_directory, wheel), "w", zipfile.ZIP_DEFLATED) as archive:
         for path, content in files.items():

@@ -144,9 +144,7 @@ def _reference() -> Iterator[tuple[str, str]]:
     seen: set[int] = set()
     first = [_heading("Reference", "=")]
     first.append("What is at hand after ``import evenroad as er``; each topic's page has the rest.\n")
-    first.append(
-        "``Floats`` are float64 arrays, ``RngLike`` an int, a SeedSequence or a Generator of NumPy.\n"
-    )
+    first.append("``Floats`` are float64 arrays, ``RngLike`` an int, a SeedSequence or a Generator of NumPy.\n")
     for page, (title, homes) in REFERENCE.items():
         parts, rows = [_heading(title, "=")], []
         for home in homes:

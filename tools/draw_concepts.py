@@ -47,9 +47,7 @@ def draw_even_points() -> None:
         away, _ = cKDTree(points).query(places)
         apart, nearest = cKDTree(points).query(points, k=2)
         pair = int(np.argmin(apart[:, 1]))
-        axes.add_patch(
-            Circle(tuple(places[np.argmax(away)]), float(away.max()), color=style.RAW_PATH, alpha=0.45)
-        )
+        axes.add_patch(Circle(tuple(places[np.argmax(away)]), float(away.max()), color=style.RAW_PATH, alpha=0.45))
         axes.plot(*points.T, "o", ms=3, color=style.MILESTONE)
         axes.plot(*points[nearest[pair]].T, "o-", ms=4, lw=1.5, color=style.PATH)
         axes.set(xlim=(0, 1), ylim=(0, 1), title=name)
@@ -85,9 +83,7 @@ def draw_roadmaps() -> None:
     free, known = world.valid(places), result.roadmap
     edges = known.configurations[known.edges]
     figure, panels = sheet(2, 7.6, rows=2)
-    for number, (axes, title) in enumerate(
-        zip(panels, ("points", "milestones", "free motions", "path"), strict=True)
-    ):
+    for number, (axes, title) in enumerate(zip(panels, ("points", "milestones", "free motions", "path"), strict=True)):
         show_maze(axes, maze)
         axes.set_title(f"{number + 1}. {title}")
         if number >= 2:
@@ -109,9 +105,7 @@ def draw_ends() -> None:
     boxes = [(0.3, 0.465, 0.3, 0.02), (0.3, 0.515, 0.3, 0.02), (0.3, 0.465, 0.02, 0.07)]
 
     def valid(q: np.ndarray) -> np.ndarray:
-        inside = [
-            (q[:, 0] >= x) & (q[:, 0] <= x + w) & (q[:, 1] >= y) & (q[:, 1] <= y + h) for x, y, w, h in boxes
-        ]
+        inside = [(q[:, 0] >= x) & (q[:, 0] <= x + w) & (q[:, 1] >= y) & (q[:, 1] <= y + h) for x, y, w, h in boxes]
         return ~np.any(inside, axis=0)
 
     start, steps = np.array([0.36, 0.5]), np.linspace(0.0, 1.0, 400)[:, None]
@@ -123,9 +117,7 @@ def draw_ends() -> None:
         return milestones, np.array([valid(start + steps * (each - start)).all() for each in milestones])
 
     milestones, sees = next(
-        (places, sees)
-        for places, sees in (around("even", seed) for seed in range(RUNS))
-        if not sees[:10].any()
+        (places, sees) for places, sees in (around("even", seed) for seed in range(RUNS)) if not sees[:10].any()
     )
     figure, panels = sheet(2, 5.0)
     for axes, links in zip(panels, (10, 100), strict=True):
@@ -141,9 +133,7 @@ def draw_ends() -> None:
     for sampler, name in SAMPLERS.items():
         seen = [around(sampler, seed)[1] for seed in range(RUNS)]
         for links in (10, 100):
-            print(
-                f"{name}: one of the {links} nearest is seen {share(sum(each[:links].any() for each in seen))}"
-            )
+            print(f"{name}: one of the {links} nearest is seen {share(sum(each[:links].any() for each in seen))}")
     maze = load_maze(3)
     world, rule = maze.world(), KNearest(10)
     for links in (None, 100):
@@ -170,9 +160,7 @@ def draw_guarantees() -> None:
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
     delta = 2 * beta
     step = 2 * np.sqrt(delta**2 - beta**2) * 0.8
-    places = path[
-        np.searchsorted(along, np.linspace(0.0, along[-1], int(np.ceil(along[-1] / step)) + 1)).clip(0, 1999)
-    ]
+    places = path[np.searchsorted(along, np.linspace(0.0, along[-1], int(np.ceil(along[-1] / step)) + 1)).clip(0, 1999)]
     nearest = points[cKDTree(points).query(places[1:-1])[1]]
     chain = np.concatenate([places[:1], nearest, places[-1:]])
     figure, (axes,) = sheet(1, 5.2)

@@ -45,18 +45,14 @@ def main() -> None:
     for y in (0.0, CORRIDOR[0] - WALL, CORRIDOR[1], HEIGHT - WALL):
         fill(0.0, y, WIDTH, y + WALL)
     for side, (walls, doors) in ROOMS.items():
-        low, high, y = (
-            (0.0, CORRIDOR[0], CORRIDOR[0] - WALL) if side == "south" else (CORRIDOR[1], HEIGHT, CORRIDOR[1])
-        )
+        low, high, y = (0.0, CORRIDOR[0], CORRIDOR[0] - WALL) if side == "south" else (CORRIDOR[1], HEIGHT, CORRIDOR[1])
         for x in walls[1:-1]:
             fill(x - WALL / 2, low, x + WALL / 2, high)
         for x in doors:
             fill(x - DOOR / 2, y, x + DOOR / 2, y + WALL, value=False)
     for box in FURNITURE:
         fill(*box)
-    Image.fromarray(np.where(occupied, 0, 255).astype(np.uint8)).convert("1").save(
-        FOLDER / "office.png", optimize=True
-    )
+    Image.fromarray(np.where(occupied, 0, 255).astype(np.uint8)).convert("1").save(FOLDER / "office.png", optimize=True)
     (FOLDER / "office.yaml").write_text(
         f"image: office.png\nresolution: {RESOLUTION}\norigin: [0.0, 0.0, 0.0]\n"
         "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"

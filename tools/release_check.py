@@ -37,9 +37,7 @@ SCENE = """obstacles:
   post: {shape: box, size: [0.1, 0.1, 1.0], xyz: [0.45, 0, 0.5]}
   shelf: {shape: box, size: [0.4, 0.6, 0.02], xyz: [0, 0.55, 0.55]}
 """
-OWN_PLAN = (
-    "evenroad plan desk.yaml --robot my_arm.urdf --start=-0.9,1.2,0.4,0.4 --goal=0.9,1.2,0.4,0.4 --out {}"
-)
+OWN_PLAN = "evenroad plan desk.yaml --robot my_arm.urdf --start=-0.9,1.2,0.4,0.4 --goal=0.9,1.2,0.4,0.4 --out {}"
 README_STEPS = {
     "`make demo`'s plan through the maze": "evenroad demo --out demo",
     "a robot in figures": "evenroad robot ur5",
@@ -86,9 +84,7 @@ class Steps:
         seconds = time.perf_counter() - began
         output = done.stdout + done.stderr
         if done.returncode != expect or says not in output:
-            raise SystemExit(
-                f"{name}: exit code {done.returncode}, expected {expect}: {command}\n{output[-3000:]}"
-            )
+            raise SystemExit(f"{name}: exit code {done.returncode}, expected {expect}: {command}\n{output[-3000:]}")
         self.note(name, f"{seconds:.1f} s, {processor_seconds() - before:.1f} s of processors")
         return str(done.stdout)
 
@@ -127,9 +123,7 @@ def build(steps: Steps, dist: Path, work: Path) -> None:
 
 def main() -> None:
     """Run all steps."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--python", default=sys.executable, help="the interpreter of the empty environment")
     parser.add_argument("--dist", type=Path, help="a folder with wheels: nothing is built")
     parser.add_argument("--pip", default="", help="more for pip install, as -c constraints.txt")
@@ -154,11 +148,7 @@ def try_all(steps: Steps, work: Path, options: argparse.Namespace) -> None:
     venv, home, desk = work / "venv", work / "home", work / "desk"
     home.mkdir()
     desk.mkdir()
-    kept = {
-        name: value
-        for name, value in os.environ.items()
-        if not name.startswith(("PYTHON", "NUMBA", "EVENROAD"))
-    }
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "NUMBA", "EVENROAD"))}
     cache = {
         "HOME": str(home),
         "XDG_CACHE_HOME": str(home / "cache"),
@@ -182,16 +172,12 @@ def try_all(steps: Steps, work: Path, options: argparse.Namespace) -> None:
         steps.run(name, command, **here)
     large = "evenroad points -n 512 -d 2 --sampler hickernell -o large.npy"
     steps.run("a large set without the studies", large, expect=2, says="pip install evenroad-studies", **here)
-    steps.run(
-        "a verb of the studies without them", "evenroad bench", expect=2, says="evenroad-studies", **here
-    )
+    steps.run("a verb of the studies without them", "evenroad bench", expect=2, says="evenroad-studies", **here)
     steps.run("pip install of evenroad-studies", f"{pip} --no-deps {studies.resolve()}", cwd=ROOT)
     steps.run("the large set", large, **here)
     for name, command in STUDIES_STEPS.items():
         steps.run(name, command, **here)
-    outside = [
-        path for path in desk.parent.iterdir() if path.name not in ("venv", "home", "desk", "dist", "build")
-    ]
+    outside = [path for path in desk.parent.iterdir() if path.name not in ("venv", "home", "desk", "dist", "build")]
     if outside:
         raise SystemExit(f"files were left outside: {outside}")
     steps.note("size of the caches", f"{size_of(home):.1f} MB")

@@ -107,9 +107,7 @@ INSTEAD = {
         'evenroad train -n 16 -d 3 --method mpmc --objective "prefixes(hickernell)" --sets 1 --steps 2 -o prefix-sets',
         "an hour",
     ),
-    "evenroad roadmap my_arm.urdf --cell cell.yaml -n 1024 *": Instead(
-        None, "half a minute: tests/cli runs such"
-    ),
+    "evenroad roadmap my_arm.urdf --cell cell.yaml -n 1024 *": Instead(None, "half a minute: tests/cli runs such"),
     "evenroad train -n 50 -d 3 *": Instead(
         'evenroad train -n 50 -d 3 --objective "hickernell+10*riesz" --sets 2 --steps 50 --jobs 1 -o sets/',
         "two processes that start for it",
@@ -195,9 +193,7 @@ def prepare(page: Path, names: dict[str, object]) -> None:
             shutil.copy(DATA / name, name.replace("ur5", "my_arm"))
         scene = yaml.safe_load((DATA / "box-reach.yaml").read_text())
         Path("today.yaml").write_text(yaml.safe_dump(scene))
-        Path("cell.yaml").write_text(
-            "obstacles:\n  fence: {shape: box, size: [0.1, 2, 1], xyz: [-1, 0, 0.5]}\n"
-        )
+        Path("cell.yaml").write_text("obstacles:\n  fence: {shape: box, size: [0.1, 2, 1], xyz: [-1, 0, 0.5]}\n")
 
 
 def run_page(page: Path) -> Iterator[tuple[Block, str]]:

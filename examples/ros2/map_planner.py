@@ -13,9 +13,7 @@ from messages import Make, grid_map, heading, path_message
 import evenroad as er
 
 
-def answer(
-    make: Make, grid: Any, start: Any, goal: Any, radius: float, stamp: tuple[int, int]
-) -> tuple[Any, str]:
+def answer(make: Make, grid: Any, start: Any, goal: Any, radius: float, stamp: tuple[int, int]) -> tuple[Any, str]:
     """Return a nav_msgs/Path from one geometry_msgs/Pose to another on an OccupancyGrid, or None; and why."""
     world = grid_map(grid).world(radius=radius)
     ends = [(pose.position.x, pose.position.y) for pose in (start, goal)]
@@ -49,9 +47,7 @@ def main() -> None:
         grid, start = seen["map"], seen["start"]
         frames = {each.header.frame_id for each in (grid, start, goal)}
         if len(frames) > 1:
-            node.get_logger().error(
-                f"map, start and goal are in different frames: {', '.join(sorted(frames))}"
-            )
+            node.get_logger().error(f"map, start and goal are in different frames: {', '.join(sorted(frames))}")
             return
         now = node.get_clock().now().to_msg()
         try:
@@ -65,9 +61,7 @@ def main() -> None:
 
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     node.create_subscription(OccupancyGrid, "map", lambda grid: seen.update(map=grid), latched)
-    node.create_subscription(
-        PoseWithCovarianceStamped, "initialpose", lambda pose: seen.update(start=pose), 1
-    )
+    node.create_subscription(PoseWithCovarianceStamped, "initialpose", lambda pose: seen.update(start=pose), 1)
     node.create_subscription(PoseStamped, "goal_pose", plan, 1)
     rclpy.spin(node)
 

@@ -74,9 +74,7 @@ def path_message(
     for (x, y), angle in zip(
         path.tolist(), [*np.arctan2(steps[:, 1], steps[:, 0]).tolist(), last_heading], strict=True
     ):
-        turn = make(
-            "geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=math.sin(0.5 * angle), w=math.cos(0.5 * angle)
-        )
+        turn = make("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=math.sin(0.5 * angle), w=math.cos(0.5 * angle))
         place = make("geometry_msgs/msg/Point", x=x, y=y, z=0.0)
         pose = make("geometry_msgs/msg/Pose", position=place, orientation=turn)
         poses.append(make("geometry_msgs/msg/PoseStamped", header=header(), pose=pose))
@@ -104,21 +102,14 @@ def planning_scene(message: Any, robot: Robot) -> Scene:
         parts = _scene([each.object], "held", each.link_name).obstacles
         held += [HeldObject(part.name, part.body, each.link_name, tuple(each.touch_links)) for part in parts]
     allowed = _allowed(message.allowed_collision_matrix, robot, [each.id for each in objects])
-    pairs = [
-        (link, part.name)
-        for part in scene.obstacles
-        for link, name in allowed
-        if part.name.split("/")[0] == name
-    ]
+    pairs = [(link, part.name) for part in scene.obstacles for link, name in allowed if part.name.split("/")[0] == name]
     return Scene(scene.obstacles, name=scene.name, allowed=frozenset(pairs), attached=tuple(held))
 
 
 def _scene(objects: Sequence[Any], name: str, frame: str) -> Scene:
     for each in objects:
         if each.header.frame_id not in ("", frame):
-            raise InvalidValue(
-                f"object {each.id!r} must be in the frame {frame!r}, got {each.header.frame_id!r}"
-            )
+            raise InvalidValue(f"object {each.id!r} must be in the frame {frame!r}, got {each.header.frame_id!r}")
     document = {"name": name, "world": {"collision_objects": [_object(each) for each in objects]}}
     return read_planning_scene(document, Path(name))
 

@@ -127,9 +127,7 @@ def read_json_file(path: str | os.PathLike[str], what: str) -> Any:
     except OSError as error:
         raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
     except json.JSONDecodeError as error:
-        raise not_a(
-            f"JSON, as a {what} is", path, f"line {error.lineno}, column {error.colno}: {error.msg}"
-        ) from error
+        raise not_a(f"JSON, as a {what} is", path, f"line {error.lineno}, column {error.colno}: {error.msg}") from error
     except (ValueError, RecursionError) as error:
         raise not_a(f"JSON, as a {what} is", path, str(error)) from error
 

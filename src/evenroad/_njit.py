@@ -276,9 +276,7 @@ class _Named(CompileResultCacheImpl):
     def get_filename_base(self, name: str, abiflags: str) -> str:
         base: str = super().get_filename_base(name, abiflags)
         line = self.locator.get_disambiguator()
-        self.any_source = (
-            f"{escape(name)}-*{escape(base.removeprefix(f'{name}-{line}'))}.{machine()}-*.nb[ci]"
-        )
+        self.any_source = f"{escape(name)}-*{escape(base.removeprefix(f'{name}-{line}'))}.{machine()}-*.nb[ci]"
         return f"{base}.{machine()}-{digest_of(self._source)}"
 
 

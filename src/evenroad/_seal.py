@@ -28,9 +28,7 @@ def read_sealed(path: str | os.PathLike[str], name: str, what: str) -> bytes | N
     content = kept[kept.find(b"\n") + 1 :]
     if kept == sealed(content, name):
         return content
-    logging.getLogger("evenroad").warning(
-        "evenroad: %s kept in %s was damaged, and is made again", what, path
-    )
+    logging.getLogger("evenroad").warning("evenroad: %s kept in %s was damaged, and is made again", what, path)
     try:
         os.unlink(path)
     except OSError:

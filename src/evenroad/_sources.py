@@ -13,9 +13,7 @@ import numba
 from llvmlite import binding
 
 ROOT = os.path.dirname(os.path.abspath(__file__))
-_IMPORT = re.compile(
-    rb"^(?:from (evenroad[\w.]*) import (\([^)]*\)|[^\n]*)|import (evenroad[\w.]*))", re.MULTILINE
-)
+_IMPORT = re.compile(rb"^(?:from (evenroad[\w.]*) import (\([^)]*\)|[^\n]*)|import (evenroad[\w.]*))", re.MULTILINE)
 
 
 @cache
@@ -61,10 +59,6 @@ def _files_of(name: str) -> tuple[str, ...]:
     """Return the file of a module, or of a package that hands on names; nothing for what is no module."""
     top, *inside = name.split(".")
     # Of another package that compiles with this one, as the studies do, the folder that it was loaded from.
-    root = (
-        ROOT
-        if top == "evenroad"
-        else os.path.dirname(getattr(sys.modules.get(top), "__file__", None) or ROOT)
-    )
+    root = ROOT if top == "evenroad" else os.path.dirname(getattr(sys.modules.get(top), "__file__", None) or ROOT)
     base = os.path.join(root, *inside)
     return tuple(file for file in (f"{base}.py", os.path.join(base, "__init__.py")) if os.path.isfile(file))

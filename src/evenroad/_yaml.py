@@ -86,9 +86,7 @@ def _require_bounded(text: str, path: Path) -> None:
         if len(waiting) - 1 + waiting[-1][2] > _DEEPEST:
             raise BrokenFile(f"{path} is nested more than {_DEEPEST} levels deep")
         if waiting[-1][1] > allowed:
-            raise BrokenFile(
-                f"{path} has {len(text)} characters and with its aliases written out more than {allowed}"
-            )
+            raise BrokenFile(f"{path} has {len(text)} characters and with its aliases written out more than {allowed}")
 
 
 def _document(text: str, path: Path) -> object:
@@ -114,9 +112,7 @@ def _require_sound(loader: Any, root: yaml.Node, path: Path) -> None:
         seen.add(id(node))
         if node.tag == _INTEGER and len(node.value) > _MOST_DIGITS:
             # Python neither writes it, in an error, nor makes it in a time in proportion.
-            raise BrokenFile(
-                f"{path} has a number of {len(node.value)} digits in line {node.start_mark.line + 1}"
-            )
+            raise BrokenFile(f"{path} has a number of {len(node.value)} digits in line {node.start_mark.line + 1}")
         if isinstance(node, yaml.SequenceNode):
             pending.extend(node.value)
         elif isinstance(node, yaml.MappingNode):
@@ -129,9 +125,7 @@ def _require_sound(loader: Any, root: yaml.Node, path: Path) -> None:
                 # As text and as it is: 1 and '1' are one key to us, 1 and true to Python.
                 earlier = [lines[name] for name in (str(made), made) if name in lines]
                 if earlier:
-                    raise BrokenFile(
-                        f"{path} has the key {str(made)!r} twice, in lines {earlier[0]} and {line}"
-                    )
+                    raise BrokenFile(f"{path} has the key {str(made)!r} twice, in lines {earlier[0]} and {line}")
                 lines |= {str(made): line, made: line}
 
 

@@ -151,13 +151,9 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
         query = dict(record["query"])
         start, goals = (np.array(query[name], dtype=np.float64) for name in ("start", "goals"))
         waypoints = None if record["path"] is None else np.array(record["path"], dtype=np.float64)
-        if goals.shape != (len(goals), *start.shape) or (
-            waypoints is not None and waypoints.shape[1:] != start.shape
-        ):
+        if goals.shape != (len(goals), *start.shape) or (waypoints is not None and waypoints.shape[1:] != start.shape):
             raise ValueError("start, goals and path must have the same joints")
-        if not all(
-            np.isfinite(each).all() for each in (start, goals, *([] if waypoints is None else [waypoints]))
-        ):
+        if not all(np.isfinite(each).all() for each in (start, goals, *([] if waypoints is None else [waypoints]))):
             raise ValueError("configurations must be finite")
         index = record["goal_index"]
         if index is not None and (type(index) is not int or not 0 <= index < len(goals)):

@@ -23,9 +23,7 @@ def main() -> int:
     parser.add_argument("--only", nargs="*", help="names of benchmarks; default all")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    names = sorted(
-        path.stem for path in Path(__file__).parent.glob("*.py") if path.stem not in HELPERS | ASKED
-    )
+    names = sorted(path.stem for path in Path(__file__).parent.glob("*.py") if path.stem not in HELPERS | ASKED)
     failed = []
     for name in options.only or names:
         print(f"== {name}", flush=True)

@@ -63,9 +63,7 @@ def best_time(task: Callable[[], Any]) -> tuple[Any, float]:
 
 def answer(world: ArmWorld, problem: Problem) -> tuple[Connection, Path]:
     """Return the path of the trees, and the shortened one."""
-    connection = connect(
-        world, problem.start, problem.goal[np.newaxis], most_motions=MOST_MOTIONS, seconds=60
-    )
+    connection = connect(world, problem.start, problem.goal[np.newaxis], most_motions=MOST_MOTIONS, seconds=60)
     path = connection.path
     return connection, shorten(world, path)[0] if connection.goal >= 0 else path
 
@@ -73,15 +71,11 @@ def answer(world: ArmWorld, problem: Problem) -> tuple[Connection, Path]:
 def measure(problem: Problem) -> dict[str, float] | None:
     """Return the figures of one problem, or None where it is not solved."""
     world, scene_time = best_time(partial(ArmWorld, problem.robot, problem.scene))
-    connection = connect(
-        world, problem.start, problem.goal[np.newaxis], most_motions=MOST_MOTIONS, seconds=60
-    )
+    connection = connect(world, problem.start, problem.goal[np.newaxis], most_motions=MOST_MOTIONS, seconds=60)
     if connection.goal < 0:
         return None
     goals = problem.goal[np.newaxis]
-    _, path_time = best_time(
-        partial(connect, world, problem.start, goals, most_motions=MOST_MOTIONS, seconds=60)
-    )
+    _, path_time = best_time(partial(connect, world, problem.start, goals, most_motions=MOST_MOTIONS, seconds=60))
     (short, _), short_time = best_time(partial(shorten, world, connection.path))
     _, again = best_time(partial(answer, world, problem))
     _, query = best_time(lambda: answer(ArmWorld(problem.robot, problem.scene), problem))

@@ -88,9 +88,7 @@ def _problem(pool: Pool, kind: str, seed: int) -> Problem:
             if len(free) > 0:
                 some = free[rng.integers(len(free), size=CHOICE)]
                 # As inverse kinematics that begins at the other end: the nearest of several postures.
-                nearest = (
-                    np.argmin(world.space.distance(some, np.broadcast_to(ends[0], some.shape))) if ends else 0
-                )
+                nearest = np.argmin(world.space.distance(some, np.broadcast_to(ends[0], some.shape))) if ends else 0
                 ends.append(some[nearest])
         # Else another scene: this one cannot be reached into.
         if len(ends) == 2:
@@ -123,10 +121,7 @@ def _shelf(rng: np.random.Generator) -> tuple[list[Obstacle], list[Region]]:
     width, depth, height = rng.uniform(0.34, 0.44), 0.3, rng.uniform(0.28, 0.34)
     low, board = rng.uniform(0.02, 0.15), 0.02
     centre = np.array([away * np.cos(angle), away * np.sin(angle), low])
-    parts = [
-        (np.array([0.0, 0.0, row * height]), np.array([depth, 2 * width + 3 * board, board]))
-        for row in range(4)
-    ]
+    parts = [(np.array([0.0, 0.0, row * height]), np.array([depth, 2 * width + 3 * board, board])) for row in range(4)]
     parts += [
         (np.array([0.0, side * (width + board), 1.5 * height]), np.array([depth, board, 3 * height]))
         for side in (-1, 0, 1)
@@ -160,9 +155,7 @@ def _box(rng: np.random.Generator) -> tuple[list[Obstacle], list[Region]]:
         half, middle = 0.5 * inner + 0.5 * wall, 0.5 * deep
         sides = [(np.array([0.0, s * half, middle]), np.array([inner, wall, deep])) for s in (-1, 1)]
         if open_above:
-            sides += [
-                (np.array([s * half, 0.0, middle]), np.array([wall, inner + 2 * wall, deep])) for s in (-1, 1)
-            ]
+            sides += [(np.array([s * half, 0.0, middle]), np.array([wall, inner + 2 * wall, deep])) for s in (-1, 1)]
             place, reach = np.array([0.0, 0.0, deep - rng.uniform(0.05, 0.15)]), np.array([0.08, 0.08, 0.05])
         else:
             deep = inner
@@ -209,9 +202,7 @@ def _clutter(rng: np.random.Generator) -> tuple[list[Obstacle], list[Region]]:
             obstacles.append(Obstacle.of(f"thing {i}", "cylinder", (rng.uniform(0.03, 0.07), tall), place))
         else:
             size = (rng.uniform(0.05, 0.15), rng.uniform(0.05, 0.15), tall)
-            obstacles.append(
-                Obstacle.of(f"thing {i}", "box", size, place, _about_z(rng.uniform(-np.pi, np.pi)))
-            )
+            obstacles.append(Obstacle.of(f"thing {i}", "box", size, place, _about_z(rng.uniform(-np.pi, np.pi))))
     regions: list[Region] = []
     for _ in range(2):
         angle, away = rng.uniform(-1.2, 1.2), rng.uniform(0.4, 0.7)

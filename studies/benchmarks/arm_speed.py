@@ -37,9 +37,7 @@ def ur5_world(scene_name: str) -> ArmWorld:
 
 def box_for(robot: Robot, scene: Scene) -> Scene:
     """Return the obstacles of `scene`, with the table allowed to touch the first two links of `robot`."""
-    return Scene(
-        scene.obstacles, name=scene.name, allowed=frozenset((link, "table") for link in robot.links[:2])
-    )
+    return Scene(scene.obstacles, name=scene.name, allowed=frozenset((link, "table") for link in robot.links[:2]))
 
 
 def random_boxes(count: int = 100) -> Scene:
@@ -95,17 +93,13 @@ def measure_certified(world: ArmWorld) -> None:
     proof = CertifiedWorld(world)
     sampled, proved = world.motion_valid(a, b), proof.motion_valid(a, b)
     each = seconds(partial(proof.motion_valid, a[proved], b[proved]), 3) / proved.sum()
-    print(
-        f"certified: {proved.sum()} of {sampled.sum()} motions that states call free, {1e6 * each:.0f} us each"
-    )
+    print(f"certified: {proved.sum()} of {sampled.sum()} motions that states call free, {1e6 * each:.0f} us each")
 
 
 def main() -> None:
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
     wide, narrow = ur5_world("box-reach"), ur5_world("box-reach-narrow")
-    print(
-        f"{wide.backend}, {wide.spheres} spheres that exceed their capsules by {1e3 * wide.excess:.1f} mm at most"
-    )
+    print(f"{wide.backend}, {wide.spheres} spheres that exceed their capsules by {1e3 * wide.excess:.1f} mm at most")
     measure("UR5, scene c", wide)
     measure("UR5, scene a", narrow)
     seven = load_robot("arm7")

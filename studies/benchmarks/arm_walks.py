@@ -68,9 +68,7 @@ def main() -> None:
         places = walk(world, rng, free[0], 25)
         now_shown, now_wrong = refuted(world, places)
         arms, pairs, shown, wrong = arms + 1, pairs + len(places) - 1, shown + now_shown, wrong + now_wrong
-    print(
-        f"{pairs} places of {arms} arms, {shown} times cells are closed off, {wrong} places wrongly outside of them"
-    )
+    print(f"{pairs} places of {arms} arms, {shown} times cells are closed off, {wrong} places wrongly outside of them")
 
 
 if __name__ == "__main__":

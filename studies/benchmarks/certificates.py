@@ -76,9 +76,7 @@ def main() -> None:
 
 def print_holes() -> None:
     """Print the certified dispersion by sampler, N and dimension, and the least k that is complete."""
-    print(
-        "largest hole of the unit cube, certified; in brackets the least k, symmetrised, that is complete with it"
-    )
+    print("largest hole of the unit cube, certified; in brackets the least k, symmetrised, that is complete with it")
     for sampler in ("cover", "even", "uniform"):
         for n in (256, 1024):
             texts = []
@@ -124,17 +122,13 @@ def claims(d: int, number: int, kind: str, rules: dict[str, list[Rule]]) -> Iter
         exists = world.leads(start, goal, beta)
         optima = [(s * beta, world.optimum(start, goal, s * beta)) for s in SHARES]
         for rule in rules[sampler]:
-            options: dict[str, Any] = dict(
-                rule=rule, shorten=False, certify=True, budget=Budget(seconds=None)
-            )
+            options: dict[str, Any] = dict(rule=rule, shorten=False, certify=True, budget=Budget(seconds=None))
             result = plan(world, start, goal, PRM(points, search="lazy"), **options)
             certificate = result.certificate
             assert certificate is not None
             assert certificate.dispersion == beta
             row = dict(d=d, world=number, kind=kind, sampler=sampler, n=points.n, rule=str(rule), beta=beta)
-            row |= dict(
-                at_least=certificate.at_least, between=certificate.between, ends=certificate.to_terminals
-            )
+            row |= dict(at_least=certificate.at_least, between=certificate.between, ends=certificate.to_terminals)
             row |= dict(optimum=None, exact=None, cost=result.milestone_cost, bound=None, tightness=None)
             if certificate.complete and exists:
                 yield row | dict(claim="leads", delta=beta, verdict=_verdict(result.solved))
@@ -147,9 +141,7 @@ def claims(d: int, number: int, kind: str, rules: dict[str, list[Rule]]) -> Iter
                     cost = result.milestone_cost if result.solved else math.inf
                     assert cost is not None
                     exact = inside and _holds(world, delta)
-                    facts = dict(
-                        delta=delta, optimum=optimum, exact=exact, bound=bound, tightness=cost / bound
-                    )
+                    facts = dict(delta=delta, optimum=optimum, exact=exact, bound=bound, tightness=cost / bound)
                     yield row | facts | dict(claim="cost", verdict=_verdict(cost <= bound))
 
 
@@ -209,9 +201,7 @@ def summarise(d: int, rows: list[dict[str, Any]]) -> None:
     """Print how many claims were made and how much they left."""
     for claim in ("cost", "leads", "none"):
         mine = [row for row in rows if row["claim"] == claim]
-        verdicts = {
-            each: sum(row["verdict"] == each for row in mine) for each in ("true", "false", "undecided")
-        }
+        verdicts = {each: sum(row["verdict"] == each for row in mine) for each in ("true", "false", "undecided")}
         text = ", ".join(f"{count} {each}" for each, count in verdicts.items() if count)
         print(f"d={d} {claim:5}: {len(mine):5} claims, {text}")
         if claim == "cost":

@@ -36,9 +36,7 @@ RADIUS = 0.005
 def points_on(boxes: Scene, count: int, rng: np.random.Generator) -> Floats:
     """Return points on the surfaces of boxes, (n, 3), about so many, evenly by area."""
     triangles = np.concatenate([_corners(triangles_of(box, 0)) for box in boxes.obstacles])
-    areas = 0.5 * np.linalg.norm(
-        np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1
-    )
+    areas = 0.5 * np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)
     chosen = triangles[rng.choice(len(triangles), count, p=areas / areas.sum())]
     u, v = rng.random((2, count, 1))
     u, v = np.where(u + v > 1.0, 1.0 - u, u), np.where(u + v > 1.0, 1.0 - v, v)
@@ -60,9 +58,7 @@ def in_pieces(box: Obstacle, count: int) -> list[Obstacle]:
     shifts = ((np.arange(count) + 0.5) / count - 0.5) * sizes[longest]
     sizes[longest] /= count
     pieces = [
-        Obstacle.of(
-            f"{box.name} {i}", "box", tuple(sizes), tuple(box.xyz + shift * turn[:, longest]), box.rotation
-        )
+        Obstacle.of(f"{box.name} {i}", "box", tuple(sizes), tuple(box.xyz + shift * turn[:, longest]), box.rotation)
         for i, shift in enumerate(shifts)
     ]
     return [Obstacle(piece.name, Mesh(triangles_of(piece, 4))) for piece in pieces]
@@ -121,10 +117,7 @@ def compare(worlds: dict[str, ArmWorld], repeats: int, count: int) -> None:
             work(world)
         rates = np.array(
             [
-                [
-                    rate(lambda w=world, f=work: f(w), sizes.get(task, int(clear.sum())))
-                    for world in worlds.values()
-                ]
+                [rate(lambda w=world, f=work: f(w), sizes.get(task, int(clear.sum()))) for world in worlds.values()]
                 for _ in range(repeats)
             ]
         )
@@ -154,17 +147,13 @@ def main() -> None:
     base = {link for link, _ in boxes.scene.allowed}
     few, many = (merged(tuple(triangles_of(box, n) for box in boxes.scene.obstacles)) for n in (0, 4))
     bodies = {
-        f"{args.points} points": PointCloud(
-            points_on(boxes.scene, args.points, np.random.default_rng(0)), RADIUS
-        ),
+        f"{args.points} points": PointCloud(points_on(boxes.scene, args.points, np.random.default_rng(0)), RADIUS),
         f"{len(few.triangles)} triangles": Mesh(few),
         f"{len(many.triangles)} triangles": Mesh(many),
     }
     worlds = {"six boxes": boxes}
     for name, body in bodies.items():
-        scene = Scene(
-            (Obstacle("scan", body),), name=name, allowed=frozenset((link, "scan") for link in base)
-        )
+        scene = Scene((Obstacle("scan", body),), name=name, allowed=frozenset((link, "scan") for link in base))
         worlds[name] = ArmWorld(boxes.robot, scene)
     # Each box a mesh of its own, or four, with a grid around all of them.
     for name, parts in (("6 meshes", 1), ("24 meshes", 4)):

@@ -61,9 +61,7 @@ def main() -> None:
     options.out.mkdir(parents=True, exist_ok=True)
     figure = Figure(figsize=(7.5, 5), dpi=130, layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.add_subplot(
-        xlabel="N", ylabel="Hickernell L2 discrepancy (rooted)", title=f"d = {options.d}"
-    )
+    axes = figure.add_subplot(xlabel="N", ylabel="Hickernell L2 discrepancy (rooted)", title=f"d = {options.d}")
     rows: list[tuple[str, int, float, float, float, int]] = []
     for name, sets_of in FAMILIES.items():
         cells = []

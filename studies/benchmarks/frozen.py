@@ -145,9 +145,7 @@ def map_plans() -> Lines:
             for sampler in ("even", "sobol", "uniform"):
                 points = draw(sampler, 256, 2, rng=i)
                 for search in ("full", "lazy"):
-                    result = plan(
-                        world, start, goal, PRM(points, search=search, rule=KNearest(8)), limits=budget
-                    )
+                    result = plan(world, start, goal, PRM(points, search=search, rule=KNearest(8)), limits=budget)
                     lines.append(line_of(f"prm {level} {i} {sampler} {search}", result))
         for i, (start, goal) in enumerate(queries[:6]):
             lines.append(line_of(f"fmt {level} {i}", plan(world, start, goal, FMT(512), limits=budget)))
@@ -247,11 +245,7 @@ def compare(name: str, kept: Any, today: Any) -> int:
 def processor() -> str:
     """Return the kind of processor, as far as the system says."""
     cpuinfo = Path("/proc/cpuinfo")
-    names = (
-        [line for line in cpuinfo.read_text().splitlines() if "model name" in line]
-        if cpuinfo.exists()
-        else []
-    )
+    names = [line for line in cpuinfo.read_text().splitlines() if "model name" in line] if cpuinfo.exists() else []
     return names[0].partition(":")[2].strip() if names else platform.processor()
 
 

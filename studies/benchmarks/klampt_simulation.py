@@ -105,9 +105,7 @@ def simulate(world: KlamptWorld, trajectory: Trajectory) -> tuple[Array, Array, 
     for row, speed, push in zip(q, velocities, pushes, strict=True):
         model.setConfig(row.tolist())
         model.setVelocity(speed.tolist())
-        forward.append(
-            np.array(model.torquesFromAccel(push.tolist())) + model.getGravityForces((0.0, 0.0, -9.81))
-        )
+        forward.append(np.array(model.torquesFromAccel(push.tolist())) + model.getGravityForces((0.0, 0.0, -9.81)))
         inertias.append(np.diag(model.getMassMatrix())[driven])
     torques = np.zeros(model.numLinks())
     torques[places] = np.array(TORQUES)[order]
@@ -162,9 +160,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--deviation", type=float, default=0.05)
     parser.add_argument("--speed", type=float, default=1.0)
-    parser.add_argument(
-        "--margin", type=float, default=0.005, help="to keep from obstacles when planning [m]"
-    )
+    parser.add_argument("--margin", type=float, default=0.005, help="to keep from obstacles when planning [m]")
     parser.add_argument("--out", type=Path, default=Path("klampt_simulation"))
     asked = parser.parse_args()
     query = arm_request("ur5", "box-reach", "home", "inside")
@@ -178,9 +174,7 @@ def main() -> None:
     if result.path is None:
         raise SystemExit(1)
     limits = limits_of(arm.robot).at_speed(asked.speed)
-    trajectory = make_trajectory(
-        result.path, limits, world=half, names=arm.robot.group, deviation=asked.deviation
-    )
+    trajectory = make_trajectory(result.path, limits, world=half, names=arm.robot.group, deviation=asked.deviation)
     times, seen, touched = simulate(world, trajectory)
     wanted = trajectory.positions[np.minimum(np.arange(len(times)) + 1, len(trajectory.times) - 1)]
     driving = times <= trajectory.duration
@@ -199,9 +193,7 @@ def main() -> None:
         f" {numbers['median_error']:.4f}, {numbers['error_at_rest']:.4f} at rest; contacts: {touched or 'none'};"
         f" {numbers['touching_states']} of {len(times)} simulated states touch by evenroad's capsules"
     )
-    shown = replace(
-        result, path=seen, message=f"as driven in Klamp't, {numbers['largest_error']:.4f} rad off at most"
-    )
+    shown = replace(result, path=seen, message=f"as driven in Klamp't, {numbers['largest_error']:.4f} rad off at most")
     rows = [seen[round(share * (np.sum(driving) - 1))] for share in np.linspace(0.0, 1.0, PICTURES)]
     frames = [draw_arm_plan(shown, arm, now=q).reduce(2) for q in rows]
     sheet = Image.new("RGB", (2 * frames[0].width, (PICTURES + 1) // 2 * frames[0].height), "white")

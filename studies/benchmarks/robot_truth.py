@@ -61,9 +61,7 @@ class Truth:
         )
         self.data = self.model.createData()
         self.group, self.held = group, held
-        self.mimics = {
-            joint.get("name"): joint.find("mimic") for joint in ET.parse(file).getroot().findall("joint")
-        }
+        self.mimics = {joint.get("name"): joint.find("mimic") for joint in ET.parse(file).getroot().findall("joint")}
         self.of_link: dict[str, list[int]] = {}
         for i, item in enumerate(self.geometry.geometryObjects):
             self.of_link.setdefault(self.model.frames[item.parentFrame].name, []).append(i)
@@ -84,9 +82,7 @@ class Truth:
             between = [link for link in up if link not in down] + [link for link in down if link not in up]
             moving = sum(moves[link] for link in between)
             # What lies between them, both ends of the way left out.
-            lower, upper = (
-                (second, first) if first in down else (first, second) if second in up else (None, None)
-            )
+            lower, upper = (second, first) if first in down else (first, second) if second in up else (None, None)
             inner = [link for link in way(lower)[1:] if link in between and link != upper] if lower else []
             neighbours = lower is not None and moving == 1 and not any(link in self.of_link for link in inner)
             if moving and not neighbours:
@@ -212,9 +208,7 @@ def path_states(world: ArmWorld, free: np.ndarray) -> np.ndarray:
 
 def main() -> None:
     """Write a row for each robot as soon as it is there."""
-    row_per_robot(
-        FIELDS, "*.urdf", lambda file: measured(file, np.random.default_rng(0)), lambda file: file.stem
-    )
+    row_per_robot(FIELDS, "*.urdf", lambda file: measured(file, np.random.default_rng(0)), lambda file: file.stem)
 
 
 if __name__ == "__main__":

@@ -114,11 +114,7 @@ def in_its_process(path: Path, limit: float) -> dict[str, object]:
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (int(limit), int(limit))),
         )
         lines = run.stdout.splitlines() or [""]
-        row = (
-            json.loads(lines[-1])
-            if run.returncode == 0
-            else {"answer": "crashed", "reason": run.stderr[-300:]}
-        )
+        row = json.loads(lines[-1]) if run.returncode == 0 else {"answer": "crashed", "reason": run.stderr[-300:]}
         if run.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
             row = {"answer": "out of time", "seconds": limit}
     except subprocess.TimeoutExpired:

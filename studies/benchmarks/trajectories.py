@@ -48,9 +48,7 @@ def bound(path: Path, limits: Limits) -> float:
     for way, velocity, push in zip(path.T, limits.velocity, limits.acceleration, strict=True):
         steps = np.diff(way)
         turns = np.flatnonzero(np.diff(np.sign(steps[steps != 0.0])) != 0.0)
-        runs = (
-            np.add.reduceat(steps[steps != 0.0], np.concatenate([[0], turns + 1])) if np.any(steps) else [0.0]
-        )
+        runs = np.add.reduceat(steps[steps != 0.0], np.concatenate([[0], turns + 1])) if np.any(steps) else [0.0]
         times = [
             2.0 * np.sqrt(run / push) if run < velocity**2 / push else run / velocity + velocity / push
             for run in np.abs(runs)

@@ -42,9 +42,7 @@ def success(maze: DrawnMaze, n: int, runs: int, k: int = 10) -> float:
     solved = 0
     for run in range(runs):
         points = draw_points("uniform", n, 2, rng=TUNING_SEED + run)
-        solved += plan(
-            world, maze.start, maze.goal, PRM(points, rule=KNearest(k), links=None), smooth=False
-        ).solved
+        solved += plan(world, maze.start, maze.goal, PRM(points, rule=KNearest(k), links=None), smooth=False).solved
     return solved / runs
 
 

@@ -195,9 +195,7 @@ def test_a_pose_that_cannot_be_reached_is_an_answer():
     assert far.status is er.Status.GOAL_UNREACHABLE
     assert "out of reach" in far.message
     assert far.path is None
-    inside_wall = er.plan(
-        "box-reach", "home", er.PoseGoal(er.Pose((0.9, 0.0, 0.2)), position_only=True), robot="ur5"
-    )
+    inside_wall = er.plan("box-reach", "home", er.PoseGoal(er.Pose((0.9, 0.0, 0.2)), position_only=True), robot="ur5")
     assert inside_wall.status is er.Status.GOAL_INVALID
     assert "touches 'box back'" in inside_wall.message
 

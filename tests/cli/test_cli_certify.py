@@ -17,9 +17,7 @@ def sets(tmp_path):
 
 
 def test_json_says_what_python_says(run, sets):
-    code, out, err = run(
-        "certify", "two.npz", "--connect-radius", 0.3, "--clearance", 0.1, "--length", 2, "--json"
-    )
+    code, out, err = run("certify", "two.npz", "--connect-radius", 0.3, "--clearance", 0.1, "--length", 2, "--json")
     record = json.loads(out)
     certificate = certify(draw("cover", 200, 2), Radius(0.3), BoxSpace([0.0, 0.0], [1.0, 1.0]))
     assert (code, err) == (0, "")

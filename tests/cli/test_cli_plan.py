@@ -31,9 +31,7 @@ def room(tmp_path):
     return tmp_path / "room.png"
 
 
-ROS_MAP = (
-    "image: {}.png\nresolution: {}\norigin: [{}, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
-)
+ROS_MAP = "image: {}.png\nresolution: {}\norigin: [{}, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
 
 
 @pytest.fixture
@@ -73,8 +71,7 @@ def test_the_default_set_is_even_for_any_n_and_any_dimension(answer):
 
 def test_the_same_command_gives_the_same_path_and_another_seed_another(answer):
     a, b, c = (
-        answer(*plan_arguments(seed=seed, sampler="halton"), "-n", 600)[0]["milestone_path"]
-        for seed in (3, 3, 4)
+        answer(*plan_arguments(seed=seed, sampler="halton"), "-n", 600)[0]["milestone_path"] for seed in (3, 3, 4)
     )
     assert a == b
     assert a != c
@@ -254,9 +251,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("changes", "says"), BAD, ids=lambda value: str(value)[:40])
-def test_bad_input_gets_one_line_and_exit_code_2_and_nothing_is_written(
-    refuse, tmp_path, room, changes, says
-):
+def test_bad_input_gets_one_line_and_exit_code_2_and_nothing_is_written(refuse, tmp_path, room, changes, says):
     (tmp_path / "broken.png").write_bytes(room.read_bytes()[:60])
     (tmp_path / "map.txt").write_text("hello")
     good = ROS_MAP.format("room", 1, "0, 0")

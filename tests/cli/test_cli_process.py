@@ -138,9 +138,7 @@ def read_only(tmp_path):
     }
 
 
-LOAD_COMPILED = (
-    "import evenroad; from evenroad.world.bisection import next_between; print(next_between(1, -1, 4))"
-)
+LOAD_COMPILED = "import evenroad; from evenroad.world.bisection import next_between; print(next_between(1, -1, 4))"
 
 
 def test_without_a_folder_for_compiled_code_it_works_and_says_so_in_one_line(read_only, tmp_path):

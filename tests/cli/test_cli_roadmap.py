@@ -87,9 +87,7 @@ def test_bad_input_is_refused_before_anything_is_compiled(made):
     ]
     code = f"from evenroad.cli import main; print([main(words) for words in {every!r}])"
     environment = os.environ | {"NUMBA_CACHE_DIR": str(made / "compiled")}
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True
-    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)
     assert done.stdout == f"{[2] * len(every)}\n"
     assert [line[:15] for line in done.stderr.splitlines()] == ["evenroad: error"] * len(every)
     assert not list((made / "compiled").rglob("*.nbc"))

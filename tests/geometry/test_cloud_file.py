@@ -15,18 +15,10 @@ def ply(kind, points=POINTS, extra=True, count=None):
     count = len(points) if count is None else count
     head = f"ply\nformat {kind} 1.0\ncomment element vertex 7\nelement vertex {count}\n"
     head += "property uchar red\nproperty float x\nproperty double y\nproperty float32 z\n"
-    head += (
-        "element face 1\nproperty list uchar int vertex_indices\nend_header\n" if extra else "end_header\n"
-    )
+    head += "element face 1\nproperty list uchar int vertex_indices\nend_header\n" if extra else "end_header\n"
     if kind == "ascii":
-        return (
-            head.encode()
-            + b"".join(b"255 %r %r %r\n" % tuple(map(float, row)) for row in points)
-            + b"3 0 1 2\n"
-        )
-    table = np.zeros(
-        len(points), [("r", "u1"), ("x", order + "f4"), ("y", order + "f8"), ("z", order + "f4")]
-    )
+        return head.encode() + b"".join(b"255 %r %r %r\n" % tuple(map(float, row)) for row in points) + b"3 0 1 2\n"
+    table = np.zeros(len(points), [("r", "u1"), ("x", order + "f4"), ("y", order + "f8"), ("z", order + "f4")])
     table["x"], table["y"], table["z"] = points.T
     return head.encode() + table.tobytes() + b"\x03" + np.arange(3, dtype=order + "i4").tobytes()
 

@@ -36,9 +36,7 @@ def test_the_distance_of_segments_does_not_depend_on_names(first, second):
     assert found == pytest.approx([found[0]] * 4, abs=1e-7)
 
 
-@given(
-    st.integers(0, 2**32 - 1), st.sampled_from(["skew", "parallel", "points", "crossing", "nearly parallel"])
-)
+@given(st.integers(0, 2**32 - 1), st.sampled_from(["skew", "parallel", "points", "crossing", "nearly parallel"]))
 def test_the_distance_of_segments_is_the_least_between_sampled_points(seed, case):
     rng = np.random.default_rng(seed)
     a, b, c, d = rng.uniform(-1.0, 1.0, (4, 3))

@@ -25,9 +25,7 @@ def _outside(points, capsules):
     for capsule in capsules:
         a, way = np.array(capsule.a), np.subtract(capsule.b, capsule.a)
         t = np.clip((points - a) @ way / max(way @ way, 1e-300), 0, 1)
-        least = np.minimum(
-            least, np.linalg.norm(points - a - t[:, np.newaxis] * way, axis=1) - capsule.radius
-        )
+        least = np.minimum(least, np.linalg.norm(points - a - t[:, np.newaxis] * way, axis=1) - capsule.radius)
     return least
 
 
@@ -73,25 +71,20 @@ def test_a_flat_box_gets_capsules_side_by_side_and_they_add_less_than_one():
 
 
 @settings(max_examples=40, deadline=None)
-@given(
-    points=arrays(np.float64, st.tuples(st.integers(1, 30), st.just(3)), elements=st.floats(-1, 1, width=32))
-)
+@given(points=arrays(np.float64, st.tuples(st.integers(1, 30), st.just(3)), elements=st.floats(-1, 1, width=32)))
 def test_a_capsule_around_points_contains_every_one(points):
     a, b, radius = capsule_around(points)
     assert (_outside(points, [Capsule(tuple(a), tuple(b), radius, link="x")]) <= 1e-9).all()
 
 
 @settings(max_examples=12, deadline=None)
-@given(
-    vertices=arrays(np.float64, (12, 3), elements=st.floats(-1, 1, width=32)), seed=st.integers(0, 2**32 - 1)
-)
+@given(vertices=arrays(np.float64, (12, 3), elements=st.floats(-1, 1, width=32)), seed=st.integers(0, 2**32 - 1))
 def test_every_triangle_of_a_mesh_lies_within_one_of_its_capsules_union(vertices, seed):
     """Any soup of triangles: points all over the surface are in the union of the capsules."""
     rng = np.random.default_rng(seed)
     triangles = rng.integers(0, 12, (10, 3))
     capsules = [
-        Capsule(tuple(a), tuple(b), radius, link="x")
-        for a, b, radius in capsules_around_mesh(vertices, triangles)
+        Capsule(tuple(a), tuple(b), radius, link="x") for a, b, radius in capsules_around_mesh(vertices, triangles)
     ]
     assert 1 <= len(capsules) <= MOST_CAPSULES
     weights = rng.dirichlet(np.ones(3), (10, 20))
@@ -104,9 +97,7 @@ def test_an_angle_of_two_bars_gets_more_than_one_capsule():
     bars = trimesh.util.concatenate(
         [
             trimesh.creation.box((0.1, 0.1, 1.0)),
-            trimesh.creation.box(
-                (1.0, 0.1, 0.1), transform=trimesh.transformations.translation_matrix((0.5, 0, 0.5))
-            ),
+            trimesh.creation.box((1.0, 0.1, 0.1), transform=trimesh.transformations.translation_matrix((0.5, 0, 0.5))),
         ]
     )
     fitted = capsules_around_mesh(np.array(bars.vertices), np.array(bars.faces))

@@ -80,9 +80,7 @@ def test_a_file_gives_the_mesh_that_was_written(tmp_path, suffix):
     assert mesh.name == f"cube.{suffix}"
     corners = mesh.vertices[mesh.triangles].reshape(-1, 9)
     expected = 2.0 * CUBE.vertices[CUBE.triangles].reshape(-1, 9)
-    np.testing.assert_allclose(
-        corners[np.lexsort(corners.T)], expected[np.lexsort(expected.T)], rtol=1e-6, atol=1e-6
-    )
+    np.testing.assert_allclose(corners[np.lexsort(corners.T)], expected[np.lexsort(expected.T)], rtol=1e-6, atol=1e-6)
 
 
 def _dae_in(unit, folder):
@@ -105,9 +103,7 @@ def test_a_collada_file_is_read_in_metres_whatever_its_unit(tmp_path, unit, metr
 
 @pytest.mark.parametrize("length", ["0", "-1", "nan"])
 def test_a_unit_without_a_length_is_refused(tmp_path, length):
-    with pytest.raises(
-        BrokenFile, match=rf"cube\.dae must have a unit of a finite length > 0, got {length} m"
-    ):
+    with pytest.raises(BrokenFile, match=rf"cube\.dae must have a unit of a finite length > 0, got {length} m"):
         load_mesh(_dae_in(f'<unit meter="{length}"/>', tmp_path))
 
 

@@ -25,9 +25,7 @@ COLUMNS, ONES = np.random.default_rng(0).random((3, 40)), np.ones(3)
     ],
 )
 def test_arrays_of_another_kind_are_refused_and_named(columns, got):
-    with pytest.raises(
-        InvalidValue, match=f"columns must be a C-contiguous array of float64 with 2 axes, {got}"
-    ):
+    with pytest.raises(InvalidValue, match=f"columns must be a C-contiguous array of float64 with 2 axes, {got}"):
         points.maximum_pair_sums(columns, ONES, ONES, True)
 
 

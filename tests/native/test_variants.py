@@ -25,9 +25,7 @@ def test_the_newest_build_that_the_processor_runs_is_loaded(monkeypatch):
 def test_the_environment_chooses_the_build(variant):
     code = "from evenroad import _native; print(_native.VARIANT)"
     environment = {**os.environ, variants.ENVIRONMENT: variant}
-    loaded = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
-    )
+    loaded = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     assert loaded.stdout.strip() == variant
 
 

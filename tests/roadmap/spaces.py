@@ -11,9 +11,7 @@ class Torus(Space):
 
     def __init__(self, d, scale=None, period=None):
         self.d = d
-        self.metric = FlatMetric(
-            np.ones(d) if scale is None else scale, np.ones(d) if period is None else period
-        )
+        self.metric = FlatMetric(np.ones(d) if scale is None else scale, np.ones(d) if period is None else period)
 
     @property
     def dim(self):

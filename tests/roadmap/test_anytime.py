@@ -29,9 +29,7 @@ def test_each_stage_finds_what_a_fresh_plan_with_its_points_finds(seed, free, ru
     )  # fmt: skip
     assert [stage.points for stage in grown.stages] == [8, 16, 32, 50]
     fresh = [
-        plan_on(
-            ChanceWorld(seed, 0.8, free), START, GOAL, sampler.draw(n, 2, rng=seed), rule=rule, shorten=False
-        )
+        plan_on(ChanceWorld(seed, 0.8, free), START, GOAL, sampler.draw(n, 2, rng=seed), rule=rule, shorten=False)
         for n in (8, 16, 32, 50)
     ]
     for stage, result in zip(grown.stages, fresh, strict=True):
@@ -55,9 +53,7 @@ def test_no_motion_is_checked_twice_over_all_stages():
                 asked.add(key)
             return super().motion_valid(a, b)
 
-    result = plan_growing(
-        Once(3, 0.8, 0.5), START, GOAL, until="budget", budget=Budget(samples=256), shorten=False
-    )
+    result = plan_growing(Once(3, 0.8, 0.5), START, GOAL, until="budget", budget=Budget(samples=256), shorten=False)
     assert len(asked) == result.counts["edges_checked"]
 
 
@@ -109,18 +105,14 @@ def test_a_path_that_was_found_before_the_budget_was_spent_is_the_answer():
     world = ChanceWorld(2, 0.8, 0.6)
     early = plan_growing(world, START, GOAL, first=16, shorten=False)
     checks = early.counts["edges_checked"] + 1
-    late = plan_growing(
-        world, START, GOAL, first=16, until="budget", budget=Budget(motions=checks), shorten=False
-    )
+    late = plan_growing(world, START, GOAL, first=16, until="budget", budget=Budget(motions=checks), shorten=False)
     assert late.solved
     assert late.cost <= early.cost
     assert late.counts["edges_checked"] <= checks
 
 
 def test_the_same_seed_gives_the_same_bits():
-    one, other = (
-        plan_growing(ChanceWorld(2, 0.8, 0.5), START, GOAL, rng=7, until="settled") for _ in range(2)
-    )
+    one, other = (plan_growing(ChanceWorld(2, 0.8, 0.5), START, GOAL, rng=7, until="settled") for _ in range(2))
     assert one.path.tobytes() == other.path.tobytes()
     assert one.counts == other.counts
     assert one.stages == other.stages

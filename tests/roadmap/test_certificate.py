@@ -118,9 +118,7 @@ def test_no_claim_is_false_in_random_worlds(d, n, k, sampler):
         promised = certify(points, rule, space)
         for _ in range(15):
             world, (start, goal) = random_discs(rng, d), rng.random((2, d))
-            result = plan_on(
-                world, start, goal, points, rule=rule, search="lazy", shorten=False, certify=True
-            )
+            result = plan_on(world, start, goal, points, rule=rule, search="lazy", shorten=False, certify=True)
             if result.certificate is None:
                 assert result.status in (Status.START_INVALID, Status.GOAL_INVALID)
                 continue
@@ -176,9 +174,7 @@ def test_a_rule_that_is_not_known_is_certified_by_its_graph():
 
 def test_an_end_that_is_not_joined_to_its_nearest_milestone_voids_the_certificate():
     points = draw("cover", 300, 2)
-    result = plan_on(
-        OPEN, points.points.mean(0), [0.98, 0.97], points, rule=KMutual(3), links=None, certify=True
-    )
+    result = plan_on(OPEN, points.points.mean(0), [0.98, 0.97], points, rule=KMutual(3), links=None, certify=True)
     assert result.certificate.between == 0.0 or result.certificate.to_terminals > 0.0
     assert result.certificate.factor(0.5) == math.inf
 

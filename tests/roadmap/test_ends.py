@@ -49,9 +49,7 @@ def result(path, start=A, goals=(B,), index=0, status=Status.SOLVED, **more):
     ],
 )
 def test_a_path_that_leads_elsewhere_is_a_fault_and_no_error_of_the_input(wrong, where):
-    with pytest.raises(
-        AssertionError, match=f"does not {where} where it was asked to, but .* away"
-    ) as raised:
+    with pytest.raises(AssertionError, match=f"does not {where} where it was asked to, but .* away") as raised:
         require_start_and_goal(PLANE, wrong)
     assert not isinstance(raised.value, EvenroadError)
 

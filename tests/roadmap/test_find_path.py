@@ -32,9 +32,7 @@ def test_no_path_is_proved():
 
 
 def test_for_any_other_world_points_grow():
-    world = FunctionWorld(
-        BoxSpace((0, 0), (1, 1)), lambda q: (np.abs(q[:, 0] - 0.5) > 0.1) | (q[:, 1] > 0.9), 0.01
-    )
+    world = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: (np.abs(q[:, 0] - 0.5) > 0.1) | (q[:, 1] > 0.9), 0.01)
     # Time enough also where code is compiled first.
     result = plan(world, (0.1, 0.1), (0.9, 0.1), seconds=60.0)
     assert result.solved

@@ -73,17 +73,13 @@ def test_goals_in_collision_are_left_out_and_only_if_all_are_it_is_said(kept):
     blocked = answer([(2, 9.5), (18, 9.5)])
     assert blocked.status is Status.GOAL_INVALID
     assert blocked.goal_index is None
-    assert blocked.message.startswith(
-        "all 2 goals are in collision; the first: its centre lies in an obstacle"
-    )
+    assert blocked.message.startswith("all 2 goals are in collision; the first: its centre lies in an obstacle")
     apart = answer([(2, 9.5), (2, 18), (18, 18)])
     assert apart.status is Status.NOT_CONNECTED
     assert apart.counts["start_component"] + apart.counts["goal_component"] <= apart.counts["valid"]
 
 
-@pytest.mark.parametrize(
-    "bad", [np.empty((0, 2)), np.zeros((2, 3)), np.zeros((1, 2, 2)), [(1, 2), (3,)], "ab"]
-)
+@pytest.mark.parametrize("bad", [np.empty((0, 2)), np.zeros((2, 3)), np.zeros((1, 2, 2)), [(1, 2), (3,)], "ab"])
 def test_goals_that_are_none_are_refused_by_name(bad):
     with pytest.raises(InvalidValue, match=r"goal must be 2 finite numbers, or an array \(g, 2\)"):
         plan_on(ChanceWorld(0), START, bad, draw("sobol", 8, 2))
@@ -92,9 +88,7 @@ def test_goals_that_are_none_are_refused_by_name(bad):
 @pytest.mark.parametrize("n", [200, 1000])
 def test_start_and_goals_are_linked_to_the_nearest_hundred_or_to_all_of_a_few(n):
     world, points = ChanceWorld(1, 1.0, 1.0), draw("sobol", n, 2)
-    free, plain = (
-        plan_on(world, START, GOALS[:2], points, links=links, shorten=False) for links in (100, None)
-    )
+    free, plain = (plan_on(world, START, GOALS[:2], points, links=links, shorten=False) for links in (100, None))
     assert (free.links, plain.links) == (100, None)
     assert free.rule == plain.rule
     edges = free.roadmap.edges
@@ -108,9 +102,9 @@ def test_start_and_goals_are_linked_to_the_nearest_hundred_or_to_all_of_a_few(n)
     same = {tuple(edge) for edge in plain.roadmap.edges.tolist()}
     assert same <= {tuple(edge) for edge in edges.tolist()}
     kept = roadmap_of_points(world.space, points, KNearest(4)).within(world).plan(START, GOALS[:2])
-    assert kept.counts["edges_considered"] - len(
-        roadmap_of_points(world.space, points, KNearest(4)).edges
-    ) == (3 * min(n, 100 if n > 256 else n) + 2)
+    assert kept.counts["edges_considered"] - len(roadmap_of_points(world.space, points, KNearest(4)).edges) == (
+        3 * min(n, 100 if n > 256 else n) + 2
+    )
 
 
 def test_a_start_that_is_blocked_from_all_that_is_near_is_connected_by_its_links():

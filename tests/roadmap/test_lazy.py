@@ -32,12 +32,8 @@ def queries(draw_value):
     points = random.random((n, 2))
     if draw_value(st.booleans()):
         points = np.floor(points * 6) / 6
-    rule = draw_value(
-        st.sampled_from([KNearest(4), KNearest(9), KMutual(6), KEarlier(5), Radius(0.25), Complete()])
-    )
-    world = ChanceWorld(
-        seed, draw_value(st.sampled_from([1.0, 0.8])), draw_value(st.sampled_from([0.3, 0.6, 0.9]))
-    )
+    rule = draw_value(st.sampled_from([KNearest(4), KNearest(9), KMutual(6), KEarlier(5), Radius(0.25), Complete()]))
+    world = ChanceWorld(seed, draw_value(st.sampled_from([1.0, 0.8])), draw_value(st.sampled_from([0.3, 0.6, 0.9])))
     cost = draw_value(st.sampled_from([None, _steps, _detour]))
     links = draw_value(st.sampled_from([None, 3, 100]))
     return world, PointSet(points), dict(rule=rule, edge_cost=cost, links=links, shorten=False)

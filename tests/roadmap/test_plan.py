@@ -45,17 +45,13 @@ def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
     def message(family, n, d, k, *sides):
         space = BoxSpace([0.0] * d, sides or [1.0] * d)
         end = np.array(sides or [1.0] * d)
-        wall = FunctionWorld(
-            space, lambda q: np.abs(q[:, 0] / end[0] - 0.5) > 0.2, resolution=0.02 * end.max()
-        )
+        wall = FunctionWorld(space, lambda q: np.abs(q[:, 0] / end[0] - 0.5) > 0.2, resolution=0.02 * end.max())
         points = draw(family, n, d, rng=4)
         return plan_on(wall, 0.1 * end, 0.9 * end, points, rule=KNearest(k)).message
 
     # The six nearest of this lattice of 128 points lie in a plane, the ten nearest of 96 in five dimensions in three.
     assert "the nearest 6 of this lattice leave directions out, 7 would not" in message("even", 128, 3, 6)
-    assert "the nearest 10 of this lattice leave directions out, 21 would not" in message(
-        "korobov", 96, 5, 10
-    )
+    assert "the nearest 10 of this lattice leave directions out, 21 would not" in message("korobov", 96, 5, 10)
     assert "the nearest 10 of this lattice leave directions out, 13 would not" in message("even", 96, 5, 10)
     assert "the nearest 4 of this lattice leave directions out" in message("even", 128, 7, 4)
     # One of two opposite neighbours is enough.
@@ -63,9 +59,7 @@ def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
     assert "directions" not in message("even", 64, 2, 3)
     # Where one side is long, the nearest lie along the other; where it is so long that they lie outside, who knows.
     assert "directions" not in message("even", 100, 2, 4)
-    assert "the nearest 4 of this lattice leave directions out, 9 would not" in message(
-        "even", 100, 2, 4, 1, 8
-    )
+    assert "the nearest 4 of this lattice leave directions out, 9 would not" in message("even", 100, 2, 4, 1, 8)
     assert "directions" not in message("even", 100, 2, 4, 1, 1000)
     # Many stretched axes: the lattice's short vectors are too many to look at.
     assert "directions" not in message("even", 128, 5, 4, 1000, 1000, 1, 1, 1)

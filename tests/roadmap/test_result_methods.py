@@ -80,9 +80,7 @@ def test_the_path_of_an_arm_has_the_limits_of_its_robot():
 
 
 def test_a_result_is_one_line():
-    assert repr(RESULT).startswith(
-        f"PlanResult(solved, cost {RESULT.cost:.4g}, {len(RESULT.path)} waypoints, exact, "
-    )
+    assert repr(RESULT).startswith(f"PlanResult(solved, cost {RESULT.cost:.4g}, {len(RESULT.path)} waypoints, exact, ")
     assert repr(BLOCKED).startswith("PlanResult(start_invalid, ")
     assert "\n" not in repr(RESULT) + repr(WORLD) + repr(WORLD.grid)
 

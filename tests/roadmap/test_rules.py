@@ -70,9 +70,7 @@ def test_earlier_edges_join_each_to_the_nearest_before_it_and_the_ends_were_ther
     order = [*range(n - terminals, n), *range(n - terminals)]
     expected = set()
     for place, i in enumerate(order):
-        before = sorted(
-            (((points[i] - points[j]) ** 2).sum(), rank, j) for rank, j in enumerate(order[:place])
-        )
+        before = sorted((((points[i] - points[j]) ** 2).sum(), rank, j) for rank, j in enumerate(order[:place]))
         expected |= {(min(i, j), max(i, j)) for _, _, j in before[:k]}
     assert _as_set(KEarlier(k).edges(points, terminals=terminals)) == expected
 
@@ -154,11 +152,7 @@ def test_tiny_sets_have_the_edges_that_they_can_have(rule, count):
 @pytest.mark.parametrize(
     ("rule", "bad", "text"),
     [
-        *(
-            (rule, dict(k=k), "k must be")
-            for rule in (KNearest, KMutual, KEarlier)
-            for k in (0, -3, 2.5, True)
-        ),
+        *((rule, dict(k=k), "k must be") for rule in (KNearest, KMutual, KEarlier) for k in (0, -3, 2.5, True)),
         *((Radius, dict(r=r), "radius") for r in (0, -1, np.nan, np.inf, "1")),
         *((RadiusStar, dict(gamma=gamma), "gamma") for gamma in (0, -1, np.nan, np.inf, "1")),
         (TheoryRadius, dict(alpha=1.0, dispersion=0.1), "alpha"),

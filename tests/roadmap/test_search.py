@@ -92,9 +92,7 @@ def test_whole_lengths_are_never_shorter_than_lengths_and_bounds_never_longer(le
     assert (weights >= 1).all()
     assert (bounds < weights).all()
     if lengths.max() > 1e-280:
-        np.testing.assert_allclose(
-            weights * fixed_point.quantum, lengths, rtol=1e-12, atol=2 * fixed_point.quantum
-        )
+        np.testing.assert_allclose(weights * fixed_point.quantum, lengths, rtol=1e-12, atol=2 * fixed_point.quantum)
     # A path over all nodes, together with any bound, is still a 64-bit integer.
     assert int(weights.max()) * nodes + int(fixed_point.bounds(np.array([np.finfo(float).max]))[0]) < 2**63
 

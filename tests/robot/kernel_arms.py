@@ -64,9 +64,7 @@ def box_scene(inner=0.36):
         Obstacle.of("right", "box", (depth, wall, inner + 2 * wall), (x, -half, z)),
         Obstacle.of("floor", "box", (depth, inner, wall), (x, 0.0, z - half)),
         Obstacle.of("roof", "box", (depth, inner, wall), (x, 0.0, z + half)),
-        Obstacle.of(
-            "back", "box", (wall, inner + 2 * wall, inner + 2 * wall), (x + depth / 2 + wall / 2, 0.0, z)
-        ),
+        Obstacle.of("back", "box", (wall, inner + 2 * wall, inner + 2 * wall), (x + depth / 2 + wall / 2, 0.0, z)),
     )
     allowed = frozenset({("base", "table"), ("shoulder", "table")})
     return Scene(obstacles, name="box", allowed=allowed)
@@ -108,9 +106,7 @@ def seven_joint_arm():
         radius = 0.085 - 0.006 * i
         capsules.append(Capsule((0.0, 0.0, 0.0), (0.0, 0.0, 0.55 * above[i]), radius, link=link))
         if above[i] > 0.1:
-            capsules.append(
-                Capsule((0.0, 0.0, 0.55 * above[i]), (0.0, 0.0, 0.8 * above[i]), 0.9 * radius, link=link)
-            )
+            capsules.append(Capsule((0.0, 0.0, 0.55 * above[i]), (0.0, 0.0, 0.8 * above[i]), 0.9 * radius, link=link))
     pairs = tuple((links[a], links[b]) for a in range(8) for b in range(a + 3, 8))
     return Robot("seven", links, joints, tuple(capsules), pairs, tuple(joint.name for joint in joints))
 

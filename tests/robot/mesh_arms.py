@@ -25,9 +25,7 @@ def fork():
     return trimesh.util.concatenate(boxes)
 
 
-def write_fork_arm(
-    folder, *, scale="1 1 1", file="meshes/fork.stl", last="<capsule radius='0.03' length='0.1'/>"
-):
+def write_fork_arm(folder, *, scale="1 1 1", file="meshes/fork.stl", last="<capsule radius='0.03' length='0.1'/>"):
     """Write arm.urdf and its mesh: a box, a cylinder, a ball on the way, at the end the fork; return the URDF.
 
     Turns about z, then y, then slides along x; the fork is turned and shifted in its link.

@@ -81,9 +81,7 @@ def thin(robot, radius=0.004):
 
 
 def scene_of(*meshes, pose=Pose()):
-    return Scene(
-        tuple(Obstacle(f"mesh{i}", Mesh(mesh, pose=pose)) for i, mesh in enumerate(meshes)), name="meshes"
-    )
+    return Scene(tuple(Obstacle(f"mesh{i}", Mesh(mesh, pose=pose)) for i, mesh in enumerate(meshes)), name="meshes")
 
 
 BALLS = (ball(0.6, 0.2, 0.4), ball(-0.4, 0.5, 0.3, 0.3, 0), ball(0.1, -0.6, 0.7, 0.2, 2))

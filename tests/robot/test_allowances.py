@@ -160,9 +160,7 @@ def test_what_is_allowed_with_a_cloud_stays_allowed_with_its_parts():
 
 def test_a_part_of_anything_else_is_refused():
     table = Scene((Obstacle.of("table", "box", (1, 1, 0.1)),), name="desk", attached=(BLOCK,))
-    with pytest.raises(
-        er.errors.InvalidValue, match="'table' cannot be allowed, since it is a box and no cloud"
-    ):
+    with pytest.raises(er.errors.InvalidValue, match="'table' cannot be allowed, since it is a box and no cloud"):
         allowed_within(table, "block", "table", Sphere(0.1))
     with pytest.raises(er.errors.UnknownName, match="obstacle of scene 'desk': 'desk'"):
         allowed_within(table, "block", "desk", Sphere(0.1))
@@ -170,9 +168,7 @@ def test_a_part_of_anything_else_is_refused():
 
 def test_a_world_that_does_not_know_the_ends_says_so(ends):
     robot = in_scene(UR5, NEAR_ENDS)
-    with pytest.raises(
-        er.errors.InvalidValue, match="contacts near start and goals, which a world does not know"
-    ):
+    with pytest.raises(er.errors.InvalidValue, match="contacts near start and goals, which a world does not know"):
         ArmWorld(robot, NEAR_ENDS)
     divided = allowed_near_ends(robot, NEAR_ENDS, ends)
     assert ArmWorld(robot, divided).valid(ends).all()

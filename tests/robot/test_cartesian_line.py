@@ -110,18 +110,14 @@ def test_a_plan_goes_straight_from_its_start_and_to_its_goal():
 
 def test_points_plan_between_lines_too():
     pose = Pose.from_rpy((0.62, 0.0, 0.2), (0.0, math.pi / 2, 0.0))
-    result = er.plan(
-        "box-reach", START, pose, er.PRM(1024), robot="ur5", seconds=60, straight=CartesianLine(0.05)
-    )
+    result = er.plan("box-reach", START, pose, er.PRM(1024), robot="ur5", seconds=60, straight=CartesianLine(0.05))
     assert result.solved
     assert result.planner == "prm lazy"
     assert "line_m" in result.deviation
 
 
 def test_where_there_is_no_straight_way_the_answer_says_so():
-    stretched = er.plan(
-        "box-reach", "home", "inside", robot="ur5", straight=CartesianLine(retreat=0.2, away="up")
-    )
+    stretched = er.plan("box-reach", "home", "inside", robot="ur5", straight=CartesianLine(retreat=0.2, away="up"))
     assert stretched.status is er.Status.NOT_CONNECTED
     assert "no straight line from the start: after" in stretched.message
     sideways = er.plan("box-reach", "home", "inside", robot="ur5", straight=CartesianLine(0.3, away="x"))

@@ -131,9 +131,7 @@ def test_a_path_tells_a_clearance_that_it_keeps_and_hardly_more():
     ends = [configuration(world.robot, name, scene) for name in ("home", "inside")]
     result = plan(world, *ends)
     assert result.clearance is not None
-    along = np.concatenate(
-        [a + np.linspace(0.0, 1.0, 60)[:, np.newaxis] * (b - a) for a, b in pairwise(result.path)]
-    )
+    along = np.concatenate([a + np.linspace(0.0, 1.0, 60)[:, np.newaxis] * (b - a) for a, b in pairwise(result.path)])
     kept = replace(world, clearance=result.clearance, backend="scalar")
     assert kept.valid(along).all()
     # Capsules are covered by spheres of up to 1.1 times their radius.

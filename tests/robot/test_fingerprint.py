@@ -16,9 +16,7 @@ HASH = "from evenroad.robot import load_robot, load_scene; print({0})"
 def test_robots_and_scenes_of_one_content_have_one_fingerprint_in_every_process():
     code = HASH.format("load_robot('ur5').fingerprint(), load_scene('box-reach').fingerprint()")
     environment = os.environ | {"PYTHONHASHSEED": "7"}
-    said = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
-    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
     assert said.stdout.split() == [UR5.fingerprint(), CELL.fingerprint()]
 
 
@@ -58,7 +56,5 @@ def test_names_and_orders_do_not_count():
 
 
 def test_zeros_of_both_signs_are_one_number():
-    plus, minus = (
-        Scene((Obstacle("a", Box((1, 1, 1), pose=Pose((zero, 0, 0)))),), name="s") for zero in (0.0, -0.0)
-    )
+    plus, minus = (Scene((Obstacle("a", Box((1, 1, 1), pose=Pose((zero, 0, 0)))),), name="s") for zero in (0.0, -0.0))
     assert plus.fingerprint() == minus.fingerprint()

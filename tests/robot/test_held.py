@@ -96,9 +96,7 @@ def test_a_verdict_names_what_is_held():
     scene = Scene((Obstacle.of("wall", "box", (0.02, 4.0, 4.0), (0.9, 0.0, 0.0)),), name="s")
     q = np.array([0.0, -0.3, 0.2, 0.1, math.pi / 2, 0.0])
     for length in (0.05, 0.6):
-        world = ArmWorld(
-            UR5.holding(Cylinder(0.02, length, pose=Pose((0, 0, length / 2))), "tool0", name="rod"), scene
-        )
+        world = ArmWorld(UR5.holding(Cylinder(0.02, length, pose=Pose((0, 0, length / 2))), "tool0", name="rod"), scene)
         if not world.valid(q[None])[0]:
             assert world.explain(q) == "'rod' touches 'wall'"
             return
@@ -127,9 +125,7 @@ def test_an_attached_object_of_a_scene_file_is_held_and_may_touch_what_it_says(t
 
 def test_a_world_of_a_robot_that_does_not_hold_what_its_scene_attaches_is_refused():
     scene = Scene(name="pick", attached=(HeldObject("crate", BOX, "tool0"),))
-    with pytest.raises(
-        InvalidValue, match=r"attaches 'crate', which the robot does not hold: give .* in_scene"
-    ):
+    with pytest.raises(InvalidValue, match=r"attaches 'crate', which the robot does not hold: give .* in_scene"):
         ArmWorld(UR5, scene)
     assert ArmWorld(in_scene(UR5, scene), scene).valid(np.zeros((1, 6))).shape == (1,)
 
@@ -178,9 +174,7 @@ def test_a_robots_roadmap_serves_a_robot_with_its_hands_full():
     )
     roadmap = arm_roadmap(ArmWorld(robot, cell), 32, recipe=Recipe(4.0, 100))
     rod = HeldObject("rod", Cylinder(0.03, 0.5, pose=Pose((0, 0, 0.25))), "tool0", ("wrist_2_link",))
-    scene = Scene(
-        (Obstacle.of("post", "box", (0.1, 0.1, 0.8), (0.5, 0.4, 0.4)),), name="today", attached=(rod,)
-    )
+    scene = Scene((Obstacle.of("post", "box", (0.1, 0.1, 0.8), (0.5, 0.4, 0.4)),), name="today", attached=(rod,))
     scene = joined_scenes(cell, scene)
     known = roadmap.within(ArmWorld(in_scene(robot, scene), scene))
     assert known.world.robot.holds == ("rod",)

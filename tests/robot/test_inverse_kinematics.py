@@ -213,8 +213,7 @@ def test_a_joint_that_would_have_to_leave_its_limits_is_named():
     narrow = replace(
         UR5,
         joints=tuple(
-            replace(joint, lower=-0.5, upper=0.5) if joint.name == "elbow_joint" else joint
-            for joint in UR5.joints
+            replace(joint, lower=-0.5, upper=0.5) if joint.name == "elbow_joint" else joint for joint in UR5.joints
         ),
     )
     pose = Pose.from_matrix(tips(UR5, np.array([[0.3, -1.2, 1.9, -0.8, 0.9, 0.2]]), "tool0")[0])

@@ -85,9 +85,7 @@ def test_of_many_hulls_the_tree_finds_those_that_touch():
     rng = np.random.default_rng(2)
     triangles = [rng.normal(size=(100, 3, 3)) * 0.02 + rng.normal(size=(100, 1, 3)) * 0.2 for _ in range(2)]
     trees = hull_trees({name: [(t, 0.01)] for name, t in zip("ab", triangles, strict=True)})
-    one_by_one = [
-        hull_trees({"a": [(triangles[0][i : i + 1], 0.01)], "b": [(triangles[1], 0.01)]}) for i in range(100)
-    ]
+    one_by_one = [hull_trees({"a": [(triangles[0][i : i + 1], 0.01)], "b": [(triangles[1], 0.01)]}) for i in range(100)]
     poses, others = placed(rng, 30, 0.05), placed(rng, 30, 0.5)
     found = contacts(trees, "a", "b", poses, others)
     expected = np.array([contacts(tree, "a", "b", poses, others)[:, 0] >= 0 for tree in one_by_one])
@@ -195,9 +193,7 @@ def test_parallel_plates_as_thin_as_paper_pass_each_other(tmp_path):
     )  # fmt: skip
     (tmp_path / "plates.urdf").write_text(text)
     world = ArmWorld(load_robot(tmp_path / "plates.urdf"), EMPTY)
-    q = np.array(
-        [[x, z] for x in (-0.25, -0.01, 0.0, 0.15) for z in (-1e-3, -1e-4, -5e-6, 0.0, 5e-6, 1e-4, 1e-3)]
-    )
+    q = np.array([[x, z] for x in (-0.25, -0.01, 0.0, 0.15) for z in (-1e-3, -1e-4, -5e-6, 0.0, 5e-6, 1e-4, 1e-3)])
     np.testing.assert_array_equal(world.valid(q), np.abs(q[:, 1]) > 5e-5)
     beside = np.array([[0.35, 0.0], [-0.35, 0.0]])
     assert world.valid(beside).all()

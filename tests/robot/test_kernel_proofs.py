@@ -66,9 +66,7 @@ def motions(request):
     a, b = q[: len(q) // 2 * 2 : 2], q[1::2]
     # Of one joint and of all, long and short: bodies are made larger by as much as they move, by more, by little.
     alone = np.arange(len(a)) % (2 * world.space.dim)
-    b = np.where(
-        (alone[:, np.newaxis] < world.space.dim) & (np.arange(world.space.dim) != alone[:, np.newaxis]), a, b
-    )
+    b = np.where((alone[:, np.newaxis] < world.space.dim) & (np.arange(world.space.dim) != alone[:, np.newaxis]), a, b)
     b = world.space.interpolate(a, b, np.linspace(0.05, 1.0, len(b)) ** 2)
     return world, a, b, world.motion_certified(a, b, 1e-6)
 
@@ -177,9 +175,7 @@ def test_a_post_between_two_states_is_missed_by_them_but_not_by_the_proof(world)
     assert world.validate(np.array([[0.0], [0.9], [1.1], [1.9]])).tolist() == [True, False, True]
 
 
-@pytest.mark.parametrize(
-    ("gap", "tolerance", "proved"), [(1e-3, 1e-4, True), (1e-5, 1e-4, False), (1e-5, 1e-6, True)]
-)
+@pytest.mark.parametrize(("gap", "tolerance", "proved"), [(1e-3, 1e-4, True), (1e-5, 1e-4, False), (1e-5, 1e-6, True)])
 def test_the_tolerance_says_how_near_a_proof_goes(gap, tolerance, proved):
     assert CertifiedWorld(needle(gap), tolerance).validate(ROUND).tolist() == [proved]
     assert needle(gap).validate(ROUND)[0]
@@ -205,9 +201,7 @@ class Careless(FunctionWorld):
     validate = None
 
 
-@pytest.mark.parametrize(
-    "robot", [ur5(3.2), seven_joint_arm(), random_tree(8)], ids=["ur5", "seven", "tree 8"]
-)
+@pytest.mark.parametrize("robot", [ur5(3.2), seven_joint_arm(), random_tree(8)], ids=["ur5", "seven", "tree 8"])
 def test_shortcuts_touch_and_what_passes_is_free_for_the_oracle_at_a_twentieth_of_the_resolution(robot):
     passed, refused = [], []
     for seed in range(6):

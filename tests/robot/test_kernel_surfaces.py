@@ -88,9 +88,7 @@ WORLDS = {name: (*world, True) for name, world in CLOUDS.items()} | MESHES
 
 def apart_from(world, solid, q):
     """The oracle; of triangles that are turned to either side, inside is what the same in order wind around."""
-    return all_clearance(
-        world.robot, scene_of(*BALLS) if solid is None else world.scene, q, solid is not False
-    )
+    return all_clearance(world.robot, scene_of(*BALLS) if solid is None else world.scene, q, solid is not False)
 
 
 @pytest.fixture(scope="module", params=WORLDS)

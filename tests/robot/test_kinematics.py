@@ -67,9 +67,7 @@ def test_the_ur5_stands_where_its_table_of_joints_says():
 def test_frames_stay_rigid(q):
     poses = link_poses(load_robot("arm7"), [q])[0]
     turned = poses[:, :3, :3]
-    np.testing.assert_allclose(
-        turned @ turned.transpose(0, 2, 1), np.tile(np.eye(3), (len(turned), 1, 1)), atol=1e-12
-    )
+    np.testing.assert_allclose(turned @ turned.transpose(0, 2, 1), np.tile(np.eye(3), (len(turned), 1, 1)), atol=1e-12)
     assert (np.linalg.det(turned) > 0).all()
 
 

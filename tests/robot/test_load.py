@@ -23,9 +23,7 @@ def test_the_ur5_has_its_capsules_its_limits_and_its_names():
     robot = load_robot("ur5")
     for capsule, (link_number, a, b, radius) in zip(robot.capsules, CAPSULES, strict=True):
         assert capsule.link.replace("_", "") == f"{LINKS[link_number]}link"
-        np.testing.assert_allclose(
-            [*capsule.a, *capsule.b, capsule.radius], [0, *a, 0, *b, radius], atol=1e-15
-        )
+        np.testing.assert_allclose([*capsule.a, *capsule.b, capsule.radius], [0, *a, 0, *b, radius], atol=1e-15)
     names = ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
     assert robot.group == tuple(f"{name}_joint" for name in names)
     moving = [joint for joint in robot.joints if joint.kind != "fixed"]
@@ -267,9 +265,7 @@ def test_of_a_damaged_cache_comes_the_right_robot_and_one_line(tmp_path, monkeyp
     right = load_model(path)
     (kept,) = kept_robots()
     content, made = kept.read_bytes(), []
-    monkeypatch.setattr(
-        load, "_build", lambda *arguments: made.append(arguments) or replace(right, file=None)
-    )
+    monkeypatch.setattr(load, "_build", lambda *arguments: made.append(arguments) or replace(right, file=None))
     broken = [each for each in damaged(content, np.random.default_rng(1)) if each != content]
     for i, each in enumerate(broken):
         kept.write_bytes(each)
@@ -343,8 +339,6 @@ def test_altering_a_joint_that_is_not_there_is_refused(alter):
 def test_a_length_whose_powers_are_no_numbers_is_refused(tmp_path, monkeypatch, attribute, huge):
     monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path / "cache"))
     text = (resources.files("evenroad.robot") / "data" / "ur5.urdf").read_text()
-    (tmp_path / "huge.urdf").write_text(
-        re.sub(rf'{attribute}="[^" ]*', f'{attribute}="{huge}', text, count=1)
-    )
+    (tmp_path / "huge.urdf").write_text(re.sub(rf'{attribute}="[^" ]*', f'{attribute}="{huge}', text, count=1))
     with pytest.raises(InvalidValue, match=r"must (be at most|lie between -1e\+09 and) 1e\+09"):
         load_robot(tmp_path / "huge.urdf")

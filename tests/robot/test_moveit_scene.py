@@ -71,9 +71,7 @@ def test_an_older_scene_file_has_objects_without_a_pose(tmp_path):
     assert scene.name == "(noname)"
     assert [each.name for each in scene.obstacles] == ["my table", "can/0", "can/1"]
     assert (table.shape, table.size, table.xyz) == ("box", (1, 2, 0.1), (0.5, 0, -0.05))
-    np.testing.assert_allclose(
-        np.reshape(table.rotation, (3, 3)), [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15
-    )
+    np.testing.assert_allclose(np.reshape(table.rotation, (3, 3)), [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
     assert (can.shape, can.size, can.xyz) == ("cylinder", (0.05, 0.2), (0, 0, 0.1))
     assert (lid.shape, lid.size, lid.xyz) == ("sphere", (0.03,), (0, 0, 0.3))
 

@@ -95,9 +95,7 @@ def test_a_start_or_goals_that_are_tilted_are_refused():
     _, start, _ = problem(1)
     tilted = start.copy()
     tilted[5] += 0.4
-    result = er.plan(
-        Scene(name="empty"), tilted, start, robot=ARM7, upright=OrientationConstraint(0.1, axis="z")
-    )
+    result = er.plan(Scene(name="empty"), tilted, start, robot=ARM7, upright=OrientationConstraint(0.1, axis="z"))
     assert result.status is er.Status.START_INVALID
     assert "at the start axis z of 'flange' is tilted by" in result.message
     result = er.plan(Scene(name="empty"), start, tilted, robot=ARM7, upright=OrientationConstraint(0.1))
@@ -155,9 +153,7 @@ def test_a_tolerance_that_is_none_is_refused():
 
 def test_a_path_that_is_tilted_by_too_much_on_the_finer_grid_is_not_handed_out(monkeypatch):
     through = OrientationWorld.path_through
-    monkeypatch.setattr(
-        OrientationWorld, "path_through", lambda *a, **options: (through(*a, **options)[0], 0.11)
-    )
+    monkeypatch.setattr(OrientationWorld, "path_through", lambda *a, **options: (through(*a, **options)[0], 0.11))
     scene, start, goal = problem(6)
     result = er.plan(scene, start, goal, robot=ARM7, upright=OrientationConstraint(0.1))
     assert result.status is er.Status.NOT_CONNECTED

@@ -11,10 +11,7 @@ from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 
 def test_the_ur5s_pairs_are_those_of_its_srdf():
     model = load_model("ur5")
-    names = [
-        f"{name}_link"
-        for name in ("base", "shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
-    ]
+    names = [f"{name}_link" for name in ("base", "shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")]
     assert model.robot.pairs == tuple((names[int(i)], names[int(j)]) for i, j in PAIRS)
     assert model.pairs_from == "SRDF"
     assert len(model.dropped) == 8
@@ -97,9 +94,7 @@ def test_what_is_fixed_to_each_other_is_not_tested_even_if_the_srdf_does_not_dis
 
 
 def test_an_srdf_that_disables_nothing_leaves_the_pairs_to_be_computed(tmp_path):
-    text = urdf(
-        *(link(name, _ball(0.05)) for name in "abc"), joint("j", "a", "b"), joint("k", "b", "c", inside=LIMIT)
-    )
+    text = urdf(*(link(name, _ball(0.05)) for name in "abc"), joint("j", "a", "b"), joint("k", "b", "c", inside=LIMIT))
     srdf = "<robot name='arm'><group name='g'><joint name='k'/></group></robot>"
     model = load_model(write(tmp_path, text), srdf=write(tmp_path, srdf, "arm.srdf"))
     assert model.pairs_from == "computed"

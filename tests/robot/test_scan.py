@@ -60,9 +60,7 @@ def write_scene(folder, entry, **more):
 def test_a_scene_has_clouds_from_files_beside_it(tmp_path):
     (tmp_path / "scans").mkdir()
     np.save(tmp_path / "scans" / "a.npy", table(100))
-    entry = dict(
-        shape="cloud", file="scans/a.npy", radius=0.01, xyz=[0, 0, 0.1], rpy=[0, 0, 1], seen_at="home"
-    )
+    entry = dict(shape="cloud", file="scans/a.npy", radius=0.01, xyz=[0, 0, 0.1], rpy=[0, 0, 1], seen_at="home")
     (scan,) = load_scene(write_scene(tmp_path, entry)).obstacles
     np.testing.assert_array_equal(scan.body.points, table(100))
     assert scan.body.radius == 0.01

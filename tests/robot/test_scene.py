@@ -133,9 +133,7 @@ def test_what_is_merged_into_an_obstacle_may_be_said_again(tmp_path):
 
 
 def test_a_scene_that_is_missing_gets_the_list_of_shipped_ones():
-    with pytest.raises(
-        BrokenFile, match=r"no scene file nowhere.yaml; shipped: box-reach.yaml, box-reach-narr"
-    ):
+    with pytest.raises(BrokenFile, match=r"no scene file nowhere.yaml; shipped: box-reach.yaml, box-reach-narr"):
         load_scene("nowhere.yaml")
 
 
@@ -146,17 +144,13 @@ def test_a_file_goes_before_a_shipped_scene(tmp_path, monkeypatch):
     assert load_scene("box-reach.yaml").obstacles == ()
 
 
-@pytest.mark.parametrize(
-    ("name", "width", "centre"), [("box-reach", 0.36, 0.191), ("box-reach-narrow", 0.30, 0.161)]
-)
+@pytest.mark.parametrize(("name", "width", "centre"), [("box-reach", 0.36, 0.191), ("box-reach-narrow", 0.30, 0.161)])
 def test_the_shipped_box_leaves_the_cavity_that_its_numbers_say(name, width, centre):
     """Just inside of the cavity's faces is no obstacle, just outside is; the front is open."""
     obstacles = [each for each in load_scene(name).obstacles if each.name != "table"]
 
     def taken(point):
-        return any(
-            (np.abs(np.array(point) - each.xyz) <= np.array(each.size) / 2).all() for each in obstacles
-        )
+        return any((np.abs(np.array(point) - each.xyz) <= np.array(each.size) / 2).all() for each in obstacles)
 
     middle = np.array([0.70, 0.0, centre])
     half = np.array([0.20, width / 2, width / 2])
@@ -291,9 +285,7 @@ def test_obstacles_of_a_list_without_names_get_one_as_shapes_do():
 def test_a_planning_scene_of_moveit_is_a_scene_without_a_file():
     box = {"type": "box", "dimensions": [0.8, 1.2, 0.04]}
     pose = {"position": [0.5, 0, -0.02], "orientation": [0, 0, 0, 1]}
-    scene = Scene(
-        {"world": {"collision_objects": [{"id": "table", "primitives": [box], "primitive_poses": [pose]}]}}
-    )
+    scene = Scene({"world": {"collision_objects": [{"id": "table", "primitives": [box], "primitive_poses": [pose]}]}})
     assert scene.obstacles == Scene([TABLE]).obstacles
 
 

@@ -243,7 +243,5 @@ def test_a_clouds_balls_and_a_closed_mesh_block_as_they_are(tmp_path):
     wider = er.geometry.PointCloud(cloud.points, 0.08)
     assert may_connect(ArmWorld(robot, Scene((Obstacle("cloud", cloud),), name="cloud")), A, B)
     assert not may_connect(ArmWorld(robot, Scene((Obstacle("cloud", wider),), name="cloud")), A, B)
-    found = apart(
-        ArmWorld(robot, Scene((Obstacle("cloud", wider),), name="cloud")), A, B[np.newaxis], quickly=True
-    )
+    found = apart(ArmWorld(robot, Scene((Obstacle("cloud", wider),), name="cloud")), A, B[np.newaxis], quickly=True)
     assert found.proved

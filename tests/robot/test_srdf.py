@@ -266,9 +266,7 @@ def fingers(lower, upper):
     )
 
 
-@pytest.mark.parametrize(
-    ("limits", "grip"), [((0.0, 0.04), 0.02), ((-0.01, 0.0), 0.0), ((-0.01, 0.04), 0.005)]
-)
+@pytest.mark.parametrize(("limits", "grip"), [((0.0, 0.04), 0.02), ((-0.01, 0.0), 0.0), ((-0.01, 0.04), 0.005)])
 def test_fingers_that_are_held_stand_where_they_do_not_touch(tmp_path, limits, grip):
     path, pair = write(tmp_path, fingers(*limits)), "<disable_collisions link1='base' link2='upper'/>"
     robot = load_model(path, srdf=srdf_of(tmp_path, pair), group="shoulder,elbow").robot

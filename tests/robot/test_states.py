@@ -22,9 +22,7 @@ def ur5():
     return load_robot("ur5")
 
 
-@pytest.mark.parametrize(
-    "text", ["0,-1.57,0,-1.57,0,0.5", "0 -1.57 0 -1.57 0 0.5", " 0, -1.57, 0,-1.57 ,0,5e-1 "]
-)
+@pytest.mark.parametrize("text", ["0,-1.57,0,-1.57,0,0.5", "0 -1.57 0 -1.57 0 0.5", " 0, -1.57, 0,-1.57 ,0,5e-1 "])
 def test_a_list_is_read_in_the_order_of_the_joints(ur5, text):
     np.testing.assert_array_equal(configuration(ur5, text), [0, -1.57, 0, -1.57, 0, 0.5])
 
@@ -42,9 +40,7 @@ def test_a_state_of_the_scene_goes_before_one_of_the_robot(ur5):
 
 
 def test_degrees_turn_angles_but_neither_lengths_nor_named_states(tmp_path, ur5):
-    text = urdf(
-        link("x"), link("y"), link("z"), joint("slide", "x", "y", "prismatic"), joint("turn", "y", "z")
-    )
+    text = urdf(link("x"), link("y"), link("z"), joint("slide", "x", "y", "prismatic"), joint("turn", "y", "z"))
     robot = load_robot(write(tmp_path, text))
     np.testing.assert_allclose(configuration(robot, "0.5,45", degrees=True), [0.5, math.pi / 4])
     np.testing.assert_allclose(configuration(robot, "turn=45", degrees=True), [0, math.pi / 4])
@@ -84,9 +80,7 @@ def test_what_is_no_configuration_is_refused_in_one_line(ur5, text, kind, says):
 
 def test_a_state_that_lacks_a_joint_or_breaks_a_limit_is_refused(ur5):
     scene = Scene((), name="s", states={"half": {"elbow_joint": 1.0}, "far": dict.fromkeys(ur5.group, 4.0)})
-    with pytest.raises(
-        InvalidValue, match="the state 'half' has no value for shoulder_pan_joint, shoulder_lift_joint"
-    ):
+    with pytest.raises(InvalidValue, match="the state 'half' has no value for shoulder_pan_joint, shoulder_lift_joint"):
         configuration(ur5, "half", scene)
     with pytest.raises(InvalidValue, match="'far' puts joint 'elbow_joint' at 4 rad"):
         configuration(ur5, "far", scene)
@@ -112,9 +106,7 @@ UP = Scene(
 )
 
 
-@pytest.mark.parametrize(
-    "ends", [("up", "down"), ("down", "up"), ("up", "up"), (" up ", "0.3"), ("a=0.3", "up")]
-)
+@pytest.mark.parametrize("ends", [("up", "down"), ("down", "up"), ("up", "up"), (" up ", "0.3"), ("a=0.3", "up")])
 def test_joints_that_are_not_planned_for_are_held_where_the_named_states_have_them(only_a, ends):
     robot = at_states(only_a, ends, UP)
     assert held_values(robot) == {"b": 0.5}
@@ -143,9 +135,7 @@ def test_a_state_is_never_taken_for_the_posture_that_it_is_not(only_a):
 
 def test_a_state_cannot_hold_a_joint_outside_its_limits_nor_one_that_is_not_there(only_a):
     scene = Scene((), name="s", states={"far": {"a": 0, "b": 99}, "odd": {"a": 0, "knee": 1}})
-    with pytest.raises(
-        InvalidValue, match="the state 'far' puts joint 'b' at 99 rad, 98 rad outside its limits"
-    ):
+    with pytest.raises(InvalidValue, match="the state 'far' puts joint 'b' at 99 rad, 98 rad outside its limits"):
         at_states(only_a, ("far", "0"), scene)
     with pytest.raises(UnknownName, match="joint of the state 'odd': 'knee'; known: a, b"):
         at_states(only_a, ("odd", "0"), scene)
@@ -159,9 +149,7 @@ def test_a_state_beyond_a_limit_by_rounding_holds_the_joint_there(only_a):
 
 
 def test_a_joint_with_blanks_in_its_name_can_be_given_by_name(tmp_path):
-    text = urdf(
-        link("x"), link("y"), link("z"), joint("my joint", "x", "y"), joint("the other one", "y", "z")
-    )
+    text = urdf(link("x"), link("y"), link("z"), joint("my joint", "x", "y"), joint("the other one", "y", "z"))
     robot = load_robot(write(tmp_path, text))
     for written in ("my joint=0.5,the other one=-0.25", "my joint = 0.5 the other one=-0.25"):
         np.testing.assert_array_equal(configuration(robot, written), [0.5, -0.25])

@@ -171,9 +171,7 @@ def test_fourteen_joints_are_not_too_many():
     for i in range(7):
         links.append(f"more{i}")
         axis = (0.0, 1.0, 0.0) if i % 2 else (0.0, 0.0, 1.0)
-        chain.append(
-            Joint(f"more joint{i}", "revolute", *links[-2:], (0.0, 0.0, 0.05), STRAIGHT, axis, -2.0, 2.0)
-        )
+        chain.append(Joint(f"more joint{i}", "revolute", *links[-2:], (0.0, 0.0, 0.05), STRAIGHT, axis, -2.0, 2.0))
     long = replace(seven, links=tuple(links), joints=tuple(chain), group=tuple(joint.name for joint in chain))
     world = ArmWorld(long, random_scene(3))
     q = world.space.from_cube(np.random.default_rng(0).random((500, 14)))
@@ -196,9 +194,7 @@ def two_arms(apart=0.7):
         capsules += [replace(capsule, link=side + capsule.link) for capsule in seven.capsules]
         pairs += [(side + first, side + second) for first, second in seven.pairs]
         group += [side + joint for joint in seven.group]
-    pairs += [
-        ("left " + a, "right " + b) for a in seven.links for b in seven.links if (a, b) != ("base", "base")
-    ]
+    pairs += [("left " + a, "right " + b) for a in seven.links for b in seven.links if (a, b) != ("base", "base")]
     return Robot("two arms", tuple(links), tuple(joints), tuple(capsules), tuple(pairs), tuple(group))
 
 

@@ -150,9 +150,7 @@ def test_limits_that_are_not_given_are_0_as_the_specification_says(tmp_path, ins
 
 def test_a_robot_whose_joints_cannot_move_is_refused_with_the_reason(tmp_path):
     text = urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit effort='1' velocity='1'/>"))
-    with pytest.raises(
-        InvalidValue, match="no joint that could be planned for; joint 'a' has no lower and upper"
-    ):
+    with pytest.raises(InvalidValue, match="no joint that could be planned for; joint 'a' has no lower and upper"):
         load_model(write(tmp_path, text))
 
 
@@ -162,9 +160,7 @@ def test_a_joint_of_huge_limits_turns_without_end(tmp_path, limit):
     path = write(tmp_path, urdf(link("x"), link("y"), joint("a", "x", "y", inside=inside)))
     model = load_model(path)
     assert model.robot.joints[0].kind == "continuous"
-    assert model.notes == (
-        f"joint 'a' with the limits -{float(limit):g}, {float(limit):g} turns without end",
-    )
+    assert model.notes == (f"joint 'a' with the limits -{float(limit):g}, {float(limit):g} turns without end",)
     assert ArmWorld(model.robot, Scene(name="s")).space.wrapping == (True,)
     limited = in_scene(model.robot, Scene(name="s", limits={"a": (-1.0, 2.0)}))
     assert ArmWorld(limited, Scene(name="s")).bounds[:2].tolist() == [[-1.0], [2.0]]

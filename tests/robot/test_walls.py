@@ -31,16 +31,13 @@ UP, OVER, ROUND = np.array([0.3, 0.0, 0.4]), np.array([1.0, 3.1, -0.4]), np.arra
 def turret(folder, **files):
     """An arm on a foot that it meets where it hangs: two convex meshes, of which one turns about two joints."""
     for name, mesh in {
-        "foot": trimesh.creation.cylinder(radius=0.15, height=0.2, sections=12).apply_translation(
-            (0, 0, 0.1)
-        ),
+        "foot": trimesh.creation.cylinder(radius=0.15, height=0.2, sections=12).apply_translation((0, 0, 0.1)),
         "arm": trimesh.creation.box((0.5, 0.1, 0.08)).apply_translation((0.2, 0.0, 0.0)),
         **files,
     }.items():
         mesh.export(folder / f"{name}.stl")
     bodies = {
-        name: f"<collision><geometry><mesh filename='{name}.stl'/></geometry></collision>"
-        for name in ("foot", "arm")
+        name: f"<collision><geometry><mesh filename='{name}.stl'/></geometry></collision>" for name in ("foot", "arm")
     }
     text = urdf(
         link("foot", bodies["foot"]),
@@ -201,9 +198,7 @@ def test_a_slit_at_the_end_of_the_other_joint_is_seen(make):
 @pytest.mark.parametrize(("overlap", "shown"), [(1e-3, True), (2.5e-4, False), (-1e-5, False)])
 def test_bodies_that_hardly_overlap_show_nothing(overlap, shown):
     slide = Joint("slide", "prismatic", "block", "body", (0.0, 0.0, 0.0), STRAIGHT, Z, -1.0, 1.0)
-    bodies = boxes(
-        ("block", (1.0, 1.0, 0.2), Pose()), ("body", (1.0, 1.0, 0.2), Pose((1.0 - overlap, 0.0, 0.0)))
-    )
+    bodies = boxes(("block", (1.0, 1.0, 0.2), Pose()), ("body", (1.0, 1.0, 0.2), Pose((1.0 - overlap, 0.0, 0.0))))
     links = "block", "body"
     robot = Robot("two", links, (slide,), pairs=(links,), group=("slide",), **bodies)
     assert bool(walls_of(robot)[0]) == shown
@@ -250,8 +245,7 @@ def overlap(robot, pair, poses):
     for a in (hull for hull in robot.hulls if hull.link == pair[0]):
         for b in (hull for hull in robot.hulls if hull.link == pair[1]):
             placed = [
-                hull.points @ poses[robot.links.index(hull.link), :3, :3].T
-                + poses[robot.links.index(hull.link), :3, 3]
+                hull.points @ poses[robot.links.index(hull.link), :3, :3].T + poses[robot.links.index(hull.link), :3, 3]
                 for hull in (a, b)
             ]
             n, m = map(len, placed)

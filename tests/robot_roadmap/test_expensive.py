@@ -132,9 +132,7 @@ def test_a_proof_is_said_of_what_the_capsules_prove_alone(roadmap):
         result = known.plan(start, goal, budget=Budget(seconds=5.0))
         if result.solved:
             proofs.add(result.proof)
-            assert result.proof == (
-                "certified" if known.capsules.validate(result.path).all() else "resolution"
-            )
+            assert result.proof == ("certified" if known.capsules.validate(result.path).all() else "resolution")
             assert known.world.judge.validate(result.path).all()
     assert "certified" in proofs
 

@@ -63,9 +63,7 @@ def test_what_is_passed_over_before_a_world_is_made_touches_a_wall(arm, pool):
     tips, (body, radii) = narrow_passages.tips_of(arm, pool), narrow_passages.body_of(arm, pool)
     drawn = narrow_passages.passages_around(tips[:300, 0], around, rng)
     passed = drawn.touched_by(body[:300], radii)
-    free = np.array(
-        [ArmWorld(arm, Scene(drawn.walls(i), name="pocket")).valid(pool[i : i + 1])[0] for i in range(300)]
-    )
+    free = np.array([ArmWorld(arm, Scene(drawn.walls(i), name="pocket")).valid(pool[i : i + 1])[0] for i in range(300)])
     assert not (passed & free).any()
     touching, passed = np.sum(~free), np.sum(passed)
     assert 0.8 * touching <= passed < 300
@@ -90,16 +88,12 @@ def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, mo
     for number, (walls, end, found) in enumerate(kept):
         assert seen.which[seen.first[number] : seen.first[number + 1]].tolist() == found.tolist()
         assert end not in found
-        world = ArmWorld(
-            arm, replace(cell, obstacles=(*cell.obstacles, *walls)), resolution=narrow_passages.STEP
-        )
+        world = ArmWorld(arm, replace(cell, obstacles=(*cell.obstacles, *walls)), resolution=narrow_passages.STEP)
         assert world.valid(pool[end : end + 1])[0]
         assert world.motion_valid(np.broadcast_to(pool[end], (len(found), 4)), pool[found]).all()
         # Of the first ones whatever can be reached, of the others the nearest that can.
         reached = world.motion_valid(np.broadcast_to(pool[end], pool.shape), pool)
-        reached = np.flatnonzero(
-            reached & world.valid(pool[end] + narrow_passages.EARLY * (pool - pool[end]))
-        )
+        reached = np.flatnonzero(reached & world.valid(pool[end] + narrow_passages.EARLY * (pool - pool[end])))
         apart = np.linalg.norm(pool - pool[end], axis=1)
         nearest = 150 + np.argsort(apart[150:])[:60]
         tried = np.append(np.arange(150), nearest)
@@ -145,18 +139,12 @@ def test_more_ends_see_a_roadmap_that_learned_from_others():
     arm = load_robot("ur5")
     arm = with_limits(with_group(arm, arm.group[:5]), dict.fromkeys(arm.group[:5], (-3.14, 3.14)))
     world = ArmWorld(arm, TABLE)
-    learned, plain = (
-        arm_roadmap(ArmWorld(arm, TABLE), 24, recipe=Recipe(0.0, ends)).milestones for ends in (600, 0)
-    )
+    learned, plain = (arm_roadmap(ArmWorld(arm, TABLE), 24, recipe=Recipe(0.0, ends)).milestones for ends in (600, 0))
     q = world.space.from_cube(np.random.default_rng(99).random((2400, 5)))
     q = q[world.valid(q)][:700]
     everything = np.concatenate([q, learned, plain])
     seen = hard_queries(arm, TABLE, everything, everything, 300, np.random.default_rng(5))
-    of_end = [
-        each
-        for own, each in zip(seen.own, np.split(seen.which, seen.first[1:-1]), strict=True)
-        if own < len(q)
-    ]
+    of_end = [each for own, each in zip(seen.own, np.split(seen.which, seen.first[1:-1]), strict=True) if own < len(q)]
     share = [
         np.mean([np.any(which // 24 == kind) for which in (each[each >= len(q)] - len(q) for each in of_end)])
         for kind in (0, 1)

@@ -158,9 +158,7 @@ def test_the_cell_is_there_even_where_the_scene_does_not_name_it(roadmap):
 
 def test_a_scene_that_contradicts_the_cell_is_refused(roadmap):
     higher = TABLE.obstacles[0].at(replace(TABLE.obstacles[0].body.pose, xyz=(0.25, 0.0, 0.1)))
-    with pytest.raises(
-        InvalidValue, match=r"'table' of scene 'cell' is a box of 1, 1.2, 0.05 at \(0.25, 0, 0.1\)"
-    ):
+    with pytest.raises(InvalidValue, match=r"'table' of scene 'cell' is a box of 1, 1.2, 0.05 at \(0.25, 0, 0.1\)"):
         roadmap.within(ArmWorld(roadmap.robot, replace(TABLE, obstacles=(higher,))))
     with pytest.raises(InvalidValue, match="does not allow 'base' to touch it"):
         roadmap.within(ArmWorld(roadmap.robot, replace(TABLE, allowed=frozenset({("shoulder", "table")}))))
@@ -228,9 +226,7 @@ def test_a_file_gives_back_all_of_it(roadmap, tmp_path):
     for name in ("milestones", "edges", "turns", "weights"):
         np.testing.assert_array_equal(getattr(again, name), getattr(roadmap, name))
     assert (again.robot, again.scene, again.clearance, again.resolution) == (roadmap.robot, TABLE, 0.0, 0.05)
-    first, second = (
-        within(r, box_scene()).plan([0.0, -1.5, 0.0], [2.0, -1.0, 1.0]) for r in (roadmap, again)
-    )
+    first, second = (within(r, box_scene()).plan([0.0, -1.5, 0.0], [2.0, -1.0, 1.0]) for r in (roadmap, again))
     np.testing.assert_array_equal(first.path, second.path)
 
 

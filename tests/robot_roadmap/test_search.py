@@ -83,9 +83,7 @@ def shortest(known, start, goals):
 def roadmap():
     """Three joints of two turns each, by a table."""
     cell = box_scene()
-    cell = replace(
-        cell, obstacles=cell.obstacles[:1], allowed=frozenset(p for p in cell.allowed if p[1] == "table")
-    )
+    cell = replace(cell, obstacles=cell.obstacles[:1], allowed=frozenset(p for p in cell.allowed if p[1] == "table"))
     return arm_roadmap(ArmWorld(ur5(joints=3), cell), 48, 5, recipe=Recipe(2.0, 100))
 
 
@@ -194,9 +192,7 @@ def test_of_very_many_joints_only_those_turn_on_that_the_search_can_follow():
     one = one_turn(wide, np.ones(20, dtype=np.bool_))
     assert one.multi_turn.tolist() == [True] * MOST_MULTI_TURN + [False] * (20 - MOST_MULTI_TURN)
     # The others are planned in all of their range, and lead over no end of it.
-    assert (one.high - one.low)[~one.multi_turn].tolist() == pytest.approx(
-        [2.0 * TURN] * (20 - MOST_MULTI_TURN)
-    )
+    assert (one.high - one.low)[~one.multi_turn].tolist() == pytest.approx([2.0 * TURN] * (20 - MOST_MULTI_TURN))
     assert not one.wraps[~one.multi_turn].any()
     # Each has four bits of a whole number, of which none is the sign.
     assert 2 ** (TURN_BITS * MOST_MULTI_TURN) < 2**62
@@ -208,9 +204,7 @@ def test_a_search_in_slices_finds_what_it_finds_in_one_go(roadmap):
     for batches in (1, 10**9):
         known = within(roadmap)
         checks = [checks_of(world) for world in known._worlds]
-        search = ProvedSearch(
-            known._graph, np.concatenate([start[np.newaxis], goal]), (48, 3.0, 1.0), *checks
-        )
+        search = ProvedSearch(known._graph, np.concatenate([start[np.newaxis], goal]), (48, 3.0, 1.0), *checks)
         calls = 1
         while search.go_on(10**7, batches) == "paused":
             calls += 1
@@ -231,9 +225,7 @@ def test_checks_run_out_and_come_back(roadmap):
 def test_a_world_without_lanes_finds_the_same_path(roadmap):
     known, slow = within(roadmap), within(roadmap, backend="scalar")
     start, goal = far_apart(known)
-    np.testing.assert_array_equal(
-        known.connect(start, goal).path, slow.connect(start, goal, seconds=1e3).path
-    )
+    np.testing.assert_array_equal(known.connect(start, goal).path, slow.connect(start, goal, seconds=1e3).path)
 
 
 def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_kept(roadmap, monkeypatch):

@@ -44,9 +44,7 @@ def _several(world, start, goal, **options):
 
 
 def _arm(world, start, goal, **options):
-    return er.plan(
-        world.scene, start, goal, robot=world.robot, smooth=options.pop("shorten", True), **options
-    )
+    return er.plan(world.scene, start, goal, robot=world.robot, smooth=options.pop("shorten", True), **options)
 
 
 PLANNERS = {
@@ -55,9 +53,7 @@ PLANNERS = {
     "lazy milestones": lambda world, *ends, **options: plan_on(
         world, *ends, _points(world), search="lazy", lazy_milestones=True, **options
     ),
-    "success only": lambda world, *ends, **options: plan_on(
-        world, *ends, _points(world), success_only=True, **options
-    ),
+    "success only": lambda world, *ends, **options: plan_on(world, *ends, _points(world), success_only=True, **options),
     "several goals": _several,
     "fmt*": lambda world, *ends, **options: fmt_on(world, *ends, _points(world), **options),
     "anytime": lambda world, *ends, **options: plan_growing(

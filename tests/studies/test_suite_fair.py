@@ -14,9 +14,7 @@ def test_the_suite_reports_on_fresh_problems_of_every_family():
     names = {task.problem for task in fair_suite(3).tasks}
     assert not any(name.startswith("tune-") for name in names)
     for d in DIMENSIONS:
-        assert {
-            f"fair-{family}-{d}d-{share}" for family in ("balls", "boxes") for share in (25, 50, 75)
-        } <= names
+        assert {f"fair-{family}-{d}d-{share}" for family in ("balls", "boxes") for share in (25, 50, 75)} <= names
     assert {"fair-maze-50", "fair-se2-50", "fair-se3-50"} <= names
     assert "fair-balls-4d-50" not in names
 

@@ -62,9 +62,7 @@ def test_speed_is_a_share(speed):
         Limits((1.0,), (1.0,)).at_speed(speed)
 
 
-@pytest.mark.parametrize(
-    "rows", [((0.0,), (1.0,)), ((1.0,), (1.0, 1.0)), ((1.0,), (float("inf"),)), ((), ())]
-)
+@pytest.mark.parametrize("rows", [((0.0,), (1.0,)), ((1.0,), (1.0, 1.0)), ((1.0,), (float("inf"),)), ((), ())])
 def test_limits_are_positive_and_as_many_as_joints(rows):
     with pytest.raises(InvalidValue):
         Limits(*rows)

@@ -25,9 +25,7 @@ LIMITS = Limits((1.0,) * 6, (4.0,) * 6)
 class Arm:
     """A UR arm by the three interfaces of ur_rtde: it is where it was told to be, plus `off` from state `since` on."""
 
-    def __init__(
-        self, q=START, model="UR5", mode=RUNNING, safety=NORMAL, off=0.0, since=0, stops=None, lost=None
-    ):
+    def __init__(self, q=START, model="UR5", mode=RUNNING, safety=NORMAL, off=0.0, since=0, stops=None, lost=None):
         self.q, self.model, self.mode, self.safety = np.array(q, dtype=float), model, mode, safety
         self.off, self.since, self.stops, self.lost = off, since, stops, lost
         self.places, self.calls = [], []
@@ -156,9 +154,7 @@ def test_nothing_moves_from_another_place_than_the_start(there, joint, side):
         if moved:
             assert sent().states > STATES
             continue
-        with pytest.raises(
-            InvalidValue, match=f"not at the start: joint_{joint + 1} is at .* more than 0.01"
-        ):
+        with pytest.raises(InvalidValue, match=f"not at the start: joint_{joint + 1} is at .* more than 0.01"):
             sent()
         assert (arm.places, "control" in arm.calls) == ([], False)
 

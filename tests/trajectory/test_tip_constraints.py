@@ -34,10 +34,7 @@ def test_what_is_driven_keeps_upright_as_the_path_was_asked_to(tilt, kept):
     world, goal = free_world(), DOWN + np.array([0.5, 0.0, 0.0, tilt, 0.0, 0.0])
     assert arm_trajectory(world, [DOWN, goal]).duration > 0.0
     if kept:
-        assert (
-            arm_trajectory(world, [DOWN, goal], constraints=(None, OrientationConstraint(0.05))).proof
-            == "certified"
-        )
+        assert arm_trajectory(world, [DOWN, goal], constraints=(None, OrientationConstraint(0.05))).proof == "certified"
         return
     with pytest.raises(NotAvailable, match="not proved"):
         arm_trajectory(world, [DOWN, goal], constraints=(None, OrientationConstraint(0.05)))

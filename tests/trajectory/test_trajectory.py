@@ -34,9 +34,7 @@ paths = st.builds(zigzag, st.integers(0, 10**6), st.integers(2, 9), st.integers(
 
 
 @settings(max_examples=40, deadline=None)
-@given(
-    path=paths, seed=st.integers(0, 10**6), jerky=st.booleans(), deviation=st.sampled_from([0.0, 0.01, 0.3])
-)
+@given(path=paths, seed=st.integers(0, 10**6), jerky=st.booleans(), deviation=st.sampled_from([0.0, 0.01, 0.3]))
 def test_it_keeps_every_limit_and_stays_near_its_path(path, seed, jerky, deviation):
     rng, dim = np.random.default_rng(seed), path.shape[1]
     velocity, acceleration = rng.uniform(0.5, 4.0, dim), rng.uniform(0.5, 20.0, dim)
@@ -54,9 +52,7 @@ def test_it_keeps_every_limit_and_stays_near_its_path(path, seed, jerky, deviati
     between = 0.5 * (made.velocities[1:] + made.velocities[:-1])
     assert np.all(np.abs(between - speeds) <= acceleration * step)
     if jerk is not None:
-        assert np.all(
-            np.abs(np.diff(made.accelerations, axis=0)) <= np.array(jerk) * step * (1 + 1e-6) + 1e-9
-        )
+        assert np.all(np.abs(np.diff(made.accelerations, axis=0)) <= np.array(jerk) * step * (1 + 1e-6) + 1e-9)
     np.testing.assert_allclose(q[[0, -1]], path[[0, -1]], atol=1e-9)
     np.testing.assert_allclose(made.velocities[[0, -1]], 0.0, atol=1e-9)
     assert max(distance_to(path, place) for place in q) <= deviation + 1e-5

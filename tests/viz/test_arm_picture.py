@@ -66,9 +66,7 @@ def test_a_solved_plan_shows_the_way_of_the_tip_from_start_to_goal(reach):
     result = _planned(reach)
     shown, place = _view(reach, result, (0, 1))
     fractions = np.linspace(0, 1, 20)[:, np.newaxis]
-    dense = np.concatenate(
-        [a + fractions * (b - a) for a, b in zip(result.path, result.path[1:], strict=False)]
-    )
+    dense = np.concatenate([a + fractions * (b - a) for a, b in zip(result.path, result.path[1:], strict=False)])
     tips = link_poses(reach.robot, dense)[:, -1, :2, 3]
     red = np.argwhere(np.abs(shown - ImageColor.getrgb(style.PATH)).sum(axis=2) < 30)[:, ::-1]
     gaps = np.linalg.norm(place(tips)[:, np.newaxis] - red, axis=2).min(axis=1)
@@ -123,9 +121,7 @@ def test_dollars_in_names_are_dollars(tmp_path):
         robot,
         links=(*robot.links[:-1], "$tip_{$"),
         joints=tuple(replace(each, child="$tip_{$") if each.child == tip else each for each in robot.joints),
-        capsules=tuple(
-            replace(each, link="$tip_{$") if each.link == tip else each for each in robot.capsules
-        ),
+        capsules=tuple(replace(each, link="$tip_{$") if each.link == tip else each for each in robot.capsules),
         pairs=tuple((a if a != tip else "$tip_{$", b if b != tip else "$tip_{$") for a, b in robot.pairs),
     )
     ball = Obstacle.of("$\\frac{$", "sphere", (0.5,), (0, 0, 0.5))

@@ -98,9 +98,7 @@ def test_the_saved_picture_has_every_colour_of_the_legend(tmp_path):
 @pytest.mark.parametrize(("rows", "cols"), [(3, 600), (600, 3)])
 def test_long_thin_maps_give_a_picture_of_bearable_size(tmp_path, rows, cols):
     world = GridMap(np.zeros((rows, cols), dtype=bool)).world(0.5)
-    save_plan_picture(
-        tmp_path / "a.png", plan(world, (1.5, 1.5), (1.5, 1.5), PRM(draw("halton", 5, 2))), world
-    )
+    save_plan_picture(tmp_path / "a.png", plan(world, (1.5, 1.5), (1.5, 1.5), PRM(draw("halton", 5, 2))), world)
     with Image.open(tmp_path / "a.png") as picture:
         assert max(picture.size) < 2500
 

@@ -45,9 +45,7 @@ def distance_to_square(a: Point, b: Point, col: int, row: int) -> float:
         return 0.0
     corners = [(x, y) for x in (col, col + 1) for y in (row, row + 1)]
     to_corners = min(distance_from_point(corner, a, b) for corner in corners)
-    to_ends = min(
-        math.hypot(max(col - x, 0.0, x - col - 1), max(row - y, 0.0, y - row - 1)) for x, y in (a, b)
-    )
+    to_ends = min(math.hypot(max(col - x, 0.0, x - col - 1), max(row - y, 0.0, y - row - 1)) for x, y in (a, b))
     return min(to_corners, to_ends)
 
 

@@ -25,9 +25,7 @@ def test_the_clearance_of_a_disks_path_is_the_least_distance_along_it(seed):
     result = plan(world, free[0], free[-1])
     if not result.solved:
         pytest.skip("no path to measure")
-    along = np.concatenate(
-        [a + np.linspace(0.0, 1.0, 2001)[:, np.newaxis] * (b - a) for a, b in pairwise(result.path)]
-    )
+    along = np.concatenate([a + np.linspace(0.0, 1.0, 2001)[:, np.newaxis] * (b - a) for a, b in pairwise(result.path)])
     truth = points_to_obstacles(along, grid.occupied).min() - 0.7
     # The oracle looks at states, so it may be a little too large.
     assert truth - 0.02 <= result.clearance <= truth + 1e-9

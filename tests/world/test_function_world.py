@@ -185,9 +185,7 @@ def test_an_answer_that_is_none_is_refused_and_the_function_named(answer, vector
 
     wanted = r"a bool array of shape \(2,\)" if vectorised else "a bool for one"
     with pytest.raises(InvalidValue, match=f"my_checker must return {wanted}"):
-        FunctionWorld(SQUARE, my_checker, 0.1, vectorised=None if vectorised else False).valid(
-            [[0.1, 0.2], [0.3, 0.4]]
-        )
+        FunctionWorld(SQUARE, my_checker, 0.1, vectorised=None if vectorised else False).valid([[0.1, 0.2], [0.3, 0.4]])
 
 
 def test_errors_of_the_function_itself_come_through():

@@ -36,9 +36,7 @@ def test_in_a_ros_map_the_origin_is_the_lower_left_corner_of_the_lower_left_pixe
     occupied[3, 0] = True  # the lower-left pixel is in the image's last row
     frame = MapFrame(rows=4, cols=6, resolution=0.5, origin=(10.0, -2.0), y_up=True)
     world = GridMap(occupied, frame).world(0.01)
-    np.testing.assert_array_equal(
-        world.distance([[10.25, -1.75], [10.75, -1.75], [10.25, -1.25]]), [-0.01, 0.24, 0.24]
-    )
+    np.testing.assert_array_equal(world.distance([[10.25, -1.75], [10.75, -1.75], [10.25, -1.25]]), [-0.01, 0.24, 0.24])
     np.testing.assert_array_equal(world.nearest_obstacle([[10.625, -1.75]]), [[10.5, -1.75]])
 
 

@@ -109,9 +109,7 @@ def test_of_several_goals_the_one_that_is_reached_first_is_named():
     occupied = np.zeros((40, 60), dtype=bool)
     occupied[:, 30] = True
     world = GridMap(occupied).world(2.0)
-    connection = CELLS.connect(
-        world, np.array([5.0, 5.0]), np.array([[50.0, 5.0], [25.0, 30.0], [6.0, 20.0]])
-    )
+    connection = CELLS.connect(world, np.array([5.0, 5.0]), np.array([[50.0, 5.0], [25.0, 30.0], [6.0, 20.0]]))
     assert connection.goal == 2
 
 

@@ -45,8 +45,7 @@ class KlamptWorld(EngineWorld):
         world = _read(klampt, self.robot, surfaces)
         model = world.robot(0)
         meshes = {
-            links: _geometry(klampt, surface)
-            for links, surface in _merged_obstacles(self.scene, surfaces).items()
+            links: _geometry(klampt, surface) for links, surface in _merged_obstacles(self.scene, surfaces).items()
         }
         bodies = []
         for link, surface in surfaces.items():
@@ -79,15 +78,12 @@ class KlamptWorld(EngineWorld):
         for row, configuration in enumerate(configurations.tolist()):
             model.setConfig(configuration)
             free[row] = not (
-                any(body.collides(mesh) for body, meshes in self._bodies for mesh in meshes)
-                or model.selfCollides()
+                any(body.collides(mesh) for body, meshes in self._bodies for mesh in meshes) or model.selfCollides()
             )
         return free
 
 
-def _merged_obstacles(
-    scene: Scene, surfaces: Mapping[str, TriangleMesh]
-) -> dict[frozenset[str], TriangleMesh]:
+def _merged_obstacles(scene: Scene, surfaces: Mapping[str, TriangleMesh]) -> dict[frozenset[str], TriangleMesh]:
     """Return the obstacles that are tested against the same links as one surface: links -> surface."""
     groups: dict[frozenset[str], list[TriangleMesh]] = {}
     for obstacle in scene.obstacles:

@@ -19,9 +19,7 @@ AROUND = 24
 def link_surfaces(shapes: Sequence[Shape]) -> dict[str, TriangleMesh]:
     """Return the shapes of every link as one surface in the link's frame: link -> surface."""
     links = dict.fromkeys(shape.link for shape in shapes)
-    return {
-        link: merged(tuple(shape_surface(shape) for shape in shapes if shape.link == link)) for link in links
-    }
+    return {link: merged(tuple(shape_surface(shape) for shape in shapes if shape.link == link)) for link in links}
 
 
 def shape_surface(shape: Shape) -> TriangleMesh:
@@ -52,9 +50,7 @@ def _round_profile(radius: float, length: float) -> list[tuple[float, float]]:
     # A ball has its equator once.
     upper = upper if length > 0.0 else upper[1:]
     half = 0.5 * length
-    return [(height - half, ring) for height, ring in lower] + [
-        (height + half, ring) for height, ring in upper
-    ]
+    return [(height - half, ring) for height, ring in lower] + [(height + half, ring) for height, ring in upper]
 
 
 def _lathe(profile: Sequence[tuple[float, float]]) -> TriangleMesh:

@@ -8,7 +8,5 @@ from types import ModuleType
 
 def __getattr__(name: str) -> ModuleType:
     if name not in ("klampt", "ompl"):
-        raise AttributeError(
-            f"module 'evenroad.adapters' has no attribute {name!r}; there are klampt and ompl"
-        )
+        raise AttributeError(f"module 'evenroad.adapters' has no attribute {name!r}; there are klampt and ompl")
     return import_module(f"evenroad.adapters.{name}")

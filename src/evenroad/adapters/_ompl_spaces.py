@@ -55,9 +55,7 @@ def ompl_space(space: Space) -> Any:
     if isinstance(space, BoxSpace | JointSpace):
         wrapping = space.flat.wrapping
         if not np.allclose(space.flat.period[wrapping], 2.0 * math.pi, rtol=1e-12):
-            raise InvalidValue(
-                "OMPL's circles have one turn of 2 pi: a joint of this space wraps after another"
-            )
+            raise InvalidValue("OMPL's circles have one turn of 2 pi: a joint of this space wraps after another")
         low, high = np.array(space.low), np.array(space.high)
         runs = [(wraps, [*run]) for wraps, run in groupby(range(space.dim), lambda k: bool(wrapping[k]))]
         parts = []

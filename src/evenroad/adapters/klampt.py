@@ -137,9 +137,7 @@ def plan_on_points(
         points = world.space.from_cube(points.points)
     configurations = as_batch("points", points, world.space.dim)
     space = cspace_of(world, configurations)
-    plan = _cspace.MotionPlan(
-        space, "prm", knn=require_count("knn", knn), connectionThreshold=1e9, shortcut=0
-    )
+    plan = _cspace.MotionPlan(space, "prm", knn=require_count("knn", knn), connectionThreshold=1e9, shortcut=0)
     try:
         endpoints = as_batch("start and goal", [start, goal], world.space.dim).tolist()
         if not world.valid(np.array(endpoints)).all():
@@ -257,9 +255,7 @@ def _space_of(robot: Any, columns: Sequence[int]) -> JointSpace:
     for i, least, most in zip(columns, low, high, strict=True):
         if not (math.isfinite(least) and math.isfinite(most) and least < most):
             link = robot.link(i).getName()
-            raise InvalidValue(
-                f"link {link!r} of Klamp't's robot must have limits, low < high, got {least}, {most}"
-            )
+            raise InvalidValue(f"link {link!r} of Klamp't's robot must have limits, low < high, got {least}, {most}")
     return JointSpace(tuple(low.tolist()), tuple(high.tolist()), tuple(wrapping))
 
 

@@ -70,9 +70,7 @@ def _internal_error(error: BaseException) -> int:
     return INTERNAL_ERROR
 
 
-def _print_unless_interrupted(
-    kind: type[BaseException], error: BaseException, where: TracebackType | None
-) -> None:
+def _print_unless_interrupted(kind: type[BaseException], error: BaseException, where: TracebackType | None) -> None:
     if kind is not KeyboardInterrupt:
         sys.__excepthook__(kind, error, where)
 

@@ -77,11 +77,7 @@ class Certify:
             factor = certificate.factor(self.clearance)
             held = held and self.clearance >= certificate.dispersion
             record |= {"clearance": self.clearance, "guaranteed": held, "factor": _finite(factor)}
-            text = (
-                f"at most {factor:.6g} times the best one"
-                if math.isfinite(factor)
-                else "no bound on its length"
-            )
+            text = f"at most {factor:.6g} times the best one" if math.isfinite(factor) else "no bound on its length"
             text = f"a path is found, {text}" if held else "nothing is guaranteed"
             if self.length is not None:
                 longest = certificate.longest(self.length, self.clearance)

@@ -125,9 +125,7 @@ def _rows(request: Request) -> list[tuple[str, str]]:
 def _goals(plan: PlanArm) -> list[Goal]:
     """Return the goals that were asked for, configurations first."""
     if not (plan.goal or plan.goal_pose):
-        raise InvalidValue(
-            "missing from evenroad plan: --goal, or --goal-pose; all options: evenroad plan --help"
-        )
+        raise InvalidValue("missing from evenroad plan: --goal, or --goal-pose; all options: evenroad plan --help")
     for option in ("frame", "free_axis", "tolerance"):
         if getattr(plan, option) and not plan.goal_pose:
             raise InvalidValue(f"--{option.replace('_', '-')} goes with --goal-pose")
@@ -141,9 +139,7 @@ def _goals(plan: PlanArm) -> list[Goal]:
     for words in plan.goal_pose:
         pose, turned = pose_of(" ".join(words), degrees=plan.deg)
         if axis is not None and not turned:
-            raise InvalidValue(
-                f"--free-axis needs a rotation, got the goal pose {' '.join(words)!r} without one"
-            )
+            raise InvalidValue(f"--free-axis needs a rotation, got the goal pose {' '.join(words)!r} without one")
         goals.append(PoseGoal(pose, plan.tip, plan.frame, axis, not turned, near, tilt))
     return goals
 

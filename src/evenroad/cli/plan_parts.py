@@ -84,9 +84,7 @@ def load_compiled_code(request: Request, planner: Planner) -> None:
         solve(stay, None, Options(Budget(samples=1)))
         return
     assert isinstance(planner.points, PointSet)
-    few = PRM(
-        PointSet(planner.points.points[:_FEW]), rule=rule_of(planner, world.space), search=planner.search
-    )
+    few = PRM(PointSet(planner.points.points[:_FEW]), rule=rule_of(planner, world.space), search=planner.search)
     solve(Request(world, request.start, request.goals), few, Options(Budget()))
     still = np.stack([request.start, request.start])
     if isinstance(world, ValidatesPaths):
@@ -95,9 +93,7 @@ def load_compiled_code(request: Request, planner: Planner) -> None:
             connector.smooth(world, still)
 
 
-def output_files(
-    plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[str], what: str
-) -> dict[str, Path]:
+def output_files(plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[str], what: str) -> dict[str, Path]:
     """Return where results go, suffix -> file, refusing what cannot be written or would overwrite an input."""
     if plan.out is not None and not plan.out.name:
         raise InvalidValue(f"--out must end with a file name, got {str(plan.out)!r}")

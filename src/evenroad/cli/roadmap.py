@@ -72,11 +72,7 @@ class MakeRoadmap(RobotOptions):
         roadmap.save(out)
         n, m = len(roadmap.milestones), len(roadmap.edges)
         robot = roadmap.robot
-        wraps = [
-            name
-            for name, multi_turn in zip(robot.group, roadmap.one_turn.multi_turn, strict=True)
-            if multi_turn
-        ]
+        wraps = [name for name, multi_turn in zip(robot.group, roadmap.one_turn.multi_turn, strict=True) if multi_turn]
         size = f"{counted(n, 'milestone')} and {counted(m, 'motion')}"
         rows = [
             ("roadmap", f"{size}, free of {robot.name!r} and its cell {cell.name!r}"),
@@ -120,15 +116,11 @@ def kept_roadmap(plan: PlanArm) -> ArmRoadmap:
     """Return the roadmap that a plan is told to use, refusing options that do not go with one."""
     assert plan.roadmap is not None
     if wants_points(plan) or plan.improve:
-        raise InvalidValue(
-            "--roadmap goes without points and without --improve: it has milestones of its own"
-        )
+        raise InvalidValue("--roadmap goes without points and without --improve: it has milestones of its own")
     if plan.robot is None:
         for option in fields(RobotOptions):
             if getattr(plan, option.name) != option.default:
-                raise InvalidValue(
-                    f"--{option.name.replace('_', '-')} goes with --robot; the roadmap knows its arm"
-                )
+                raise InvalidValue(f"--{option.name.replace('_', '-')} goes with --robot; the roadmap knows its arm")
     roadmap = load_arm_roadmap(plan.roadmap)
     if plan.robot is not None:
         require_same_robot(roadmap.robot, roadmap.scene, load_model(plan.robot, **plan.options()).robot)

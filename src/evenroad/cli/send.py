@@ -36,9 +36,7 @@ class Send:
     def run(self) -> int:
         """Check, and move with --go; return 0."""
         trajectory = load_trajectory(self.trajectory)
-        order = (
-            None if self.controller_joints is None else [*map(str.strip, self.controller_joints.split(","))]
-        )
+        order = None if self.controller_joints is None else [*map(str.strip, self.controller_joints.split(","))]
         with progress_shown("sending") as progress:
             sent = send_trajectory(
                 trajectory,

@@ -42,9 +42,7 @@ def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path], outputs: I
         if file.resolve() in taken:
             raise InvalidValue(f"--trajectory {file} would overwrite an input")
         if file.resolve() in results:
-            raise InvalidValue(
-                f"--trajectory {file} is a file of another result of this plan; name another one"
-            )
+            raise InvalidValue(f"--trajectory {file} is a file of another result of this plan; name another one")
         results.add(file.resolve())
         require_writable_folder(file)
 

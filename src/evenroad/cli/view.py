@@ -114,9 +114,7 @@ class View(RobotOptions):
             roadmap = load_arm_roadmap(kept)
             scene = joined_scenes(roadmap.scene, scene)
             robot, options = (roadmap.robot, {}) if robot is None else (robot, options)
-        request = arm_request(
-            robot, scene, result.start, list(result.goals), Reading(held=asked["held"]), **options
-        )
+        request = arm_request(robot, scene, result.start, list(result.goals), Reading(held=asked["held"]), **options)
         if self.n is not None:
             result = self._planned(request)
         return request, result

@@ -77,9 +77,7 @@ def _read_ply(file: Path) -> Floats:
         raise ValueError("it does not begin with 'ply'")
     kind = next(words[1] for words in header if words[0] == "format")
     order = _PLY_ORDERS[kind]
-    elements = [
-        (words[1], _count("element " + words[1], words[2])) for words in header if words[0] == "element"
-    ]
+    elements = [(words[1], _count("element " + words[1], words[2])) for words in header if words[0] == "element"]
     first, count = next(((name, count) for name, count in elements if count or name == "vertex"), ("", 0))
     if first != "vertex":
         raise ValueError("its first element is not 'vertex'")
@@ -117,9 +115,7 @@ def _read_pcd(file: Path) -> Floats:
     if sum(counts) * count > len(data):
         raise ValueError(f"it is cut off: {count} points of {sum(counts)} numbers were announced")
     fields = []
-    for i, (name, letter, size, many) in enumerate(
-        zip(names, said["TYPE"], said["SIZE"], counts, strict=True)
-    ):
+    for i, (name, letter, size, many) in enumerate(zip(names, said["TYPE"], said["SIZE"], counts, strict=True)):
         # Names may repeat: '_' is what PCL calls gaps.
         for k in range(many if count else 1):
             own = name if many == 1 and name != "_" else f"{name} {i} {k}"

@@ -187,9 +187,7 @@ def _is_on_its_hull(mesh: TriangleMesh) -> bool:
     sides = np.unique(ConvexHull(mesh.vertices).equations.round(12), axis=0)
     if len(corners) * len(sides) > _MOST_COMPARED or not closed_parts(mesh)[1]:
         return False
-    return all(
-        float((-sides[:, :3] @ triangle.T - sides[:, 3:]).max(axis=1).min()) <= _DEEP for triangle in corners
-    )
+    return all(float((-sides[:, :3] @ triangle.T - sides[:, 3:]).max(axis=1).min()) <= _DEEP for triangle in corners)
 
 
 def halves(piece: Piece) -> tuple[Piece, ...]:

@@ -80,9 +80,7 @@ def _in_box(size: Floats) -> list[Fitted]:
     aside, along = 0.5 * size[middle] - radius, (0.5 * size[long] - radius) * axes[long]
     # So near that their axes are no farther apart than they are thick, where there are enough of them.
     count = min(1 + math.ceil(aside / radius - 1e-9), MOST_SIDE_BY_SIDE)
-    centres = [
-        offset * axes[middle] for offset in (np.linspace(-aside, aside, count) if count > 1 else [0.0])
-    ]
+    centres = [offset * axes[middle] for offset in (np.linspace(-aside, aside, count) if count > 1 else [0.0])]
     return [(centre - along, centre + along, float(radius)) for centre in centres]
 
 
@@ -181,7 +179,5 @@ def _crossed(corners: Floats, x: Floats, y: Floats) -> tuple[Bools, Floats, Floa
     whole = areas.sum(axis=1)
     hit = ((areas > 0.0).all(axis=1) | (areas < 0.0).all(axis=1)) & (whole != 0.0)
     safe = np.where(hit, whole, 1.0)
-    height = (
-        areas[:, 1] * corners[:, 0, 2] + areas[:, 2] * corners[:, 1, 2] + areas[:, 0] * corners[:, 2, 2]
-    ) / safe
+    height = (areas[:, 1] * corners[:, 0, 2] + areas[:, 2] * corners[:, 1, 2] + areas[:, 0] * corners[:, 2, 2]) / safe
     return hit, height, np.sign(whole)

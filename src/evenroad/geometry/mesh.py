@@ -123,9 +123,7 @@ def convex_hull(points: Floats, name: str = "", grown: float = 0.0) -> TriangleM
             hull = ConvexHull(every)
             break
     else:
-        raise InvalidValue(
-            f"the mesh {name} has no convex hull: {len(points)} points, all at about one place"
-        )
+        raise InvalidValue(f"the mesh {name} has no convex hull: {len(points)} points, all at about one place")
     number = np.zeros(len(every), dtype=np.int64)
     number[hull.vertices] = np.arange(len(hull.vertices))
     a, b, c = every[hull.simplices].swapaxes(0, 1)
@@ -150,21 +148,13 @@ def height_map(heights: npt.ArrayLike, spacing: float, low: Sequence[float] = (0
     """
     z, step = np.asarray(heights, dtype=np.float64), require_positive("spacing", spacing)
     if z.ndim != 2 or min(z.shape) < 2 or np.isinf(z).any():
-        raise InvalidValue(
-            f"heights must be an (x, y) array of 2 or more along both, none inf, got {z.shape}"
-        )
-    x, y = (
-        first + step * np.arange(count) for first, count in zip(as_row("low", low, 2), z.shape, strict=True)
-    )
+        raise InvalidValue(f"heights must be an (x, y) array of 2 or more along both, none inf, got {z.shape}")
+    x, y = (first + step * np.arange(count) for first, count in zip(as_row("low", low, 2), z.shape, strict=True))
     number = np.arange(z.size).reshape(z.shape)
-    a, b, c, d = (
-        part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
-    )
+    a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
     known = ~np.isnan(z.ravel())
-    vertices = np.stack(
-        [*(each.ravel() for each in np.meshgrid(x, y, indexing="ij")), np.where(known, z.ravel(), 0.0)]
-    )
+    vertices = np.stack([*(each.ravel() for each in np.meshgrid(x, y, indexing="ij")), np.where(known, z.ravel(), 0.0)])
     return TriangleMesh(vertices.T, triangles[known[triangles].all(axis=1)], "height map")
 
 
@@ -181,9 +171,7 @@ def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
     faces = number.reshape(-1)[mesh.triangles]
     a, b = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).T
     count = int(faces.max()) + 1
-    _, part = connected_components(
-        coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count)), directed=False
-    )
+    _, part = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count)), directed=False)
     _, side = np.unique(np.minimum(a, b) * count + np.maximum(a, b), return_inverse=True)
     times, turns = np.bincount(side), np.bincount(side, weights=np.sign(b - a))
     is_open, unturned = (np.unique(part[a[bad[side]]]) for bad in (times % 2 != 0, turns != 0.0))

@@ -61,9 +61,7 @@ def _nodes_of_collada(content: bytes) -> int:
             # Of a node inside of itself the reader says so.
             known[id(node)] = 1
             inside = [each for each in node if each.tag.endswith("}node")]
-            meant = [
-                named.get(each.get("url", "")[1:]) for each in node if each.tag.endswith("}instance_node")
-            ]
+            meant = [named.get(each.get("url", "")[1:]) for each in node if each.tag.endswith("}instance_node")]
             known[id(node)] += sum(count(each) for each in (*inside, *meant) if each is not None)
         return known[id(node)]
 

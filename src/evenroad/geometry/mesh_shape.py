@@ -61,9 +61,7 @@ class Mesh(Shape):
     source: Path | TriangleMesh
     scale: Vector
 
-    def __init__(
-        self, source: Any, scale: float | Sequence[float] = (1.0, 1.0, 1.0), **placed: Unpack[Placed]
-    ) -> None:
+    def __init__(self, source: Any, scale: float | Sequence[float] = (1.0, 1.0, 1.0), **placed: Unpack[Placed]) -> None:
         row = as_row("the scale of a mesh", [scale] * 3 if np.ndim(scale) == 0 else scale, 3)  # type: ignore
         source = _surface(source)
         if 0.0 in row:
@@ -149,9 +147,7 @@ class PointCloud(Shape):
         if len(points) == 0:
             raise InvalidValue("a cloud must have one point or more: one without would never collide")
         if np.abs(points).max() > FARTHEST:
-            raise InvalidValue(
-                f"points of a cloud must lie within {FARTHEST:g} m, got {np.abs(points).max():g}"
-            )
+            raise InvalidValue(f"points of a cloud must lie within {FARTHEST:g} m, got {np.abs(points).max():g}")
         radius = require_positive("the radius of a cloud", radius, at_most=FARTHEST)
         set_fields(self, points=points, radius=radius)
         self._set_pose(placed)

@@ -86,9 +86,7 @@ class Pose:
         if (rotation is not NO_ROTATION) + (rpy is not None) + (xyzw is not None) > 1:
             raise InvalidValue("a pose must have one of rotation, rpy and xyzw, got more than one")
         if isinstance(xyz, np.ndarray) and xyz.ndim == 2:
-            raise InvalidValue(
-                "xyz must be 3 finite numbers; a 4x4 matrix is taken by Pose.from_matrix(matrix)"
-            )
+            raise InvalidValue("xyz must be 3 finite numbers; a 4x4 matrix is taken by Pose.from_matrix(matrix)")
         if rotation is not NO_ROTATION and np.size(rotation) == 4:
             raise InvalidValue(BY_KEYWORD)
         if rpy is not None:
@@ -96,9 +94,7 @@ class Pose:
         elif xyzw is not None:
             rotation = rotation_from_quaternion(xyzw=xyzw)
         elif rotation is not NO_ROTATION:
-            rotation = as_rotation(
-                rotation.ravel().tolist() if isinstance(rotation, np.ndarray) else rotation
-            )
+            rotation = as_rotation(rotation.ravel().tolist() if isinstance(rotation, np.ndarray) else rotation)
         set_fields(self, xyz=_three(xyz), rotation=rotation)
 
     def __repr__(self) -> str:
@@ -284,9 +280,7 @@ class Pose:
     def __matmul__(self, other: Pose) -> Pose:
         """Return the pose that applies `other` first, then this one."""
         if not isinstance(other, Pose):
-            raise InvalidValue(
-                f"a pose times a Pose, as Pose.from_matrix(matrix), is a pose, got {shown(other)}"
-            )
+            raise InvalidValue(f"a pose times a Pose, as Pose.from_matrix(matrix), is a pose, got {shown(other)}")
         rotation = self.rotation_matrix @ other.rotation_matrix
         return Pose(_three(self.apply(other.xyz).tolist()), tuple(rotation.ravel().tolist()))
 

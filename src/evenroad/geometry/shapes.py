@@ -200,16 +200,12 @@ class Capsule(Shape):
     @overload
     def __init__(self, radius: float, length: float, **placed: Unpack[Placed]) -> None: ...
     @overload
-    def __init__(
-        self, a: Sequence[float], b: Sequence[float], radius: float, **placed: Unpack[Placed]
-    ) -> None: ...
+    def __init__(self, a: Sequence[float], b: Sequence[float], radius: float, **placed: Unpack[Placed]) -> None: ...
     def __init__(self, *given: Any, **named: Any) -> None:
         along_z = len(given) == 2 and np.ndim(given[0]) == 0
         names = ("radius", "length") if along_z or "length" in named else ("a", "b", "radius")
         if len(given) > len(names) or set(names[: len(given)]) & set(named):
-            raise InvalidValue(
-                f"a capsule must be made of {' and '.join(names)}, each once, got {shown(given)}"
-            )
+            raise InvalidValue(f"a capsule must be made of {' and '.join(names)}, each once, got {shown(given)}")
         named.update(zip(names, given, strict=False))
         if missing := [name for name in names if name not in named]:
             raise InvalidValue(

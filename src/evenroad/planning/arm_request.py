@@ -76,9 +76,7 @@ def arm_request(
     return Request(world, first, given.configurations, given, source, model)
 
 
-def request_in(
-    world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[Goal], reading: Reading
-) -> Request:
+def request_in(world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[Goal], reading: Reading) -> Request:
     """Read start and goals of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
     goals = _goal_list(goal)
     first = _configuration(world.robot, world.scene, "start", start, reading)
@@ -124,9 +122,7 @@ def _goal_list(goal: Goal | Sequence[Goal]) -> list[Goal]:
     return list(goal) if several else [goal]  # type: ignore[arg-type, list-item]
 
 
-def _configuration(
-    robot: Robot, scene: Scene, name: str, target: ConfigurationLike, reading: Reading
-) -> Floats:
+def _configuration(robot: Robot, scene: Scene, name: str, target: ConfigurationLike, reading: Reading) -> Floats:
     """Return a configuration, (dim,), from a text, joint values or numbers; `name` names it in errors."""
     if isinstance(target, str):
         return configuration(robot, target, scene, degrees=reading.degrees)

@@ -122,9 +122,7 @@ def shorten(
     return planning.shorten(checks_of(world), path, share_pairs()[:pairs], shortcuts)
 
 
-def smooth(
-    world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: bool = True
-) -> tuple[Floats, int]:
+def smooth(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: bool = True) -> tuple[Floats, int]:
     """Return a smoothed path and the number of motions checked; it is shorter than that of `shorten` for the same
     checks.
 

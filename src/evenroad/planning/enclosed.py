@@ -38,11 +38,7 @@ def with_reasons(world: World, result: PlanResult) -> PlanResult:
         for i, goal in enumerate(result.goals)
         if world.valid(goal[np.newaxis])[0]
     ]
-    reasons = [
-        text
-        for name, configuration in named
-        if (text := why_enclosed(world, name, configuration)) is not None
-    ]
+    reasons = [text for name, configuration in named if (text := why_enclosed(world, name, configuration)) is not None]
     sentences = [result.message, *(text[0].upper() + text[1:] for text in reasons)]
     return replace(result, message=". ".join(sentences)) if reasons else result
 

@@ -129,25 +129,20 @@ def plan(
         planner = PRM(planner)
     if planner is not None and not isinstance(planner, Planner | Roadmap):
         raise InvalidValue(
-            "planner must be a planner, such as er.RRTConnect(), er.PRM(512) or a roadmap, got"
-            f" {shown(planner)}"
+            f"planner must be a planner, such as er.RRTConnect(), er.PRM(512) or a roadmap, got {shown(planner)}"
         )
     reading = Reading(degrees, tip, frame)
     request = read_request(world, start, goal, reading, planner, **of_world)
     if isinstance(planner, Roadmap):
         planner = planner.within(request.world)
     elif isinstance(planner, WorldRoadmap) and planner.world is not request.world:
-        raise InvalidValue(
-            f"a roadmap plans in its own world: give er.plan its .world, got {request.world!r}"
-        )
+        raise InvalidValue(f"a roadmap plans in its own world: give er.plan its .world, got {request.world!r}")
     budget = budget_of(planner, seconds, limits)
     options = Options(budget, smooth, rng, certified, straight, upright)
     return finished(request, solve(request, planner, options), certified=certified)[0]
 
 
-def budget_of(
-    planner: Planner | None, seconds: float | None, limits: Budget | Mapping[str, int] | None
-) -> Budget:
+def budget_of(planner: Planner | None, seconds: float | None, limits: Budget | Mapping[str, int] | None) -> Budget:
     """Return a planner's budget: the given limits, else its own."""
     if isinstance(limits, Budget):
         if seconds is not None:
@@ -182,9 +177,7 @@ def solve(request: Request, planner: Planner | None, options: Options) -> PlanRe
     return plan_tip_motion(request, straight, upright, plan_once, shorten=options.smooth)
 
 
-def finished(
-    request: Request, result: PlanResult, *, certified: bool = False
-) -> tuple[PlanResult, MeshCheck | None]:
+def finished(request: Request, result: PlanResult, *, certified: bool = False) -> tuple[PlanResult, MeshCheck | None]:
     """Return a plan with the name of its goal and its status after the last checks, and the check of the meshes.
 
     Meshes of the robot's URDF are checked where it has some or where capsules always touch.  Their check is None where
@@ -195,9 +188,7 @@ def finished(
         result = replace(result, timings={"goals": given.seconds, **result.timings})
     if not result.solved and "points" in result.counts:
         result = _with_proof(request, result)
-    name = (
-        "" if result.goal_index is None or not request.goal_names else request.goal_names[result.goal_index]
-    )
+    name = "" if result.goal_index is None or not request.goal_names else request.goal_names[result.goal_index]
     if name and len(request.goals) > 1:
         to = f"to goal {result.goal_index}"
         result = replace(result, message=result.message.replace(to, f"{to} ({name})", 1))

@@ -46,9 +46,7 @@ def read_request(
     if isinstance(world, Scene | str | os.PathLike):
         _require_known(of_world, OF_SCENE, "a scene")
         if "robot" not in of_world:
-            raise InvalidValue(
-                "a scene goes with robot=, the arm that moves in it: a name, a file or a Robot"
-            )
+            raise InvalidValue("a scene goes with robot=, the arm that moves in it: a name, a file or a Robot")
         return arm_request(of_world.pop("robot"), world, start, goal, reading, **of_world)
     if of_world:
         what = "a world that is made says all of itself"

@@ -126,10 +126,7 @@ def _between_lines(
     row, last = list(coming.items())[result.goal_index]
     result = replace(result, goal_index=row)
     raw = result.path if result.milestone_path is None else result.milestone_path
-    whole = [
-        np.concatenate([leaving.path[:-1], waypoints, last.path[::-1][1:]])
-        for waypoints in (result.path, raw)
-    ]
+    whole = [np.concatenate([leaving.path[:-1], waypoints, last.path[::-1][1:]]) for waypoints in (result.path, raw)]
     off = {name: max(getattr(leaving, name), getattr(last, name)) for name in ("off_m", "off_rad")}
     deviation = result.deviation | {"line_m": off["off_m"], "line_rad": off["off_rad"]}
     if isinstance(within, OrientationWorld):
@@ -138,9 +135,7 @@ def _between_lines(
     return _with_path(request.world, result, whole[0], whole[1], deviation)
 
 
-def _line(
-    within: World, world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float
-) -> Line:
+def _line(within: World, world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float) -> Line:
     """Return a straight line, or refuse it where it tilts what has to stay upright, maybe another link."""
     line = line_from(world, chain, straight, q, length)
     if line.why or not isinstance(within, OrientationWorld):
@@ -150,9 +145,7 @@ def _line(
     return Line(line.path[:1], f"along it {within.tilted(tilt)}")
 
 
-def _with_path(
-    world: World, result: PlanResult, path: Floats, raw: Floats, deviation: dict[str, float]
-) -> PlanResult:
+def _with_path(world: World, result: PlanResult, path: Floats, raw: Floats, deviation: dict[str, float]) -> PlanResult:
     """Return a result with another path."""
     cost, raw_cost = (path_length(waypoints, world.space) for waypoints in (path, raw))
     to = f" to goal {result.goal_index}" if len(result.goals) > 1 else ""

@@ -169,9 +169,7 @@ def _improved(attempt: Attempt, connector: Connector, first: PlanResult, variant
     return _by_growth(attempt, first, stage)
 
 
-def _by_rounds(
-    attempt: Attempt, connector: Connector, first: PlanResult, stage: Stage, variant: int
-) -> PlanResult:
+def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage: Stage, variant: int) -> PlanResult:
     """Plan repeatedly, each time with another sequence."""
     best, stages, nodes, counts, done = first, [stage], stage.points, dict(first.counts), 0
     # A round that is much longer than the first costs the time of many others.

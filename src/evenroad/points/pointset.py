@@ -214,9 +214,7 @@ def as_unit_points(points: object) -> Floats:
     Raises InvalidValue naming what is no real number, the shape, or the first bad coordinate and its place.
     """
     if isinstance(points, str | os.PathLike):
-        raise InvalidValue(
-            f"points must be an (n, d) array, got {shown(points)}; a file is read by load_points"
-        )
+        raise InvalidValue(f"points must be an (n, d) array, got {shown(points)}; a file is read by load_points")
     try:
         given = np.asarray(points)
         # NumPy itself drops imaginary parts, parses text and counts seconds; a duration is an integer to its scalars.

@@ -82,11 +82,7 @@ def answer(
     else:
         # With ``complete`` only more points help.
         wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
-        advice = (
-            f"try n={2 * points}"
-            + (f" or a larger {wider}" if wider else "")
-            + _few_directions(attempt, points)
-        )
+        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "") + _few_directions(attempt, points)
         failed = _result(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
     return replace(failed, counts=counts, roadmap=graph)
 
@@ -238,9 +234,7 @@ def _searched_graph(states: EdgeStates, terminals: int) -> SearchedGraph:
     kept = states.node_states != BLOCKED
     number = np.cumsum(kept, dtype=np.int32) - 1
     edges = states.edges[states.edge_states == FREE]
-    return SearchedGraph(
-        states.configurations[kept], number[edges].astype(np.int32), int(kept.sum()) - terminals
-    )
+    return SearchedGraph(states.configurations[kept], number[edges].astype(np.int32), int(kept.sum()) - terminals)
 
 
 def proof_of(world: World) -> str:

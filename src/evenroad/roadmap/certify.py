@@ -22,9 +22,7 @@ from evenroad.space import Space
 from evenroad.space.protocol import all_distances
 
 
-def certify(
-    points: PointSet, rule: Rule, space: Space, *, links: int | None = LINKS, goals: int = 1
-) -> Certificate:
+def certify(points: PointSet, rule: Rule, space: Space, *, links: int | None = LINKS, goals: int = 1) -> Certificate:
     """Return what ``plan(world, start, goal, points, rule=rule)`` guarantees in every world of the space.
 
     Parameters
@@ -78,9 +76,7 @@ def certify_roadmap(roadmap: PointRoadmap, *, links: int | None = LINKS) -> Cert
     return Certificate(bounds.upper, bounds.lower, min(between, turn), min(to_terminals, turn), True)
 
 
-def certify_graph(
-    points: PointSet, space: Space, configurations: Floats, edges: Ints32, terminals: int
-) -> Certificate:
+def certify_graph(points: PointSet, space: Space, configurations: Floats, edges: Ints32, terminals: int) -> Certificate:
     """Return what a graph guarantees for its own start and goals, the last rows of `configurations`, (n, dim).
 
     The other rows are at least the valid ones of `points`.
@@ -162,9 +158,7 @@ def _by_neighbours(
     if rank >= n:
         return Certificate(bounds.upper, bounds.lower, turn, turn, False)
     reach = _ranked(q, rank, space)
-    to_terminals = max(
-        SAFE * float(reach.min()), linked_within(q, _links_among(n, links), space, bounds.upper)
-    )
+    to_terminals = max(SAFE * float(reach.min()), linked_within(q, _links_among(n, links), space, bounds.upper))
     between = math.inf
     for rows, away in _rows(q, space):
         untried = away >= np.maximum(reach[rows, np.newaxis], reach)
@@ -189,9 +183,7 @@ def _ranked(q: Floats, rank: int, space: Space) -> Floats:
     if rank >= len(q):
         return np.full(len(q), math.inf)
     # Copies: a column would keep all of its block.
-    return np.concatenate(
-        [np.partition(away, rank - 1, axis=1)[:, rank - 1].copy() for _, away in _rows(q, space)]
-    )
+    return np.concatenate([np.partition(away, rank - 1, axis=1)[:, rank - 1].copy() for _, away in _rows(q, space)])
 
 
 def _nearest_untried(q: Floats, edges: Ints32, space: Space) -> float:

@@ -72,9 +72,7 @@ class WorldRoadmap(ABC):
     world: World
 
     @abstractmethod
-    def plan(
-        self, start: Any, goal: Any, *, budget: Budget | None = None, shorten: bool = True
-    ) -> PlanResult:
+    def plan(self, start: Any, goal: Any, *, budget: Budget | None = None, shorten: bool = True) -> PlanResult:
         """Find a path from a start to a goal, or one of several; nothing is checked twice."""
 
     @abstractmethod
@@ -152,9 +150,7 @@ class PointRoadmap(Roadmap):
         unit = FixedPoint.of(longest, n + 2)
         return EdgeWeights(longest, unit, unit.weights(costs))
 
-    def within(
-        self, world: World, *, lazy_milestones: bool = False, edge_cost: EdgeCost | None = None
-    ) -> WorldRoadmap:
+    def within(self, world: World, *, lazy_milestones: bool = False, edge_cost: EdgeCost | None = None) -> WorldRoadmap:
         """Return this roadmap in a world, for many queries.
 
         Edges are checked when a query needs them.  With `lazy_milestones` milestones are, too; starts and goals are

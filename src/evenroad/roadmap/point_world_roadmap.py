@@ -149,9 +149,7 @@ class PointWorldRoadmap(WorldRoadmap):
         cache.nodes[n:nodes], cache.edges[m:edges], cache.confirmed[m:edges] = FREE, UNKNOWN, False
         q = self._configurations[:nodes]
         weights, unit = self._weigh(edge_costs(space, q, links, self._edge_cost), nodes)
-        between = [
-            space.distance(terminals, np.broadcast_to(goal, terminals.shape)) for goal in terminals[1:]
-        ]
+        between = [space.distance(terminals, np.broadcast_to(goal, terminals.shape)) for goal in terminals[1:]]
         to_goal = np.min([np.append(*both) for both in zip(distances[1:], between, strict=True)], axis=0)
         bounds = unit.bounds(to_goal if self._edge_cost is None else BOUND * to_goal)
         graph = roadmap.graph.with_links(nodes, links, m)
@@ -181,9 +179,7 @@ class PointWorldRoadmap(WorldRoadmap):
         if unit != edge_weights.unit:
             costs = self.roadmap.lengths if self._edge_cost is None else self._costs
             return unit.weights(np.concatenate([costs, links])), unit
-        self._weights = _with_capacity(
-            edge_weights.weights if self._weights is None else self._weights, m, len(links)
-        )
+        self._weights = _with_capacity(edge_weights.weights if self._weights is None else self._weights, m, len(links))
         self._weights[m : m + len(links)] = unit.weights(links)
         return self._weights[: m + len(links)], unit
 

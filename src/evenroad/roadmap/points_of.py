@@ -18,15 +18,12 @@ SPARSE = 6
 """Number of neighbours up to which points are chosen for connectivity rather than for coverage."""
 
 
-def as_points(
-    points: PointSet | int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0
-) -> PointSet:
+def as_points(points: PointSet | int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0) -> PointSet:
     """Return points of the space's cube: those given, or this many for the rule; InvalidValue for anything else."""
     if not isinstance(points, PointSet):
         if isinstance(points, bool) or not isinstance(points, int | np.integer):
             raise InvalidValue(
-                "points must be a PointSet, such as draw('even', 512, 2), or how many points to draw,"
-                f" got {points!r}"
+                f"points must be a PointSet, such as draw('even', 512, 2), or how many points to draw, got {points!r}"
             )
         points = even_points(require_count("points", points), space, rule, rng=rng)
     if points.d != space.cube_dim:

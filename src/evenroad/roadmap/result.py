@@ -213,9 +213,7 @@ def require_start_and_goal(space: Space, result: PlanResult) -> PlanResult:
             if configuration.tolist() == asked.tolist():
                 continue
             finite = np.isfinite(configuration).all()
-            away = (
-                float(space.distance(configuration[np.newaxis], asked[np.newaxis])[0]) if finite else math.inf
-            )
+            away = float(space.distance(configuration[np.newaxis], asked[np.newaxis])[0]) if finite else math.inf
             if not away <= NEAR * max(1.0, float(np.abs(asked).max())):
                 raise AssertionError(
                     f"the path that was found does not {name} where it was asked to, but {away:.3g} away:"

@@ -279,9 +279,7 @@ class ArmWorld(OneOrMany):
         The first joints alone prove it, in tenths of a second, `quickly` in some milliseconds.  The proof holds for
         bodies inside the robot's true shapes, see :mod:`evenroad.robot.separated`.
         """
-        terminals = as_batch(
-            "start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim
-        )
+        terminals = as_batch("start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim)
         return apart(self, terminals[0], terminals[1:], quickly=quickly)
 
     def path_clearance(self, path: Floats) -> float | None:

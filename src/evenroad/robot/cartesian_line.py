@@ -87,9 +87,7 @@ def line_from(world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats,
     farthest = 2.0 * chain.reach()[1]
     if length > farthest:
         # Before such a line is laid out: a kilometre would need too much memory.
-        return Line(
-            q[np.newaxis], f"it is {length:g} m long, {chain.tip!r} moves no farther than {farthest:.3g} m"
-        )
+        return Line(q[np.newaxis], f"it is {length:g} m long, {chain.tip!r} moves no farther than {farthest:.3g} m")
     turn, here, away = line_at(chain, straight, q)
     count = max(1, int(np.ceil(length / STEP)))
     shares = length * np.arange(count + 1) / count
@@ -112,17 +110,13 @@ def line_from(world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats,
     return Line(path, "", off_m, off_rad)
 
 
-def _off(
-    world: ArmWorld, chain: Chain, path: Floats, here: Floats, away: Floats, turn: Floats
-) -> tuple[float, float]:
+def _off(world: ArmWorld, chain: Chain, path: Floats, here: Floats, away: Floats, turn: Floats) -> tuple[float, float]:
     """Return the largest deviations of the tip from a line and its rotation on a fine grid [m, rad]."""
     off_m, off_rad, _ = misses(chain, between(world, path, FINE), here, away, turn)
     return float(off_m.max()), float(off_rad.max())
 
 
-def misses(
-    chain: Chain, q: Floats, here: Floats, away: Floats, turn: Floats
-) -> tuple[Floats, Floats, Floats]:
+def misses(chain: Chain, q: Floats, here: Floats, away: Floats, turn: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the deviations of the tip from a line and its rotation, and the length along it, (n,) each,
     at (n, dim).
     """

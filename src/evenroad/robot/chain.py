@@ -164,7 +164,5 @@ def frame_pose(robot: Robot, frame: str) -> Pose:
     require_known(f"link of {robot.name!r}:", frame, links)
     placement = links[frame]
     if placement.frame != 0:
-        raise InvalidValue(
-            f"the frame of a goal pose must stand still, but the group moves the link {frame!r}"
-        )
+        raise InvalidValue(f"the frame of a goal pose must stand still, but the group moves the link {frame!r}")
     return Pose(tuple(placement.translation.tolist()), tuple(placement.rotation.ravel().tolist()))

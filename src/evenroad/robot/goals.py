@@ -46,9 +46,7 @@ class Goals:
         """Whether some pose is reached, but always in collision."""
         return any(reached.in_collision for _, reached in self.poses)
 
-    def apart(
-        self, world: InScene, *, straight: bool = False
-    ) -> Callable[[Floats, Floats, bool], Apart | None]:
+    def apart(self, world: InScene, *, straight: bool = False) -> Callable[[Floats, Floats, bool], Apart | None]:
         """Return a function that proves that a start, (dim,), and goals, (g, dim), are apart, quickly or not.
 
         With poses among the goals, it proves it for all postures that reach them.  Between `straight` lines it proves

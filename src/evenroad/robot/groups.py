@@ -85,9 +85,7 @@ def group_notes(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | Non
         return ()
     chosen = arm_group(urdf, srdf.groups)
     others = few_of([name for name in names if name != chosen])
-    return (
-        f"planned for is the group {chosen!r}, the longest chain of the SRDF; --group chooses from {others}, too",
-    )
+    return (f"planned for is the group {chosen!r}, the longest chain of the SRDF; --group chooses from {others}, too",)
 
 
 def few_of(names: Sequence[str]) -> str:

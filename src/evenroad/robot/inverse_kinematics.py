@@ -105,9 +105,7 @@ def task_of(robot: Robot, goal: PoseGoal) -> tuple[Chain, Floats]:
     """Return the chain of a goal's tip, and the goal in the frame of the root, for compiled code."""
     chain = chain_of(robot, goal.tip or default_tip(robot))
     pose = frame_pose(robot, goal.frame) @ goal.pose
-    return chain, task(
-        pose, goal.free_axis, goal.position_only, goal.position_tolerance, goal.angle_tolerance
-    )
+    return chain, task(pose, goal.free_axis, goal.position_only, goal.position_tolerance, goal.angle_tolerance)
 
 
 def task(
@@ -152,9 +150,7 @@ def stages(chain: Chain, task: Floats, start: Floats, *, exact: bool) -> Iterato
         yield q, "numeric", best
 
 
-def numeric(
-    chain: Chain, task: Floats, start: Floats, *, limits: bool = True
-) -> Iterator[tuple[Floats, Floats]]:
+def numeric(chain: Chain, task: Floats, start: Floats, *, limits: bool = True) -> Iterator[tuple[Floats, Floats]]:
     """Yield postures found from even starts, (n, dim), and the nearest one: more and more."""
     from evenroad.robot.kernel import reach as kernel
 

@@ -73,9 +73,7 @@ def require_within(joint: Joint, value: float, what: str, limits: str = "") -> N
     unit = "m" if joint.kind == "prismatic" else "rad"
     beyond = max(joint.lower - value, value - joint.upper)
     limits = limits or f"its limits [{joint.lower:.6g}, {joint.upper:.6g}]"
-    raise InvalidValue(
-        f"{what} puts joint {joint.name!r} at {value:.6g} {unit}, {beyond:.3g} {unit} outside {limits}"
-    )
+    raise InvalidValue(f"{what} puts joint {joint.name!r} at {value:.6g} {unit}, {beyond:.3g} {unit} outside {limits}")
 
 
 def with_direct_mimics(joints: Sequence[Joint], where: str) -> list[Joint]:

@@ -130,9 +130,7 @@ def first_links(robot: Robot, joints: int) -> Robot:
     Its limits are a little wider: no cell is blocked for being beyond them.
     """
     moved = set(robot.group[joints:])
-    while (
-        following := {each.name for each in robot.joints if each.mimic and each.mimic.joint in moved} - moved
-    ):
+    while following := {each.name for each in robot.joints if each.mimic and each.mimic.joint in moved} - moved:
         moved |= following
     behind: set[str] = set()
     for joint in robot.joints:
@@ -142,9 +140,7 @@ def first_links(robot: Robot, joints: int) -> Robot:
     return replace(
         robot,
         joints=tuple(
-            replace(joint, lower=joint.lower - BEYOND, upper=joint.upper + BEYOND)
-            if joint.name in group
-            else joint
+            replace(joint, lower=joint.lower - BEYOND, upper=joint.upper + BEYOND) if joint.name in group else joint
             for joint in robot.joints
         ),
         capsules=tuple(capsule for capsule in robot.capsules if capsule.link not in behind),
@@ -196,9 +192,7 @@ def _free_cells(valid: Callable[[Floats], Bools], cells: Cells) -> Bools:
     free = np.empty(int(np.prod(shape)), dtype=bool)
     for begin in range(0, len(free), _AT_ONCE):
         rows = np.unravel_index(np.arange(begin, min(begin + _AT_ONCE, len(free))), shape)
-        free[begin : begin + _AT_ONCE] = valid(
-            np.stack([middles[k][row] for k, row in enumerate(rows)], axis=1)
-        )
+        free[begin : begin + _AT_ONCE] = valid(np.stack([middles[k][row] for k, row in enumerate(rows)], axis=1))
     return free.reshape(shape)
 
 

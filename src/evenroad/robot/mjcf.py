@@ -60,9 +60,7 @@ class _Reader:
         self.mujoco, self.model, self.file, self.name = mujoco, model, file, name
         self.notes: list[str] = []
         self.links = [name_of(model.body(i), "body") for i in range(model.nbody)]
-        self.kinds = [
-            mujoco.mjtGeom(int(kind)).name.removeprefix("mjGEOM_").lower() for kind in model.geom_type
-        ]
+        self.kinds = [mujoco.mjtGeom(int(kind)).name.removeprefix("mjGEOM_").lower() for kind in model.geom_type]
 
     def urdf(self) -> Urdf:
         model, links = self.model, list(self.links)
@@ -208,9 +206,7 @@ class _Reader:
         for geom in geoms:
             link, kind = self.links[model.geom_bodyid[geom]], self.kinds[geom]
             if kind == "hfield":
-                self.notes.append(
-                    f"the hfield of {link!r} is left out: a scene says what is around the robot"
-                )
+                self.notes.append(f"the hfield of {link!r} is left out: a scene says what is around the robot")
                 continue
             name = str(model.geom(geom).name) or f"plane_{geom}"
             # A plane is no thicker for its margin, but begins earlier.
@@ -234,9 +230,7 @@ class _Reader:
         if grown.max(initial=0.0) > 0.0:
             self.notes.append(f"margins of up to {grown.max():g} m are part of the bodies that have them")
         if len(solid) > 1 and not contacts.collide[np.ix_(solid, solid)].any():
-            self.notes.append(
-                "by contype, conaffinity and excludes of the file no two of its bodies ever collide"
-            )
+            self.notes.append("by contype, conaffinity and excludes of the file no two of its bodies ever collide")
         if int(self.model.opt.disableflags) & int(self.mujoco.mjtDisableBit.mjDSBL_CONTACT):
             self.notes.append("the file switches contacts off: they are tested nevertheless")
 

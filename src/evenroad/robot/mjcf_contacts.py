@@ -67,9 +67,7 @@ def contacts_of(mujoco: Any, model: Any, drawn: Sequence[int]) -> Contacts:
     return Contacts(collide, parents, excluded, grown)
 
 
-def untested_pairs(
-    contacts: Contacts, geoms: Mapping[str, Sequence[int]]
-) -> tuple[tuple[str, str, str], ...]:
+def untested_pairs(contacts: Contacts, geoms: Mapping[str, Sequence[int]]) -> tuple[tuple[str, str, str], ...]:
     """Return the pairs of links none of whose geoms collide, each with the reason; `geoms` are those of every link."""
     links = list(geoms)
     return tuple(

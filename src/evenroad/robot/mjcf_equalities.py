@@ -15,9 +15,7 @@ def name_of(element: Any, what: str) -> str:
     return str(element.name) or f"{what}_{element.id}"
 
 
-def with_equalities(
-    mujoco: Any, model: Any, joints: Sequence[Joint], where: str, notes: list[str]
-) -> list[Joint]:
+def with_equalities(mujoco: Any, model: Any, joints: Sequence[Joint], where: str, notes: list[str]) -> list[Joint]:
     """Return the joints after all equalities.
 
     ``q1 = c0 + c1 q2`` makes a mimic, ``q1 = c0`` a locked joint.  Inactive ones, and welds to bodies of motion
@@ -43,9 +41,7 @@ def with_equalities(
             )
         elif said:
             if kind != "joint":
-                raise BrokenFile(
-                    f"{where} cannot be planned for: {said}, where only those of two joints are known"
-                )
+                raise BrokenFile(f"{where} cannot be planned for: {said}, where only those of two joints are known")
             _of_joint(model, number, mimics, locked, f"{where} cannot be planned for: {said}")
     return [_changed(joint, mimics, locked) for joint in joints]
 

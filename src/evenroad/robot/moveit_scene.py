@@ -143,10 +143,7 @@ def _mesh(entry: object, name: str, path: Path) -> TriangleMesh:
         [each[key] for key in "xyz"] if isinstance(each, dict) and {*"xyz"} <= each.keys() else each
         for each in parts.get("vertices") or []
     ]
-    corners = [
-        each.get("vertex_indices") if isinstance(each, dict) else each
-        for each in parts.get("triangles") or []
-    ]
+    corners = [each.get("vertex_indices") if isinstance(each, dict) else each for each in parts.get("triangles") or []]
     vertices = np.array([numbers(row, 3, f"a vertex of {where}") for row in rows]).reshape(-1, 3)
     triangles = np.array([numbers(row, 3, f"a triangle of {where}") for row in corners]).reshape(-1, 3)
     if (broken := triangles != np.rint(triangles)).any():

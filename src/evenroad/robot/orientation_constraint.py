@@ -56,16 +56,12 @@ class OrientationConstraint:
     tip: str = ""
 
     def __post_init__(self) -> None:
-        set_fields(
-            self, tolerance=require_positive("the tolerance of upright", self.tolerance, at_most=math.pi)
-        )
+        set_fields(self, tolerance=require_positive("the tolerance of upright", self.tolerance, at_most=math.pi))
         if self.axis is not None:
             set_fields(self, axis=as_axis("the axis of upright", self.axis))
 
 
-def orientation_world(
-    world: ArmWorld, chain: Chain, upright: OrientationConstraint, start: Floats
-) -> OrientationWorld:
+def orientation_world(world: ArmWorld, chain: Chain, upright: OrientationConstraint, start: Floats) -> OrientationWorld:
     """Return the world in which a path from `start`, (dim,), keeps an axis upright."""
     axis = upright.axis
     if axis is None:
@@ -185,9 +181,7 @@ class OrientationWorld:
         if len(steps):
             shares = np.tile(np.arange(FINE) / FINE, len(steps))
             fine = np.repeat(steps, FINE)
-            tilted = (
-                self.tilts(world.space.interpolate(states[fine], states[fine + 1], shares)) > self.tolerance
-            )
+            tilted = self.tilts(world.space.interpolate(states[fine], states[fine + 1], shares)) > self.tolerance
             good[motion[fine[tilted]]] = False
             steps = steps[good[motion[steps]]]
         if len(steps):
@@ -242,6 +236,4 @@ class OrientationWorld:
         every = (sign + name for name in AXES for sign in ("", "-"))
         numbers = f"({', '.join(f'{each:.3g}' for each in self.axis)})"
         axis = next((name for name in every if as_axis("axis", name) == self.axis), numbers)
-        return (
-            f"axis {axis} of {self.chain.tip!r} is tilted by {tilt:.4g} rad, more than {self.tolerance:.4g}"
-        )
+        return f"axis {axis} of {self.chain.tip!r} is tilted by {tilt:.4g} rad, more than {self.tolerance:.4g}"

@@ -260,10 +260,7 @@ class _Samples:
 
     def _hulls(self) -> HullTrees:
         return hull_trees(
-            {
-                link: [(p.hull.points[np.newaxis], p.hull.radius) for p in of]
-                for link, of in self.pieces.items()
-            }
+            {link: [(p.hull.points[np.newaxis], p.hull.radius) for p in of] for link, of in self.pieces.items()}
         )
 
 

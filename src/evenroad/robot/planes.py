@@ -33,9 +33,7 @@ class Plane:
         """The box that stands for it, as far as an arm reaches."""
         pose = Pose(self.xyz, self.rotation)
         x, y, _ = pose.inverse().apply(np.zeros(3)).tolist()
-        return Obstacle(
-            self.name, Box((SIDE, SIDE, DEPTH), pose=pose @ Pose((x, y, -0.5 * DEPTH))), cell=True
-        )
+        return Obstacle(self.name, Box((SIDE, SIDE, DEPTH), pose=pose @ Pose((x, y, -0.5 * DEPTH))), cell=True)
 
 
 def with_planes(scene: Scene, planes: Sequence[Plane], links: Collection[str]) -> Scene:

@@ -90,9 +90,7 @@ def as_axis(name: str, axis: str | Sequence[float]) -> Vector:
         try:
             axis = as_numbers(name, axis, (3,))
         except InvalidValue:
-            raise InvalidValue(
-                f"{name} must be x, -x, y, -y, z, -z or 3 finite numbers, got {shown(axis)}"
-            ) from None
+            raise InvalidValue(f"{name} must be x, -x, y, -y, z, -z or 3 finite numbers, got {shown(axis)}") from None
     row = as_row(name, axis, 3)
     length = math.hypot(*row)
     if length == 0.0:

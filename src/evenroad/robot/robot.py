@@ -83,13 +83,9 @@ class Robot(RobotMethods):
         """Return the SHA-256 (hex) of all that decides checks; the names of the robot and its states do not."""
         # Planes only where there are any: robots without keep the fingerprints that they always had.
         left_out = {"name", "states", "holds", "inner", *(() if self.planes else ("planes",))}
-        return fingerprint_of(
-            *(getattr(self, each.name) for each in fields(self) if each.name not in left_out)
-        )
+        return fingerprint_of(*(getattr(self, each.name) for each in fields(self) if each.name not in left_out))
 
-    def with_tool(
-        self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = ""
-    ) -> Robot:
+    def with_tool(self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = "") -> Robot:
         """Return the robot with a tool fixed to one of its links.
 
         The group stays the robot's; the tool's joints are held.  Pairs within the robot and within the tool stay; those

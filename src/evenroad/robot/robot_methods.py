@@ -42,9 +42,7 @@ class RobotMethods:
         limits: Floats = above("Robot.limits")(self)
         return limits
 
-    def configuration(
-        self, q: npt.ArrayLike | Mapping[str, float] | str, scene: Scene | None = None
-    ) -> Floats:
+    def configuration(self, q: npt.ArrayLike | Mapping[str, float] | str, scene: Scene | None = None) -> Floats:
         """Return a configuration as numbers, from numbers, a mapping or a text.
 
         Parameters

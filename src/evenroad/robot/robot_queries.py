@@ -59,9 +59,7 @@ def configurations_at(
     start: npt.ArrayLike | Mapping[str, float] | str = (),
 ) -> Floats:
     """Return what :meth:`Robot.ik` does."""
-    if isinstance(pose, str | Mapping) or (
-        not isinstance(pose, Pose | PoseGoal) and np.shape(pose) != (4, 4)
-    ):
+    if isinstance(pose, str | Mapping) or (not isinstance(pose, Pose | PoseGoal) and np.shape(pose) != (4, 4)):
         raise InvalidValue(
             f"pose must be a Pose, as er.Pose((x, y, z), rpy=(r, p, y)), a PoseGoal or a 4x4 matrix, got {shown(pose)}"
         )

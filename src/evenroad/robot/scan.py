@@ -21,9 +21,7 @@ from evenroad.robot.scene import MARGIN, Obstacle, Scene
 from evenroad.robot.states import at_states, configuration
 
 
-def without_robot(
-    cloud: PointCloud, robot: Robot, q: npt.ArrayLike, margin: float = MARGIN
-) -> PointCloud | None:
+def without_robot(cloud: PointCloud, robot: Robot, q: npt.ArrayLike, margin: float = MARGIN) -> PointCloud | None:
     """Return a cloud without the robot's own points, None where there are no others.
 
     Parameters
@@ -130,9 +128,7 @@ def open_everywhere(scene: Scene) -> Scene:
 def allowed_everywhere(robot: Robot, scene: Scene) -> list[tuple[str, str]]:
     """Return which moving links may touch which whole clouds."""
     rigid = rigid_links(robot)
-    clouds = {
-        each.name for each in scene.obstacles if isinstance(each.body, PointCloud) and _OPEN not in each.name
-    }
+    clouds = {each.name for each in scene.obstacles if isinstance(each.body, PointCloud) and _OPEN not in each.name}
     moving = {each.link for each in robot.capsules if rigid[each.link] != rigid[robot.links[0]]}
     return sorted((link, name) for link, name in scene.allowed if link in moving and name in clouds)
 

@@ -86,9 +86,7 @@ class Obstacle:
             # Read now: a file may change, or be gone, before its triangles are asked for.
             body = replace(body, source=body.triangles, scale=(1.0, 1.0, 1.0))
         if body.link:
-            raise InvalidValue(
-                f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"
-            )
+            raise InvalidValue(f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}")
         # Now rather than for every world: an obstacle is in many scenes.
         size, row = (*body.size, 0.0, 0.0)[:3], b""
         if body.kind in PRIMITIVES:
@@ -237,9 +235,7 @@ class Scene:
         if len(set(names)) < len(names):
             # What is allowed to touch the one would be allowed to touch the other.
             twice = sorted({name for name in names if names.count(name) > 1})
-            raise InvalidValue(
-                f"obstacles of scene {self.name!r} must have names of their own, twice: {twice}"
-            )
+            raise InvalidValue(f"obstacles of scene {self.name!r} must have names of their own, twice: {twice}")
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of what decides verdicts: obstacles and allowed contacts, in whatever order."""
@@ -321,9 +317,7 @@ def _as_obstacles(bodies: object, others: Sequence[Obstacle], scene: str) -> tup
         bodies = [bodies]
     if isinstance(bodies, str) or not isinstance(bodies, Iterable):
         hint = "a scene is read from its file by load_scene, and its name is name=..."
-        raise InvalidValue(
-            f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}; {hint}"
-        )
+        raise InvalidValue(f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}; {hint}")
     listed = tuple(bodies)
     for each in listed:
         if not isinstance(each, Shape | Obstacle):

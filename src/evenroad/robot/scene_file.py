@@ -105,9 +105,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     """
     path = find_scene(source)
     if not path.is_file():
-        raise BrokenFile(
-            f"there is no scene file {path}; shipped: {', '.join(f'{name}.yaml' for name in SCENES)}"
-        )
+        raise BrokenFile(f"there is no scene file {path}; shipped: {', '.join(f'{name}.yaml' for name in SCENES)}")
     if path.suffix == ".scene":
         return read_scene_text(path)
     document = read_mapping(path, "scene")
@@ -134,9 +132,7 @@ def _scene(document: dict[str, Any], path: Path) -> Scene:
     for obstacle, links in _mapping(document.get("allowed"), f"allowed in {path}").items():
         require_known(f"obstacle in 'allowed' of {path}:", obstacle, entries)
         if not isinstance(links, list) or not all(isinstance(link, str | dict) for link in links):
-            raise InvalidValue(
-                f"allowed contacts of {obstacle!r} in {path} must be a list of links, got {links!r}"
-            )
+            raise InvalidValue(f"allowed contacts of {obstacle!r} in {path} must be a list of links, got {links!r}")
         allowed.update((link, obstacle) for link in links if isinstance(link, str))
         parts += [_part(obstacle, each, path) for each in links if isinstance(each, dict)]
     states: dict[str, dict[str, float]] = {}
@@ -150,9 +146,7 @@ def _scene(document: dict[str, Any], path: Path) -> Scene:
     }
     attached = []
     for name, entry in _mapping(document.get("attach"), f"attach in {path}").items():
-        held, obstacles_touched = _attached(
-            name, _mapping(entry, f"attached {name!r} in {path}"), path, entries
-        )
+        held, obstacles_touched = _attached(name, _mapping(entry, f"attached {name!r} in {path}"), path, entries)
         attached.append(held)
         allowed.update((name, obstacle) for obstacle in obstacles_touched)
     name = str(document.get("name", path.stem))
@@ -208,17 +202,13 @@ def _with_parts(scene: Scene, parts: list[tuple[str, str, dict[str, Any]]], path
     near = set()
     for link, cloud, entry in parts:
         where = f"what is allowed to touch {cloud!r} in {path}"
-        if not any(
-            isinstance(each.body, PointCloud) for each in scene.obstacles if each.name.startswith(cloud)
-        ):
+        if not any(isinstance(each.body, PointCloud) for each in scene.obstacles if each.name.startswith(cloud)):
             raise InvalidValue(f"{where} must be a link: a part can be allowed of a cloud alone")
         if "near_ends" in entry:
             (distance,) = numbers(entry["near_ends"], 1, f"near_ends of {where}")
             near.add((link, cloud, require_positive(f"near_ends of {where}", distance, or_zero=True)))
         else:
-            scene = allowed_within(
-                scene, link, cloud, *_region(entry["within"], entry, f"within of {where}", path)
-            )
+            scene = allowed_within(scene, link, cloud, *_region(entry["within"], entry, f"within of {where}", path))
     return replace(scene, near_ends=frozenset(near))
 
 
@@ -227,14 +217,10 @@ def _region(entry: object, more: dict[str, Any], where: str, path: Path) -> tupl
     region = _mapping(entry, where)
     require_known(f"shape of {where}:", str(region.get("shape")), PRIMITIVES)
     (grow,) = numbers(more.get("grow", 0.0), 1, f"grow of {where}")
-    return _obstacle("region", region, path, where).body, require_positive(
-        f"grow of {where}", grow, or_zero=True
-    )
+    return _obstacle("region", region, path, where).body, require_positive(f"grow of {where}", grow, or_zero=True)
 
 
-def _attached(
-    name: str, entry: dict[str, Any], path: Path, obstacles: Collection[str]
-) -> tuple[HeldObject, list[str]]:
+def _attached(name: str, entry: dict[str, Any], path: Path, obstacles: Collection[str]) -> tuple[HeldObject, list[str]]:
     """Return what is held, and the obstacles that it may touch."""
     where = f"attached {name!r} in {path}"
     link, touches = entry.pop("link", None), entry.pop("touches", [])
@@ -250,9 +236,7 @@ def _attached(
 def _obstacle(name: str, entry: dict[str, Any], path: Path, where: str = "") -> Obstacle:
     where = where or f"obstacle {name!r} in {path}"
     if "quaternion" in entry:
-        raise UnknownName(
-            f"{where} must have its quaternion as xyzw: [x, y, z, w], in this order, not as quaternion"
-        )
+        raise UnknownName(f"{where} must have its quaternion as xyzw: [x, y, z, w], in this order, not as quaternion")
     shape = entry.get("shape")
     kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind)
     if not isinstance(shape, str) or shape not in kinds:
@@ -285,9 +269,7 @@ def _cloud(name: str, entry: dict[str, Any], path: Path, cell: bool) -> Obstacle
     (margin,) = numbers(entry.get("margin", MARGIN), 1, f"margin of {where}")
     seen_at = entry.get("seen_at")
     if seen_at is not None and not isinstance(seen_at, str):
-        raise InvalidValue(
-            f"seen_at of {where} must be the name of a state or a text as for --start, got {seen_at!r}"
-        )
+        raise InvalidValue(f"seen_at of {where} must be the name of a state or a text as for --start, got {seen_at!r}")
     if seen_at is None and "margin" in entry:
         raise InvalidValue(f"margin of {where} goes with seen_at: where the robot stood")
     seen = None if seen_at is None else Seen(seen_at, margin)

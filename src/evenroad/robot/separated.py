@@ -100,9 +100,7 @@ def apart(
     of = "the robot's capsules" if robot.inner is None else "bodies inside of the robot's shapes"
     of += f", {world.clearance:g} m from obstacles" if world.clearance else ""
     if others or not whole:
-        found = (
-            "the posture found cannot" if len(goals) == 1 else f"none of the {len(goals)} postures found can"
-        )
+        found = "the posture found cannot" if len(goals) == 1 else f"none of the {len(goals)} postures found can"
         return Apart(f"{found} be reached: {alone} (shown for {of}); others may be", proved=False)
     return Apart(f"{PROVED}: {alone} (shown for {of})", proved=True)
 
@@ -165,9 +163,7 @@ def is_beyond(piece: Piece, chain: Chain, task: Floats) -> bool:
     from evenroad.robot.kernel import reach as at
 
     known, coordinates = len(piece.cells.count), chain.ints[:, 0].tolist()
-    first_free = next(
-        (i for i, coordinate in enumerate(coordinates) if coordinate >= known), len(coordinates)
-    )
+    first_free = next((i for i, coordinate in enumerate(coordinates) if coordinate >= known), len(coordinates))
     bars, target = np.linalg.norm(chain.rows[first_free + 1 :, 9:12], axis=1).tolist(), task[9:12]
     if bars and task[at.TURNED] == at.ALL and task[at.TILT] == 0.0:
         # Where the last joint is is known, too.
@@ -184,9 +180,7 @@ def is_beyond(piece: Piece, chain: Chain, task: Floats) -> bool:
 def _slides(chain: Chain) -> list[float]:
     """Return how far each frame slides at most; 0 where it turns [m]."""
     lengths = []
-    for coordinate, slides, multiplier, offset in np.column_stack(
-        [chain.ints, chain.rows[:-1, 12:14]]
-    ).tolist():
+    for coordinate, slides, multiplier, offset in np.column_stack([chain.ints, chain.rows[:-1, 12:14]]).tolist():
         low, high = chain.bounds[:, int(coordinate)] + (-BEYOND, BEYOND)
         extremes = abs(multiplier * low + offset), abs(multiplier * high + offset)
         lengths.append(max(extremes) if slides else 0.0)

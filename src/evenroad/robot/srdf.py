@@ -55,9 +55,7 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     virtual = frozenset(_attribute(joint, "name", path) for joint in root.findall("virtual_joint"))
     known = _Model(urdf, virtual)
     passive = frozenset(
-        name
-        for joint in root.findall("passive_joint")
-        if known.joint(name := _attribute(joint, "name", path))
+        name for joint in root.findall("passive_joint") if known.joint(name := _attribute(joint, "name", path))
     )
     reader = _Groups(elements, known, path)
     groups = {name: _in_order(reader.joints(name, ()) - passive, urdf) for name in elements}
@@ -70,10 +68,7 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
         group = _attribute(state, "group", path)
         require_known(f"group in {path}:", group, groups)
         states[group, _attribute(state, "name", path)] = _values(state, known, path)
-    pairs = [
-        [_attribute(pair, end, path) for end in ("link1", "link2")]
-        for pair in root.findall("disable_collisions")
-    ]
+    pairs = [[_attribute(pair, end, path) for end in ("link1", "link2")] for pair in root.findall("disable_collisions")]
     disabled = frozenset(frozenset(pair) for pair in pairs if known.links(pair))
     return Srdf(groups, states, disabled, passive, known.notes)
 

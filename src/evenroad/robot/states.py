@@ -151,9 +151,7 @@ def as_configuration(
         row = np.empty(0)
     if row.shape != (dim,) or not np.isfinite(row).all():
         several = f"; of {len(row)} rows give one" if row.ndim == 2 and row.shape[1:] == (dim,) else ""
-        raise InvalidValue(
-            f"{name} must be {dim} finite numbers, {','.join(robot.group)}, got {shown(q)}{several}"
-        )
+        raise InvalidValue(f"{name} must be {dim} finite numbers, {','.join(robot.group)}, got {shown(q)}{several}")
     return row
 
 

@@ -252,9 +252,7 @@ def find_mesh(name: str, file: RobotFile, link: str) -> Path:
     for candidate in candidates:
         if candidate.is_file():
             return candidate
-    looked = ", ".join(str(candidate) for candidate in candidates[:4]) + (
-        ", ..." if len(candidates) > 4 else ""
-    )
+    looked = ", ".join(str(candidate) for candidate in candidates[:4]) + (", ..." if len(candidates) > 4 else "")
     package = name.removeprefix("package://").partition("/")[0] if name.startswith("package://") else ""
     hint = f"; --package {package}=FOLDER says where that package is" if package else ""
     where = f"of link {link!r} in {file.path}"

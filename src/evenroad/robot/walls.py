@@ -174,9 +174,7 @@ class _Pair:
             return 1.0
         joint, link = (poses[self.robot.links.index(link)] for link in (self.other[0].child, hull.link))
         in_joint = np.linalg.solve(joint, link)
-        return float(
-            np.linalg.norm(np.cross(self.other[0].axis, point @ in_joint[:3, :3].T + in_joint[:3, 3]))
-        )
+        return float(np.linalg.norm(np.cross(self.other[0].axis, point @ in_joint[:3, :3].T + in_joint[:3, 3])))
 
 
 def _deepest(other: Hull, still: Hull, pose: Floats) -> Floats:

@@ -86,9 +86,7 @@ def build_roadmap(
         return roadmap_of_points(world.space, points, rule)
     rule = KNearest(K) if rule is None else rule
     if not isinstance(rule, KNearest):
-        raise InvalidValue(
-            f"a roadmap of an arm joins each milestone to its nearest: KNearest(k), not {rule}"
-        )
+        raise InvalidValue(f"a roadmap of an arm joins each milestone to its nearest: KNearest(k), not {rule}")
     if isinstance(points, int | np.integer):
         return arm_roadmap(world, points, rule.k, rng=rng, progress=progress)
     world, points = _static(world), as_points(points, world.space, rule)
@@ -133,9 +131,7 @@ def _static(world: ArmWorld) -> ArmWorld:
     """Return the world of a robot with empty hands in its scene."""
     robot = in_scene(world.robot, world.scene)
     if robot.holds:
-        raise InvalidValue(
-            f"a roadmap is built of a robot with empty hands, not one that holds {robot.holds[0]!r}"
-        )
+        raise InvalidValue(f"a roadmap is built of a robot with empty hands, not one that holds {robot.holds[0]!r}")
     return replace(world, robot=robot, scene=scene_seen_by(robot, world.scene))
 
 
@@ -162,9 +158,7 @@ def joined(roadmap: ArmRoadmap, milestones: Floats, k: int) -> ArmRoadmap:
     return read_only(replace(roadmap, milestones=milestones, edges=edges, turns=turns))
 
 
-def _free_edges(
-    world: ArmWorld, one: OneTurn, milestones: Floats, weights: Floats, k: int
-) -> tuple[Ints32, Ints]:
+def _free_edges(world: ArmWorld, one: OneTurn, milestones: Floats, weights: Floats, k: int) -> tuple[Ints32, Ints]:
     """Return the motions to the `k` nearest that are proved free, (m, 2), and their turns, (m, dim)."""
     metric = JointSpace(one.low.tolist(), one.high.tolist(), one.wraps.tolist(), weights.tolist())
     near = nearest(milestones, min(max(TRIED, k), max(len(milestones) - 1, 1)), metric)

@@ -186,9 +186,7 @@ def tips_of(robot: Robot, pool: Floats) -> Floats:
 
 def body_of(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
     """Return points along the axes of all capsules, (n, points, 3), and their radii, (points,) [m]."""
-    endpoints = np.concatenate(
-        [capsule_endpoints(robot, q) for q in np.array_split(pool, -(-len(pool) // 10_000))]
-    )
+    endpoints = np.concatenate([capsule_endpoints(robot, q) for q in np.array_split(pool, -(-len(pool) // 10_000))])
     share = np.linspace(0.0, 1.0, ALONG)[:, np.newaxis]
     positions = endpoints[:, :, np.newaxis, 0] * (1.0 - share) + endpoints[:, :, np.newaxis, 1] * share
     return positions.reshape(len(pool), -1, 3), np.repeat([each.radius for each in robot.capsules], ALONG)

@@ -49,9 +49,7 @@ class OwnShapesWorld:
         bare = replace(world.robot, pairs=())
         clouds = ArmWorld(bare, scene.without(*others), resolution=resolution) if names else None
         capsules = ArmWorld(world.robot, scene.without(*names), resolution=resolution) if names else world
-        coal = WithinCapsules(
-            world.robot, scene.without(*names), self.shapes, resolution / FINER, capsules=capsules
-        )
+        coal = WithinCapsules(world.robot, scene.without(*names), self.shapes, resolution / FINER, capsules=capsules)
         set_fields(self, _coal=coal, _clouds=clouds)
 
     @property
@@ -130,9 +128,7 @@ class SolidMeshes(CoalWorld):
             for mesh, body in ((shape, other), (other, shape)) if is_obstacle else ():
                 if mesh in self._corners:
                     # Surfaces that do not meet are inside each other piece by piece: one point of each decides.
-                    points = (
-                        points_in_pieces(self._corners[body]) if body in self._corners else np.zeros((1, 3))
-                    )
+                    points = points_in_pieces(self._corners[body]) if body in self._corners else np.zeros((1, 3))
                     corners = self._corners[mesh].reshape(-1, 3)
                     box = corners.min(axis=0), corners.max(axis=0)
                     rows += [(test, mesh, body, point, *box) for point in points]

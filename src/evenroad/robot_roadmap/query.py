@@ -123,8 +123,6 @@ def _by_calls(
         else:
             kind, is_old, a, b = check
             judge = dynamic if is_old else world
-            free = (
-                judge.valid(a) if kind == "milestone" else judge.motion_certified(a, b, VALIDATION_TOLERANCE)
-            )
+            free = judge.valid(a) if kind == "milestone" else judge.motion_certified(a, b, VALIDATION_TOLERANCE)
             finder.record(bool(free[0]))
     return SearchResult(ended, finder.path, finder.goal, *finder.counts)

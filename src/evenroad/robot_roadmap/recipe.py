@@ -63,9 +63,7 @@ class Precomputed(NamedTuple):
 
 def recipe_for(robot: Robot) -> Recipe:
     """Return the recipe for a robot: the more pairs it has, the fewer hard queries are tried."""
-    return Recipe(
-        GAMMA, min(HARD_QUERIES, max(FEWEST_HARD_QUERIES, HARD_QUERIES * PAIRS // max(len(robot.pairs), 1)))
-    )
+    return Recipe(GAMMA, min(HARD_QUERIES, max(FEWEST_HARD_QUERIES, HARD_QUERIES * PAIRS // max(len(robot.pairs), 1))))
 
 
 def precomputed(
@@ -83,9 +81,7 @@ def precomputed(
     weights = displacement_weights(world.robot, pool[:MEASURED])
     chance = np.ones(len(pool))
     if recipe.gamma > 0.0:
-        chance = free_probability(
-            world.robot, pool, SCENES, scene_rng, lambda share: progress("random scenes", share)
-        )
+        chance = free_probability(world.robot, pool, SCENES, scene_rng, lambda share: progress("random scenes", share))
     seen = hard_queries(
         world.robot,
         world.scene,
@@ -105,9 +101,7 @@ def chosen(data: Precomputed, recipe: Recipe, n: int) -> Ints:
     preference = np.maximum(data.chance, 1.0 / SCENES) ** recipe.gamma
     first = data.seen.first[: recipe.hard_queries + 1]
     weights = data.weights
-    return spread_order(
-        weights * data.pool, weights * data.periods, preference, n, first, data.seen.which[: first[-1]]
-    )
+    return spread_order(weights * data.pool, weights * data.periods, preference, n, first, data.seen.which[: first[-1]])
 
 
 def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generator) -> Floats:
@@ -124,7 +118,6 @@ def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generat
         blocked = Counter(world.explain(each) for each in q[-EXPLAINED:])
         often, count = blocked.most_common(1)[0]
         raise InvalidValue(
-            f"the robot is never free: of {drawn} configurations none; in {count} of the last"
-            f" {blocked.total()} {often}"
+            f"the robot is never free: of {drawn} configurations none; in {count} of the last {blocked.total()} {often}"
         )
     return free[:count]

@@ -29,9 +29,7 @@ def read_start_and_goals(
 ) -> tuple[Floats, Goals] | PlanResult:
     """Return start, (dim,), and goals, with all postures found for poses; or the result if a pose is not reached."""
     if not any(isinstance(each, POSES) for each in (goal if isinstance(goal, list | tuple) else (goal,))):
-        first, goals = as_start_and_goals(
-            _configuration(world, start), _configurations(world, goal), world.space
-        )
+        first, goals = as_start_and_goals(_configuration(world, start), _configurations(world, goal), world.space)
         return first, Goals(goals, ("",) * len(goals))
     targets: Sequence[Goal] = [goal] if isinstance(goal, POSES) else goal  # type: ignore[assignment]
     at_start, space = _configuration(world, start), world.space

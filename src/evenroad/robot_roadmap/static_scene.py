@@ -104,11 +104,7 @@ def require_same_robot(made: Robot, static: Scene, given: Robot) -> None:
     known = {joint: limits for joint, limits in static.limits.items() if joint in names}
     given = in_scene(given, replace(static, limits=known))
     if (difference := next(_differences(made, given), None)) is not None:
-        other = (
-            "another group of"
-            if made.links == given.links and made.group != given.group
-            else "another robot,"
-        )
+        other = "another group of" if made.links == given.links and made.group != given.group else "another robot,"
         raise InvalidValue(f"the roadmap was made for {other} {made.name!r}: {difference}")
 
 
@@ -151,13 +147,9 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
 
 def _bodies(robot: Robot, link: str) -> list[str]:
     """Return the capsules and hulls of a link as texts; different bodies have different texts."""
-    capsules = [
-        f"a capsule of radius {c.radius!r} from {c.a!r} to {c.b!r}" for c in robot.capsules if c.link == link
-    ]
+    capsules = [f"a capsule of radius {c.radius!r} from {c.a!r} to {c.b!r}" for c in robot.capsules if c.link == link]
     hulls = [
-        f"a hull of radius {hull.radius!r} of {hull.points.tolist()!r}"
-        for hull in robot.hulls
-        if hull.link == link
+        f"a hull of radius {hull.radius!r} of {hull.points.tolist()!r}" for hull in robot.hulls if hull.link == link
     ]
     return sorted(capsules + hulls)
 

@@ -303,11 +303,7 @@ class ArmWorldRoadmap(WorldRoadmap):
     def _length(self, path: Floats) -> float:
         waypoints = path.tolist()
         # Where nothing wraps the sum is the same, in a tenth of the time.
-        return (
-            path_length(path, self.capsules.space)
-            if self._wraps
-            else sum(map(math.dist, waypoints, waypoints[1:]))
-        )
+        return path_length(path, self.capsules.space) if self._wraps else sum(map(math.dist, waypoints, waypoints[1:]))
 
 
 def _by_capsules(budget: Budget) -> Budget:

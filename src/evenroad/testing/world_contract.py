@@ -52,9 +52,7 @@ class WorldContract:
         q, (a, b) = self.configurations(), self.motions()
         rows, world = [slice(i, i + 1) for i in range(len(q))], self.world
         np.testing.assert_array_equal(world.valid(q), [world.valid(q[i])[0] for i in rows])
-        np.testing.assert_array_equal(
-            world.motion_valid(a, b), [world.motion_valid(a[i], b[i])[0] for i in rows]
-        )
+        np.testing.assert_array_equal(world.motion_valid(a, b), [world.motion_valid(a[i], b[i])[0] for i in rows])
 
     def test_a_motion_and_its_reverse_get_one_result(self) -> None:
         a, b = self.motions()

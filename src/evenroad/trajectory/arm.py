@@ -109,7 +109,5 @@ def controller_joints(robot: Robot) -> tuple[str, ...]:
             links.add(link)
             link = parent_joint[link].parent
     return tuple(
-        joint.name
-        for joint in robot.joints
-        if joint.child in links and joint.kind != "fixed" and joint.mimic is None
+        joint.name for joint in robot.joints if joint.child in links and joint.kind != "fixed" and joint.mimic is None
     )

@@ -27,9 +27,7 @@ _TABLES = ("positions", "velocities", "accelerations")
 _MESSAGE = "trajectory_msgs/msg/JointTrajectory"
 
 
-def save_trajectory(
-    path: str | os.PathLike[str], trajectory: Trajectory, order: Sequence[str] | None = None
-) -> None:
+def save_trajectory(path: str | os.PathLike[str], trajectory: Trajectory, order: Sequence[str] | None = None) -> None:
     """Write a trajectory in the format that the name of the file asks for, atomically.
 
     Parameters
@@ -115,9 +113,7 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
     if len(set(names) | set(held)) < len(names) + len(held):
         raise ValueError("every joint must be named once")
     moved, allowed = np.abs(np.diff(tables[0], axis=0)), np.diff(times)[:, None] * np.array(limits.velocity)
-    if np.any(moved > 1.001 * allowed + 1e-9) or np.any(
-        np.abs(tables[1]) > 1.001 * np.array(limits.velocity)
-    ):
+    if np.any(moved > 1.001 * allowed + 1e-9) or np.any(np.abs(tables[1]) > 1.001 * np.array(limits.velocity)):
         raise ValueError("it moves faster than its own limits say")
     return Trajectory(
         names=names,
@@ -185,9 +181,7 @@ def _yaml(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
     return text.encode()
 
 
-def joint_trajectory(
-    trajectory: Trajectory, make: Callable[..., Any], order: Sequence[str] | None = None
-) -> Any:
+def joint_trajectory(trajectory: Trajectory, make: Callable[..., Any], order: Sequence[str] | None = None) -> Any:
     """Return a trajectory as ROS 2's ``trajectory_msgs/JointTrajectory``.
 
     Parameters
@@ -203,13 +197,9 @@ def joint_trajectory(
         fields = dict(zip(_TABLES, rows, strict=True))
         since = dict(zip(("sec", "nanosec"), _stamp(time), strict=True))
         duration = make("builtin_interfaces/msg/Duration", **since)
-        return make(
-            "trajectory_msgs/msg/JointTrajectoryPoint", **fields, effort=np.zeros(0), time_from_start=duration
-        )
+        return make("trajectory_msgs/msg/JointTrajectoryPoint", **fields, effort=np.zeros(0), time_from_start=duration)
 
-    header = make(
-        "std_msgs/msg/Header", stamp=make("builtin_interfaces/msg/Time", sec=0, nanosec=0), frame_id=""
-    )
+    header = make("std_msgs/msg/Header", stamp=make("builtin_interfaces/msg/Time", sec=0, nanosec=0), frame_id="")
     points = [point(time, *rows) for time, *rows in zip(trajectory.times, *tables, strict=True)]
     return make(_MESSAGE, header=header, joint_names=list(names), points=points)
 

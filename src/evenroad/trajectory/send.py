@@ -85,17 +85,13 @@ def send_trajectory(
     names, (positions, velocities, _) = columns_of_ur(trajectory, order)
     cycle = float(trajectory.times[1])
     if not np.isclose(cycle, CYCLES).any():
-        raise InvalidValue(
-            f"a controller takes a state every 0.008 s or 0.002 s, these are {cycle:g} s apart"
-        )
+        raise InvalidValue(f"a controller takes a state every 0.008 s or 0.002 s, these are {cycle:g} s apart")
     # As the states will be sent, too, whatever the trajectory says of its speeds.
     driven = np.abs(np.diff(positions, axis=0)) / cycle
     speeds = np.maximum(np.abs(velocities).max(axis=0), driven.max(axis=0))
     if speeds.max() > limit * (1.0 + 1e-9):
         name = names[int(np.argmax(speeds))]
-        raise InvalidValue(
-            f"{name} moves at up to {speeds.max():.3g} rad/s, faster than the {limit:g} rad/s allowed"
-        )
+        raise InvalidValue(f"{name} moves at up to {speeds.max():.3g} rad/s, faster than the {limit:g} rad/s allowed")
     spawned = multiprocessing.get_context("spawn")
     ours, theirs = spawned.Pipe()
     talk = (theirs, host, names, positions, cycle, model, go)
@@ -129,9 +125,7 @@ def _listened(pipe: Any, host: str, progress: Callable[[int, int], None] | None)
             raise _ERRORS[kind](said[0])
 
 
-def _talk(
-    pipe: Any, host: str, names: Sequence[str], positions: Floats, cycle: float, model: str, go: bool
-) -> None:
+def _talk(pipe: Any, host: str, names: Sequence[str], positions: Floats, cycle: float, model: str, go: bool) -> None:
     """Check, and drive if told to; a process of its own, since ur_rtde may wait for ever for an answer."""
     try:
         pipe.send(("ready", 0))
@@ -174,9 +168,7 @@ class _connection_to:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, *_: object) -> None:
         if isinstance(error, RuntimeError | ValueError | OSError) and not isinstance(error, EvenroadError):
-            raise NotAvailable(
-                f"no answer that makes sense from a controller at {self.host!r}: {error}"
-            ) from None
+            raise NotAvailable(f"no answer that makes sense from a controller at {self.host!r}: {error}") from None
 
 
 def _require_ready(host: str, state: Any, names: Sequence[str], start: Floats, model: str) -> None:
@@ -203,9 +195,7 @@ def _require_ready(host: str, state: Any, names: Sequence[str], start: Floats, m
         )
 
 
-def _driven(
-    pipe: Any, control: Any, state: Any, names: Sequence[str], positions: Floats, cycle: float
-) -> Sent:
+def _driven(pipe: Any, control: Any, state: Any, names: Sequence[str], positions: Floats, cycle: float) -> Sent:
     """Send the states; stop the arm whatever happens."""
     worst, i = 0.0, 0
     try:

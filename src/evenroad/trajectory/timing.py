@@ -89,9 +89,7 @@ def fastest(path: RoundedPath, limits: Limits) -> TimeLaw:
 
 def stretched(law: TimeLaw, factor: float) -> TimeLaw:
     """Return the law that takes `factor` as long, >= 1."""
-    return TimeLaw(
-        law.path, law.times * factor, law.lengths, law.speeds / factor, law.accelerations / factor**2
-    )
+    return TimeLaw(law.path, law.times * factor, law.lengths, law.speeds / factor, law.accelerations / factor**2)
 
 
 def paused(law: TimeLaw, pause: float) -> TimeLaw:

@@ -96,9 +96,7 @@ class Trajectory:
     proof: str = "unchecked"
     radii: tuple[float, ...] = ()
 
-    def columns(
-        self, order: Sequence[str] | None = None
-    ) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
+    def columns(self, order: Sequence[str] | None = None) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
         """Return names, and positions, velocities and accelerations, of held joints, too.
 
         Parameters
@@ -130,9 +128,7 @@ class Trajectory:
         for name in order:
             require_known("joint of the trajectory", name, (*self.names, *self.held))
         if missing := sorted(set(self.names) - set(order)):
-            raise InvalidValue(
-                f"the order of joints must have every one that moves; {missing[0]!r} is not in it"
-            )
+            raise InvalidValue(f"the order of joints must have every one that moves; {missing[0]!r} is not in it")
         tables = []
         for rows, held in ((self.positions, self.held), (self.velocities, {}), (self.accelerations, {})):
             own = dict(zip(self.names, rows.T, strict=True))
@@ -221,9 +217,7 @@ def make_trajectory(
             break
         cuts = _less(cuts, curve.corners, law.length_at(bad - 0.5 * window), stop=halved >= _HALVINGS - 1)
     else:
-        raise NotAvailable(
-            f"the trajectory is not proved free, or not near enough to its path, at {bad[0]:.3f} s"
-        )
+        raise NotAvailable(f"the trajectory is not proved free, or not near enough to its path, at {bad[0]:.3f} s")
     highest = _shares(states, limits)
     if limits.jerk is not None:
         highest["jerk"] = float(np.max(np.abs(np.diff(states[2], axis=0)) / fine[1] / limits.jerk))

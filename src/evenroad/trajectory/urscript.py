@@ -65,9 +65,7 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
     columns |= dict(zip(trajectory.names, path.T, strict=True))
     waypoints = np.column_stack([columns[name] for name in names])
     radii = [*(trajectory.radii or np.zeros(len(path) - 2)), 0.0]
-    fastest = (
-        f"a={min(trajectory.limits.acceleration):.6g}, v={min(*trajectory.limits.velocity, _FASTEST):.6g}"
-    )
+    fastest = f"a={min(trajectory.limits.acceleration):.6g}, v={min(*trajectory.limits.velocity, _FASTEST):.6g}"
     rows = zip(waypoints[1:], radii, strict=True)
     moves = [f"movej({_row(q)}, {fastest}, r={radius:.6g})" for q, radius in rows]
     return _program("evenroad_movej", waypoints[0], moves)
@@ -101,9 +99,7 @@ def _triangle_free(world: World, before: Floats, corner: Floats, after: Floats, 
     return all(drivable(world, np.array(chord))[0].all() for chord in zip(leaves, returns, strict=True))
 
 
-def _radius(
-    tip_at: Callable[[Floats], Floats], before: Floats, corner: Floats, after: Floats, share: float
-) -> float:
+def _radius(tip_at: Callable[[Floats], Floats], before: Floats, corner: Floats, after: Floats, share: float) -> float:
     """Return the largest radius [m] within which the tip is only where the corner is nearer than `share`."""
     if share == 0.0:
         return 0.0

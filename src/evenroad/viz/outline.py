@@ -40,9 +40,7 @@ def obstacle_bounds(obstacle: Obstacle) -> tuple[Floats, Floats]:
     """Return the lower and the upper corner, (3,) each, of an obstacle's bounding box."""
     body = obstacle.body
     if isinstance(body, PointCloud | Mesh):
-        points, radius = (
-            (body.triangles.vertices, 0.0) if isinstance(body, Mesh) else (body.points, body.radius)
-        )
+        points, radius = (body.triangles.vertices, 0.0) if isinstance(body, Mesh) else (body.points, body.radius)
         points = body.pose.apply(points)
         return points.min(axis=0) - radius, points.max(axis=0) + radius
     top, side = obstacle_outline(obstacle, (0, 1)), obstacle_outline(obstacle, (0, 2))

@@ -98,9 +98,7 @@ class ArmPage:
         low, high = self._corners()
         # Below everything: a table's top at its height would flicker.
         lowest = min([low[2], *(obstacle_bounds(each)[0][2] for each in world.scene.obstacles)]) - 0.01
-        scene.add_grid(
-            "/floor", width=4.0, height=4.0, cell_size=0.25, plane="xy", position=(0.0, 0.0, lowest)
-        )
+        scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.25, plane="xy", position=(0.0, 0.0, lowest))
         reach = float(np.linalg.norm(high - low))
         camera = self._server.initial_camera
         camera.look_at = 0.5 * (low + high)
@@ -210,9 +208,7 @@ class ArmPage:
         if graph is not None:
             nodes, edges = graph.configurations, graph.edges.astype(np.int64)
         else:
-            nodes, edges = grown_trees(
-                self.world, self.result.start, self.result.goal[np.newaxis], seconds=0.5
-            )
+            nodes, edges = grown_trees(self.world, self.result.start, self.result.goal[np.newaxis], seconds=0.5)
         if len(edges):
             tips, blue = self._tips(nodes), ImageColor.getrgb(style.MILESTONE)[:3]
             scene.add_line_segments(

@@ -24,9 +24,7 @@ _LONG_SIDE = 600
 """Least length of the long side of a map's picture [pixels]."""
 
 
-def plot_result(
-    result: PlanResult, path: str | os.PathLike[str] | None = None, world: Any = None
-) -> Image.Image:
+def plot_result(result: PlanResult, path: str | os.PathLike[str] | None = None, world: Any = None) -> Image.Image:
     """Return what :meth:`PlanResult.plot` does."""
     world = result.world if world is None else world
     if isinstance(world, DiskWorld):
@@ -37,20 +35,14 @@ def plot_result(
     elif isinstance(world, ArmWorld):
         picture = draw_arm_plan(result, world)
     else:
-        known = (
-            "its world is not known: plot(world=...)"
-            if world is None
-            else f"its world is a {type(world).__name__}"
-        )
+        known = "its world is not known: plot(world=...)" if world is None else f"its world is a {type(world).__name__}"
         raise NotAvailable(f"plans of disks on maps and of arms can be drawn, but of this one {known}")
     return _kept(picture, path)
 
 
 def plot_map(gridmap: GridMap, path: str | os.PathLike[str] | None = None) -> Image.Image:
     """Return what :meth:`GridMap.plot` does."""
-    shades = np.where(gridmap.unknown, _UNKNOWN, np.where(gridmap.occupied, _OCCUPIED, _FREE)).astype(
-        np.uint8
-    )
+    shades = np.where(gridmap.unknown, _UNKNOWN, np.where(gridmap.occupied, _OCCUPIED, _FREE)).astype(np.uint8)
     times = max(1, _LONG_SIDE // max(gridmap.shape))
     return _kept(Image.fromarray(np.kron(shades, np.ones((times, times), dtype=np.uint8))), path)
 

@@ -50,9 +50,7 @@ def show(what: PlanResult | GridMap, *, port: int = 0) -> Any:
     >>> er.show(result)  # doctest: +SKIP
     """
     if not isinstance(what, PlanResult | GridMap):
-        raise InvalidValue(
-            f"a plan or a map can be shown, as er.plan and er.load_map give it, got {shown(what)}"
-        )
+        raise InvalidValue(f"a plan or a map can be shown, as er.plan and er.load_map give it, got {shown(what)}")
     notebook = _notebook()
     if not isinstance(what, PlanResult) or not isinstance(what.world, ArmWorld):
         picture = what.plot()

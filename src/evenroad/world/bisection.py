@@ -25,8 +25,7 @@ def require_few_segments(resolution: object, segments: float) -> None:
     """Raise InvalidValue where a resolution divides the longest motion into more than 2^30 segments."""
     if segments > MOST_SEGMENTS:
         raise InvalidValue(
-            f"resolution must be larger: {resolution!r} divides a motion into {segments:.3g} segments,"
-            " more than 2^30"
+            f"resolution must be larger: {resolution!r} divides a motion into {segments:.3g} segments, more than 2^30"
         )
 
 

@@ -118,9 +118,7 @@ def anneal(
 def require_points_for(objective: Minimised, n: int) -> None:
     """Raise InvalidValue unless the objective is defined for `n` points."""
     if n < objective.least_points:
-        raise InvalidValue(
-            f"the objective '{objective}' needs at least {objective.least_points} points, got {n}"
-        )
+        raise InvalidValue(f"the objective '{objective}' needs at least {objective.least_points} points, got {n}")
 
 
 def learning_rate(step: int, steps: int, first: float) -> float:

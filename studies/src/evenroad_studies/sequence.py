@@ -66,9 +66,7 @@ class Sequence:
             rest = Sobol(start=first).draw(total - first, d, rng=_scramble(key, d)).points
             points = np.concatenate([points, rest])
         method, seed = "Sobol, scrambled and moved", seed_of(rng)
-        origin = Origin(
-            family=self.name, method=method, objective=f"prefixes({MEASURE})", seed=seed, start=self.start
-        )
+        origin = Origin(family=self.name, method=method, objective=f"prefixes({MEASURE})", seed=seed, start=self.start)
         return PointSet(points, origin)
 
 
@@ -76,9 +74,7 @@ class Sequence:
 def usual_prefixes(name: str, n: int, d: int) -> Floats:
     """Return the mean log of the rooted discrepancy of the first 1 .. n scrambled Sobol points, (n,)."""
     sets = [Sobol().draw(n, d, rng=scramble).points for scramble in range(REFERENCES)]
-    usual: Floats = np.mean(
-        [np.log(np.maximum(rooted_prefixes(each, name), 1e-150)) for each in sets], axis=0
-    )
+    usual: Floats = np.mean([np.log(np.maximum(rooted_prefixes(each, name), 1e-150)) for each in sets], axis=0)
     usual.setflags(write=False)
     return usual
 

@@ -83,12 +83,7 @@ def test_whatever_the_integers_are_a_robot_is_refused_or_answers(fork_arm):
     refused = 0
     for _ in range(400):
         given = arrays_of(fork_arm)
-        arrays = [
-            array
-            for part in given.values()
-            for array in part.values()
-            if array.dtype == np.int64 and array.size
-        ]
+        arrays = [array for part in given.values() for array in part.values() if array.dtype == np.int64 and array.size]
         for array in rng.choice(len(arrays), rng.integers(1, 3)):
             entry = rng.integers(arrays[array].size)
             arrays[array].flat[entry] = rng.choice([-1, 0, 1, 2, 3, 7, 1000, -(2**62), 2**62])
@@ -167,9 +162,7 @@ def test_every_build_gives_the_same_verdicts(variant, arm, fork_arm, monkeypatch
     scene = native_scene(theirs, made.tables, world.robot.links, world.scene, 0.0)
     checker = other.Checker(theirs, scene, world.resolution, 0.0, False)
     np.testing.assert_array_equal(checker.valid(q), free)
-    np.testing.assert_array_equal(
-        checker.motion_valid(q[:400], q[400:800]), world.motion_valid(q[:400], q[400:800])
-    )
+    np.testing.assert_array_equal(checker.motion_valid(q[:400], q[400:800]), world.motion_valid(q[:400], q[400:800]))
 
 
 def test_a_contact_is_found_where_a_state_is_blocked():

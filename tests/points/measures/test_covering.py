@@ -63,9 +63,7 @@ def test_a_wrapping_box_has_no_faces():
     copies = [points + shift for shift in itertools.product((-1, 0, 1), (0,), (-1, 0, 1))]
     ticks = np.linspace(0.0, 1.0, 41)
     places = np.stack(np.meshgrid(ticks, ticks, ticks), axis=-1).reshape(-1, 3)
-    away = np.min(
-        [np.linalg.norm(places[:, None] - each[None], axis=-1).min(1) for each in copies], axis=0
-    ).max()
+    away = np.min([np.linalg.norm(places[:, None] - each[None], axis=-1).min(1) for each in copies], axis=0).max()
     upper = dispersion_bounds(points, wrapping=wraps).upper
     assert away <= upper <= away + np.sqrt(3) / 80
     assert upper < dispersion_bounds(points).upper
@@ -77,9 +75,7 @@ def test_little_work_gives_bounds_that_hold_all_the_same():
     assert rough.lower <= sharp.upper <= sharp.lower * 1.001 <= rough.upper * 1.001
 
 
-@pytest.mark.parametrize(
-    ("d", "density"), [(2, 1.209), (3, 1.464), (5, 2.124), (6, 2.551), (7, 3.060), (10, 5.252)]
-)
+@pytest.mark.parametrize(("d", "density"), [(2, 1.209), (3, 1.464), (5, 2.124), (6, 2.551), (7, 3.060), (10, 5.252)])
 def test_the_closed_form_of_a_d_star_gives_its_known_covering_density(d, density):
     from math import gamma, pi
 

@@ -66,9 +66,7 @@ def slow_gradient(function, points, step=1e-6):
 
 def rooted_with_gradient(measure, points, weights=None):
     columns = np.ascontiguousarray(np.asarray(points, dtype=float).T)
-    root, gradient = measure.of_columns(
-        columns, None if weights is None else np.asarray(weights, dtype=float)
-    )
+    root, gradient = measure.of_columns(columns, None if weights is None else np.asarray(weights, dtype=float))
     return root, gradient.T
 
 

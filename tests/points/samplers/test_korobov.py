@@ -23,9 +23,7 @@ def slow_generator(n, d):
     """Return the smallest a whose energy is the least of all, up to rounding."""
     allowed = [a for a in range(1, n) if gcd(a, n) == 1]
     energies = [riesz_rooted(lattice_points(a, n, d)) ** (2 * d) for a in allowed]
-    return next(
-        a for a, energy in zip(allowed, energies, strict=True) if energy <= min(energies) * (1 + 1e-9)
-    )
+    return next(a for a, energy in zip(allowed, energies, strict=True) if energy <= min(energies) * (1 + 1e-9))
 
 
 class TestKorobov(SamplerContract):

@@ -28,9 +28,7 @@ def test_a_share_of_sliced_poses_has_one_rotation_and_a_lattice_of_places():
 
 
 def test_the_rotations_of_slices_are_uniform():
-    quaternions = SO3().from_cube(
-        np.array([Sliced(share=1.0).draw(1, rng=i).points[0, 3:] for i in range(2000)])
-    )
+    quaternions = SO3().from_cube(np.array([Sliced(share=1.0).draw(1, rng=i).points[0, 3:] for i in range(2000)]))
     second = np.einsum("ni,nj->ij", quaternions, quaternions) / 2000
     np.testing.assert_allclose(second, np.eye(4) / 4, atol=0.03)
 

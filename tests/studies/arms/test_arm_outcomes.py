@@ -98,9 +98,7 @@ def test_outcomes_come_back_as_they_were_written(tmp_path):
     runs = _random_runs()
     outcomes = _outcomes(tmp_path / "a.db", [(task, _answer(solved)) for task, solved in runs])
     # Other draws, more than eight of them, and the largest seed.
-    more = [
-        (replace(TASK, sampler="even", run=run, seed=2**32 - 1), _answer(run % 2 == 0)) for run in range(20)
-    ]
+    more = [(replace(TASK, sampler="even", run=run, seed=2**32 - 1), _answer(run % 2 == 0)) for run in range(20)]
     outcomes |= _outcomes(tmp_path / "b.db", more)
     write_outcomes(tmp_path / "o.npz", outcomes)
     again = read_outcomes(tmp_path / "o.npz")
@@ -132,9 +130,7 @@ def test_no_runs_are_not_written(tmp_path):
 def _written(tmp_path, **changed):
     """Write a file of two ways, with arrays that are something else, and the hash that fits them."""
     path = tmp_path / "o.npz"
-    runs = [
-        (replace(TASK, sampler=s, instance=i), _answer(i > 0)) for s in ("even", "uniform") for i in range(2)
-    ]
+    runs = [(replace(TASK, sampler=s, instance=i), _answer(i > 0)) for s in ("even", "uniform") for i in range(2)]
     write_outcomes(path, _outcomes(tmp_path / "a.db", runs))
     with np.load(path) as archive:
         arrays = dict(archive)

@@ -16,9 +16,7 @@ from evenroad_studies.bench.task import Outcome, Task
 from evenroad_studies.report.arms import draw_costs, summary_tables
 from evenroad_studies.workers import in_process
 
-SMALL = dict(
-    runs=2, only=["scara", "shelf"], draws=1, counts=[16], samplers=["sobol scrambled", "roadmap", "trees"]
-)
+SMALL = dict(runs=2, only=["scara", "shelf"], draws=1, counts=[16], samplers=["sobol scrambled", "roadmap", "trees"])
 
 
 def test_every_task_is_there_once_and_what_shares_a_roadmap_stands_together():
@@ -98,10 +96,7 @@ def test_gains_are_paired_by_problem_with_the_standard_error_over_problems(tmp_p
     }
     lines = arm_lines(_store(tmp_path / "a.db", success))
     line = next(each for each in lines if each.sampler == "uniform" and each.generator == ALL)
-    apart = [
-        np.mean([success["roadmap", i, run] - success["uniform", i, run] for run in range(2)])
-        for i in range(20)
-    ]
+    apart = [np.mean([success["roadmap", i, run] - success["uniform", i, run] for run in range(2)]) for i in range(20)]
     assert line.gain == pytest.approx(np.mean(apart))
     assert line.error == pytest.approx(np.std(apart, ddof=1) / np.sqrt(20))
     assert line.p <= line.p_corrected
@@ -184,9 +179,7 @@ def test_samplers_and_rules_that_the_suite_does_not_know_are_in_the_tables(tmp_p
 
 
 def test_gains_on_points_of_the_box_and_on_the_control_and_certain_losses_are_listed(tmp_path):
-    success = {
-        (s, i, 0): s == "control" for s in ("sobol scrambled", "control", "roadmap") for i in range(20)
-    }
+    success = {(s, i, 0): s == "control" for s in ("sobol scrambled", "control", "roadmap") for i in range(20)}
     tables = summary_tables(arm_lines(_store(tmp_path / "a.db", success)))
     assert _table(tables, "arms-gains") == [
         ["scara", "10", "owen", "+0.0 ± 0.0"],

@@ -40,13 +40,8 @@ def _query(path, sql):
 def test_an_experiment_has_twelve_columns_and_then_its_parameter(store, tmp_path):
     write_arena(store, tmp_path / "arena.db")
     columns = " ".join(row[1] for row in _query(tmp_path / "arena.db", "PRAGMA table_info(experiments)"))
-    assert (
-        columns
-        == "id name totaltime timelimit memorylimit runcount version hostname cpuinfo date seed setup N"
-    )
-    experiments = _query(
-        tmp_path / "arena.db", "SELECT name, N, runcount, totaltime, seed FROM experiments ORDER BY N"
-    )
+    assert columns == "id name totaltime timelimit memorylimit runcount version hostname cpuinfo date seed setup N"
+    experiments = _query(tmp_path / "arena.db", "SELECT name, N, runcount, totaltime, seed FROM experiments ORDER BY N")
     assert experiments == [("maze-1", 64, 1, 0.0, 1), ("maze-1", 128, 3, 0.875, 1)]
 
 

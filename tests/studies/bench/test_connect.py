@@ -25,9 +25,7 @@ class _Graph:
         return np.ones(len(q), dtype=bool)
 
     def motion_valid(self, a, b):
-        return np.array(
-            [frozenset((int(i), int(j))) in self._free for i, j in zip(a[:, 0], b[:, 0], strict=True)]
-        )
+        return np.array([frozenset((int(i), int(j))) in self._free for i, j in zip(a[:, 0], b[:, 0], strict=True)])
 
 
 def _states_of(nodes, edges, free):

@@ -59,9 +59,7 @@ def scheduler(tmp_path):
 
     try:
         address = _waited_for(
-            lambda: (
-                file.exists() and file.read_text().endswith("}") and json.loads(file.read_text())["address"]
-            )
+            lambda: file.exists() and file.read_text().endswith("}") and json.loads(file.read_text())["address"]
         )
         yield address, add_workers, running
     finally:

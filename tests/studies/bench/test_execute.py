@@ -73,9 +73,7 @@ def test_outcomes_do_not_depend_on_what_was_run_before():
 
 
 def test_every_search_says_the_same_of_success():
-    outcomes = {
-        search: run_task(replace(TASK, search=search)) for search in ("connect", "stock", "full", "lazy")
-    }
+    outcomes = {search: run_task(replace(TASK, search=search)) for search in ("connect", "stock", "full", "lazy")}
     assert {each.solved for each in outcomes.values()} == {True}
     assert 0 < outcomes["stock"].valid_at_solution <= outcomes["stock"].valid
     assert outcomes["connect"].valid_at_solution is None

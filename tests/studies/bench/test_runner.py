@@ -90,9 +90,7 @@ def test_a_stopped_run_keeps_its_rows_and_goes_on(path, calm):
     assert table_of(path) == table_of(calm)
 
 
-def test_one_process_threads_and_two_processes_that_leave_ctrl_c_to_their_parent_give_the_same_table(
-    calm, tmp_path
-):
+def test_one_process_threads_and_two_processes_that_leave_ctrl_c_to_their_parent_give_the_same_table(calm, tmp_path):
     pools = []
 
     def make():

@@ -147,9 +147,7 @@ def test_stores_of_several_machines_are_read_as_one(path, tmp_path):
     _write(path, outcomes)
     _write(tmp_path / "here.db", outcomes[1::2])
     # Its names come in another order, and with others.
-    _write(
-        tmp_path / "there.db", [(replace(TASK, problem="a maze"), NOT_CONNECTED), *reversed(outcomes[::2])]
-    )
+    _write(tmp_path / "there.db", [(replace(TASK, problem="a maze"), NOT_CONNECTED), *reversed(outcomes[::2])])
     together = joined([read_rows(tmp_path / "there.db"), read_rows(tmp_path / "here.db")])
     assert together.problem[0] == "a maze"
     whole, rest = read_rows(path), together.where(np.arange(1, len(together)))
@@ -158,9 +156,7 @@ def test_stores_of_several_machines_are_read_as_one(path, tmp_path):
         assert [values[i] for i in range(len(rest))] == [expected[i] for i in range(len(whole))], name
 
 
-def test_of_a_task_with_rows_in_two_stores_that_of_the_first_counts_but_an_answer_before_a_failure(
-    path, tmp_path
-):
+def test_of_a_task_with_rows_in_two_stores_that_of_the_first_counts_but_an_answer_before_a_failure(path, tmp_path):
     _write(path, [(TASK, NOT_CONNECTED), (replace(TASK, run=1), SOLVED)])
     _write(tmp_path / "b.db", [(TASK, SOLVED)])
     _write(tmp_path / "failed.db", [(TASK, FAILED)])
@@ -472,9 +468,7 @@ def test_rows_that_can_be_left_nowhere_are_said_to_be_lost(path, tmp_path, monke
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "missing"))
     path.with_name("results.db.rescue").mkdir()
     said = leave_rows(path, [(1,) * len(COLUMNS)])
-    assert (
-        said == f"1 finished row could not be left in {path}.rescue either: the next run computes them again"
-    )
+    assert said == f"1 finished row could not be left in {path}.rescue either: the next run computes them again"
 
 
 @pytest.mark.parametrize("text", ["nonsense", "[1, 2]", '{"key": "00"}', "\N{DEGREE SIGN}"])

@@ -46,6 +46,4 @@ def test_sets_of_the_bank_do_not_change_without_another_protocol():
         for n, cell in cells.items()
     }
     digest = hashlib.sha256(json.dumps(hashes, sort_keys=True).encode()).hexdigest()
-    assert (PROTOCOL, digest[:16]) == BANK, (
-        "rows of older sets would pass for rows of these: count PROTOCOL up"
-    )
+    assert (PROTOCOL, digest[:16]) == BANK, "rows of older sets would pass for rows of these: count PROTOCOL up"

@@ -59,9 +59,7 @@ def test_the_table_names_its_rule_and_search_and_the_fair_one_shows_k_10(run, tm
     assert "rule: k=10 symmetrised · search: connect" in out
     rows = read_rows(tmp_path / "results.db")
     uniform = rows.where(rows.sampler.is_in(["uniform"]) & rows.search.is_in(["connect"]))
-    rates = {
-        rule: f"{100 * uniform.solved[uniform.rule.is_in([rule])].mean():.0f}" for rule in rows.rule.present()
-    }
+    rates = {rule: f"{100 * uniform.solved[uniform.rule.is_in([rule])].mean():.0f}" for rule in rows.rule.present()}
     (n,) = set(rows.n.tolist())
     assert _cells(out, "fair-balls-2d-50", n)["uniform"] == rates["k=10 symmetrised"]
 
@@ -109,9 +107,7 @@ def test_runs_without_an_answer_are_exit_code_1_until_they_are_tried_again_on_de
     assert (code, "0 found done" in out, "without an answer" in out) == (0, True, False)
 
 
-def test_rows_that_a_store_could_not_take_are_named_and_taken_in_by_the_same_command(
-    run, monkeypatch, tmp_path
-):
+def test_rows_that_a_store_could_not_take_are_named_and_taken_in_by_the_same_command(run, monkeypatch, tmp_path):
     def refuse(store):
         raise BrokenFile("results.db: database or disk is full")
 
@@ -119,9 +115,7 @@ def test_rows_that_a_store_could_not_take_are_named_and_taken_in_by_the_same_com
         change.setattr("evenroad_studies.bench.store.Store._write", refuse)
         code, _, err = run(*SMALL)
     assert code == 2
-    left = int(
-        re.search(r"disk is full; (\d+) finished rows left in results.db.rescue: the next run", err)[1]
-    )
+    left = int(re.search(r"disk is full; (\d+) finished rows left in results.db.rescue: the next run", err)[1])
     assert len(err.splitlines()) == 1
     code, out, _ = run(*SMALL)
     assert (code, f"{left} found done" in out) == (0, True)

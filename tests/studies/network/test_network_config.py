@@ -39,9 +39,7 @@ def test_the_exact_star_discrepancy_judges_in_the_plane_alone():
 
 
 def test_two_spellings_of_an_objective_are_the_same_config():
-    assert NetworkConfig(16, 2, "hickernell+10*riesz") == NetworkConfig(
-        16, 2, "log(hickernell) + 10*log(riesz)"
-    )
+    assert NetworkConfig(16, 2, "hickernell+10*riesz") == NetworkConfig(16, 2, "log(hickernell) + 10*log(riesz)")
 
 
 def test_a_config_survives_json_and_keeps_plain_numbers():

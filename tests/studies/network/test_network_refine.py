@@ -38,9 +38,7 @@ def test_refining_is_the_same_again_and_whichever_other_sets_are_there():
 def test_another_objective_can_be_asked_for():
     (after,) = refine(TRAINED[:1], "hickernell", steps=200)
     assert after.origin.objective == "hickernell"
-    assert parse_objective("hickernell").value(after.points) < parse_objective("hickernell").value(
-        TRAINED[0].points
-    )
+    assert parse_objective("hickernell").value(after.points) < parse_objective("hickernell").value(TRAINED[0].points)
 
 
 def test_the_callback_counts_the_steps_of_all_sets():

@@ -45,9 +45,7 @@ def test_the_first_step_is_nearly_the_start_and_noise_moves_it_on():
 def test_the_points_are_the_best_of_all_steps():
     values = []
     # So large a rate makes points worse and better by turns.
-    made = train(
-        NetworkConfig(16, 2, steps=60, rate=0.3), callback=lambda step, steps, best: values.append(best)
-    )
+    made = train(NetworkConfig(16, 2, steps=60, rate=0.3), callback=lambda step, steps, best: values.append(best))
     assert made.value == values[-1] == min(values)
     assert np.diff(values).max() <= 0
     assert len(values) == 60
@@ -55,9 +53,7 @@ def test_the_points_are_the_best_of_all_steps():
 
 
 def test_the_exact_star_discrepancy_may_judge_which_points_are_the_best():
-    by_loss, by_star = (
-        train(NetworkConfig(20, 2, "star", steps=300, judge=j)) for j in ("objective", "star")
-    )
+    by_loss, by_star = (train(NetworkConfig(20, 2, "star", steps=300, judge=j)) for j in ("objective", "star"))
     assert by_star.value == star_discrepancy(by_star.points) < star_discrepancy(by_loss.points)
 
 

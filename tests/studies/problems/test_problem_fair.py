@@ -53,10 +53,7 @@ def test_both_ends_are_free_and_the_straight_motion_is_not(name):
 
 
 def test_tuning_and_reporting_share_no_instance():
-    drawn = {
-        stream: {instance_rng(stream, Family.BALLS, 5, 50, i).random() for i in range(200)}
-        for stream in Stream
-    }
+    drawn = {stream: {instance_rng(stream, Family.BALLS, 5, 50, i).random() for i in range(200)} for stream in Stream}
     assert all(len(numbers) == 200 for numbers in drawn.values())
     assert len(set.union(*drawn.values())) == 3 * 200
 

@@ -84,9 +84,7 @@ def test_the_plate_of_twistycool_is_between_start_and_goal():
 def test_a_path_through_the_window_is_found():
     problem = source_named("twistycool").make(0)
     points = draw("uniform", 1024, 6, rng=0)
-    result = plan_on(
-        problem.world, problem.start, problem.goal, points, rule=KEarlier(10), links=None, shorten=False
-    )
+    result = plan_on(problem.world, problem.start, problem.goal, points, rule=KEarlier(10), links=None, shorten=False)
     assert result.solved
     assert problem.world.motion_valid(result.path[:-1], result.path[1:]).all()
     assert result.path[0, 2] > -293.0 > -305.0 > result.path[-1, 2]
@@ -98,8 +96,7 @@ def test_the_goal_of_cubicles_has_no_way_in_but_from_below():
     world = problem.world
     bottom = 9.84 / 2
     holes = [
-        OrientedBox([203.0, y, bottom], [93.0, half, bottom], name="lid")
-        for y, half in ((-145.5, 54.5), (384.0, 81.0))
+        OrientedBox([203.0, y, bottom], [93.0, half, bottom], name="lid") for y, half in ((-145.5, 54.5), (384.0, 81.0))
     ]
     closed = SolidWorld(world.space, world.body, [*world.obstacles, *holes], world.resolution)
     points = draw("halton", 3000, 6, rng=0)

@@ -21,9 +21,7 @@ def test_start_and_goal_are_free_in_the_space_of_five_joints(name, flange):
     problem = source_named(name).make(0)
     assert problem.world.valid(np.stack([problem.start, problem.goal])).all()
     assert problem.set_dim == problem.world.space.dim == 5
-    np.testing.assert_allclose(
-        link_poses(problem.world.robot, [problem.goal])[0, -1, :3, 3], flange, atol=1e-4
-    )
+    np.testing.assert_allclose(link_poses(problem.world.robot, [problem.goal])[0, -1, :3, 3], flange, atol=1e-4)
 
 
 def test_the_space_is_the_protocols_and_does_not_wrap():

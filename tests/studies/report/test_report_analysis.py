@@ -101,9 +101,7 @@ def test_mcnemars_test_is_over_the_same_runs(rows, runs, cells):
 
 def test_each_pair_of_samplers_is_tested_once(runs, cells):
     pairs = [
-        frozenset((each.cell.sampler, each.reference))
-        for each in comparisons_of(runs, cells)
-        if each.cell.n == 128
+        frozenset((each.cell.sampler, each.reference)) for each in comparisons_of(runs, cells) if each.cell.n == 128
     ]
     assert len(pairs) == len(set(pairs)) == 3 + 2
 
@@ -151,10 +149,7 @@ def test_the_papers_table_has_all_its_cells_as_counts():
 
 def test_the_papers_own_counts_tell_two_comparisons_apart():
     """But for two corridors and the arm, at p < .05: R^10, 512 samples against Halton, 1024 against uniform."""
-    table = {
-        (each.problem, each.sampler, each.n): (each.solved, each.runs)
-        for each in load_expected("paper").cells
-    }
+    table = {(each.problem, each.sampler, each.n): (each.solved, each.runs) for each in load_expected("paper").cells}
     told_apart = {
         (problem, n, other)
         for (problem, sampler, n), ours in table.items()
@@ -185,9 +180,7 @@ def test_verdicts_agree_where_counts_agree_and_differ_where_they_cannot(tmp_path
     rows = []
     for n, of_200 in ((128, 2), (256, 23), (512, 10)):
         for run in range(200):
-            rows.append(
-                (task("hypercube-legacy6", "uniform", n, run, **LEGACY), solved(run < of_200, valid=15))
-            )
+            rows.append((task("hypercube-legacy6", "uniform", n, run, **LEGACY), solved(run < of_200, valid=15)))
     cells = cells_of(runs_from(tmp_path / "a.db", rows))
     verdicts = {
         (each.expected.sampler, each.expected.n): each
@@ -201,9 +194,7 @@ def test_verdicts_agree_where_counts_agree_and_differ_where_they_cannot(tmp_path
         fisher_exact((228, 2000), (23, 200)),
         fisher_exact((1056, 2000), (10, 200)),
     ]
-    assert [verdicts["uniform", n].p_corrected for n in (128, 256, 512)] == pytest.approx(
-        holm(tested).tolist()
-    )
+    assert [verdicts["uniform", n].p_corrected for n in (128, 256, 512)] == pytest.approx(holm(tested).tolist())
     assert verdicts["uniform", 128].our_v == 17
     assert math.isnan(verdicts["uniform", 1024].our_v)
 
@@ -243,9 +234,7 @@ def _fair_rows():
                 rows.append((task(problem, "uniform", **where), solved(rng.random() < 0.4)))
                 rows.append((task(problem, "lattice", **where), solved(rng.random() < 0.7)))
                 if problem != "fair-boxes-10d-25":
-                    rows.append(
-                        (task(problem, "mpmc", **where), solved(rng.random() < 0.5, set_id=str(run % 7)))
-                    )
+                    rows.append((task(problem, "mpmc", **where), solved(rng.random() < 0.5, set_id=str(run % 7))))
     return rows
 
 
@@ -254,9 +243,7 @@ def test_the_fair_suite_is_pooled_over_the_same_worlds(tmp_path):
     runs = runs_from(tmp_path / "a.db", rows)
     of = {(each.problem, each.sampler, each.rule, each.run): outcome.solved for each, outcome in rows}
     found = {(each.group, each.sampler): each for each in pooled(runs)["rule"]}
-    assert set(found) == {
-        (f"k={k} symmetrised, connect", sampler) for k in (4, 10) for sampler in ("lattice", "mpmc")
-    }
+    assert set(found) == {(f"k={k} symmetrised, connect", sampler) for k in (4, 10) for sampler in ("lattice", "mpmc")}
     for (group, sampler), each in found.items():
         mine = [key for key in of if key[1] == sampler and group.startswith(key[2])]
         theirs = [of[problem, "uniform", rule, run] for problem, _, rule, run in mine]

@@ -34,11 +34,7 @@ def test_curves_name_every_sampler_once_and_show_its_success_in_three_panels(tmp
 
 
 def test_mazes_under_one_rule_share_a_picture(tmp_path):
-    rows = (
-        made_up("maze-1", runs=5)
-        + made_up("maze-2", runs=5)
-        + made_up("maze-2", runs=5, rule="k=4 symmetrised")
-    )
+    rows = made_up("maze-1", runs=5) + made_up("maze-2", runs=5) + made_up("maze-2", runs=5, rule="k=4 symmetrised")
     runs = runs_from(tmp_path / "a.db", rows)
     mazes = maze_settings(runs.settings)
     assert {(each.problem, each.search) for each in mazes} <= {("maze-1", "connect"), ("maze-2", "connect")}

@@ -37,9 +37,7 @@ def store(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def report(store, tmp_path_factory):
-    return write_report(
-        store, tmp_path_factory.mktemp("report") / "out", command="evenroad report results.db"
-    )
+    return write_report(store, tmp_path_factory.mktemp("report") / "out", command="evenroad report results.db")
 
 
 class _Page(HTMLParser):

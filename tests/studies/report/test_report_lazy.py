@@ -23,9 +23,7 @@ def _rows(lazy):
                 rows.append((task("fair-se2-50", sampler, **where), solved(yes, edges_checked=edges)))
                 if lazy and rule == RULES[1] and run % 3 == 0:
                     where["search"] = "lazy"
-                    rows.append(
-                        (task("fair-se2-50", sampler, **where), solved(yes, edges_checked=edges // 4))
-                    )
+                    rows.append((task("fair-se2-50", sampler, **where), solved(yes, edges_checked=edges // 4)))
     return rows
 
 

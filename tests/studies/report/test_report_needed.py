@@ -69,9 +69,7 @@ def test_runs_are_resampled_together_for_all_numbers_of_samples(tmp_path):
 
 
 def test_cells_may_have_other_numbers_of_runs(tmp_path):
-    rows = _curve("uniform", (0.3,), counts=(128,), runs=200) + _curve(
-        "uniform", (0.8,), counts=(256,), runs=12
-    )
+    rows = _curve("uniform", (0.3,), counts=(128,), runs=200) + _curve("uniform", (0.8,), counts=(256,), runs=12)
     curve = cells_of(runs_from(tmp_path / "a.db", rows))
     rates = resampled_rates(curve)
     assert np.isfinite(rates).all()

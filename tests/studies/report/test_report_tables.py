@@ -11,10 +11,7 @@ NASTY = "a|b <i> & 50% of_{x} \\ ~^#$"
 def _table(**fields):
     rows = ((Entry("uniform"), Entry("52.8 [50, 56]", "better")), (Entry(NASTY), Entry("≤ 32", "differs")))
     return Table(
-        **(
-            {"name": "t", "title": NASTY, "header": ("sampler", "N > 3"), "rows": rows, "notes": (NASTY,)}
-            | fields
-        )
+        **({"name": "t", "title": NASTY, "header": ("sampler", "N > 3"), "rows": rows, "notes": (NASTY,)} | fields)
     )
 
 
@@ -27,9 +24,7 @@ def test_html_escapes_what_it_must_and_marks_by_class():
 
 
 def test_html_sets_the_headings_of_labels_as_the_labels():
-    text = as_html(
-        _table(header=("sampler", "rule", "N"), rows=((Entry("a"), Entry("b"), Entry("1")),), labels=2)
-    )
+    text = as_html(_table(header=("sampler", "rule", "N"), rows=((Entry("a"), Entry("b"), Entry("1")),), labels=2))
     assert "<tr><th class='label'>sampler</th><th class='label'>rule</th><th>N</th></tr>" in text
     assert "<td class='label'>a</td><td class='label'>b</td><td>1</td>" in text
 

@@ -110,9 +110,7 @@ def _in_random_worlds(problem, chances, worlds=30, **others):
         where = {"n": 128, "run": run, "instance": run // 3} | others
         which = int(rng.integers(len(chances)))
         rows.append((task(problem, "uniform", **where), solved(bool(rng.random() < 0.5))))
-        rows.append(
-            (task(problem, "mpmc", **where), solved(bool(rng.random() < chances[which]), set_id=str(which)))
-        )
+        rows.append((task(problem, "mpmc", **where), solved(bool(rng.random() < chances[which]), set_id=str(which))))
     return rows
 
 
@@ -180,9 +178,7 @@ def test_a_verdict_on_a_few_sets_says_so(tmp_path):
         "cubicles",
         "hypercube-legacy6",
     ]
-    assert (
-        expected_table(table, verdicts).notes[-1].startswith("cubicles mpmc (4 sets at N = 1024): our runs")
-    )
+    assert expected_table(table, verdicts).notes[-1].startswith("cubicles mpmc (4 sets at N = 1024): our runs")
 
 
 def test_a_single_run_is_not_tested(tmp_path):

@@ -24,10 +24,7 @@ class Stop(Exception):
 def test_set_i_comes_from_child_i_of_the_seed():
     third = anneal_many(**SMALL, sets=3, workers=1, rng=5)[2]
     child = np.random.SeedSequence(5, spawn_key=(2,))
-    assert (
-        third.points.tobytes()
-        == anneal(**SMALL | {"objective": MEASURES["star"]}, rng=child).points.tobytes()
-    )
+    assert third.points.tobytes() == anneal(**SMALL | {"objective": MEASURES["star"]}, rng=child).points.tobytes()
     again = anneal_many(**SMALL, sets=3, workers=1, rng=np.random.SeedSequence(5))[2]
     assert third.points.tobytes() == again.points.tobytes()
 
@@ -133,9 +130,7 @@ def test_a_folder_of_another_request_is_refused(tmp_path, changes, text):
         anneal_many(**{**SMALL, **changes}, folder=tmp_path, workers=1)
 
 
-@pytest.mark.parametrize(
-    "schedule", [{"schedule": SCHEDULE - 1}, {}], ids=["another", "not written down, once"]
-)
+@pytest.mark.parametrize("schedule", [{"schedule": SCHEDULE - 1}, {}], ids=["another", "not written down, once"])
 def test_a_folder_of_another_schedule_is_refused(tmp_path, schedule):
     anneal_many(**SMALL, folder=tmp_path, workers=1)
     file = tmp_path / "request.json"

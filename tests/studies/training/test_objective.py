@@ -68,14 +68,12 @@ def test_gradients_are_those_of_central_differences(text):
 
 
 def test_other_spellings_are_understood():
-    assert parse_objective("asd + centered + wraparound") == parse_objective(
-        "average_squared+centred+wrap_around"
-    )
+    assert parse_objective("asd + centered + wraparound") == parse_objective("average_squared+centred+wrap_around")
 
 
-terms = st.builds(
-    Term, st.sampled_from(sorted(MEASURES)), st.floats(1e-300, 1e300), st.booleans()
-) | st.builds(Term, st.just("riesz"), st.floats(1e-9, 1e9), st.just(True))
+terms = st.builds(Term, st.sampled_from(sorted(MEASURES)), st.floats(1e-300, 1e300), st.booleans()) | st.builds(
+    Term, st.just("riesz"), st.floats(1e-9, 1e9), st.just(True)
+)
 
 
 @given(st.lists(terms, min_size=1, max_size=4))

@@ -97,9 +97,7 @@ def test_a_reflected_grid_is_the_same_grid():
     points = draw("sukharev", 27, 3)
     moved = reflect(points, rng=1)
     assert moved.hash != points.hash
-    np.testing.assert_allclose(
-        np.unique(moved.points.round(12), axis=0), np.unique(points.points.round(12), axis=0)
-    )
+    np.testing.assert_allclose(np.unique(moved.points.round(12), axis=0), np.unique(points.points.round(12), axis=0))
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -35,8 +35,7 @@ def test_the_distance_is_how_far_all_joints_are_apart(links):
     space = ChainSpace(links)
     a, b = space.from_cube(np.random.default_rng(links).random((100, links))).reshape(2, 50, links)
     apart = [
-        sum(math.dist(p, r) for p, r in zip(joints_of(x), joints_of(y), strict=True))
-        for x, y in zip(a, b, strict=True)
+        sum(math.dist(p, r) for p, r in zip(joints_of(x), joints_of(y), strict=True)) for x, y in zip(a, b, strict=True)
     ]
     np.testing.assert_allclose(space.distance(a, b), apart, rtol=1e-12)
 

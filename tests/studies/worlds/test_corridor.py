@@ -19,9 +19,7 @@ def is_free(x, lam, side="comment"):
     d = len(x)
     if side == "demo":
         x = x[::-1]
-    return any(
-        all(x[i] <= lam for i in range(k)) and all(x[i] >= 1 - lam for i in range(k + 1, d)) for k in range(d)
-    )
+    return any(all(x[i] <= lam for i in range(k)) and all(x[i] >= 1 - lam for i in range(k + 1, d)) for k in range(d))
 
 
 def straight_way_is_free(a, b, lam):
@@ -86,9 +84,7 @@ def test_the_share_of_free_points_is_the_free_volume(d, lam, checked):
     assert abs(share - volume) < 4 * math.sqrt(volume * (1 - volume) / n)
 
 
-@pytest.mark.parametrize(
-    ("d", "lam", "checked"), list(itertools.product([1, 2, 3, 10], [0.01, 0.37], [None, 1]))
-)
+@pytest.mark.parametrize(("d", "lam", "checked"), list(itertools.product([1, 2, 3, 10], [0.01, 0.37], [None, 1])))
 @pytest.mark.parametrize("side", ["comment", "demo"])
 def test_the_way_along_the_edges_is_free_from_start_to_goal(d, lam, checked, side):
     world = Corridor(d, lam, checked, side)

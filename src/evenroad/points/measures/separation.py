@@ -44,9 +44,7 @@ def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) ->
     return math.exp(log_riesz_of_columns(columns, exponent, periodic, want_gradient=False)[0] / exponent)
 
 
-def log_riesz_of_columns(
-    columns: Floats, s: int, periodic: bool, want_gradient: bool
-) -> tuple[float, Floats]:
+def log_riesz_of_columns(columns: Floats, s: int, periodic: bool, want_gradient: bool) -> tuple[float, Floats]:
     """Return the log of the Riesz energy and its gradient, shape (d, n), at checked points of shape (d, n).
 
     Every power is taken relative to the largest of its row, and rows are joined in the log: nothing

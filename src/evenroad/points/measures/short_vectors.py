@@ -64,9 +64,7 @@ def short_vectors(n: int, vector: Any, pairs: int = 0, scale: Any = None) -> tup
     while True:
         ball = math.pi ** (d / 2) / math.gamma(d / 2 + 1) * limit ** (d / 2)
         if ball > MOST_VECTORS * cell:
-            raise NotAvailable(
-                f"vectors of the lattice of n={n} differ so much in length that too many are short"
-            )
+            raise NotAvailable(f"vectors of the lattice of n={n} differ so much in length that too many are short")
         found = _enumerated(basis.tolist(), weights.tolist(), limit)
         if len(found) >= pairs:
             break

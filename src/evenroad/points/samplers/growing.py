@@ -72,9 +72,7 @@ class Growing:
         lattice = reversed_digits(self.start, n)[:, np.newaxis] * vector % LONGEST / LONGEST
         # Both summands are >= 0, so the remainder is exact and below 1.
         points = (lattice + shift) % 1.0
-        origin = Origin(
-            family=self.name, method="embedded lattices, shifted", seed=seed_of(rng), start=self.start
-        )
+        origin = Origin(family=self.name, method="embedded lattices, shifted", seed=seed_of(rng), start=self.start)
         return PointSet(points, origin)
 
 

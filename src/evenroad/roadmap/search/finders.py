@@ -31,9 +31,7 @@ def search_problem(states: EdgeStates, costs: Floats, goals: int = 1, *, bound: 
     terminals = Terminals.last(nodes, goals)
     unit = FixedPoint.of(float(costs.max(initial=0.0)), nodes)
     bounds = unit.bounds(bound * _away(states, terminals.goals))
-    return SearchProblem(
-        terminals.start, terminals.goals, graph_of(nodes, states.edges), unit.weights(costs), bounds
-    )
+    return SearchProblem(terminals.start, terminals.goals, graph_of(nodes, states.edges), unit.weights(costs), bounds)
 
 
 def _away(states: EdgeStates, nodes: Iterable[int]) -> Floats:

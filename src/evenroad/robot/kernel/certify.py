@@ -53,9 +53,7 @@ def motions_certified(
         if not (enter(a[row], bounds, start) and enter(b[row], bounds, end)):
             continue
         span(start, end, bounds, 1.0, direction)
-        fastest = max(
-            _largest_speed(arms, direction, speeds), _largest_speed(pair_arms, direction, pair_speeds)
-        )
+        fastest = max(_largest_speed(arms, direction, speeds), _largest_speed(pair_arms, direction, pair_speeds))
         # Intervals still to be proved, each by its centre and half its length; the deepest one comes first.
         centres[0], halves[0], waiting, intervals = 0.5, 0.5, 1, 0
         while waiting > 0:
@@ -72,9 +70,7 @@ def motions_certified(
                 continue
             margins[:] = _ROUNDING
             pair_margins[:] = _ROUNDING
-            touches = (
-                first_contact(state, ints, floats, margins, pair_margins, frames, capsules)[0] != SEPARATE
-            )
+            touches = first_contact(state, ints, floats, margins, pair_margins, frames, capsules)[0] != SEPARATE
             ended = half * fastest < tolerance or waiting == _DEEPEST or intervals >= _MOST_INTERVALS
             if touches or ended:
                 waiting = -1

@@ -103,9 +103,7 @@ def leaves_near(a: int, b: int, pose: Floats, margin: float, ints: Ints, table: 
     if _write_direction(ball, other, pose, direction, table) == 0.0:
         return True
     row, other_row = ints[at.NODE_INTS] + at.NODE_INT_ROW * a, ints[at.NODE_INTS] + at.NODE_INT_ROW * b
-    return _hulls_near(
-        row, other_row, direction, pose, table[ball + 7] + table[other + 7] + margin, ints, table
-    )
+    return _hulls_near(row, other_row, direction, pose, table[ball + 7] + table[other + 7] + margin, ints, table)
 
 
 @quick
@@ -131,9 +129,7 @@ def _hulls_near(
     p, p_end, q, q_end = ints[row + 2], ints[row + 3], ints[other_row + 2], ints[other_row + 3]
     simplex, v = doubles_at(stack_memory(12), (12,)), doubles_at(stack_memory(3), (3,))
     corner, other, size = p, q, 0
-    length = math.sqrt(
-        direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]
-    )
+    length = math.sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2])
     x, y, z = direction[0] / length, direction[1] / length, direction[2] / length
     for _ in range(_MOST_STEPS):
         least, most = np.inf, -np.inf
@@ -167,9 +163,7 @@ def _hulls_near(
 def _difference(i: int, k: int, axis: int, pose: Floats, table: Any) -> float:
     """Return a coordinate of a corner of the first body as seen from one of the second."""
     turned = (
-        pose[3 * axis] * table[3 * k]
-        + pose[3 * axis + 1] * table[3 * k + 1]
-        + pose[3 * axis + 2] * table[3 * k + 2]
+        pose[3 * axis] * table[3 * k] + pose[3 * axis + 1] * table[3 * k + 1] + pose[3 * axis + 2] * table[3 * k + 2]
     )
     return table[3 * i + axis] - turned - pose[9 + axis]
 

@@ -92,9 +92,7 @@ def hull_trees(bodies: Mapping[str, Leaves], first_point: int = 0) -> HullTrees:
     ints = np.concatenate([np.zeros(at.HEADER, dtype=np.int64), *(row[0].ravel() for row in rows)])
     floats = np.concatenate([np.zeros(0), *(row[k].ravel() for k in (2, 1) for row in rows)])
     ints[at.NODE_INTS], ints[at.NODE_FLOATS] = at.HEADER, 3 * (point - first_point)
-    return HullTrees(
-        ints, floats, roots, np.concatenate([np.zeros(0, dtype=np.int64), *(row[3] for row in rows)])
-    )
+    return HullTrees(ints, floats, roots, np.concatenate([np.zeros(0, dtype=np.int64), *(row[3] for row in rows)]))
 
 
 def contacts(trees: HullTrees, first: str, second: str, poses: Floats, others: Floats) -> Ints:

@@ -99,9 +99,7 @@ def moving_tree(robot: Robot) -> MovingTree:
             continue
         to_z = rotation_from_z(joint.axis)
         slides = joint.kind == "prismatic"
-        frames.append(
-            MovingFrame(base.frame, rotation @ to_z, translation, slides, coordinate, multiplier, offset)
-        )
+        frames.append(MovingFrame(base.frame, rotation @ to_z, translation, slides, coordinate, multiplier, offset))
         links[joint.child] = Placement(len(frames), to_z.T, np.zeros(3))
     return MovingTree(tuple(frames), links)
 

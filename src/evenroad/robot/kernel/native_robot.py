@@ -68,9 +68,7 @@ def _ints(values: Sequence[object]) -> Ints:
     return np.array(values, dtype=np.int64)
 
 
-def _capsules(
-    capsules: Sequence[PlacedCapsule], number: dict[str, int]
-) -> dict[str, npt.NDArray[np.generic]]:
+def _capsules(capsules: Sequence[PlacedCapsule], number: dict[str, int]) -> dict[str, npt.NDArray[np.generic]]:
     counts = [len(capsule.cover.positions) for capsule in capsules]
     return {
         "body": _ints([number[capsule.link] for capsule in capsules]),

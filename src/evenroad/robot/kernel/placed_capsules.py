@@ -91,9 +91,7 @@ Placed = PlacedCapsule | PlacedHulls
 def place_hulls(hulls: Sequence[Hull], tree: MovingTree) -> PlacedHulls:
     """Return the hulls of one link in its frame."""
     placement = tree.links[hulls[0].link]
-    leaves = [
-        ((h.points @ placement.rotation.T + placement.translation)[np.newaxis], h.radius) for h in hulls
-    ]
+    leaves = [((h.points @ placement.rotation.T + placement.translation)[np.newaxis], h.radius) for h in hulls]
     return PlacedHulls(placement.frame, tuple(leaves))
 
 

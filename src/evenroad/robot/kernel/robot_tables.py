@@ -88,9 +88,7 @@ def enlarged(tables: RobotTables, clearance: float) -> RobotTables:
     bodies, body_width = tables.ints[layout.BODY_FLOATS], layout.BODY_FLOAT_ROW
     for numbers in (floats, singles):
         numbers[at:][: width * tables.ints[layout.CAPSULES]].reshape(-1, width)[:, 6] += clearance
-        numbers[bodies:][: body_width * tables.ints[layout.BODIES]].reshape(-1, body_width)[:, 3:7] += (
-            clearance
-        )
+        numbers[bodies:][: body_width * tables.ints[layout.BODIES]].reshape(-1, body_width)[:, 3:7] += clearance
         numbers.setflags(write=False)
     capsules = tuple(
         replace(
@@ -121,9 +119,7 @@ def robot_tables(robot: Robot) -> RobotTables:
     capsules = tuple(placed[i] for i in order)
     reach = farthest(tree, capsules, robot)
     if reach > FARTHEST:
-        raise InvalidValue(
-            f"robot {robot.name!r} reaches {reach:.3g} m: more than {FARTHEST:g} leaves no digits"
-        )
+        raise InvalidValue(f"robot {robot.name!r} reaches {reach:.3g} m: more than {FARTHEST:g} leaves no digits")
     moving, fixed = _split_pairs(robot, tree)
     bodied = {capsule.link for capsule in capsules}
     hulls, sharp = _hulls_of(robot, tree)
@@ -248,9 +244,7 @@ def _pack(
     rows.header[layout.FRAMES] = len(tree.frames)
     rows.header[layout.COORDINATES] = coordinates
     bodies = len({capsule.link for capsule in capsules})
-    rows.header[layout.SCRATCH] = layout.FRAME * (len(tree.frames) + 1) + layout.PLACED * (
-        len(capsules) + bodies
-    )
+    rows.header[layout.SCRATCH] = layout.FRAME * (len(tree.frames) + 1) + layout.PLACED * (len(capsules) + bodies)
     rows.header[layout.CAPSULES] = len(capsules)
     rows.header[layout.FIXED_CAPSULES] = sum(capsule.frame == 0 for capsule in capsules)
     rows.begin(layout.FRAME_INTS, layout.FRAME_FLOATS)

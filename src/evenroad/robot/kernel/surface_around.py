@@ -55,9 +55,7 @@ def surface_around(arrays: Sequence[Ints]) -> Ints:
     return grid
 
 
-def _squared(
-    array: Ints, table: Singles, low: Floats, size: Floats, coordinates: Sequence[Floats]
-) -> Singles:
+def _squared(array: Ints, table: Singles, low: Floats, size: Floats, coordinates: Sequence[Floats]) -> Singles:
     """Return the square of what a surface is at least away from places, (x, y, z) of them along each axis [m^2].
 
     Outside of its grid the nearest place inside is asked, as ``surface_contact`` does.

@@ -141,9 +141,7 @@ def _take(triangles: Floats, low: Floats, cell: float, taken: Bools) -> None:
 @njit(cache=True, nogil=True)
 def _within(corners: Floats, count: int, axis: int, number: int, into: Floats, buffer: Floats) -> int:
     """Write the corners of a convex polygon that is cut off below and above a row of cells, and return how many."""
-    return _cut(
-        buffer, _cut(corners, count, axis, number - _SURE, 1.0, buffer), axis, number + 1 + _SURE, -1.0, into
-    )
+    return _cut(buffer, _cut(corners, count, axis, number - _SURE, 1.0, buffer), axis, number + 1 + _SURE, -1.0, into)
 
 
 @njit(cache=True, nogil=True)

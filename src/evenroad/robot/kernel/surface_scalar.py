@@ -97,9 +97,7 @@ def is_near(capsule: Floats, reach: float, base: int) -> bool:
             leaf = tree.LEAVES + row * (LANES * node + lane)
             for entry in range(LANES):
                 if header[tree.IS_MESH] != 0:
-                    if table[leaf + entry] < tree.NOWHERE and _triangle_near(
-                        capsule, reach, table, leaf + entry
-                    ):
+                    if table[leaf + entry] < tree.NOWHERE and _triangle_near(capsule, reach, table, leaf + entry):
                         return True
                 elif _squared(capsule, table, leaf + entry) < reach * reach:
                     return True

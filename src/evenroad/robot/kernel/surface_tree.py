@@ -93,9 +93,7 @@ def _write_leaves(corners: Floats, row: int, table: Singles) -> None:
         normals = np.cross(edges[:, 0], edges[:, 1])
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
         columns[: len(corners), 3:9] = edges.reshape(-1, 6)
-        columns[: len(corners), 9:] = np.where(
-            lengths > 0.0, normals / np.where(lengths > 0.0, lengths, 1.0), 0.0
-        )
+        columns[: len(corners), 9:] = np.where(lengths > 0.0, normals / np.where(lengths > 0.0, lengths, 1.0), 0.0)
     by_leaf = columns.reshape(rows, LANES, -1).transpose(0, 2, 1)
     table[:] = by_leaf.ravel()
 

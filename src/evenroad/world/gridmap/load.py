@@ -153,8 +153,7 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     if negate not in (0, 1) or isinstance(negate, float):
         raise InvalidValue(f"negate in {file} must be 0, 1, true or false, got {negate!r}")
     resolution, occupied, free = (
-        numbers([document[key]], 1, f"{key} in {file}")[0]
-        for key in ("resolution", "occupied_thresh", "free_thresh")
+        numbers([document[key]], 1, f"{key} in {file}")[0] for key in ("resolution", "occupied_thresh", "free_thresh")
     )
     if not 0.0 <= free < occupied <= 1.0:
         raise InvalidValue(

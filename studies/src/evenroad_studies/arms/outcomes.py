@@ -124,9 +124,7 @@ def _medians(asked: Floats) -> Floats:
 def paired(one: Outcomes, other: Outcomes) -> Paired:
     """Return what the first solved more than the other, by problem; a run without its like is left out."""
     mine, theirs = _shared(one.problems, other.problems)
-    here, there = (
-        np.ix_(*each) for each in zip((mine, theirs), _shared(one.draws, other.draws), strict=True)
-    )
+    here, there = (np.ix_(*each) for each in zip((mine, theirs), _shared(one.draws, other.draws), strict=True))
     both = one.ran[here] & other.ran[there]
     more = (one.solved[here] & both).sum(axis=1) - (other.solved[there] & both).sum(axis=1)
     asked = both.any(axis=1)
@@ -205,9 +203,7 @@ def _checked(path: Path, arrays: Arrays) -> tuple[list[Way], Bools, Bools]:
     require_array(path, "costs", arrays["costs"], np.float64, (len(arrays["ways"]), len(GENERATORS) + 1, 3))
     for name in ("ran", "solved"):
         require_array(path, name, arrays[name], np.uint8, (total, -(-draws // 8)))
-    ran, solved = (
-        np.unpackbits(arrays[name], axis=1, count=draws).astype(np.bool_) for name in ("ran", "solved")
-    )
+    ran, solved = (np.unpackbits(arrays[name], axis=1, count=draws).astype(np.bool_) for name in ("ran", "solved"))
     fields = arrays["ways"].tolist()
     if not all(isinstance(each[2], str) and each[2].isdecimal() for each in fields):
         raise BrokenFile(f"{path}: ways must be texts, the third one a number of points")

@@ -83,9 +83,7 @@ def _drawn(robot: str, generator: str, stream: str, rng: np.random.Generator) ->
     pool, tools = _pool(robot)
     ends: list[Floats] = []
     for region in rng.permutation(len(regions))[:2] if regions else (-1, -1):
-        here = (
-            pool[rng.integers(len(pool), size=200)] if region < 0 else pool[_inside(tools, regions[region])]
-        )
+        here = pool[rng.integers(len(pool), size=200)] if region < 0 else pool[_inside(tools, regions[region])]
         free = here[world.valid(here)]
         if not len(free):
             return None
@@ -111,10 +109,7 @@ def joins(roadmap: ArmRoadmap, problem: Problem, links: int) -> bool:
     """Say whether a roadmap leads from start to goal."""
     world = problem.world
     assert isinstance(world, ArmWorld)
-    return (
-        ArmWorldRoadmap(roadmap, world).connect(problem.start, problem.goal[np.newaxis], links=links).goal
-        >= 0
-    )
+    return ArmWorldRoadmap(roadmap, world).connect(problem.start, problem.goal[np.newaxis], links=links).goal >= 0
 
 
 @lru_cache(maxsize=2)

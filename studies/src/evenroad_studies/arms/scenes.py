@@ -38,9 +38,7 @@ def _boxes(centre: Floats, angle: float, parts: list[tuple[list[float], list[flo
 
 
 def _box(size: list[float] | Floats, place: Floats, turn: Floats) -> Obstacle:
-    return Obstacle.of(
-        "", "box", tuple(map(float, size)), tuple(map(float, place)), tuple(turn.ravel().tolist())
-    )
+    return Obstacle.of("", "box", tuple(map(float, size)), tuple(map(float, place)), tuple(turn.ravel().tolist()))
 
 
 def _before(rng: np.random.Generator) -> Region:

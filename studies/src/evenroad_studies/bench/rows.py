@@ -216,7 +216,5 @@ def _labels_below(parts: Sequence[Labels]) -> Labels:
 
 def _labels(numbers: npt.NDArray[np.generic], texts: dict[int, str]) -> Labels:
     present, place = np.unique(numbers, return_inverse=True)
-    names, rank = np.unique(
-        np.array([texts[number] for number in present.tolist()], dtype=object), return_inverse=True
-    )
+    names, rank = np.unique(np.array([texts[number] for number in present.tolist()], dtype=object), return_inverse=True)
     return Labels(rank.astype(np.int32)[place], tuple(names.tolist()))

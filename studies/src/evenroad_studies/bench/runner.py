@@ -82,9 +82,7 @@ def run_tasks(
 class _Run:
     """The state of one run: what waits, what is in flight, and who is under suspicion of killing workers."""
 
-    def __init__(
-        self, suite: str, tasks: list[Task], store: Store, workers: Workers, limit: float | None
-    ) -> None:
+    def __init__(self, suite: str, tasks: list[Task], store: Store, workers: Workers, limit: float | None) -> None:
         self.suite, self.store, self.workers, self.limit = suite, store, workers, limit
         self.finished = self.failures = 0
         self._chunker = Chunker(tasks)

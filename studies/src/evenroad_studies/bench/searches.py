@@ -69,9 +69,7 @@ def is_connected(states: EdgeStates) -> bool:
     label = np.arange(len(states.node_states), dtype=np.int32)
     join(label, states.edges[states.edge_states == FREE])
     while label[-2] != label[-1]:
-        asked = min(
-            (_edges_leaving(states.edges, states.edge_states, label, label[end]) for end in (-2, -1)), key=len
-        )
+        asked = min((_edges_leaving(states.edges, states.edge_states, label, label[end]) for end in (-2, -1)), key=len)
         if not len(asked):
             return False
         states.evaluate_edges(asked)

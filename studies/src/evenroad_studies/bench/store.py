@@ -42,9 +42,7 @@ COMMIT_SECONDS = 0.5
 _STATUS = COLUMNS.index("status")
 _INSERT_ROW = f"INSERT OR REPLACE INTO rows VALUES ({', '.join('?' * (len(COLUMNS) + 1))})"
 
-_INSERT_NAME = (
-    "INSERT INTO names SELECT ?1, ?2, ?3 WHERE NOT EXISTS (SELECT 1 FROM names WHERE id = ?1 AND text = ?2)"
-)
+_INSERT_NAME = "INSERT INTO names SELECT ?1, ?2, ?3 WHERE NOT EXISTS (SELECT 1 FROM names WHERE id = ?1 AND text = ?2)"
 """The same name again is no error: an interrupt may come right after a COMMIT, and the rows are then written again."""
 
 

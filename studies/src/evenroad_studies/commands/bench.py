@@ -130,9 +130,7 @@ class Bench:
                 show(finished, tasks)
                 check()
 
-            return run_tasks(
-                suite.name, suite.tasks, store, workers, callback=callback, limit=limit, retry=self.retry
-            )
+            return run_tasks(suite.name, suite.tasks, store, workers, callback=callback, limit=limit, retry=self.retry)
 
     def _workers(self) -> Workers:
         if self.scheduler is not None:

@@ -118,9 +118,7 @@ def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None 
         points = moved(starts, network.moves(starts, neighbours))
         value, columns = objective.of_columns(np.ascontiguousarray(points.T))
         if not (math.isfinite(value) and np.isfinite(columns).all()):
-            raise InvalidValue(
-                f"the objective '{objective}' is {value} at step {step}: the training has diverged"
-            )
+            raise InvalidValue(f"the objective '{objective}' is {value} at step {step}: the training has diverged")
         judged = star_discrepancy(points) if config.judge == "star" else value
         if judged < best_value:
             best_value, best_points = judged, points
@@ -192,9 +190,7 @@ def refine(
         target = parse_objective(origin.objective if objective is None else objective)
         report = None if callback is None else _counted(callback, index * steps, total)
         seeds = np.random.SeedSequence(origin.seed or 0, spawn_key=(origin.replica or 0, 0))
-        annealed = anneal(
-            points.n, points.d, target, steps=steps, rng=seeds, start=points.points, callback=report
-        )
+        annealed = anneal(points.n, points.d, target, steps=steps, rng=seeds, start=points.points, callback=report)
         made = Origin(family=origin.family, method=f"{origin.method}+annealed", objective=str(target))
         refined.append(PointSet(annealed.points, replace(made, seed=origin.seed, replica=origin.replica)))
     return tuple(refined)

@@ -12,9 +12,7 @@ from evenroad_studies.problems.paper import CHAINS, CORRIDORS, MAZES, UR5
 from evenroad_studies.problems.puzzles import cubicles, problem_of, twistycool
 
 PUZZLES = tuple(
-    ProblemSource(
-        f"{name}{end}", set_dim, partial(problem_of, make, set_dim), about=f"{about}; the sets give {given}"
-    )
+    ProblemSource(f"{name}{end}", set_dim, partial(problem_of, make, set_dim), about=f"{about}; the sets give {given}")
     for name, make, about in (
         ("cubicles", cubicles, "an L-shaped body changes rooms through the basement (OMPL.app's, of boxes)"),
         ("twistycool", twistycool, "a hooked body goes through a window (OMPL.app's, of boxes)"),
@@ -26,9 +24,7 @@ PUZZLES = tuple(
 )
 """With sets that give the translation, as published, and with sets that give the rotation, too."""
 
-PROBLEMS = {
-    source.name: source for source in (*MAZES, *CORRIDORS, *CHAINS, *PUZZLES, *UR5, *FAIR, *ARM_PROBLEMS)
-}
+PROBLEMS = {source.name: source for source in (*MAZES, *CORRIDORS, *CHAINS, *PUZZLES, *UR5, *FAIR, *ARM_PROBLEMS)}
 """Name -> where the problem comes from."""
 
 

@@ -54,9 +54,7 @@ def instance_rng(stream: Stream, family: Family, d: int, difficulty: int, number
     return np.random.default_rng(np.random.SeedSequence(ENTROPY, spawn_key=key))
 
 
-def make_instance(
-    stream: Stream, family: Family, d: int, difficulty: int, size: float, number: int
-) -> Problem:
+def make_instance(stream: Stream, family: Family, d: int, difficulty: int, size: float, number: int) -> Problem:
     """Return the problem of this number >= 0; the same arguments give the same one, in every process.
 
     `d` is the dimension of the point sets: any of :data:`BALLS` for balls and boxes, 2 for mazes, 3 for SE(2) and 6 for

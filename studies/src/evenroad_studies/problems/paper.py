@@ -69,9 +69,7 @@ def _maze(level: int, instance: int) -> Problem:
 
 
 MAZES = tuple(
-    ProblemSource(
-        f"maze-{level}", 2, partial(_maze, level), about=f"2-D maze, level {level}, disk of radius 6"
-    )
+    ProblemSource(f"maze-{level}", 2, partial(_maze, level), about=f"2-D maze, level {level}, disk of radius 6")
     for level in LEVELS
 )
 

@@ -132,9 +132,7 @@ def _body() -> tuple[OrientedBox, ...]:
     rotation = np.array([[c, -s * d, s * t], [s, c * d, -c * t], [0.0, t, d]])
     boxes = (OrientedBox.spanning(low, high) for low, high in (_ARM, _FOOT))
     rows = rotation.ravel().tolist()
-    return tuple(
-        OrientedBox((rotation @ box.centre).tolist(), box.half_extents, rows, name="body") for box in boxes
-    )
+    return tuple(OrientedBox((rotation @ box.centre).tolist(), box.half_extents, rows, name="body") for box in boxes)
 
 
 def _walls(scene: dict[str, Any]) -> Iterator[OrientedBox]:

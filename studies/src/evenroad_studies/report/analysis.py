@@ -91,8 +91,7 @@ def _cells_of(row: dict[str, Any]) -> list[ExpectedCell]:
     columns = (row["n"], row["success"], row.get("v", [math.nan] * len(row["n"])))
     shared = {key: value for key, value in row.items() if key not in ("n", "success", "v", "v_sd")}
     return [
-        ExpectedCell(n=n, success=float(success), v=float(v), **shared)
-        for n, success, v in zip(*columns, strict=True)
+        ExpectedCell(n=n, success=float(success), v=float(v), **shared) for n, success, v in zip(*columns, strict=True)
     ]
 
 

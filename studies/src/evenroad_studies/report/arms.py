@@ -147,9 +147,7 @@ def draw_success(lines: Sequence[Line], robot: str, k: str) -> Figure:
         for sampler, (colour, style) in STYLES.items():
             for search in ("connect", KEPT):
                 curve = [
-                    line
-                    for line in mine
-                    if (line.sampler, line.generator, line.search) == (sampler, generator, search)
+                    line for line in mine if (line.sampler, line.generator, line.search) == (sampler, generator, search)
                 ]
                 if curve:
                     panel.plot(
@@ -223,7 +221,5 @@ def arm_pictures(rows: Rows, lines: Sequence[Line]) -> list[tuple[str, str, Figu
         pictures.append(
             (f"arms-{robot}-k{k}", f"Success on the arms' problems: {title}", draw_success(lines, robot, k))
         )
-        pictures.append(
-            (f"arms-{robot}-k{k}-costs", f"What success costs: {title}", draw_costs(rows, robot, k))
-        )
+        pictures.append((f"arms-{robot}-k{k}-costs", f"What success costs: {title}", draw_costs(rows, robot, k)))
     return pictures

@@ -103,10 +103,7 @@ def _paired_table(found: Sequence[Comparison], reference: str, name: str, settin
         name=name,
         title=f"{setting}: difference from {reference} [points]",
         header=("sampler", *(f"N = {n}" for n in counts)),
-        rows=[
-            row(sampler, *(_comparison_entry(by_place.get((sampler, n))) for n in counts))
-            for sampler in samplers
-        ],
+        rows=[row(sampler, *(_comparison_entry(by_place.get((sampler, n))) for n in counts)) for sampler in samplers],
         notes=(
             f"Over the same runs. Marked: p < {SIGNIFICANT:g} after Holm's correction over the {family} comparisons of"
             f" this setting that were tested; {', '.join(tests) or 'none here'}. Intervals: 95 %, not corrected.",

@@ -181,8 +181,7 @@ def _expected(analysis: Analysis) -> bytes:
 
 def _fair(analysis: Analysis) -> bytes:
     header = (
-        "pooled_by group sampler worlds pairs sets success uniform_success difference low high interval p"
-        " p_corrected"
+        "pooled_by group sampler worlds pairs sets success uniform_success difference low high interval p p_corrected"
     )
     rows = []
     for grouping, found in analysis.pooled.items():

@@ -27,9 +27,7 @@ from evenroad_studies.training.folder import one_at_a_time
 COUNTS = (16, 32, 64, 128, 256, 512, 1024, 2048)
 """Numbers of points."""
 HICKERNELL_DIMENSIONS = tuple(range(1, 15))
-MPMC_CELLS = tuple((2, n) for n in COUNTS[1:-1]) + tuple(
-    (d, n) for n in (128, 256, 512, 1024) for d in (3, 5, 6, 10)
-)
+MPMC_CELLS = tuple((2, n) for n in COUNTS[1:-1]) + tuple((d, n) for n in (128, 256, 512, 1024) for d in (3, 5, 6, 10))
 
 LARGE_SETS = Path(__file__).parents[1] / "sets"
 """Folder of the shipped sets that are too large for evenroad's own wheel."""
@@ -67,12 +65,8 @@ def recipes() -> list[Recipe]:
     """Return every cell of the bank, in the order in which they are built: most wanted first."""
     first = (2, 10, 3, 5)
     order = [*first, *(d for d in HICKERNELL_DIMENSIONS if d not in first)]
-    annealed = [
-        Recipe("hickernell", d, n, _sets(d, n), "hickernell", _steps(d, n)) for d in order for n in COUNTS
-    ]
-    return annealed + [
-        Recipe("mpmc", d, n, 8, "hickernell", _network_steps(n, d), "network") for d, n in MPMC_CELLS
-    ]
+    annealed = [Recipe("hickernell", d, n, _sets(d, n), "hickernell", _steps(d, n)) for d in order for n in COUNTS]
+    return annealed + [Recipe("mpmc", d, n, 8, "hickernell", _network_steps(n, d), "network") for d, n in MPMC_CELLS]
 
 
 def _network_steps(n: int, d: int) -> int:
@@ -152,9 +146,7 @@ def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
         "seed": SEED,
         "version": sets[0].origin.version,
         "hashes": [each.hash for each in stored],
-        "measures": {
-            name: [float(f"{value(each.points):.6g}") for each in stored] for name, value in MEASURED.items()
-        },
+        "measures": {name: [float(f"{value(each.points):.6g}") for each in stored] for name, value in MEASURED.items()},
     }
     with one_at_a_time(folder / LOCK):
         index_path = folder / INDEX
@@ -168,9 +160,7 @@ def main() -> None:
     """Build every cell that the bank does not hold yet."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--folder", type=Path, default=DATA, help="the bank")
-    parser.add_argument(
-        "--work", type=Path, default=Path("out/bank"), help="where finished sets wait for their cell"
-    )
+    parser.add_argument("--work", type=Path, default=Path("out/bank"), help="where finished sets wait for their cell")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--family", help="only the cells of this family")
     parser.add_argument("-d", type=int, nargs="+", help="only these dimensions")

@@ -84,9 +84,7 @@ def anneal_many(
     target = parse_objective(objective)
     require_points_for(target, n)
     text = str(target)
-    origin = Origin(
-        family=text if family is None else family, method="annealed", objective=text, seed=seed_of(rng)
-    )
+    origin = Origin(family=text if family is None else family, method="annealed", objective=text, seed=seed_of(rng))
     first = SetTask(n, d, steps, _root_sequence(rng), origin, None)
     return _make_all(first, sets, workers, folder, callback)
 
@@ -179,9 +177,7 @@ def _in_processes(
     stop = context.Value("b", 0, lock=False)
     pool = ProcessPool(min(processes, len(tasks)), _share, (steps_done, best_values, stop))
     try:
-        waiting: set[Future[PointSet]] = {
-            pool.submit(_make_set_shared, slot, task) for slot, task in enumerate(tasks)
-        }
+        waiting: set[Future[PointSet]] = {pool.submit(_make_set_shared, slot, task) for slot, task in enumerate(tasks)}
         while waiting:
             finished, waiting = wait(waiting, timeout=_POLL_SECONDS, return_when="FIRST_COMPLETED")
             if callback is not None:

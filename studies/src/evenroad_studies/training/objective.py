@@ -43,9 +43,7 @@ SMALLEST_ROOT = 1e-160
 ALIASES = {"asd": "average_squared", "centered": "centred", "wraparound": "wrap_around"}
 """Other spellings that are understood."""
 
-_TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<sign>\S))"
-)
+_TOKEN = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<sign>\S))")
 
 
 @dataclass(frozen=True)

@@ -47,9 +47,7 @@ def place_order(order: npt.ArrayLike) -> Annealed:
     return Annealed(points, star_discrepancy(points))
 
 
-def search_orders(
-    n: int, *, steps: int = 5000, rng: RngLike = 0, callback: Callback | None = None
-) -> Annealed:
+def search_orders(n: int, *, steps: int = 5000, rng: RngLike = 0, callback: Callback | None = None) -> Annealed:
     """Return n points in the plane of small star discrepancy: the best order of many, placed exactly.
 
     Parameters

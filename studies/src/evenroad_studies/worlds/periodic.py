@@ -191,9 +191,7 @@ def _as_axes(values: npt.ArrayLike, d: int) -> Ints:
     """Return the axes as an (n, m) array, or raise InvalidValue."""
     axes = np.asarray(values)
     if axes.ndim != 2 or axes.shape[1] == 0 or not np.issubdtype(axes.dtype, np.integer):
-        raise InvalidValue(
-            f"axes must be integers of shape (n, m) with m >= 1, got {axes.dtype} of shape {axes.shape}"
-        )
+        raise InvalidValue(f"axes must be integers of shape (n, m) with m >= 1, got {axes.dtype} of shape {axes.shape}")
     outside = (axes < 0) | (axes >= d)
     if outside.any():
         raise InvalidValue(f"axes must be in 0 .. {d - 1}, got {int(axes[outside][0])}")
@@ -230,9 +228,7 @@ def _motions_miss_boxes(a: Floats, b: Floats, axes: Ints, centres: Floats, half_
         )
         box = 0
         while free[row] and box < len(axes):
-            free[row] = _misses_box(
-                first, last, axes[box], centres[box], half_extents[box], spans, narrowed, on_axis
-            )
+            free[row] = _misses_box(first, last, axes[box], centres[box], half_extents[box], spans, narrowed, on_axis)
             box += 1
     return free
 

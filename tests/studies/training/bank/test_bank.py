@@ -26,9 +26,7 @@ def small_bank(tmp_path):
 
 def test_the_shipped_bank_holds_nothing_without_a_recipe():
     index = json.loads((DATA / INDEX).read_text())
-    held = {
-        (family, int(n), int(d)) for family, by_d in index.items() for d, by_n in by_d.items() for n in by_n
-    }
+    held = {(family, int(n), int(d)) for family, by_d in index.items() for d, by_n in by_d.items() for n in by_n}
     assert held <= {(each.family, each.n, each.d) for each in recipes()}
 
 

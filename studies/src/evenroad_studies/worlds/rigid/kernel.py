@@ -216,9 +216,7 @@ def _overlap(centre, axes, half, obstacles, obstacle, planar, products, offset):
         if abs(offset[i]) > half[i] + other_reach:
             return False
     for j in range(3):
-        own_reach = (
-            half[0] * abs(products[0, j]) + half[1] * abs(products[1, j]) + half[2] * abs(products[2, j])
-        )
+        own_reach = half[0] * abs(products[0, j]) + half[1] * abs(products[1, j]) + half[2] * abs(products[2, j])
         along = offset[0] * products[0, j] + offset[1] * products[1, j] + offset[2] * products[2, j]
         if abs(along) > other_half[j] + own_reach:
             return False
