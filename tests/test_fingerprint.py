@@ -78,12 +78,7 @@ def test_a_function_has_a_fingerprint_by_the_name_that_its_user_gives():
 
 def test_an_arm_whose_motions_are_proved_is_another_world_than_the_arm():
     arm = ArmWorld(load_robot("ur5"), load_scene("box-reach"))
-    worlds = [
-        arm,
-        CertifiedWorld(arm),
-        CertifiedWorld(arm, 1e-3),
-        CertifiedWorld(replace(arm, resolution=0.1)),
-    ]
+    worlds = [arm, CertifiedWorld(arm), CertifiedWorld(arm, 1e-3), CertifiedWorld(replace(arm, resolution=0.1))]
     assert len({world.fingerprint() for world in worlds}) == 4
     assert CertifiedWorld(replace(arm)).fingerprint() == worlds[1].fingerprint()
 

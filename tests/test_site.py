@@ -113,11 +113,7 @@ def test_every_example_is_a_page(site):
     for script in EXAMPLES:
         page = site[f"generated/examples/{script.stem}.html"]
         assert script.stem in site["examples.html"].text
-        assert any("_images" in (loaded or "") for loaded in page.loads) or script.stem[:2] in (
-            "03",
-            "09",
-            "10",
-        )
+        assert any("_images" in (loaded or "") for loaded in page.loads) or script.stem[:2] in ("03", "09", "10")
 
 
 def test_every_page_can_be_reached_from_the_first(site):

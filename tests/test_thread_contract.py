@@ -82,10 +82,7 @@ def verdicts(world, q):
 def an_arm():
     world = er.ArmWorld(robot(), box_scene())
     certified, (a, b) = CertifiedWorld(world), ends()[0]
-    own = [
-        lambda: world.apart(a, np.atleast_2d(b)),
-        lambda: certified.motion_valid(ends()[:, 0], ends()[:, 1]),
-    ]
+    own = [lambda: world.apart(a, np.atleast_2d(b)), lambda: certified.motion_valid(ends()[:, 0], ends()[:, 1])]
     return verdicts(world, ends()) + own + [lambda: ARM_TREES.smooth(world, np.array([a, b]))]
 
 
@@ -98,8 +95,7 @@ def an_arm_among_clouds_and_meshes():
     wedge = TriangleMesh(corners, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)], "wedge")
     scan = np.random.default_rng(0).uniform((-0.5, 0.4, 0.2), (0.1, 0.6, 0.6), (60, 3))
     scene = TABLE.with_(
-        Obstacle("wedge", Mesh(wedge, pose=er.Pose((0.4, -0.3, 0.05)))),
-        Obstacle("scan", PointCloud(scan, 0.02)),
+        Obstacle("wedge", Mesh(wedge, pose=er.Pose((0.4, -0.3, 0.05)))), Obstacle("scan", PointCloud(scan, 0.02))
     )
     return verdicts(er.ArmWorld(robot(), scene), ends())
 

@@ -178,12 +178,7 @@ def test_of_poses_and_configurations_the_path_ends_at_one_and_the_cheapest_where
     poses = [er.Pose.from_rpy((0.65, y, 0.2), (0.0, np.pi / 2, 0.0)) for y in (0.05, -0.05)]
     first = er.plan("box-reach", "home", [*poses, "inside"], robot="ur5")
     best = er.plan(
-        "box-reach",
-        "home",
-        [*poses, "inside"],
-        er.RRTConnect(improve=True),
-        robot="ur5",
-        limits={"rounds": 30},
+        "box-reach", "home", [*poses, "inside"], er.RRTConnect(improve=True), robot="ur5", limits={"rounds": 30}
     )
     assert first.solved
     assert best.cost <= first.cost

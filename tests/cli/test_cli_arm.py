@@ -275,10 +275,7 @@ ON_A_MAP = ("plan", "a.png", "--robot-radius", 1, "--start", 1, 1, "--goal", 2, 
             for option in (("--deg",), ("--srdf", "a.srdf"), ("--group", "g"), ("--resolution", 0.1))
         ),
         (("robot", "cycle.urdf"), "form a cycle"),
-        (
-            ("robot", "arm.urdf", "--package", "parts"),
-            "--package must be of the form NAME=VALUE, got 'parts'",
-        ),
+        (("robot", "arm.urdf", "--package", "parts"), "--package must be of the form NAME=VALUE, got 'parts'"),
         (("robot", "arm.urdf", "--xacro", "=1"), "--xacro must be of the form NAME=VALUE, got '=1'"),
         (
             ("robot", "arm.urdf", "--group", "a", "--group", "a", "--write-srdf", "arm.srdf"),

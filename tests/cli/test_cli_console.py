@@ -80,13 +80,7 @@ def test_a_files_name_may_look_like_markup(run, tmp_path, name):
 
 def test_the_times_of_a_plan_for_an_arm_fit_one_line_of_80_columns(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
-    seconds = {
-        "validity": 0.0123,
-        "neighbours": 1.4567,
-        "search": 0.5555,
-        "motions": 0.9999,
-        "shortcut": 0.0021,
-    }
+    seconds = {"validity": 0.0123, "neighbours": 1.4567, "search": 0.5555, "motions": 0.9999, "shortcut": 0.0021}
     world = GridMap(np.zeros((9, 9), dtype=bool)).world(1.0)
     result = replace(plan(world, (2, 2), (7, 7), PRM(16)), timings=seconds)
     print_plan(result, ["a.json"], [("checked by", "lanes")])

@@ -136,10 +136,7 @@ def test_what_completes_words_knows_every_verb(run):
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (
-            "plan a.png --robot-radius 1 --start 1 1 --goal 2 2 -n many",
-            "-n/--n must be a whole number, got 'many'",
-        ),
+        ("plan a.png --robot-radius 1 --start 1 1 --goal 2 2 -n many", "-n/--n must be a whole number, got 'many'"),
         ("points -n 16 -d 2", "missing from evenroad points: -o PATH, --out PATH; all options: evenroad"),
         ("measure", "missing from evenroad measure: SET"),
         ("train -n 16 -d 2 -o a --method sgd", "invalid choice 'sgd' for argument '--method'. Expected"),

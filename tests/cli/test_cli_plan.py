@@ -272,11 +272,7 @@ def test_the_record_holds_all_that_is_needed_to_ask_again(answer):
     ("error", "code", "says"),
     [
         (KeyboardInterrupt, 130, "interrupted"),
-        (
-            MemoryError("Unable to allocate 3 EiB"),
-            2,
-            "evenroad: error: not enough memory: Unable to allocate 3 EiB\n",
-        ),
+        (MemoryError("Unable to allocate 3 EiB"), 2, "evenroad: error: not enough memory: Unable to allocate 3 EiB\n"),
     ],
 )
 def test_an_interrupt_and_too_little_memory_leave_no_half_file(run, tmp_path, monkeypatch, error, code, says):

@@ -15,11 +15,7 @@ PACKAGE = Path(evenroad.__file__).parent
 
 def python(*arguments, **environment):
     return subprocess.run(
-        [sys.executable, *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, **environment},
+        [sys.executable, *arguments], capture_output=True, text=True, check=False, env={**os.environ, **environment}
     )
 
 

@@ -48,10 +48,7 @@ def test_a_plan_along_it_is_that_of_python_and_proved(answer, made):
         (["roadmap", "ur5", "--group", "left"], "unknown group 'left'"),
         (["roadmap", "ur5", "--group", ""], "the group has no joint"),
         (["roadmap", "ur5", "--cell", "none.yaml"], "there is no scene file none.yaml"),
-        (
-            ["roadmap", "ur5", "--cell", "limits.yaml"],
-            "unknown joint in the limits of scene 'limits': 'knee'",
-        ),
+        (["roadmap", "ur5", "--cell", "limits.yaml"], "unknown joint in the limits of scene 'limits': 'knee'"),
         (["roadmap", "ur5", "-o", "no/where.roadmap"], "no"),
         (["roadmap", "ur5", "--cell", "cell.yaml", "-o", "cell.yaml"], "would overwrite"),
         ([*ALONG, "--roadmap", "cell.yaml"], "is text, not a .npz roadmap"),

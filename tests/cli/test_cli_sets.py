@@ -44,10 +44,7 @@ def test_constructed_sets_are_written_too(run, tmp_path):
 
 @pytest.mark.parametrize(
     ("words", "options"),
-    [
-        ("halton --plain --skip 3", {"scramble": False, "start": 3}),
-        ("sukharev --allow-fewer", {"allow_fewer": True}),
-    ],
+    [("halton --plain --skip 3", {"scramble": False, "start": 3}), ("sukharev --allow-fewer", {"allow_fewer": True})],
 )
 def test_points_take_the_options_of_a_sampler_that_plans_take(run, tmp_path, words, options):
     name, *rest = words.split()
@@ -69,14 +66,8 @@ def test_the_name_that_the_sampler_once_had_is_still_taken(run, tmp_path):
         (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.csv, \.npy, \.npz"),
         (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
         (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
-        (
-            ("-n", 8, "-d", 2, "--plain", "-o", "a.npy"),
-            "--plain does not go .* 'even', only with halton and sobol",
-        ),
-        (
-            ("-n", 8, "-d", 2, "--sampler", "sobol", "--skip", -1, "-o", "a.npy"),
-            "--skip must be an integer >= 0",
-        ),
+        (("-n", 8, "-d", 2, "--plain", "-o", "a.npy"), "--plain does not go .* 'even', only with halton and sobol"),
+        (("-n", 8, "-d", 2, "--sampler", "sobol", "--skip", -1, "-o", "a.npy"), "--skip must be an integer >= 0"),
         (("-n", 8, "-d", 2, "--sampler", "sukharev", "-o", "a.npy"), r"are 4 and 9 \(or allow_fewer\)"),
         (("-n", 8, "-d", 2, "--seed", -1, "-o", "a.npy"), "--seed must be an integer >= 0, got -1"),
         (

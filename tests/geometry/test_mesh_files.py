@@ -93,8 +93,7 @@ def _dae_in(unit, folder):
 
 
 @pytest.mark.parametrize(
-    ("unit", "metres"),
-    [("", 1.0), ('<unit name="millimetre" meter="0.001"/>', 0.001), ('<unit meter="10"/>', 10.0)],
+    ("unit", "metres"), [("", 1.0), ('<unit name="millimetre" meter="0.001"/>', 0.001), ('<unit meter="10"/>', 10.0)]
 )
 def test_a_collada_file_is_read_in_metres_whatever_its_unit(tmp_path, unit, metres):
     mesh = load_mesh(_dae_in(unit, tmp_path), scale=2.0)

@@ -70,11 +70,7 @@ def test_point_clouds_are_read_only_copies_and_equal_by_value():
         cloud.points[0] = 1.0
     assert cloud == PointCloud(np.zeros((2, 3)))
     assert hash(cloud) == hash(PointCloud(np.zeros((2, 3))))
-    for other in (
-        PointCloud(np.ones((2, 3))),
-        PointCloud(points, 0.1),
-        PointCloud(np.zeros((2, 3)), pose=PLACE),
-    ):
+    for other in (PointCloud(np.ones((2, 3))), PointCloud(points, 0.1), PointCloud(np.zeros((2, 3)), pose=PLACE)):
         assert cloud != other
     assert cloud != "cloud"
 

@@ -54,12 +54,7 @@ def test_what_is_not_a_real_number_is_refused(bad):
 
 
 def test_an_error_repeats_only_a_little_of_a_long_value():
-    for bad in (
-        "0.5, " * 1000,
-        ["0.5" * 1000],
-        {"points": "0.5" * 1000},
-        np.array([["x" * 5000]], dtype=object),
-    ):
+    for bad in ("0.5, " * 1000, ["0.5" * 1000], {"points": "0.5" * 1000}, np.array([["x" * 5000]], dtype=object)):
         with pytest.raises(InvalidValue) as caught:
             PointSet(bad)
         assert len(str(caught.value)) < 300
@@ -186,8 +181,7 @@ def _array_file(shape):
 
 
 @pytest.mark.parametrize(
-    "shape",
-    ["(3, 2", "(" * 90, "(100000000000, 2)", f"({10**20}, 2)", "(-3, 2)", "(True, 2)", "{[]: 1}", "(3, 2)"],
+    "shape", ["(3, 2", "(" * 90, "(100000000000, 2)", f"({10**20}, 2)", "(-3, 2)", "(True, 2)", "{[]: 1}", "(3, 2)"]
 )
 def test_a_header_that_lies_or_does_not_parse_is_a_broken_file(tmp_path, shape):
     (tmp_path / "bad.npy").write_bytes(_array_file(shape))

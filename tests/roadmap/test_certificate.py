@@ -9,17 +9,7 @@ import pytest
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points import PointSet, draw
 from evenroad.points.measures import dispersion_bounds, star_discrepancy
-from evenroad.roadmap import (
-    Certificate,
-    Complete,
-    KMutual,
-    KNearest,
-    KStar,
-    Radius,
-    Status,
-    certify,
-    certify_roadmap,
-)
+from evenroad.roadmap import Certificate, Complete, KMutual, KNearest, KStar, Radius, Status, certify, certify_roadmap
 from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.space import SO3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld

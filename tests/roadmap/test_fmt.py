@@ -53,8 +53,7 @@ def test_the_tree_is_that_of_the_papers_algorithm(seed, n, share, steps):
     states = EdgeStates(ChanceWorld(0), np.zeros((n, 2)), edges)
     states.edge_states[:] = np.where(free, 1, 2)
     nodes, along, reached = march(
-        SearchProblem(n - 2, np.array([n - 1]), graph_of(n, edges), weights, np.zeros(n, dtype=np.int64)),
-        states,
+        SearchProblem(n - 2, np.array([n - 1]), graph_of(n, edges), weights, np.zeros(n, dtype=np.int64)), states
     )
     expected, tree = _reading_of_the_paper(n, neighbours, length, is_free, n - 2, n - 1)
     assert reached == len(tree)

@@ -87,13 +87,7 @@ def test_the_default_k_grows_with_the_dimension(planner, d, k):
 
 @pytest.mark.parametrize(
     ("rule", "sampler"),
-    [
-        (KNearest(4), Sliced()),
-        (KEarlier(6), Sliced()),
-        (KNearest(7), Sobol()),
-        (Radius(0.5), Sobol()),
-        (None, Sobol()),
-    ],
+    [(KNearest(4), Sliced()), (KEarlier(6), Sliced()), (KNearest(7), Sobol()), (Radius(0.5), Sobol()), (None, Sobol())],
 )
 def test_a_number_of_points_in_space_means_sliced_poses_for_few_neighbours_and_sobol_for_more(rule, sampler):
     space = SE3((0.0, 0.0, 0.0), (2.0, 1.0, 1.0))
@@ -101,8 +95,7 @@ def test_a_number_of_points_in_space_means_sliced_poses_for_few_neighbours_and_s
 
 
 @pytest.mark.parametrize(
-    "space",
-    [JOINTS, JointSpace([-3.0] * 10, [3.0] * 10), SE2((0.0, 0.0), (1.0, 1.0)), Product([SO3(), SO3()])],
+    "space", [JOINTS, JointSpace([-3.0] * 10, [3.0] * 10), SE2((0.0, 0.0), (1.0, 1.0)), Product([SO3(), SO3()])]
 )
 def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
     assert even_points(40, space, KNearest(4), rng=3) == draw("even", 40, space.cube_dim, rng=3)

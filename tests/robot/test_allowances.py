@@ -214,12 +214,7 @@ def test_a_start_inside_of_the_scan_is_said_to_be_one():
 
 CUT = {"shape": "box", "size": [0.1, 0.1, 0.1], "xyz": [0.4, 0.25, 0.1], "grow": 0.01}
 LOW = {"shape": "box", "size": [0.4, 0.8, 0.02], "xyz": [0.5, 0, 0.1]}
-SCAN = {
-    "shape": "cloud",
-    "file": "scan.npy",
-    "radius": RADIUS,
-    "cut": [CUT, {"attached": "block", "at": "grasp"}],
-}
+SCAN = {"shape": "cloud", "file": "scan.npy", "radius": RADIUS, "cut": [CUT, {"attached": "block", "at": "grasp"}]}
 HELD = {"shape": "box", "size": [0.06, 0.06, 0.1], "link": "tool0", "xyz": [0, 0, 0.05]}
 ALLOWED = ["base_link", {"link": "block", "near_ends": 0.02}, {"link": "block", "within": LOW, "grow": 0.001}]
 

@@ -282,12 +282,7 @@ def follower(mimic):
     [
         (Mimic("turn", 0.5), ("continuous", -math.inf, math.inf), InvalidValue, "whole multiple"),
         # The bounds of its leader may be so narrow that the angle itself is small.
-        (
-            Mimic("turn", 1e39),
-            ("revolute", -1e-39, 1e-39),
-            InvalidValue,
-            r"'turn' must do so .* at most 1e\+09",
-        ),
+        (Mimic("turn", 1e39), ("revolute", -1e-39, 1e-39), InvalidValue, r"'turn' must do so .* at most 1e\+09"),
         (Mimic("turn", -1.0, 2e9), ("revolute", -1e-39, 1e-39), InvalidValue, r"'turn' must do so .* 1e\+09"),
         (Mimic("thumb"), ("revolute", -1.0, 1.0), UnknownName, "unknown joint 'thumb'"),
         (Mimic("follower"), ("revolute", -1.0, 1.0), InvalidValue, "mimics itself"),

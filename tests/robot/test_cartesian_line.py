@@ -64,11 +64,7 @@ def test_a_line_that_is_blocked_says_where_and_by_what():
 
 def test_a_line_out_of_reach_says_how_far_it_goes():
     line = line_from(
-        ArmWorld(UR5, EMPTY),
-        chain_of(UR5, "tool0"),
-        CartesianLine(2.0, away="up"),
-        np.array(BENT["ur5"]),
-        2.0,
+        ArmWorld(UR5, EMPTY), chain_of(UR5, "tool0"), CartesianLine(2.0, away="up"), np.array(BENT["ur5"]), 2.0
     )
     assert "no joint angles go on" in line.why
     assert 0.05 < float(line.why.split()[1]) < 1.0

@@ -80,10 +80,7 @@ def test_clouds_and_meshes_are_kept_clear_of(scene, backend):
 
 
 def test_what_is_nearer_than_the_clearance_is_told_so_and_what_touches_is_told_that():
-    robot, scene = (
-        ur5(np.pi),
-        Scene((Obstacle.of("wall", "box", (0.1, 2.0, 2.0), (0.9, 0.0, 0.5)),), name="s"),
-    )
+    robot, scene = (ur5(np.pi), Scene((Obstacle.of("wall", "box", (0.1, 2.0, 2.0), (0.9, 0.0, 0.5)),), name="s"))
     world, plain = ArmWorld(robot, scene, clearance=0.3), ArmWorld(robot, scene)
     q = world.space.from_cube(np.random.default_rng(0).random((600, 6)))
     told = [world.explain(each) for each in q]

@@ -203,10 +203,7 @@ def test_a_file_that_attaches_something_twice_is_refused(tmp_path):
 
 def test_a_goal_pose_may_be_that_of_what_is_held():
     held = HeldObject(
-        "crate",
-        Box((0.1, 0.1, 0.2), pose=Pose.from_rpy((0, 0, 0.12), (0, 0.3, 0))),
-        "tool0",
-        ("wrist_2_link",),
+        "crate", Box((0.1, 0.1, 0.2), pose=Pose.from_rpy((0, 0, 0.12), (0, 0.3, 0))), "tool0", ("wrist_2_link",)
     )
     goal = Pose.from_rpy((0.4, 0.2, 0.5), (0.0, 2.5, 0.0))
     start = [0.5, -1.9, 1.2, -0.8, -1.57, 0.0]

@@ -152,12 +152,7 @@ def test_a_pose_in_the_frame_of_another_link_is_that_of_the_root():
         links=("stand", *UR5.links),
         joints=(
             Joint(
-                "foot",
-                "fixed",
-                "stand",
-                "base_link",
-                (0.1, 0.2, 0.3),
-                Pose.from_rpy((0, 0, 0), (0, 0, 1.0)).rotation,
+                "foot", "fixed", "stand", "base_link", (0.1, 0.2, 0.3), Pose.from_rpy((0, 0, 0), (0, 0, 1.0)).rotation
             ),
             *UR5.joints,
         ),

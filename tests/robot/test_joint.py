@@ -53,11 +53,7 @@ def test_limits_of_a_leader_are_narrowed_to_those_of_its_mimics(followers, expec
 
 
 def test_a_joint_that_turns_on_stops_where_its_mimic_does():
-    assert limits(leader(-math.inf, math.inf, "continuous"), follower(-1.0, 2.0, 0.5)) == (
-        "revolute",
-        -2.0,
-        4.0,
-    )
+    assert limits(leader(-math.inf, math.inf, "continuous"), follower(-1.0, 2.0, 0.5)) == ("revolute", -2.0, 4.0)
     free = follower(-math.inf, math.inf, 2.0)
     assert limits(leader(-math.inf, math.inf, "continuous"), free) == ("continuous", -math.inf, math.inf)
 

@@ -24,11 +24,7 @@ def gap(first, second):
     n, m = len(first), len(second)
     # Least s >= 0 with a point of the first in the second moved by s: 0 where they touch.
     equal = np.vstack(
-        [
-            np.c_[first.T, -second.T, -towards],
-            np.r_[np.ones(n), np.zeros(m), 0],
-            np.r_[np.zeros(n), np.ones(m), 0],
-        ]
+        [np.c_[first.T, -second.T, -towards], np.r_[np.ones(n), np.zeros(m), 0], np.r_[np.zeros(n), np.ones(m), 0]]
     )
     found = linprog(np.r_[np.zeros(n + m), 1.0], A_eq=equal, b_eq=[0, 0, 0, 1, 1], bounds=(0, None))
     return found.fun * np.linalg.norm(towards) if found.status == 0 else np.inf

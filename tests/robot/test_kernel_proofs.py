@@ -142,10 +142,7 @@ def test_a_post_of_a_millimetre_is_not_missed_wherever_it_is_in_a_motion(kind, b
     # Balls that lie in line ahead: a motion of one hits the post, of the others none.
     places = far + 0.01 * np.arange(20 if "many" in kind else 1)
     balls = [Capsule((x, 0.0, -half), (x, 0.0, half), 1e-3, link=joints[-1].child) for x in places.tolist()]
-    links, group = (
-        ("base", *(each.child for each in joints)),
-        tuple(j.name for j in joints if j.mimic is None),
-    )
+    links, group = (("base", *(each.child for each in joints)), tuple(j.name for j in joints if j.mimic is None))
     robot, scene = Robot(kind, links, joints, tuple(balls), (), group), Scene([er.Sphere(1e-3, xyz=AHEAD)])
     if "own" in kind:
         own = Capsule((1.0, 0.0, -half), (1.0, 0.0, half), 1e-3, link="base")

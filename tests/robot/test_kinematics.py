@@ -6,16 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
-from evenroad.robot import (
-    Joint,
-    Robot,
-    capsule_endpoints,
-    joint_values,
-    link_poses,
-    load_robot,
-    tip_links,
-    with_group,
-)
+from evenroad.robot import Joint, Robot, capsule_endpoints, joint_values, link_poses, load_robot, tip_links, with_group
 from tests.robot.kernel_arms import STRAIGHT
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 

@@ -69,10 +69,7 @@ def test_goals_are_outside_where_all_are_and_in_collision_where_one_is():
     free = world.valid(start)
     hit, start = start[~free][0], start[free][0]
     outside = plan(world, start, [BENT, BENT])
-    assert (outside.status, "all 2 goals are outside the limits" in outside.message) == (
-        "goal_outside_limits",
-        True,
-    )
+    assert (outside.status, "all 2 goals are outside the limits" in outside.message) == ("goal_outside_limits", True)
     mixed = plan(world, start, [hit, BENT])
     assert mixed.status == "goal_invalid"
     assert "all 2 goals are in collision or outside the limits" in mixed.message
@@ -155,10 +152,7 @@ def test_no_proof_of_absence_comes_from_an_end_that_exceeds_a_limit_by_rounding(
 def test_states_texts_and_the_command_take_such_values_alike(tmp_path, monkeypatch):
     inside = f"<limit lower='-{WRITTEN}' upper='{WRITTEN}' velocity='1' effort='1'/>"
     text = urdf(
-        link("x"),
-        link("y"),
-        link("z"),
-        *(joint(*names, inside=inside, axis="0 0 1") for names in ("axy", "byz")),
+        link("x"), link("y"), link("z"), *(joint(*names, inside=inside, axis="0 0 1") for names in ("axy", "byz"))
     )
     state = "".join(f"<joint name='{name}' value='3.1415927'/>" for name in "ab")
     (tmp_path / "arm.srdf").write_text(

@@ -241,15 +241,7 @@ def test_a_cached_robot_waits_for_no_library_of_meshes_or_fits(tmp_path):
 
 def damaged(content, rng):
     """Yield what may become of a file: cut off anywhere, bits flipped, bytes lost, zeroed or appended."""
-    yield from (
-        b"",
-        content[:1],
-        content[:-1],
-        content + b" ",
-        content[1:],
-        content * 2,
-        b"\0" * len(content),
-    )
+    yield from (b"", content[:1], content[:-1], content + b" ", content[1:], content * 2, b"\0" * len(content))
     yield from (content[:at] for at in rng.integers(len(content), size=100))
     for at in rng.integers(8 * len(content), size=300):
         flipped = bytearray(content)

@@ -194,9 +194,7 @@ def test_a_joint_that_turns_on_is_one_piece_all_the_way_round(turn):
     robot = flat_arm("continuous")
     lift = replace(robot.joints[1], axis=(0.0, 1.0, 0.0), xyz=(0.0, 0.0, 0.0), lower=-1.5, upper=1.5)
     robot = replace(
-        robot,
-        joints=(robot.joints[0], lift),
-        capsules=(Capsule((0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 0.05, link="link1"),),
+        robot, joints=(robot.joints[0], lift), capsules=(Capsule((0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 0.05, link="link1"),)
     )
     ring = [Obstacle.of(f"ball{i}", "sphere", (0.06,), (*at(0.2 * i, 0.4), 0.0)) for i in range(32)]
     world = ArmWorld(robot, Scene(tuple(ring), name="ring"))

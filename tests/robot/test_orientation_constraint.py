@@ -106,12 +106,7 @@ def test_a_start_or_goals_that_are_tilted_are_refused():
 def test_straight_and_upright_go_together():
     scene, start, goal = problem(6)
     result = er.plan(
-        scene,
-        start,
-        goal,
-        robot=ARM7,
-        upright=OrientationConstraint(0.1),
-        straight=CartesianLine(0.05, away="up"),
+        scene, start, goal, robot=ARM7, upright=OrientationConstraint(0.1), straight=CartesianLine(0.05, away="up")
     )
     assert result.solved
     assert set(result.deviation) == {"tilt_rad", "line_m", "line_rad"}

@@ -136,8 +136,7 @@ def test_a_cloud_of_the_robot_alone_leaves_nothing(ur5):
 
 
 @pytest.mark.parametrize(
-    ("seen_at", "error", "says"),
-    [("nowhere", UnknownName, "unknown state"), ("1,2", InvalidValue, "6 numbers")],
+    ("seen_at", "error", "says"), [("nowhere", UnknownName, "unknown state"), ("1,2", InvalidValue, "6 numbers")]
 )
 def test_where_a_robot_cannot_stand_it_has_seen_nothing(ur5, seen_at, error, says):
     scan = Scene((Obstacle("scan", PointCloud(table(10), 0.01), seen=Seen(seen_at)),), name="s")

@@ -40,11 +40,7 @@ def barred(arm7):
     other = np.cross(axis, side)
     bars = [
         Obstacle.of(
-            f"bar{k}",
-            "cylinder",
-            (0.008, 0.3),
-            tuple(middle + 0.1 * away),
-            tuple(rotation_from_z(along).ravel()),
+            f"bar{k}", "cylinder", (0.008, 0.3), tuple(middle + 0.1 * away), tuple(rotation_from_z(along).ravel())
         )
         for k, (away, along) in enumerate([(side, other), (-side, other), (other, side), (-other, side)])
     ]

@@ -100,9 +100,7 @@ def only_a(tmp_path):
 
 
 UP = Scene(
-    (),
-    name="s",
-    states={"up": {"a": 0.25, "b": 0.5, "f": 0.5}, "down": {"a": -0.5}, "bent": {"a": 0.5, "b": 1}},
+    (), name="s", states={"up": {"a": 0.25, "b": 0.5, "f": 0.5}, "down": {"a": -0.5}, "bent": {"a": 0.5, "b": 1}}
 )
 
 
@@ -122,8 +120,7 @@ def test_numbers_and_states_of_the_group_alone_hold_nothing(only_a):
 
 def test_two_states_that_differ_in_what_is_not_planned_for_are_refused(only_a):
     with pytest.raises(
-        InvalidValue,
-        match="'b' is not planned for, .* from 0.5 in the state 'up' to 1 in 'bent'; the group is a",
+        InvalidValue, match="'b' is not planned for, .* from 0.5 in the state 'up' to 1 in 'bent'; the group is a"
     ):
         at_states(only_a, ("up", "bent"), UP)
 

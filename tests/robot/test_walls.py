@@ -116,8 +116,7 @@ def test_a_joint_that_turns_on_needs_walls_on_both_sides(robot):
     endless = replace(robot, joints=tuple(joints))
     assert may_connect(ArmWorld(endless), UP, OVER)
     lid = Mesh(
-        convex_hull(np.array([[x, y, z] for x in (-0.2, 0.2) for y in (-0.2, 0.2) for z in (0.5, 0.7)])),
-        link="foot",
+        convex_hull(np.array([[x, y, z] for x in (-0.2, 0.2) for y in (-0.2, 0.2) for z in (0.5, 0.7)])), link="foot"
     )
     between = replace(
         endless,
@@ -142,11 +141,7 @@ def boxes(*links):
     """Hulls and capsules of boxes, each of a link: its name, size and place."""
     shapes = [Box(size, pose=pose, link=name) for name, size, pose in links]
     hulls = tuple(piece_of(shape).hull for shape in shapes)
-    return {
-        "hulls": hulls,
-        "inner": inner_of(shapes),
-        "capsules": tuple(c for s in shapes for c in fit_capsules(s)),
-    }
+    return {"hulls": hulls, "inner": inner_of(shapes), "capsules": tuple(c for s in shapes for c in fit_capsules(s))}
 
 
 def crossing(other, block, body, place=(0.0, 0.0, 0.0)):

@@ -22,11 +22,7 @@ def urdf(*parts, name="arm"):
 def two_joints(last_body=SPHERE):
     """base -a-> upper -b-> lower."""
     return urdf(
-        link("base"),
-        link("upper"),
-        link("lower", last_body),
-        joint("a", "base", "upper"),
-        joint("b", "upper", "lower"),
+        link("base"), link("upper"), link("lower", last_body), joint("a", "base", "upper"), joint("b", "upper", "lower")
     )
 
 

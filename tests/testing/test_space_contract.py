@@ -58,11 +58,7 @@ MISTAKES = [
     (SO3(), {"from_cube": euler_angles}, VOLUMES),
     (SQUARE, {"from_cube": lambda u: np.asarray(u) ** 2}, VOLUMES),
     (CUBE, {"from_cube": lambda u: np.asarray(u) ** [1.0, 1.0, 1.5]}, VOLUMES),
-    (
-        LINE,
-        {"distance": lambda a, b: LINE.distance(a, b) * np.where(a < b, 1.0, 1.5)[:, 0]},
-        "distance_is_symmetric",
-    ),
+    (LINE, {"distance": lambda a, b: LINE.distance(a, b) * np.where(a < b, 1.0, 1.5)[:, 0]}, "distance_is_symmetric"),
     (LINE, {"distance": lambda a, b: LINE.distance(a, b) ** 2}, "distance_satisfies_the_triangle_inequality"),
     # The long way round, and not at an even speed.
     (Circle(), {"interpolate": BoxSpace([-math.pi], [math.pi]).interpolate}, EVENLY),

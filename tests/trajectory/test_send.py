@@ -185,10 +185,7 @@ def test_nothing_moves_unless_the_robot_runs(there, mode):
 
 @pytest.mark.parametrize(
     ("options", "asked", "said"),
-    [
-        ({"model": "UR10"}, {}, "is a UR10, not a UR5"),
-        ({}, {"fastest": 0.01}, "faster than the 0.01 rad/s allowed"),
-    ],
+    [({"model": "UR10"}, {}, "is a UR10, not a UR5"), ({}, {"fastest": 0.01}, "faster than the 0.01 rad/s allowed")],
 )
 def test_another_arm_is_not_moved_nor_faster_than_allowed(there, options, asked, said):
     arm = there(**options)

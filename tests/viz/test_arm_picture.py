@@ -6,16 +6,7 @@ from PIL import Image, ImageColor
 
 from evenroad.planning import PRM, plan
 from evenroad.points import draw
-from evenroad.robot import (
-    ArmWorld,
-    Obstacle,
-    Scene,
-    capsule_endpoints,
-    configuration,
-    in_scene,
-    load_robot,
-    load_scene,
-)
+from evenroad.robot import ArmWorld, Obstacle, Scene, capsule_endpoints, configuration, in_scene, load_robot, load_scene
 from evenroad.viz import style
 from evenroad.viz.arm import draw_arm_view, save_arm_picture
 from evenroad.viz.sheet import FINER, View, ticks
@@ -136,10 +127,7 @@ def test_dollars_in_names_are_dollars(tmp_path):
 def test_an_empty_scene_and_a_huge_floor_are_drawn_too(tmp_path):
     robot = load_robot("arm7")
     floor = Obstacle.of("floor", "box", (100.0, 100.0, 0.1), (0, 0, -0.05), cell=True)
-    for scene in (
-        Scene((), name="empty"),
-        Scene((floor,), name="floor", allowed=frozenset({("base_link", "floor")})),
-    ):
+    for scene in (Scene((), name="empty"), Scene((floor,), name="floor", allowed=frozenset({("base_link", "floor")}))):
         world = ArmWorld(robot, scene)
         goal = np.full(7, 0.5)
         save_arm_picture(tmp_path / "a.png", plan(world, np.zeros(7), goal, PRM(draw("halton", 8, 7))), world)

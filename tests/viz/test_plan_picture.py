@@ -34,12 +34,7 @@ def _pixels_of(picture, colour):
 def test_a_solved_plan_shows_start_goal_and_both_paths():
     world = _room().world(1.0)
     axes = _axes(plan(world, (5, 5), (5, 25), PRM(draw("halton", 200, 2))), world)
-    assert {text.get_text() for text in axes.get_legend().get_texts()} == {
-        "roadmap path",
-        "path",
-        "start",
-        "goal",
-    }
+    assert {text.get_text() for text in axes.get_legend().get_texts()} == {"roadmap path", "path", "start", "goal"}
     assert axes.get_title().startswith("solved")
 
 

@@ -209,8 +209,7 @@ def test_the_distance_is_from_the_disk_to_the_nearest_obstacle_and_negative_wher
     assert repr(world.distance(q[0])) == "4.0"
     assert GridMap(with_cells(empty(), (20, 30))).world(1.0, clearance=0.5).distance(q[0]) == 4.0
     np.testing.assert_array_equal(
-        world.nearest_obstacle(q),
-        [[30.5, 20.0], [30.0, 20.0], [0.0, 20.0], [30.5, 20.5], [-5.0, 1.0], [30.0, 20.0]],
+        world.nearest_obstacle(q), [[30.5, 20.0], [30.0, 20.0], [0.0, 20.0], [30.5, 20.5], [-5.0, 1.0], [30.0, 20.0]]
     )
 
 

@@ -62,9 +62,7 @@ def test_the_space_is_the_image_rectangle_turned_as_the_map_is():
     q = grid.space.from_cube(np.random.default_rng(1).random((300, 2)))
     assert grid.contains(q).all()
     np.testing.assert_allclose(
-        frame.to_pixels(grid.space.from_cube([[0, 0], [1, 0], [0, 1]])),
-        [[0, 20], [30, 20], [0, 0]],
-        atol=1e-12,
+        frame.to_pixels(grid.space.from_cube([[0, 0], [1, 0], [0, 1]])), [[0, 20], [30, 20], [0, 0]], atol=1e-12
     )
     assert math.isclose(grid.space.area, 3.0 * 2.0)
 
@@ -136,12 +134,7 @@ def test_a_map_keeps_a_read_only_copy_of_its_cells():
 
 @pytest.mark.parametrize(
     "occupied",
-    [
-        np.zeros((0, 3), np.bool_),
-        np.zeros(4, np.bool_),
-        np.zeros((2, 2), np.uint8),
-        np.zeros((2, 2, 2), np.bool_),
-    ],
+    [np.zeros((0, 3), np.bool_), np.zeros(4, np.bool_), np.zeros((2, 2), np.uint8), np.zeros((2, 2, 2), np.bool_)],
 )
 def test_cells_that_are_no_boolean_image_are_refused(occupied):
     with pytest.raises(InvalidValue, match="boolean array"):

@@ -130,15 +130,7 @@ def test_a_missing_image_and_a_folder_are_named(tmp_path):
 
 def test_what_is_no_png_or_pgm_is_refused_whatever_its_suffix_says(tmp_path):
     path = tmp_path / "garbage.png"
-    for content in (
-        b"",
-        b"hello",
-        b"\x89PNG\r\n\x1a\n",
-        b"P5 4",
-        b"P5 x y 255\n",
-        bytes(100),
-        png_header(0, 5),
-    ):
+    for content in (b"", b"hello", b"\x89PNG\r\n\x1a\n", b"P5 4", b"P5 x y 255\n", bytes(100), png_header(0, 5)):
         path.write_bytes(content)
         assert_refused(path)
     grey(0, 255).save(path, format="BMP")
@@ -175,10 +167,7 @@ def test_an_image_with_flipped_bytes_is_read_or_refused_but_never_another_error(
     ("columns", "rows"), [(LARGEST_IMAGE + 1, 1), (10_001, 10_000), (20_000, 10_000), (2**31 - 1, 2**31 - 1)]
 )
 def test_a_huge_size_in_the_header_is_refused_before_any_pixel_is_read(tmp_path, columns, rows):
-    for name, content in (
-        ("huge.png", png_header(columns, rows)),
-        ("huge.pgm", f"P5 {columns} {rows} 255\n".encode()),
-    ):
+    for name, content in (("huge.png", png_header(columns, rows)), ("huge.pgm", f"P5 {columns} {rows} 255\n".encode())):
         path = tmp_path / name
         path.write_bytes(content)
         assert_refused(path, "too large", str(LARGEST_IMAGE))

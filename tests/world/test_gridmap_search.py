@@ -78,10 +78,7 @@ def test_what_hangs_together_is_found_and_what_is_proved_apart_does_not(radius):
     assert apart > 3
 
 
-FRAMES = [
-    None,
-    MapFrame(rows=40, cols=60, resolution=0.05, origin=(-3.0, 7.0), yaw=0.7, y_up=True),
-]
+FRAMES = [None, MapFrame(rows=40, cols=60, resolution=0.05, origin=(-3.0, 7.0), yaw=0.7, y_up=True)]
 
 
 @pytest.mark.parametrize("frame", FRAMES)

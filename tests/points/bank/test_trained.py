@@ -16,8 +16,7 @@ class TestHickernell(SamplerContract):
 
 def test_a_set_that_does_not_ship_is_refused_with_what_there_is_and_how_to_make_it():
     with pytest.raises(
-        NotAvailable,
-        match=r"hickernell has no set of n=11 in d=2; it has n = 16, .*evenroad train -n 11 -d 2",
+        NotAvailable, match=r"hickernell has no set of n=11 in d=2; it has n = 16, .*evenroad train -n 11 -d 2"
     ):
         draw("hickernell", 11, 2)
     with pytest.raises((NotAvailable, UnknownName), match="mpmc"):

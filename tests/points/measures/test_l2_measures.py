@@ -184,12 +184,7 @@ def test_symmetric_is_average_squared_times_four_to_the_d():
 
 
 @settings(max_examples=30)
-@given(
-    seed=st.integers(0, 10**6),
-    n=st.integers(1, 12),
-    d=st.integers(1, 5),
-    name=st.sampled_from(list(MEASURES)),
-)
+@given(seed=st.integers(0, 10**6), n=st.integers(1, 12), d=st.integers(1, 5), name=st.sampled_from(list(MEASURES)))
 def test_what_a_measure_says_leaves_it_unchanged_does(seed, n, d, name):
     rng = np.random.default_rng(seed)
     points, measure = rng.random((n, d)), MEASURES[name]

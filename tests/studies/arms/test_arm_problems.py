@@ -5,13 +5,7 @@ import pytest
 
 from evenroad.planning.arm_trees import connect
 from evenroad.robot import ArmWorld
-from evenroad_studies.arms.problems import (
-    ARM_ROBOTS,
-    PREFIXES,
-    draw_problem,
-    problem_name,
-    robot_and_generator,
-)
+from evenroad_studies.arms.problems import ARM_ROBOTS, PREFIXES, draw_problem, problem_name, robot_and_generator
 from evenroad_studies.arms.roadmaps import BOX_SAMPLERS, cell_of, roadmap_of
 from evenroad_studies.arms.robots import ARMS, arm_named
 from evenroad_studies.arms.scenes import GENERATORS, RANGES

@@ -119,10 +119,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_table_of_one_process_and_withou
 
     monkeypatch.setattr(schedulers, "CONNECT_SECONDS", 2.0)
     kill, killed = _killing(running[0], 1)
-    with (
-        open_store(tmp_path / "left.db") as store,
-        pytest.raises(NotAvailable, match="no Dask scheduler answers"),
-    ):
+    with open_store(tmp_path / "left.db") as store, pytest.raises(NotAvailable, match="no Dask scheduler answers"):
         run_tasks("test", TASKS, store, workers, callback=kill)
     assert killed[0] <= len(read_rows(tmp_path / "left.db")) < len(TASKS)
 

@@ -45,13 +45,7 @@ def test_a_task_gives_what_plan_gives_for_its_set():
     of_set, _ = np.random.SeedSequence(TASK.seed, spawn_key=(TASK.run,)).spawn(2)
     points, _ = draw_set(TASK.sampler, TASK.n, 2, TASK.run, np.random.default_rng(of_set))
     result = plan_on(
-        problem.world,
-        problem.start,
-        problem.goal,
-        points,
-        rule=rule_named(TASK.rule),
-        links=None,
-        shorten=False,
+        problem.world, problem.start, problem.goal, points, rule=rule_named(TASK.rule), links=None, shorten=False
     )
     assert outcome.status == str(result.status) == "solved"
     assert outcome.valid == result.counts["valid"]
@@ -94,8 +88,7 @@ def test_runs_of_a_block_protocol_are_other_points_of_one_sequence_whatever_the_
 
 
 @pytest.mark.parametrize(
-    ("start", "goal", "status"),
-    [((0.5, 0.5), (1.0, 1.0), "start_invalid"), ((0.0, 0.0), (0.5, 0.5), "goal_invalid")],
+    ("start", "goal", "status"), [((0.5, 0.5), (1.0, 1.0), "start_invalid"), ((0.0, 0.0), (0.5, 0.5), "goal_invalid")]
 )
 def test_an_end_in_collision_is_an_answer(problems, start, goal, status):
     problems("blocked", lambda instance: Problem(Corridor(2, 0.1), np.array(start), np.array(goal), 2))

@@ -76,14 +76,7 @@ def test_problems_with_different_rules_are_different_tables(run):
 def test_list_shows_what_there_is_and_runs_nothing(run, tmp_path):
     code, out, _ = run("bench", "--list")
     assert code == 0
-    for word in (
-        "suite paper",
-        "suite fair",
-        "maze-1",
-        "hypercube-legacy6",
-        "halton paper-blocks",
-        "rank-1 lattice",
-    ):
+    for word in ("suite paper", "suite fair", "maze-1", "hypercube-legacy6", "halton paper-blocks", "rank-1 lattice"):
         assert word in out
     assert not (tmp_path / "results.db").exists()
 
@@ -132,10 +125,7 @@ def test_rows_that_a_store_could_not_take_are_named_and_taken_in_by_the_same_com
         (("bench", "--jobs", 0, "--quick"), "jobs must be an integer >= 1"),
         (("bench", "--limit", 0, *SMALL[2:]), "limit must be a finite number > 0"),
         (("bench", "--limit", "1e300", *SMALL[2:]), "limit must be at most 1e+06 s, got 1e+300"),
-        (
-            ("bench", "--limit", "60", "--scheduler", "tcp://127.0.0.1:9"),
-            "--limit does not go with --scheduler",
-        ),
+        (("bench", "--limit", "60", "--scheduler", "tcp://127.0.0.1:9"), "--limit does not go with --scheduler"),
         (("bench", "--jobs", 2, "--scheduler", "tcp://127.0.0.1:9"), "--jobs does not go with --scheduler"),
         (("bench", "--store", "missing/results.db", *SMALL[2:]), "the folder missing does not exist"),
         (("export", "missing.db", "-o", "arena.db"), "no such store: missing.db"),

@@ -84,10 +84,7 @@ def test_only_some_problems_may_be_asked_for(run, tmp_path):
         (("text.db", "-o", "out"), "text.db"),
         (("results.db", "-o", "no/such/folder"), "no/such does not exist"),
         (("results.db", "-o", "out", "--only", "m" * 5000), "unknown problem in results.db: 'mmm"),
-        (
-            ("results.db", "-o", "out", "--only", "maze-7"),
-            "unknown problem in results.db: 'maze-7'; known: maze-1",
-        ),
+        (("results.db", "-o", "out", "--only", "maze-7"), "unknown problem in results.db: 'maze-7'; known: maze-1"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(run, tmp_path, arguments, text):

@@ -50,10 +50,7 @@ def test_the_shipped_mazes_are_what_the_generator_draws():
         design, seed = designs[level]
         drawn = draw_maze(design, rng=seed)
         np.testing.assert_array_equal(drawn.map.occupied, load_maze(level).map().occupied)
-        assert [list(drawn.start), list(drawn.goal)] == [
-            records[str(level)]["start"],
-            records[str(level)]["goal"],
-        ]
+        assert [list(drawn.start), list(drawn.goal)] == [records[str(level)]["start"], records[str(level)]["goal"]]
 
 
 @pytest.mark.parametrize(

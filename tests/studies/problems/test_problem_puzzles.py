@@ -102,14 +102,7 @@ def test_the_goal_of_cubicles_has_no_way_in_but_from_below():
     points = draw("halton", 3000, 6, rng=0)
     ways = [
         plan_on(
-            scene,
-            problem.start,
-            problem.goal,
-            points,
-            rule=KNearest(10),
-            links=None,
-            success_only=True,
-            shorten=False,
+            scene, problem.start, problem.goal, points, rule=KNearest(10), links=None, success_only=True, shorten=False
         ).solved
         for scene in (world, closed)
     ]

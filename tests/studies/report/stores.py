@@ -40,11 +40,7 @@ def made_up(problem="maze-1", runs=40, rates=RATES, counts=COUNTS, seed=0, **oth
                 yes = bool(of_set[which] if pooled else rng.random() < chance)
                 valid = int(n * 0.4 + rng.integers(5))
                 outcome = solved(
-                    yes,
-                    valid=valid,
-                    edges_checked=4 * valid,
-                    seconds=1e-5 * n,
-                    set_id=str(which) if pooled else "",
+                    yes, valid=valid, edges_checked=4 * valid, seconds=1e-5 * n, set_id=str(which) if pooled else ""
                 )
                 rows.append((task(problem, sampler, n, run, **others), outcome))
     return rows

@@ -125,12 +125,7 @@ def test_holms_family_is_one_setting(tmp_path):
 
 def test_samples_needed_are_found_for_every_curve(cells):
     needed = needed_of(cells)
-    assert {sampler for _, sampler in needed} == {
-        "uniform",
-        "halton scrambled",
-        "halton paper-blocks",
-        "hickernell",
-    }
+    assert {sampler for _, sampler in needed} == {"uniform", "halton scrambled", "halton paper-blocks", "hickernell"}
     for each in needed.values():
         assert each.low <= each.estimate <= each.high
         assert (each.smallest, each.largest) == (128, 512)
@@ -157,10 +152,7 @@ def test_the_papers_own_counts_tell_two_comparisons_apart():
         if sampler == "mpmc" and not problem.startswith(("corridor", "ur5"))
         if fisher_exact(ours, table[problem, other, n]) < 0.05
     }
-    assert told_apart == {
-        ("hypercube-legacy6", 512, "halton paper-blocks"),
-        ("hypercube-legacy6", 1024, "uniform"),
-    }
+    assert told_apart == {("hypercube-legacy6", 512, "halton paper-blocks"), ("hypercube-legacy6", 1024, "uniform")}
 
 
 def test_pinned_rows_say_how_they_count_milestones():

@@ -5,14 +5,7 @@ import pytest
 from evenroad.errors import NotAvailable
 from evenroad_studies.bench.samplers import SAMPLERS
 from evenroad_studies.report.cells import cells_of
-from evenroad_studies.report.charts import (
-    LOOKS,
-    as_png,
-    draw_curves,
-    draw_fair_gains,
-    draw_maze_success,
-    maze_settings,
-)
+from evenroad_studies.report.charts import LOOKS, as_png, draw_curves, draw_fair_gains, draw_maze_success, maze_settings
 from evenroad_studies.report.fair import pooled
 from evenroad_studies.report.scenes import draw_scene, scenes_among
 from tests.studies.report.stores import made_up, runs_from
@@ -67,10 +60,7 @@ def test_one_maze_alone_has_no_picture_of_all(tmp_path):
 
 
 def test_another_protocol_in_the_same_scene_shows_the_same_scene():
-    assert scenes_among(["twistycool-6d", "maze-2", "corridor-2d-0.1", "twistycool"]) == (
-        "maze-2",
-        "twistycool",
-    )
+    assert scenes_among(["twistycool-6d", "maze-2", "corridor-2d-0.1", "twistycool"]) == ("maze-2", "twistycool")
 
 
 def test_a_world_that_nobody_draws_is_said_to_have_no_picture():

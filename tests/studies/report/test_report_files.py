@@ -85,15 +85,7 @@ def test_every_link_of_the_contents_has_its_section_once(page):
 
 
 def test_the_page_says_where_its_numbers_come_from(page):
-    for fact in (
-        "evenroad report results.db",
-        "553 rows",
-        "1 (1 failed)",
-        "numpy",
-        "seeds",
-        "protocol",
-        "paper",
-    ):
+    for fact in ("evenroad report results.db", "553 rows", "1 (1 failed)", "numpy", "seeds", "protocol", "paper"):
         assert fact in page.text
 
 

@@ -174,10 +174,7 @@ def test_a_verdict_on_a_few_sets_says_so(tmp_path):
     rows = from_pool("cubicles", "mpmc", 1024, (0.0,) * 4, **STOCK)
     rows += from_pool("hypercube-legacy6", "mpmc", 1024, (0.0,) * 4, **STOCK)
     table, verdicts = analysis_from(tmp_path / "a.db", rows).verdicts["paper"]
-    assert [each.expected.problem for each in verdicts if each.word == "differs"] == [
-        "cubicles",
-        "hypercube-legacy6",
-    ]
+    assert [each.expected.problem for each in verdicts if each.word == "differs"] == ["cubicles", "hypercube-legacy6"]
     assert expected_table(table, verdicts).notes[-1].startswith("cubicles mpmc (4 sets at N = 1024): our runs")
 
 

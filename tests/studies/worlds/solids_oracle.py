@@ -89,10 +89,7 @@ def some_boxes(random, m, dim, flat=()):
 
 
 RANDOM = np.random.default_rng(5)
-ELL = (
-    OrientedBox.spanning((-1, -0.2, -0.2), (1, 0.2, 0.2)),
-    OrientedBox.spanning((0.6, 0, -0.2), (1, 1, 0.2)),
-)
+ELL = (OrientedBox.spanning((-1, -0.2, -0.2), (1, 0.2, 0.2)), OrientedBox.spanning((0.6, 0, -0.2), (1, 1, 0.2)))
 FLAT_ELL = (OrientedBox.spanning((-1, -0.2), (1, 0.2)), OrientedBox.spanning((0.6, 0), (1, 1)))
 IN_SPACE = SolidWorld(SE3([0, 0, 0], [10, 10, 10]), ELL, some_boxes(RANDOM, 25, 3, flat=range(0, 25, 2)), (0.1, 0.05))
 IN_THE_PLANE = SolidWorld(SE2([0, 0], [10, 10]), FLAT_ELL, some_boxes(RANDOM, 12, 2), (0.1, 0.05))
