@@ -80,8 +80,7 @@ class ArmRoadmap(Roadmap):
         Parameters
         ----------
         world : ArmWorld
-            The robot in a scene of other obstacles; also one that checks other bodies, such as ``OwnShapesWorld``,
-            whose ``capsules`` is an ArmWorld.  Limits may be narrower, and the robot may hold something.
+            The robot in a scene of other obstacles.  Limits may be narrower, and the robot may hold something.
 
         Raises
         ------

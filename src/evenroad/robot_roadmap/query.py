@@ -1,56 +1,38 @@
-"""A query of a roadmap in a scene: by native code alone, or check by check where Python evaluates them."""
+"""A query of a roadmap in a scene: by native code alone, or check by check where the lanes do not work."""
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol, TypeGuard
+from typing import NamedTuple
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Floats
 from evenroad._clock import now
 from evenroad._native.robot_roadmap import ProvedSearch, SceneGraph, Search
 from evenroad.planning.arm_trees import checks_of
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import VALIDATION_TOLERANCE
-from evenroad.world import World
 
 GREED = 3.0
 """Factor of the bound of the search: it needs a third of the checks of a shortest path, and after shortening its paths
 are not longer."""
-
-EXPENSIVE = 5.0
-"""Cost of a unit of length of an edge that is not evaluated yet, where evaluations are expensive."""
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
 
 
 class Query(NamedTuple):
-    """A start, (dim,), and goals, (g, dim), the largest number of links of each, the factor of the bound, and the cost
-    of a unit of length that is not evaluated yet.
-    """
+    """A start, (dim,), and goals, (g, dim), the largest number of links of each, and the factor of the bound."""
 
     start: Floats
     goals: Floats
     links: int
     greed: float = GREED
-    check_cost: float = 1.0
 
     @property
     def rules(self) -> tuple[int, float, float]:
-        """Links, greed and the cost of a check."""
-        return self.links, self.greed, self.check_cost
-
-
-class Checks(World, Protocol):
-    """A world that proves motions; native code calls its ``lanes`` where they work."""
-
-    @property
-    def backend(self) -> str:
-        """The kind of compiled check."""
-
-    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
-        """Return which motions, (m, dim) each, are free: (m,)."""
+        """Links, greed, and the cost of a unit of length that is not evaluated yet."""
+        return self.links, self.greed, 1.0
 
 
 class SearchResult(NamedTuple):
@@ -67,27 +49,22 @@ class SearchResult(NamedTuple):
 
 
 def search(
-    graph: SceneGraph, worlds: tuple[Checks, Checks], query: Query, most_motions: int, deadline: float
+    graph: SceneGraph, worlds: tuple[ArmWorld, ArmWorld], query: Query, most_motions: int, deadline: float
 ) -> SearchResult:
     """Search for a path all of whose motions are proved.
 
     The first world has everything; the second has what the roadmap did not check.
     """
-    world = worlds[0]
-    if isinstance(world, ArmWorld) and world.fixed_contact is not None:
+    if worlds[0].fixed_contact is not None:
         # Native checks get no capsules that no joint moves.
         return _not_free(query)
-    if _are_native(worlds):
+    if all(world.backend == "lanes" for world in worlds):
         return _by_lanes(graph, worlds, query, most_motions, deadline)
     return _by_calls(graph, worlds, query, most_motions, deadline)
 
 
 def _not_free(query: Query) -> SearchResult:
     return SearchResult("not free", np.empty((0, len(query.start))), -1, 0, 0)
-
-
-def _are_native(worlds: tuple[Checks, Checks]) -> TypeGuard[tuple[ArmWorld, ArmWorld]]:
-    return all(isinstance(world, ArmWorld) and world.backend == "lanes" for world in worlds)
 
 
 def _start_and_goals(query: Query) -> Floats:
@@ -106,7 +83,7 @@ def _by_lanes(
 
 
 def _by_calls(
-    graph: SceneGraph, worlds: tuple[Checks, Checks], query: Query, most_motions: int, deadline: float
+    graph: SceneGraph, worlds: tuple[ArmWorld, ArmWorld], query: Query, most_motions: int, deadline: float
 ) -> SearchResult:
     """Evaluate motion by motion."""
     (world, dynamic), terminals = worlds, _start_and_goals(query)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
@@ -45,11 +44,6 @@ def read_start_and_goals(
     status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
     timings = {"goals": given.seconds}
     return make_result(world, first, given.configurations, status, given.unreached, timings=timings)
-
-
-def start_and_goals_free(world: ArmWorld, start: Floats, goals: Floats) -> bool:
-    """Return whether a start, (dim,), and one of the goals, (g, dim), are free."""
-    return bool(world.valid(start[np.newaxis])[0] and world.valid(goals).any())
 
 
 def _configuration(world: ArmWorld, given: ConfigurationLike) -> npt.ArrayLike:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -26,13 +25,8 @@ from evenroad.roadmap.query import Query as PlanQuery
 from evenroad.roadmap.result import NO_POINTS, make_result
 from evenroad.robot import ArmWorld
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
-from evenroad.robot_roadmap.query import EXPENSIVE, GREED, Checks, Query, SearchResult, search
-from evenroad.robot_roadmap.start_and_goals import (
-    ConfigurationLike,
-    Goal,
-    read_start_and_goals,
-    start_and_goals_free,
-)
+from evenroad.robot_roadmap.query import GREED, Query, SearchResult, search
+from evenroad.robot_roadmap.start_and_goals import ConfigurationLike, Goal, read_start_and_goals
 from evenroad.robot_roadmap.static_scene import left_to_check, require_within
 from evenroad.space.path import path_length
 
@@ -52,14 +46,6 @@ WORK, AMONG_SURFACES, LEAST_WORK = 170, 50, 30
 """Number of batches of sixteen checks of a query, search included, after which smoothing stops; the same among clouds
 and triangles, where checks take longer; and the least number for smoothing."""
 
-EXPENSIVE_LINKS, EXPENSIVE_WORK, MOST_INSERTED = 100, 800, 2000
-"""Where evaluations are expensive: links of start and goal, batches of smoothing along the capsules, and the largest
-number of milestones that queries insert."""
-
-BY_CAPSULES = 5000
-"""Largest number of motions of a plan along the capsules before a more expensive world is queried: some
-milliseconds."""
-
 _LONG = 1e8
 """Number of seconds that stands for no limit."""
 
@@ -75,15 +61,6 @@ def links_of(n: int) -> int:
     return min(n, round(16.0 * np.sqrt(n)))
 
 
-@runtime_checkable
-class ExpensiveWorld(Protocol):
-    """A world of an arm that checks other bodies where its capsules touch; a dataclass with a field `capsules`."""
-
-    @property
-    def capsules(self) -> ArmWorld:
-        """The world of the capsules, which contain the bodies: what is free for them is free."""
-
-
 class ArmWorldRoadmap(WorldRoadmap):
     """An arm's roadmap in one world, with the results of earlier checks; made by :meth:`ArmRoadmap.within`.
 
@@ -95,44 +72,35 @@ class ArmWorldRoadmap(WorldRoadmap):
     ----------
     roadmap : ArmRoadmap
     world : ArmWorld
-        The world of the queries; it may check more than the capsules.
     """
 
-    def __init__(self, roadmap: ArmRoadmap, world: Checks) -> None:
+    world: ArmWorld
+
+    def __init__(self, roadmap: ArmRoadmap, world: ArmWorld) -> None:
         self.roadmap, self.world = roadmap, world
-        self.capsules = capsules = world if isinstance(world, ArmWorld) else world.capsules  # type: ignore[attr-defined]
-        moving = require_within(roadmap, capsules)
+        moving = require_within(roadmap, world)
         # What the roadmap has proved free of robot and static scene is only checked against the other obstacles.
-        bare, left = left_to_check(capsules.robot, roadmap.scene, moving, capsules.scene)
+        bare, left = left_to_check(world.robot, roadmap.scene, moving, world.scene)
         # The same object where possible: its cached tables are then found without comparing all values.
-        bare = roadmap.bare if capsules.robot is roadmap.robot else bare
-        dynamic = ArmWorld(bare, left, resolution=capsules.resolution, clearance=capsules.clearance)
-        self._worlds: tuple[Checks, Checks] = capsules, dynamic
-        self._first: ArmWorldRoadmap | None = None
-        self._wraps = bool(np.any(capsules.space.wrapping))
-        self._graph = roadmap.graph.within(np.array(capsules.space.low), np.array(capsules.space.high))
+        bare = roadmap.bare if world.robot is roadmap.robot else bare
+        dynamic = ArmWorld(bare, left, resolution=world.resolution, clearance=world.clearance)
+        self._worlds = world, dynamic
+        self._wraps = bool(np.any(world.space.wrapping))
+        self._graph = roadmap.graph.within(np.array(world.space.low), np.array(world.space.high))
         self._lock = OwnLock()
-        if self._expensive:
-            # Its own states: what blocks the capsules may not block the other bodies.
-            self._first = ArmWorldRoadmap(roadmap, capsules)
-            self._worlds = world, replace(world, capsules=dynamic)  # type: ignore[type-var]
         self._make_ready()
 
     def _make_ready(self) -> None:
         """Compile, or load, what a query needs before a clock runs; only start and goal are checked."""
-        world, milestones = self._worlds[0], self.roadmap.milestones
+        world, milestones = self.world, self.roadmap.milestones
         if world.backend in _ready:
             return
         first = int(np.argmax(world.valid(milestones[:_SOME])))
         here = milestones[first : first + 1]
         found = search(self._graph, self._worlds, Query(here[0], here, 1), 0, math.inf)
-        smooth(self.capsules, np.repeat(here, 2, axis=0), batches=0)
+        smooth(world, np.repeat(here, 2, axis=0), batches=0)
         if found.ended != "not free":
             _ready.add(world.backend)
-
-    @property
-    def _expensive(self) -> bool:
-        return not isinstance(self.world, ArmWorld)
 
     @property
     def _size(self) -> int:
@@ -161,8 +129,7 @@ class ArmWorldRoadmap(WorldRoadmap):
     def _search(
         self, start: Floats, goals: Floats, most: int, deadline: float, links: int, greed: float = GREED
     ) -> SearchResult:
-        query = Query(start, goals, links, greed, EXPENSIVE if self._expensive else 1.0)
-        return search(self._graph, self._worlds, query, most, deadline)
+        return search(self._graph, self._worlds, Query(start, goals, links, greed), most, deadline)
 
     @one_at_a_time
     def plan(
@@ -191,26 +158,19 @@ class ArmWorldRoadmap(WorldRoadmap):
         Returns
         -------
         PlanResult
-            Every motion of `path` is proved free; other bodies than the capsules are free at states if `proof` says so.
+            Every motion of `path` is proved free.
 
         Raises
         ------
         InvalidValue, UnknownName
             If start or goal is not a configuration of the robot.
         """
-        read = read_start_and_goals(self.capsules, start, goal)
+        read = read_start_and_goals(self.world, start, goal)
         if isinstance(read, PlanResult):
             return read
         first, goals, budget = read[0], read[1].configurations, budget or Budget(seconds=SECONDS)
-        trees_of = ArmTrees(self.capsules)
-        query = PlanQuery(first, goals, shorten=shorten, budget=budget, connector=trees_of)
-        attempt = Attempt(self._worlds[0], query, NO_POINTS, "none", PLANNER)
-        if self._first is not None and start_and_goals_free(self.capsules, first, goals):
-            found = self._first.plan(first, goals, budget=_by_capsules(budget), shorten=shorten, trees=trees)
-            if found.solved:
-                return found
-            attempt.motions_checked = found.counts.get("edges_checked", 0)
-        return self._planned(attempt, trees)
+        query = PlanQuery(first, goals, shorten=shorten, budget=budget, connector=ArmTrees(self.world))
+        return self._planned(Attempt(self.world, query, NO_POINTS, "none", PLANNER), trees)
 
     def solve(self, problem: Problem) -> PlanResult:
         """Plan along the roadmap, in its world, as planners of :func:`evenroad.plan` do."""
@@ -219,12 +179,10 @@ class ArmWorldRoadmap(WorldRoadmap):
     def _planned(self, attempt: Attempt, trees: bool) -> PlanResult:
         """Return the result of a query."""
         first, goals, budget = attempt.query.start, attempt.query.goals, attempt.query.budget
-        # Trees grow where the capsules are free.
-        follow = trees and (not self._expensive or start_and_goals_free(self.capsules, first, goals))
-        links = links_of(self._size) if not follow else EXPENSIVE_LINKS if self._expensive else TRIED_LINKS
+        links = TRIED_LINKS if trees else links_of(self._size)
         most = NO_LIMIT if budget.motions is None else max(budget.motions - attempt.motions_checked, 0)
-        most = min(most, TRIED_MOTIONS) if follow else most
-        share = SHARE if follow else 1.0
+        most = min(most, TRIED_MOTIONS) if trees else most
+        share = SHARE if trees else 1.0
         deadline = attempt.began + share * min(attempt.deadline - attempt.began, _LONG)
         found = self._search(first, goals, most, deadline, links)
         if found.goal < 0 and (refused := refusal(attempt)) is not None:
@@ -238,14 +196,12 @@ class ArmWorldRoadmap(WorldRoadmap):
         if found.goal >= 0:
             return self._solved(attempt, found)
         connection = Connection(found.path, found.goal, self._size, found.configurations, found.motions)
-        if follow and attempt.left() is not None:
+        if trees and attempt.left() is not None:
             connection = self._by_trees(attempt, found)
             if connection.goal >= 0:
-                result = connected(attempt, connection)
-                assert result.path is not None
-                return replace(result, proof=self._proof(result.path))
+                return connected(attempt, connection)
         failed = gave_up(attempt, connection)
-        if not follow and found.ended == "no path":
+        if not trees and found.ended == "no path":
             text = f"the roadmap of {counted(self._size, 'milestone')} does not lead from start to goal"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
         return failed
@@ -253,7 +209,7 @@ class ArmWorldRoadmap(WorldRoadmap):
     def _by_trees(self, attempt: Attempt, found: SearchResult) -> Connection:
         """Plan with trees, and insert their path into the roadmap."""
         attempt.planner = f"{PLANNER}, then trees"
-        grown = attempt.connect(ArmTrees(self.capsules))
+        grown = attempt.connect(ArmTrees(self.world))
         if grown.goal >= 0:
             self._graph.insert(grown.path)
         checked = found.configurations + grown.configurations, attempt.motions_checked
@@ -261,11 +217,7 @@ class ArmWorldRoadmap(WorldRoadmap):
 
     def _solved(self, attempt: Attempt, found: SearchResult) -> PlanResult:
         """Return the result of a path along the roadmap."""
-        capsules, path, began, goals = self.capsules, found.path, now(), attempt.query.goals
-        if self._expensive and len(path) > 2 and self._graph.size < self._size + MOST_INSERTED:
-            # Links of later queries are shorter.
-            self._graph.insert(path[:2])
-            self._graph.insert(path[-2:])
+        world, path, began, goals = self.world, found.path, now(), attempt.query.goals
         length = raw_length = self._length(path)
         counts = dict(
             nodes=self._size,
@@ -273,13 +225,12 @@ class ArmWorldRoadmap(WorldRoadmap):
             edges_checked=attempt.motions_checked,
         )
         if attempt.query.shorten:
-            work = WORK if capsules.surfaces is None else AMONG_SURFACES
-            work = EXPENSIVE_WORK if self._expensive else max(LEAST_WORK, work - found.batches)
-            path, counts["shortcut_motions"] = smooth(capsules, path, batches=work)
+            work = max(LEAST_WORK, (WORK if world.surfaces is None else AMONG_SURFACES) - found.batches)
+            path, counts["shortcut_motions"] = smooth(world, path, batches=work)
             length, attempt.watch.seconds["shortcut"] = self._length(path), now() - began
         to = f" to goal {found.goal}" if len(goals) > 1 else ""
         return make_result(
-            self._worlds[0],
+            world,
             attempt.query.start,
             goals,
             Status.SOLVED,
@@ -288,26 +239,14 @@ class ArmWorldRoadmap(WorldRoadmap):
             goal_index=found.goal,
             path=path,
             milestone_path=found.path,
-            proof=self._proof(path),
+            proof=world.proof,
             cost=length,
             milestone_cost=raw_length,
             counts=counts,
             timings=attempt.watch.seconds,
         )
 
-    def _proof(self, path: Floats) -> str:
-        """Return the proof of a path: ``resolution`` where the capsules do not prove all of it."""
-        proved = not self._expensive or self.capsules.validate(path).all()
-        return self.capsules.proof if proved else "resolution"
-
     def _length(self, path: Floats) -> float:
         waypoints = path.tolist()
         # Where nothing wraps the sum is the same, in a tenth of the time.
-        return path_length(path, self.capsules.space) if self._wraps else sum(map(math.dist, waypoints, waypoints[1:]))
-
-
-def _by_capsules(budget: Budget) -> Budget:
-    """Return the budget of a plan along the capsules."""
-    seconds = None if budget.seconds is None else SHARE * budget.seconds
-    motions = BY_CAPSULES if budget.motions is None else min(BY_CAPSULES, budget.motions)
-    return replace(budget, seconds=seconds, motions=motions)
+        return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, waypoints, waypoints[1:]))
