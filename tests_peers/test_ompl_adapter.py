@@ -7,12 +7,12 @@ import pytest
 
 import evenroad as er
 from evenroad.errors import InvalidValue
-from evenroad.roadmap import KEarlier
 from evenroad.robot import load_robot, load_scene
 from evenroad.space import SE2, SE3, SO3, BoxSpace, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
 from evenroad.world.gridmap.shipped import load_maze
+from evenroad_studies.rules import KEarlier
 from evenroad_studies.worlds import Corridor
 
 ob = pytest.importorskip("ompl.base")

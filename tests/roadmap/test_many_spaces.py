@@ -7,7 +7,7 @@ from evenroad.points import draw
 from evenroad.points.samplers import Sobol
 from evenroad.points.samplers.even import contracted
 from evenroad.points.samplers.poses import Sliced
-from evenroad.roadmap import KEarlier, KNearest, Radius
+from evenroad.roadmap import KNearest, Radius
 from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.roadmap.points_of import even_points
 from evenroad.space import SE2, SE3, SO3, BoxSpace, JointSpace, Product
@@ -46,7 +46,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("rule", [KNearest(8), KEarlier(8), Radius(0.8)], ids=str)
+@pytest.mark.parametrize("rule", [KNearest(8), Radius(0.8)], ids=str)
 @pytest.mark.parametrize("case", CASES)
 def test_every_planner_works_in_every_space_and_lazy_equals_full(case, rule):
     world, start, goal, d = CASES[case]
@@ -87,7 +87,7 @@ def test_the_default_k_grows_with_the_dimension(planner, d, k):
 
 @pytest.mark.parametrize(
     ("rule", "sampler"),
-    [(KNearest(4), Sliced()), (KEarlier(6), Sliced()), (KNearest(7), Sobol()), (Radius(0.5), Sobol()), (None, Sobol())],
+    [(KNearest(4), Sliced()), (KNearest(6), Sliced()), (KNearest(7), Sobol()), (Radius(0.5), Sobol()), (None, Sobol())],
 )
 def test_a_number_of_points_in_space_means_sliced_poses_for_few_neighbours_and_sobol_for_more(rule, sampler):
     space = SE3((0.0, 0.0, 0.0), (2.0, 1.0, 1.0))
@@ -105,7 +105,7 @@ def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
     ("d", "rule", "near"),
     [
         (10, KNearest(4), True),
-        (12, KEarlier(6), True),
+        (12, KNearest(6), True),
         (10, KNearest(7), False),
         (7, KNearest(4), True),
         (6, KNearest(4), False),

@@ -6,11 +6,11 @@ import pytest
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import draw
-from evenroad.roadmap import prm_star_gamma, rule_named
 from evenroad.world.gridmap.shipped import LEVELS, load_maze
 from evenroad_studies.bench.samplers import SAMPLERS, why_not
 from evenroad_studies.bench.searches import search_named
 from evenroad_studies.problems import PROBLEMS
+from evenroad_studies.rules import prm_star_gamma, rule_named
 from evenroad_studies.suites import EXPERIMENTS, SUITES, paper_suite
 
 

@@ -13,15 +13,9 @@ from evenroad.roadmap.result import SearchedGraph as SearchedGraph
 from evenroad.roadmap.result import Stage as Stage
 from evenroad.roadmap.result import Status as Status
 from evenroad.roadmap.rules import Complete as Complete
-from evenroad.roadmap.rules import KEarlier as KEarlier
-from evenroad.roadmap.rules import KMutual as KMutual
 from evenroad.roadmap.rules import KNearest as KNearest
-from evenroad.roadmap.rules import KStar as KStar
 from evenroad.roadmap.rules import Radius as Radius
-from evenroad.roadmap.rules import RadiusStar as RadiusStar
 from evenroad.roadmap.rules import Reach as Reach
 from evenroad.roadmap.rules import Rule as Rule
-from evenroad.roadmap.rules import TheoryRadius as TheoryRadius
 from evenroad.roadmap.rules import default_rule as default_rule
-from evenroad.roadmap.rules import prm_star_gamma as prm_star_gamma
 from evenroad.roadmap.rules import rule_named as rule_named

@@ -13,8 +13,7 @@ from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch
 from evenroad.roadmap.connector import Connection, Connector
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.query import BOUND, Query, edge_costs
-from evenroad.roadmap.rules import Rule
-from evenroad.roadmap.rules.near import ascending
+from evenroad.roadmap.rules import Rule, ascending
 from evenroad.roadmap.search import (
     FREE,
     NOT_FOUND,

@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import UnknownName
-from evenroad.roadmap import rule_named
 from evenroad.roadmap.search import FREE, EdgeStates
 from evenroad.space import BoxSpace
 from evenroad_studies.bench.searches import SEARCHES, is_connected, milestones_until_connected, search_named
+from evenroad_studies.rules import rule_named
 from evenroad_studies.worlds import Corridor
 from tests.counting import Counting
 

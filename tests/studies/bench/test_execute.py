@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evenroad.roadmap import rule_named
 from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld
 from evenroad_studies.bench import execute
@@ -15,6 +14,7 @@ from evenroad_studies.bench.execute import OverTime, run_task, time_limit
 from evenroad_studies.bench.samplers import SAMPLERS, draw_set
 from evenroad_studies.bench.task import Problem, ProblemSource, Task
 from evenroad_studies.problems import PROBLEMS, source_named
+from evenroad_studies.rules import rule_named
 from evenroad_studies.worlds import Corridor
 from tests.plan_on import plan_on
 

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from evenroad.points import draw
-from evenroad.roadmap import KEarlier, KNearest
+from evenroad.roadmap import KNearest
 from evenroad_studies.problems import source_named
 from evenroad_studies.problems.puzzles import cubicles, pillar, twistycool
+from evenroad_studies.rules import KEarlier
 from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld
 from tests.plan_on import plan_on
 

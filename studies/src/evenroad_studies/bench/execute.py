@@ -20,13 +20,13 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
-from evenroad.roadmap import rule_named
 from evenroad.roadmap.search import FREE, EdgeStates
 from evenroad_studies.arms.execute import SEARCHES_OF_ARMS, run_on_arm
 from evenroad_studies.bench.samplers import draw_set
 from evenroad_studies.bench.searches import Finding, search_named
 from evenroad_studies.bench.task import Outcome, Problem, Task
 from evenroad_studies.problems import source_named
+from evenroad_studies.rules import rule_named
 
 
 def run_task(task: Task, limit: float | None = None) -> Outcome:

@@ -61,8 +61,8 @@ class ProblemSource:
 class Task:
     """All that decides the outcome of one run.
 
-    `instance` is that of a random problem, 0 of a fixed one; `n` does not count start and goal; `rule` is as
-    :func:`evenroad.roadmap.rule_named` reads it.  `search` is ``connect`` (is there a path; no shortest one), ``stock``
+    `instance` is that of a random problem, 0 of a fixed one; `n` does not count start and goal; `rule` is one of
+    :mod:`evenroad_studies.rules`, by name.  `search` is ``connect`` (is there a path; no shortest one), ``stock``
     (the same, adding milestones in order and noting after how many valid ones there is a path: OMPL's early stop),
     ``full`` or ``lazy`` (shortest path).  `run` is the draw of the sampler, from 0: run i of a block protocol takes the
     points i N + 1 .. (i + 1) N.  `seed` is the whole suite's; the run's generator is ``SeedSequence(seed,

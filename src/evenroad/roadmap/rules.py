@@ -1,11 +1,13 @@
-"""The protocol of connection rules, and rules by a number of neighbours or a distance.
+"""Connection rules: which pairs of milestones a roadmap tries to join, each by its name.
 
 The rule is part of every result: the same points give 15 % or 62 % success under two rules.  Candidates are all other
-configurations; ties go to the lower index, and start and goals come last, except for `KEarlier`, where they come first.
+configurations; ties go to the lower index, and start and goals come last.
 """
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
@@ -14,6 +16,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints32
 from evenroad._checks import require_count, require_positive
+from evenroad.errors import UnknownName
 from evenroad.roadmap.neighbours import nearest, within
 from evenroad.space import Space
 
@@ -35,8 +38,7 @@ class Rule(Protocol):
     def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
         """Return the pairs i < j of configurations `q`, (n, dim), to try, (m, 2), in ascending order, each once.
 
-        Distances are those of the space, by default Euclidean.  The last `terminals` rows are starts and goals.  Rules
-        that depend on an order of insertion take them as the first; in all others they come last among ties.
+        Distances are those of the space, by default Euclidean.  The last `terminals` rows are starts and goals.
         """
 
     def reach(self, milestones: int, space: Space) -> Reach:
@@ -74,7 +76,7 @@ class Complete(Rule):
 
 
 @dataclass(frozen=True)
-class _ByNumber(Rule):
+class ByNumber(Rule):
     """A rule with a number of neighbours."""
 
     k: int = 10
@@ -92,50 +94,17 @@ class _ByNumber(Rule):
 
 
 @dataclass(frozen=True)
-class KNearest(_ByNumber):
+class KNearest(ByNumber):
     """``k symmetrised``: edge i-j iff i is among the k nearest of j, or j among those of i."""
 
     which = "symmetrised"
 
     def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
         """Return the pairs of each with its k nearest; see :class:`Rule`."""
-        return ascending(_arcs(nearest(q, self.k, space)), len(q))
+        return ascending(arcs_of(nearest(q, self.k, space)), len(q))
 
 
-@dataclass(frozen=True)
-class KMutual(_ByNumber):
-    """``k mutual``: edge i-j iff i is among the k nearest of j, and j among those of i."""
-
-    which = "mutual"
-
-    def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
-        """Return the pairs that are near each other both ways; see :class:`Rule`."""
-        n = len(q)
-        arcs = _arcs(nearest(q, self.k, space)).astype(np.int64)
-        there = arcs[:, 0] * n + arcs[:, 1]
-        back = arcs[:, 1] * n + arcs[:, 0]
-        return ascending(arcs[np.isin(there, back)], n)
-
-
-@dataclass(frozen=True)
-class KEarlier(_ByNumber):
-    """``k earlier``: each configuration is joined to its k nearest among those inserted before it.
-
-    Start and goal are inserted first, then the milestones by their index: the order of OMPL's PRM, whose
-    default strategy this is (k = 10).
-    """
-
-    which = "earlier"
-
-    def edges(self, q: Floats, space: Space | None = None, *, terminals: int = 0) -> Ints32:
-        """Return the pairs of each with its k nearest earlier ones; see :class:`Rule`."""
-        n = len(q)
-        inserted = np.concatenate([np.arange(n - terminals, n), np.arange(n - terminals)])
-        arcs = _arcs(nearest(q[inserted], self.k, space, earlier=True))
-        return ascending(inserted[arcs], n)
-
-
-def _arcs(neighbours: Ints32) -> Ints32:
+def arcs_of(neighbours: Ints32) -> Ints32:
     """Return (row, neighbour) for every entry that is not -1, shape (m, 2)."""
     n, k = neighbours.shape
     arcs = np.stack([np.repeat(np.arange(n, dtype=np.int32), k), neighbours.ravel()], axis=1)
@@ -161,3 +130,41 @@ class Radius(Rule):
     def reach(self, milestones: int, space: Space) -> Reach:
         """Return that a terminal is joined to all within the radius; see :class:`Rule`."""
         return Reach(radius=self.r)
+
+
+def default_rule(space: Space) -> KNearest:
+    """Return ``k=10 symmetrised`` below six dimensions, ``k=20 symmetrised`` from there on; never fewer than 2 d.
+
+    The nearest points of a lattice lie opposite each other in pairs, so fewer than 2 d of them leave directions out.
+
+    From six dimensions on, k matters more than the sampler.  Success in random worlds of balls and of boxes with
+    Owen-Sobol points at k = 4 / 6 / 10 / 20: 53 / 67 / 75 / 78 % (d=5, N=256), 46 / 59 / 69 / 75 % (d=6, N=512),
+    49 / 62 / 72 / 78 % (d=7, N=512), 46 / 56 / 64 / 71 % (d=10, N=512).  The step from 10 to 20 gives 3 to 4 points
+    in d=5 and 6 to 7 from d=6 on, where it costs a lazy search few checks.
+    """
+    d = space.cube_dim
+    return KNearest(max(20 if d >= 6 else 10, 2 * d))
+
+
+NUMBER = r"([0-9.]+(?:e[+-]?[0-9]+)?)"
+"""Pattern of a number in the name of a rule."""
+
+Forms = dict[str, tuple[str, Callable[..., Rule]]]
+
+FORMS: Forms = {
+    "k=K symmetrised": (r"k=(\d+) symmetrised", lambda k: KNearest(int(k))),
+    "radius=R": (rf"radius={NUMBER}", lambda r: Radius(float(r))),
+    "complete": (r"complete", Complete),
+}
+"""Form of a rule's name -> its pattern, and what makes the rule of the numbers in it."""
+
+
+def rule_named(name: str, forms: Forms = FORMS) -> Rule:
+    """Return the rule whose ``str()`` is `name`, for example ``k=10 symmetrised``.
+
+    UnknownName, with the known forms, if there is no such rule; InvalidValue if it does not take such a number.
+    """
+    for pattern, make in forms.values():
+        if match := re.fullmatch(pattern, name.strip()):
+            return make(*match.groups())
+    raise UnknownName.among("connection rule", name, forms)
