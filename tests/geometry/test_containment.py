@@ -3,8 +3,7 @@ import pytest
 import trimesh
 
 from evenroad.geometry import Box, Capsule, Cylinder, Mesh, Pose, Sphere, TriangleMesh
-from evenroad.geometry.containment import share_inside
-from evenroad.geometry.hulls import piece_of
+from evenroad.geometry.hulls import piece_of, share_inside
 
 
 def moved(*places):

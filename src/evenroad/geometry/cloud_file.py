@@ -23,19 +23,19 @@ _LONGEST_HEADER = 1 << 16
 
 
 def load_cloud(path: str | os.PathLike[str]) -> Floats:
-    """Read the points of a cloud from a file, (n, 3), by its suffix; whatever else the file knows of them is left out.
+    """Read the points of a cloud from a file by its suffix, (n, 3); other columns are ignored.
 
     ``.ply`` (ascii or binary, its element ``vertex``), ``.pcd`` (ascii or binary), ``.xyz`` (text: three numbers or
-    more a line, ``#`` begins a comment), ``.npy`` (an array of three columns or more, or of fields x, y, z).  Rows of
-    NaN are left out of .pcd files: there they stand for pixels without a depth.
+    more per line, ``#`` begins a comment), ``.npy`` (an array of three columns or more, or of fields x, y, z).  Rows of
+    NaN in .pcd files are ignored: they are pixels without a depth.
 
     Raises
     ------
     BrokenFile
-        If the file is missing, damaged or cut off, or holds more or fewer points than it says; has no points, or one
-        that is not finite; or is a .pcd with compressed data.
+        If the file is missing, damaged, cut off or compressed, its header announces another number of points, it is
+        empty, or a point is not finite.
     UnknownName
-        If the suffix is another.
+        For another suffix.
     """
     file = Path(path)
     readers = {".ply": _read_ply, ".pcd": _read_pcd, ".xyz": _read_xyz, ".npy": _read_npy}
@@ -87,7 +87,7 @@ def _read_ply(file: Path) -> Floats:
             element = words[1]
         elif words[0] == "property" and element == "vertex":
             fields.append((words[2], order + _PLY_TYPES[words[1]]))
-    # Of the elements behind the points, an ascii file has a line each; of binary ones only a reader of lists can tell.
+    # An ascii file has one line per element behind the points; binary ones would need a reader of lists.
     behind = sum(count for _, count in elements) - count
     if behind and kind == "ascii":
         lines = [line for line in data.splitlines() if line.strip()]
@@ -125,14 +125,14 @@ def _read_pcd(file: Path) -> Floats:
 
 
 def _count(what: str, word: str) -> int:
-    """Return what a header says that there is of something, or raise ValueError."""
+    """Return the number in a header, or raise ValueError."""
     if not (word.isdecimal() and len(word) < 16):
         raise ValueError(f"its {what} must be a number >= 0, got {shown(word)}")
     return int(word)
 
 
 def _header(content: bytes, last: bytes) -> tuple[list[list[str]], bytes]:
-    """Return the words of a file's header, line by line up to that which begins with `last`, and what follows."""
+    """Return the words of a file's header by line, up to the line that begins with `last`, and the rest of the file."""
     lines, offset = [], 0
     while offset < min(len(content), _LONGEST_HEADER):
         end = content.find(b"\n", offset)
@@ -149,7 +149,7 @@ def _header(content: bytes, last: bytes) -> tuple[list[list[str]], bytes]:
 def _rows(
     data: bytes, count: int, fields: list[tuple[str, str]], ascii_rows: bool, *, may_go_on: bool = False
 ) -> Floats:
-    """Return x, y and z of so many rows, (n, 3); after them comes nothing, unless it `may_go_on`."""
+    """Return x, y and z of `count` rows, (n, 3); ValueError if more follow, unless it `may_go_on`."""
     kind = np.dtype(fields)
     if ascii_rows:
         words = data.split()

@@ -10,7 +10,7 @@ from evenroad.geometry.shapes import PRIMITIVES, Box, Capsule, Cylinder, Shape, 
 
 
 def point_distance(shape: Shape, points: Floats) -> Floats:
-    """Return how far points, (n, 3), are from a box, sphere, cylinder or capsule in its pose, 0 inside of it: (n,) [m].
+    """Return the distances of points, (n, 3), from a box, sphere, cylinder or capsule, 0 inside: (n,) [m].
 
     Raises InvalidValue for another shape.
     """
@@ -33,12 +33,10 @@ def point_distance(shape: Shape, points: Floats) -> Floats:
 
 
 def segment_distance(first: Floats, second: Floats) -> Floats:
-    """Return the distances of pairs of segments, (n, 2, 3) each, end points in the second axis: (n,).
+    """Return the distances of pairs of segments, (n, 2, 3) each, endpoints in the second axis: (n,).
 
-    After C. Ericson, Real-Time Collision Detection (2005), section 5.1.9: the parameter on the second segment is that
-    of the two lines, clamped; that on the first follows, clamped; the second follows once more.  That of the lines
-    comes from the parts across the first segment, which keeps its digits where the two are nearly parallel.  A segment
-    may be a point.
+    After C. Ericson, Real-Time Collision Detection (2005), section 5.1.9, with the components across the first segment,
+    which are accurate for nearly parallel ones.  A segment may be a point.
     """
     along, other = first[:, 1] - first[:, 0], second[:, 1] - second[:, 0]
     between = first[:, 0] - second[:, 0]
@@ -48,7 +46,7 @@ def segment_distance(first: Floats, second: Floats) -> Floats:
     across = other - (b / safe)[:, np.newaxis] * along
     between_across = between - (c / safe)[:, np.newaxis] * along
     squared = _dot(across, across)
-    # Of parallel segments any second parameter does: the two steps after it find the closest ends.
+    # For parallel segments any second parameter does: the two steps after it find the closest points.
     t = _clamped(_dot(across, between_across), np.where(squared > 1e-30, squared, 0.0))
     s = _clamped(b * t - c, a)
     t = _clamped(b * s + f, e)

@@ -30,13 +30,12 @@ _LOOKED_AT = 300
 def fit_capsules(shape: Shape) -> tuple[Capsule, ...]:
     """Return capsules, in the frame of the shape's link, whose union contains a shape.
 
-    A sphere and a capsule are kept.  A cylinder gets the smallest capsule around it on its axis.  A box gets capsules
-    along its longest edge, side by side along the next: as many as make their cross-sections near square, at most
-    4.  A mesh gets up to 4 capsules, each around some of its triangles (see :func:`capsules_around_mesh`).  Raises as
-    :func:`evenroad.geometry.load_mesh` for a mesh, InvalidValue for a point cloud.
+    A sphere and a capsule are kept.  A cylinder gets the smallest capsule on its axis.  A box gets up to 4 capsules
+    along its longest edge, side by side, with nearly square cross-sections.  A mesh gets up to 4, see
+    :func:`capsules_around_mesh`.  Raises as :func:`evenroad.geometry.load_mesh` for a mesh, InvalidValue for a cloud.
     """
     rotation, xyz = shape.pose.rotation_matrix, np.array(shape.pose.xyz)
-    # Rotating and shifting round in the last digits, which must not cost a vertex its cover.
+    # The pose rounds in the last digits; every vertex must stay covered.
     exact = isinstance(shape, Sphere | Capsule)
 
     def placed(fitted: Fitted) -> Capsule:
@@ -67,10 +66,10 @@ def _fitted(shape: Shape) -> list[Fitted]:
 
 
 def smallest_around_prism(reach: float, half: float) -> tuple[float, float]:
-    """Return radius and half length of the smallest capsule around a prism on its axis.
+    """Return radius and half length of the smallest capsule around a prism on its axis, to 1 % of its length.
 
     The prism reaches `reach` from its axis and `half` along it to either side.  A segment of half length h needs the
-    radius ``sqrt(reach^2 + (half - h)^2)``; of h in [0, half] the one of least volume is taken, to 1 %.
+    radius ``sqrt(reach^2 + (half - h)^2)``.
     """
     h = np.linspace(0.0, half, 101)
     radius = np.hypot(reach, half - h)
@@ -91,7 +90,7 @@ def _around_box(size: Floats) -> list[tuple[Floats, Floats, float]]:
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """Some triangles, (t, 3, 3), a capsule around them, and the two parts that splitting best makes of them, if any."""
+    """Triangles, (t, 3, 3), a capsule around them, and the two parts of their best split, if any."""
 
     corners: Floats
     capsule: Fitted
@@ -99,7 +98,7 @@ class _Part:
 
     @property
     def gain(self) -> float:
-        """Volume that the split saves; less than nothing where it does not pay yet."""
+        """Volume that the split saves; negative where it costs volume."""
         if not self.halves:
             return -math.inf
         return volume(self.capsule) - sum(volume(half.capsule) for half in self.halves)
@@ -108,11 +107,9 @@ class _Part:
 def capsules_around_mesh(vertices: Floats, triangles: Ints) -> list[Fitted]:
     """Return up to 4 capsules (a, b, radius) such that every triangle lies within one of them.
 
-    One capsule is fitted around everything; then the one whose split saves most is split, again and again, and that
-    number of capsules taken which pays best: a link that is thick at both ends gains nothing before its second split.
-    A split shares triangles out by where along a coordinate axis, or along the direction in which
-    they reach furthest, their centres lie.  A capsule is convex, so it contains triangles whose corners it contains:
-    what touches the surface of the mesh touches a capsule.
+    The capsule whose split saves most is split repeatedly, and the number of capsules with the least cost is taken: a
+    link that is thick at both ends gains nothing before its second split.  A split divides triangles by their centres
+    along a coordinate or principal axis.  A capsule is convex, so it contains triangles whose corners it contains.
     """
     corners = divided(vertices[triangles])
     parts = [_splittable(_Part(corners, _rough(corners)))]
@@ -131,7 +128,7 @@ def capsules_around_mesh(vertices: Floats, triangles: Ints) -> list[Fitted]:
 
 
 def _merged(parts: list[_Part]) -> list[_Part]:
-    """Return the parts with those put together again that another cut had parted, while it pays."""
+    """Return the parts after joining pairs of them while that lowers the cost."""
     for i, j in itertools.combinations(range(len(parts)), 2):
         corners = np.concatenate([parts[i].corners, parts[j].corners])
         fewer = [part for k, part in enumerate(parts) if k not in (i, j)] + [_Part(corners, _rough(corners))]
@@ -141,12 +138,12 @@ def _merged(parts: list[_Part]) -> list[_Part]:
 
 
 def _cost(parts: list[_Part]) -> float:
-    """Return the sum of volumes, dearer for each capsule."""
+    """Return the sum of volumes with a factor for the number of capsules."""
     return sum(volume(part.capsule) for part in parts) / WORTHWHILE ** len(parts)
 
 
 def _splittable(part: _Part) -> _Part:
-    """Return the part with its best split of those that are tried."""
+    """Return the part with the best split tried."""
     below = best_cut(part.corners, lambda side: volume(_rough(side)))
     if below is None:
         return part
@@ -155,9 +152,8 @@ def _splittable(part: _Part) -> _Part:
 
 
 def best_cut(corners: Floats, cost: Callable[[Floats], float]) -> Bools | None:
-    """Return which triangles, (t, 3, 3), are on one side of the cut whose two sides cost least; None if none is tried.
-
-    Cuts are across the coordinate axes, and the direction in which the triangles' centres reach furthest.
+    """Return which triangles, (t, 3, 3), are on one side of the cheapest cut across a coordinate or the principal axis;
+    None without a cut.
     """
     centres = corners.mean(axis=1)
     _, _, axes = np.linalg.svd(centres - centres.mean(axis=0), full_matrices=len(centres) < 3)
@@ -181,10 +177,7 @@ def _rough(corners: Floats) -> Fitted:
 
 
 def divided(corners: Floats, share: float = _LONGEST_EDGE) -> Floats:
-    """Return triangles, (t, 3, 3), of the same surface without long edges: halved at the longest, again and again.
-
-    None is longer than this share of the surface's extent.
-    """
+    """Return triangles, (t, 3, 3), of the same surface with edges of at most this share of its extent."""
     longest = share * float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     done = []
     while len(corners):

@@ -13,7 +13,7 @@ from evenroad._rng import generator
 from evenroad.geometry.shapes import Capsule
 
 Fitted = tuple[Floats, Floats, float]
-"""End points a and b, each (3,), and radius of a capsule."""
+"""Endpoints a and b, each (3,), and radius of a capsule."""
 SAMPLES = 1 << 15
 """Number of points that estimate the volume of a union: a standard error of about half a per cent."""
 _LEAST_RADIUS = 1e-6
@@ -23,7 +23,7 @@ _LEAST_RADIUS = 1e-6
 def capsule_around(points: Floats) -> Fitted:
     """Return a small capsule that contains all points, (n, 3), to rounding.
 
-    :func:`rough_capsule_around`, then refined by Nelder and Mead's simplex (1965) over direction and place of the axis.
+    :func:`rough_capsule_around`, refined over the axis by the simplex of Nelder and Mead (1965).
     """
     from scipy.optimize import minimize
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from evenroad._arrays import Floats, set_fields
+from evenroad._arrays import Bools, Floats, set_fields
 from evenroad.errors import InvalidValue
 from evenroad.geometry.fit import best_cut, divided
 from evenroad.geometry.fit_points import extreme
@@ -73,7 +74,7 @@ def hull_around(points: Floats, radius: float, link: str, *, solid: bool = False
 
 
 def _thinned(corners: Floats, little: float) -> tuple[Floats, float]:
-    """Return some of a hull's corners, (n, 3), and a length that no other is farther away from their hull [m].
+    """Return some of a hull's corners, (n, 3), and an upper bound of the distance of the others from their hull [m].
 
     No other is beyond one of its sides by more than `little` [m].
     """
@@ -122,10 +123,10 @@ def distances(points: Floats, sides: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A hull, and what it is around: convex `parts`, (k, corners, 3) [m], widened by `radius`.
+    """A hull around convex `parts`, (k, corners, 3) [m], widened by `radius`.
 
-    Parts are the triangles of a mesh, or the one part that another shape is, or a mesh that is closed and convex.  A
-    cylinder's is a prism inside of it, its hull one around it.
+    Parts are the triangles of a mesh; a closed convex mesh, and any other shape, is one part.  For a cylinder that is a
+    prism inside, and the hull is a prism around it.
     """
 
     hull: Hull
@@ -134,7 +135,7 @@ class Piece:
 
 
 def piece_of(shape: Shape) -> Piece:
-    """Return a shape's hull and what it is around; raises as :func:`evenroad.geometry.fit_capsules`."""
+    """Return a shape's hull and its parts; raises as :func:`evenroad.geometry.fit_capsules`."""
     radius, outward = 0.0, 1.0
     if isinstance(shape, Sphere):
         points, radius = np.zeros((1, 3)), shape.radius
@@ -163,7 +164,7 @@ def piece_of(shape: Shape) -> Piece:
 
 
 def _is_convex(mesh: TriangleMesh) -> bool:
-    """Return whether a mesh is closed and, but for a ten-thousandth of its volume, its own hull."""
+    """Return whether a mesh is closed and fills its hull, but for a ten-thousandth of the volume."""
     from scipy.spatial import ConvexHull, QhullError
 
     corners = mesh.vertices[mesh.triangles]
@@ -176,10 +177,10 @@ def _is_convex(mesh: TriangleMesh) -> bool:
 
 
 def _is_on_its_hull(mesh: TriangleMesh) -> bool:
-    """Return whether all that lies a micrometre deep in a convex mesh's hull is inside of the mesh.
+    """Return whether a convex mesh contains all points that are a micrometre deep in its hull.
 
-    It is where every triangle is as near to one side of the hull: none of them lies deeper, so the mesh goes around all
-    of that equally often, and as its volume is the hull's, once.
+    It does if every triangle is that near to a side of the hull: then the mesh winds around all deeper points equally
+    often, and once, since its volume is the hull's.
     """
     from scipy.spatial import ConvexHull
 
@@ -191,9 +192,8 @@ def _is_on_its_hull(mesh: TriangleMesh) -> bool:
 
 
 def halves(piece: Piece) -> tuple[Piece, ...]:
-    """Return two pieces of a mesh in place of one, of a convex one a piece with more of its corners.
-
-    It is the piece itself where nothing of it can be left away.
+    """Return two pieces in place of one of a mesh, for a convex one a piece with more of its corners; the piece itself
+    where neither is possible.
     """
     if len(piece.parts) == 1 and len(piece.hull.points) < len(piece.parts[0]) <= _MOST_CORNERS:
         points, beyond = _thinned(piece.parts[0], 0.25 * piece.hull.radius)
@@ -217,5 +217,64 @@ def _box_volume(corners: Floats) -> float:
     """Return the volume of a box around triangles, along the coordinate axes or the triangles' own [m^3]."""
     points = corners.reshape(-1, 3)
     _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
-    # Flat ones count, too: by what is around them.
+    # The margin gives flat ones a volume.
     return min(float(np.prod(np.ptp(points @ turned.T, axis=0) + 1e-4)) for turned in (np.eye(3), axes))
+
+
+_ACROSS = 8
+"""Number of points along each side of the box around a body."""
+
+
+def share_inside(body: Sequence[Piece], other: Sequence[Piece], poses: Floats) -> Floats:
+    """Return the share of a body's volume inside another, by a grid of points, for poses (n, 4, 4) in its frame: (n,).
+
+    It is 0 for a body without an inside, such as an open surface.
+    """
+    corners = np.concatenate([piece.parts.reshape(-1, 3) for piece in body])
+    widest = max(piece.radius for piece in body)
+    low, high = corners.min(axis=0) - widest, corners.max(axis=0) + widest
+    steps = (np.arange(_ACROSS) + 0.5) / _ACROSS
+    grid = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
+    points = low + grid * (high - low)
+    points = points[_inside(body, points)]
+    if len(points) == 0:
+        return np.zeros(len(poses))
+    placed = np.einsum("nij,pj->npi", poses[:, :3, :3], points) + poses[:, np.newaxis, :3, 3]
+    return _inside(other, placed.reshape(-1, 3)).reshape(len(poses), -1).mean(axis=1)
+
+
+def _inside(pieces: Sequence[Piece], points: Floats) -> Bools:
+    inside = np.zeros(len(points), dtype=np.bool_)
+    for piece in pieces:
+        corners = piece.parts.reshape(-1, 3)
+        low, high = corners.min(axis=0) - piece.radius, corners.max(axis=0) + piece.radius
+        near = np.flatnonzero(~inside & (points >= low).all(axis=1) & (points <= high).all(axis=1))
+        inside[near] = _inside_piece(piece, points[near])
+    return inside
+
+
+def _inside_piece(piece: Piece, points: Floats) -> Bools:
+    from scipy.spatial import ConvexHull, QhullError
+
+    parts = piece.parts
+    if len(parts) > 1 or parts.shape[1] == 3:
+        return np.array([abs(winding_number(parts, point)) > 0.5 for point in points], dtype=np.bool_)
+    if parts.shape[1] <= 2:
+        a, along = parts[0, 0], parts[0, -1] - parts[0, 0]
+        share = np.clip((points - a) @ along / max(float(along @ along), 1e-300), 0.0, 1.0)
+        return np.linalg.norm(points - a - share[:, np.newaxis] * along, axis=1) <= piece.radius
+    try:
+        sides = ConvexHull(parts[0]).equations
+    except QhullError:
+        return np.zeros(len(points), dtype=np.bool_)
+    return (points @ sides[:, :3].T + sides[:, 3]).max(axis=1) <= piece.radius
+
+
+def winding_number(triangles: Floats, point: Floats) -> float:
+    """Return how many times a surface, (t, 3, 3), goes around a point, (3,) (Van Oosterom and Strackee 1983)."""
+    a, b, c = (triangles - point).swapaxes(0, 1)
+    la, lb, lc = (np.linalg.norm(each, axis=1) for each in (a, b, c))
+    over = np.einsum("ti,ti->t", a, np.cross(b, c))
+    dots = [np.einsum("ti,ti->t", *pair) for pair in ((a, b), (b, c), (c, a))]
+    under = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
+    return float(np.arctan2(over, under).sum()) / (2.0 * np.pi)

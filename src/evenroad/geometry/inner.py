@@ -10,7 +10,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats
 from evenroad.geometry.fit import divided
 from evenroad.geometry.fit_points import Fitted
-from evenroad.geometry.hulls import distances
+from evenroad.geometry.hulls import distances, winding_number
 from evenroad.geometry.mesh import closed_parts
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
@@ -31,12 +31,11 @@ _SHRUNK = 1e-9
 
 
 def capsules_inside(shape: Shape) -> tuple[Capsule, ...]:
-    """Return capsules, in the frame of the shape's link, each of which lies within a shape; none where none is known.
+    """Return capsules inside a shape, in the frame of its link; none where none is known.
 
     A sphere and a capsule are kept.  A cylinder holds a capsule on its axis, a flat one several across.  A box holds
-    capsules along its longest edge, side by side.  A mesh holds balls, if it is closed: what its hull adds is not part
-    of it, and an open one has no inside.  A point cloud holds none.  Raises as :func:`evenroad.geometry.load_mesh` for
-    a mesh.
+    capsules along its longest edge, side by side.  A closed mesh holds balls.  An open mesh and a point cloud hold
+    none.  Raises as :func:`evenroad.geometry.load_mesh` for a mesh.
     """
     rotation, xyz = shape.pose.rotation_matrix, np.array(shape.pose.xyz)
     exact = isinstance(shape, Sphere | Capsule)
@@ -50,7 +49,7 @@ def capsules_inside(shape: Shape) -> tuple[Capsule, ...]:
 
 
 def inner_of(shapes: Iterable[Shape]) -> tuple[Capsule, ...] | None:
-    """Return capsules inside of shapes; None where the capsules that are fitted to them are these shapes."""
+    """Return capsules inside shapes; None where the capsules fitted to them are these shapes."""
     every = tuple(shapes)
     if all(isinstance(shape, Sphere | Capsule) for shape in every):
         return None
@@ -61,7 +60,7 @@ def _inside(shape: Shape) -> list[Fitted]:
     if isinstance(shape, Mesh):
         mesh = shape.triangles
         closed, turned = closed_parts(mesh)
-        # Where sides do not tell inside from outside nobody knows what is solid.
+        # Where the orientation of triangles does not say what is inside, nothing is known to be solid.
         return _in_mesh(_proper(mesh.vertices[mesh.triangles][closed])) if turned and closed.any() else []
     if isinstance(shape, Box):
         return _in_box(np.array(shape.size))
@@ -78,7 +77,7 @@ def _in_box(size: Floats) -> list[Fitted]:
     thin, middle, long = np.argsort(size, kind="stable")
     radius, axes = 0.5 * size[thin], np.eye(3)
     aside, along = 0.5 * size[middle] - radius, (0.5 * size[long] - radius) * axes[long]
-    # So near that their axes are no farther apart than they are thick, where there are enough of them.
+    # Axes at most a radius apart, as far as there are enough of them.
     count = min(1 + math.ceil(aside / radius - 1e-9), MOST_SIDE_BY_SIDE)
     centres = [offset * axes[middle] for offset in (np.linspace(-aside, aside, count) if count > 1 else [0.0])]
     return [(centre - along, centre + along, float(radius)) for centre in centres]
@@ -94,12 +93,12 @@ def _in_cylinder(radius: float, half: float) -> list[Fitted]:
 
 
 def _proper(corners: Floats) -> Floats:
-    """Return triangles, (t, 3, 3), without those that are no more than a side of their neighbours."""
+    """Return triangles, (t, 3, 3), without those of two equal corners."""
     return corners[(corners != np.roll(corners, 1, axis=1)).any(axis=2).all(axis=1)]
 
 
 def _in_mesh(corners: Floats) -> list[Fitted]:
-    """Return balls inside of closed surfaces, triangles (t, 3, 3), whose sides tell inside from outside."""
+    """Return balls inside closed, consistently oriented surfaces, triangles (t, 3, 3)."""
     from scipy.spatial import cKDTree
 
     middles = _points_inside(corners)
@@ -116,7 +115,7 @@ def _in_mesh(corners: Floats) -> list[Fitted]:
             break
         centre = middles[k]
         left[k] = False
-        # Grid and tree only propose: the ball is inside as all triangles say.
+        # Grid and tree only propose: all triangles decide whether the ball is inside.
         if not is_inside(corners, centre):
             continue
         radius = float(distances(np.broadcast_to(centre, (len(corners), 3)), corners).min())
@@ -129,21 +128,13 @@ def _in_mesh(corners: Floats) -> list[Fitted]:
 def is_inside(corners: Floats, point: Floats) -> bool:
     """Return whether closed surfaces, triangles (t, 3, 3), go around a point, (3,), exactly once.
 
-    Where they do twice, as around a hollow whose sides are turned the wrong way, it is not said to be inside.
+    Where they do twice, as around a hollow of wrong orientation, it is not inside.
     """
-    a, b, c = np.moveaxis(corners - point, 1, 0)
-    u, v, w = (np.linalg.norm(each, axis=1) for each in (a, b, c))
-    triple = np.einsum("ni,ni->n", a, np.cross(b, c))
-    below = u * v * w
-    for (first, second), length in zip(((a, b), (b, c), (c, a)), (w, u, v), strict=True):
-        below += np.einsum("ni,ni->n", first, second) * length
-    # Each triangle covers this angle of the view from the point.
-    times = float(np.arctan2(triple, below).sum()) / (2.0 * np.pi)
-    return abs(abs(times) - 1.0) < 1e-3
+    return abs(abs(winding_number(corners, point)) - 1.0) < 1e-3
 
 
 def _points_inside(corners: Floats) -> Floats:
-    """Return places, (n, 3), on a grid, that closed surfaces seem to go around: looked at along z, line by line."""
+    """Return points of a grid, (n, 3), that closed surfaces seem to go around, by lines along z."""
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     if not (high > low).all():
         return np.empty((0, 3))

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import itertools
+import json
 import math
 import os
+import zipfile
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_batch, as_row, require_positive
+from evenroad._npz import require_unpackable
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
-from evenroad.geometry.mesh_bounds import require_bounded, require_few_triangles
 
 _FLAT = 5e-7
 """Half of the thickness that a flat mesh gets for its hull [m]."""
@@ -35,12 +38,12 @@ class TriangleMesh:
     triangles : array_like of int, shape (t, 3)
         Rows of `vertices`, at least one triangle; stored as read-only int64.
     name : str
-        What explanations call it.
+        Its name in messages.
 
     Raises
     ------
     InvalidValue
-        If the two are not such arrays, or a triangle names a vertex that there is not.
+        If the two are not such arrays, or a triangle names a missing vertex.
     """
 
     vertices: Floats
@@ -78,7 +81,7 @@ class TriangleMesh:
 
 
 def merged(meshes: tuple[TriangleMesh, ...]) -> TriangleMesh:
-    """Return several meshes, at least one, as one."""
+    """Return one mesh of one or more."""
     firsts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     return TriangleMesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
@@ -109,10 +112,9 @@ def volume_of(mesh: TriangleMesh) -> float:
 
 
 def convex_hull(points: Floats, name: str = "", grown: float = 0.0) -> TriangleMesh:
-    """Return the surface of the convex hull of points, (n, 3), each made a cube that reaches `grown` to its sides [m].
+    """Return the surface of the convex hull of points, (n, 3), each grown to a cube of half size `grown` [m].
 
-    Triangles face outward.  Points of one plane, whose hull has no inside, get cubes that reach half a micrometre.
-    Raises InvalidValue if there are none, or they lie too far apart for that.
+    Triangles face outward.  Coplanar points are grown by half a micrometre.  InvalidValue if there is no hull.
     """
     from scipy.spatial import ConvexHull, QhullError
 
@@ -138,13 +140,13 @@ def height_map(heights: npt.ArrayLike, spacing: float, low: Sequence[float] = (0
     Parameters
     ----------
     heights : array_like, shape (x, y), both >= 2
-        z over the places ``low + spacing * (i, j)`` [m]; where one is NaN there is no surface around it.
+        z over ``low + spacing * (i, j)`` [m]; there is no surface around NaN.
     spacing : float
-        Between neighbours, > 0 [m].
+        Distance of neighbours, > 0 [m].
     low : sequence of 2 floats
         x and y of the first [m].
 
-    Raises InvalidValue if they are not such numbers, or nothing is left.
+    Raises InvalidValue if they are not such numbers, or no triangle is left.
     """
     z, step = np.asarray(heights, dtype=np.float64), require_positive("spacing", spacing)
     if z.ndim != 2 or min(z.shape) < 2 or np.isinf(z).any():
@@ -159,10 +161,10 @@ def height_map(heights: npt.ArrayLike, spacing: float, low: Sequence[float] = (0
 
 
 def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
-    """Return which triangles belong to closed parts, (t,), and whether their sides tell inside from outside.
+    """Return which triangles belong to closed parts, (t,), and whether all of these are consistently oriented.
 
-    A part, of triangles that share corners, is closed where every side belongs to an even number of triangles; its
-    sides tell, where each is run along in both directions equally often.  Corners are the same where their numbers are.
+    A part, of triangles that share corners, is closed if every edge belongs to an even number of triangles, and
+    oriented if its triangles run along each edge in both directions equally often.  Equal corners are one.
     """
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
@@ -180,23 +182,23 @@ def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
 
 
 def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMesh:
-    """Read a mesh from a file: .stl, .obj, .dae, .ply and whatever else trimesh reads.
+    """Read a mesh from a file: .stl, .obj, .dae, .ply and other formats of trimesh.
 
-    Coordinates are in metres where the file says what its unit is (COLLADA and 3MF do), else in whatever it has.
+    Coordinates become metres if the file names its unit (COLLADA and 3MF), else they stay as they are.
 
     Parameters
     ----------
     path : str or path
-        A scene of several meshes becomes one, each part where the scene has it, named like the file.
+        A scene of several meshes becomes one mesh.
     scale : float
-        What the coordinates are multiplied by, > 0: 0.001 for an .stl in millimetres.
+        Factor of the coordinates, > 0: 0.001 for an .stl in millimetres.
 
     Raises
     ------
     NotAvailable
         If a package that reads such files is not installed.
     BrokenFile
-        If the file is missing, is no mesh, has no triangles, or is in a unit that has no length.
+        If the file is missing, is no mesh, has no triangles, or has an unknown unit.
     InvalidValue
         If `scale` is not such a number.
     """
@@ -237,10 +239,7 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
 
 
 def _is_cut_off(ply: bytes, triangles: int) -> bool:
-    """Return whether a .ply in ascii, of which so many triangles were read, has not the rows that its header announces.
-
-    trimesh takes what there is of these, and passes over more; of binary ones it knows the length.
-    """
+    """Return whether an ascii .ply has other rows than its header announces; trimesh checks binary ones only."""
     header, _, rows = ply.partition(b"end_header")
     words = [line.split() for line in header.splitlines()]
     if [b"format", b"ascii"] not in [row[:2] for row in words]:
@@ -248,3 +247,61 @@ def _is_cut_off(ply: bytes, triangles: int) -> bool:
     counts = {row[1]: int(row[2]) for row in words if row[:1] == [b"element"]}
     there = sum(bool(row.strip()) for row in rows.splitlines())
     return there != sum(counts.values()) or triangles < counts.get(b"face", 0)
+
+
+_PACKED = (".gz", ".tgz", ".bz2", ".xz", ".zst")
+_MOST_TIMES = 10
+"""Largest number of entries and triangles per byte of a file; files that people make have less than one."""
+_FEW_TRIANGLES = 1_000_000
+_FEW_INSTANCES = 20
+"""Number of instances up to which the parts of a COLLADA file cannot multiply."""
+
+
+def require_bounded(file: Path) -> None:
+    """Raise BrokenFile or ValueError if a file announces far more than it holds."""
+    suffix, size = file.suffix.lower(), file.stat().st_size
+    if suffix in _PACKED:
+        raise BrokenFile(f"the mesh {file} is packed: unpack it first")
+    if zipfile.is_zipfile(file):
+        with zipfile.ZipFile(file) as archive:
+            require_unpackable(file, archive)
+    elif suffix == ".glb":
+        announced = _announced_by_gltf(file.read_bytes())
+        if announced > _MOST_TIMES * size:
+            raise ValueError(f"it announces {announced} entries in {size} bytes")
+    elif suffix == ".dae":
+        content = file.read_bytes()
+        if content.count(b"instance_node") > _FEW_INSTANCES:
+            require_few_triangles(_nodes_of_collada(content), size)
+
+
+def require_few_triangles(count: int, size: int) -> None:
+    """Raise ValueError for too many triangles, repetitions included, for the size of a file."""
+    if count > max(_FEW_TRIANGLES, _MOST_TIMES * size):
+        raise ValueError(f"with its repetitions it has {count} parts, in {size} bytes")
+
+
+def _announced_by_gltf(content: bytes) -> int:
+    """Return the number of entries of all accessors of a .glb; an accessor without data stands for zeros."""
+    length = int.from_bytes(content[12:16], "little")
+    record = json.loads(content[20 : 20 + length])
+    return sum(int(each["count"]) for each in record.get("accessors", []))
+
+
+def _nodes_of_collada(content: bytes) -> int:
+    """Return the number of nodes after all instances are expanded."""
+    root = ElementTree.fromstring(content)
+    nodes = [each for each in root.iter() if each.tag.endswith("}node")]
+    named = {each.get("id", ""): each for each in nodes}
+    known: dict[int, int] = {}
+
+    def count(node: ElementTree.Element) -> int:
+        if id(node) not in known:
+            # The reader refuses a node inside itself.
+            known[id(node)] = 1
+            inside = [each for each in node if each.tag.endswith("}node")]
+            meant = [named.get(each.get("url", "")[1:]) for each in node if each.tag.endswith("}instance_node")]
+            known[id(node)] += sum(count(each) for each in (*inside, *meant) if each is not None)
+        return known[id(node)]
+
+    return max(map(count, nodes), default=0)

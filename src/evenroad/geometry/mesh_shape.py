@@ -34,20 +34,17 @@ class Mesh(Shape):
     Parameters
     ----------
     source : str, path-like, TriangleMesh, or a pair of arrays
-        A file, which is opened when it is needed; or the triangles themselves: vertices, (v, 3) [m], and rows of these,
-        (t, 3).  What has `vertices` and `faces`, as a mesh of trimesh, will do.
+        A file, opened on first use; or vertices, (v, 3) [m], and triangles as rows of these, (t, 3); or an object with
+        `vertices` and `faces`, such as a mesh of trimesh.
     scale : float or sequence of 3 floats
-        The factors that its coordinates are multiplied with, none of them 0.
+        Factors of the coordinates, none of them 0.
     **placed
-        ``xyz``, ``rpy`` or ``xyzw``, or ``pose``: where it is [m, rad]; ``name``: what a scene calls it; ``link``: what
-        it is fixed to, by default the world.
+        ``xyz``, ``rpy`` or ``xyzw``, or ``pose`` [m, rad]; ``name`` in a scene; ``link``, default the world.
 
     Raises
     ------
-    InvalidValue
-        If a length is not a finite number > 0.
-    UnknownName
-        If there is no such keyword.
+    InvalidValue, UnknownName
+        If a length is not a finite number > 0, or a keyword is unknown.
 
     Examples
     --------
@@ -71,7 +68,7 @@ class Mesh(Shape):
 
     @property
     def triangles(self) -> TriangleMesh:
-        """Its triangles with their scale, in the shape's frame; errors as :func:`evenroad.geometry.load_mesh`."""
+        """Scaled triangles in the shape's frame; errors as :func:`evenroad.geometry.load_mesh`."""
         mesh = self.source if isinstance(self.source, TriangleMesh) else load_mesh(self.source)
         return scaled(mesh, self.scale)
 
@@ -90,7 +87,7 @@ class Mesh(Shape):
 
 
 def _surface(source: Any) -> Path | TriangleMesh:
-    """Return the file or the triangles that the source of a mesh stands for."""
+    """Return the file or the triangles of a mesh's source."""
     if isinstance(source, TriangleMesh):
         return source
     if isinstance(source, str | os.PathLike):
@@ -107,10 +104,9 @@ def _surface(source: Any) -> Path | TriangleMesh:
 @explains_calls
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class PointCloud(Shape):
-    """Balls of one radius around points, as a depth camera sees them; equal by value.
+    """Balls of one radius around the points of a depth camera; equal by value.
 
-    The default radius suits a camera whose points lie at most 0.02 m apart: a robot may pass between points that lie
-    further apart.
+    The default radius suits points at most 0.02 m apart: a robot may pass between points that lie further apart.
 
     Parameters
     ----------
@@ -119,15 +115,12 @@ class PointCloud(Shape):
     radius : float
         > 0 [m].
     **placed
-        ``xyz``, ``rpy`` or ``xyzw``, or ``pose``: where it is [m, rad]; ``name``: what a scene calls it; ``link``: what
-        it is fixed to, by default the world.
+        ``xyz``, ``rpy`` or ``xyzw``, or ``pose`` [m, rad]; ``name`` in a scene; ``link``, default the world.
 
     Raises
     ------
-    InvalidValue
-        If a length is not a finite number > 0.
-    UnknownName
-        If there is no such keyword.
+    InvalidValue, UnknownName
+        If a length is not a finite number > 0, or a keyword is unknown.
 
     Examples
     --------
@@ -154,7 +147,7 @@ class PointCloud(Shape):
 
     @property
     def volume(self) -> float:
-        """Volume of a ball around every point, however they overlap [m^3]."""
+        """Sum of the volumes of all balls, overlaps included [m^3]."""
         return len(self.points) * 4.0 / 3.0 * math.pi * self.radius**3
 
     @cached_property

@@ -1,8 +1,7 @@
 """Poses: one convention for the whole package.
 
-A rotation is the nine numbers of its matrix, row by row (four in the plane).  Quaternions are (x, y, z, w), as
-SciPy and ROS have them, angles radians, lengths metres.  A pose takes points of its own frame to the frame that it is
-given in.
+A rotation is the nine numbers of its matrix, row by row (four in the plane).  Quaternions are (x, y, z, w) as in SciPy
+and ROS, angles radians, lengths metres.  A pose maps points of its own frame to its parent frame.
 """
 
 from __future__ import annotations
@@ -54,9 +53,9 @@ class Pose:
     xyz : sequence of 3 floats
         Origin of the pose's own frame [m].
     rotation : sequence of 9 floats, or ndarray, shape (3, 3)
-        From that frame, row by row.
+        Of that frame, row by row.
     rpy : sequence of 3 floats
-        In place of `rotation`: roll, pitch and yaw [rad] as URDF has them.
+        In place of `rotation`: roll, pitch and yaw as in URDF [rad].
     xyzw : sequence of 4 floats
         In place of `rotation`: a quaternion of any norm > 0, in the order of SciPy and ROS.
 
@@ -109,7 +108,7 @@ class Pose:
         Parameters
         ----------
         xyz, rpy : sequences of 3 floats
-            The origin [m], and the angles as URDF has them [rad].
+            The origin [m], and the angles as in URDF [rad].
 
         Returns
         -------
@@ -126,7 +125,7 @@ class Pose:
 
     @classmethod
     def from_quaternion(cls, xyz: Sequence[float], *guessed: object, xyzw: Sequence[float] = ()) -> Pose:
-        """Return the pose of an origin and a quaternion, which goes by its keyword.
+        """Return the pose of an origin and a quaternion.
 
         Parameters
         ----------
@@ -142,7 +141,7 @@ class Pose:
         Raises
         ------
         InvalidValue
-            If the quaternion is given without its keyword, or the numbers are none.
+            If the quaternion is given without its keyword, or is not four numbers.
 
         Examples
         --------
@@ -187,7 +186,7 @@ class Pose:
 
     @classmethod
     def _made(cls, xyz: Sequence[float], rotation: tuple[float, ...]) -> Pose:
-        """Return a pose whose rotation is one: to check that takes longest."""
+        """Return a pose without checking its rotation, which takes longest."""
         pose = object.__new__(cls)
         set_fields(pose, xyz=_three(xyz), rotation=rotation)
         return pose
@@ -210,7 +209,7 @@ class Pose:
     def xyzw(self) -> tuple[float, float, float, float]:
         """The rotation as a quaternion of norm 1, in the order of SciPy and ROS; w >= 0."""
         (a, b, c), (d, e, f), (g, h, i) = (self.rotation[k : k + 3] for k in (0, 3, 6))
-        # Four times the squares of x, y, z and w: the largest is divided by, which loses nothing.
+        # Four times the squares of x, y, z and w: dividing by the largest loses nothing.
         squares = (1.0 + a - e - i, 1.0 - a + e - i, 1.0 - a - e + i, 1.0 + a + e + i)
         rows = (
             (squares[0], b + d, c + g, h - f),
@@ -231,7 +230,7 @@ class Pose:
         return matrix
 
     def apply(self, points: npt.ArrayLike) -> Floats:
-        """Return points of the own frame in the frame that the pose is given in.
+        """Return points of the pose's own frame in its parent frame.
 
         Parameters
         ----------
@@ -252,7 +251,7 @@ class Pose:
         return (self.rotation_matrix @ p if p.ndim == 1 else p @ self.rotation_matrix.T) + np.array(self.xyz)
 
     def local(self, points: npt.ArrayLike) -> Floats:
-        """Return points in the pose's own frame: what undoes :meth:`apply`.
+        """Return points in the pose's own frame, the inverse of :meth:`apply`.
 
         Parameters
         ----------
@@ -273,14 +272,16 @@ class Pose:
         return self.rotation_matrix.T @ p if p.ndim == 1 else p @ self.rotation_matrix
 
     def inverse(self) -> Pose:
-        """Return the pose that undoes this one."""
+        """Return the inverse pose."""
         rotation = self.rotation_matrix.T
         return Pose(_three((-rotation @ np.array(self.xyz)).tolist()), tuple(rotation.ravel().tolist()))
 
     def __matmul__(self, other: Pose) -> Pose:
         """Return the pose that applies `other` first, then this one."""
         if not isinstance(other, Pose):
-            raise InvalidValue(f"a pose times a Pose, as Pose.from_matrix(matrix), is a pose, got {shown(other)}")
+            raise InvalidValue(
+                f"a pose is multiplied with a Pose, such as Pose.from_matrix(matrix), got {shown(other)}"
+            )
         rotation = self.rotation_matrix @ other.rotation_matrix
         return Pose(_three(self.apply(other.xyz).tolist()), tuple(rotation.ravel().tolist()))
 

@@ -17,7 +17,7 @@ NO_ROTATION = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 _ORTHONORMAL = 1e-6
 """Largest error of the products of a rotation's rows: a margin for matrices read from text."""
 BY_KEYWORD = "a quaternion must be given as xyzw=(x, y, z, w), by its keyword: others have w first"
-"""What is told of a quaternion that is given without."""
+"""Message about a quaternion without its keyword."""
 
 
 def rotation_from_rpy(roll: float, pitch: float, yaw: float) -> tuple[float, ...]:
@@ -40,10 +40,9 @@ def rotation_from_heading(heading: float) -> tuple[float, ...]:
 
 
 def rotation_from_quaternion(*guessed: object, xyzw: Sequence[float] = ()) -> tuple[float, ...]:
-    """Return the rotation of a quaternion `xyzw`, which need not be of norm 1, as (9,) rows.
+    """Return the rotation of a quaternion `xyzw` of any norm > 0, as (9,) rows.
 
-    It goes by its keyword, since others have w first.  Raises InvalidValue if it does not, is not four finite numbers
-    x, y, z, w, or its norm is 0.
+    Raises InvalidValue if it has no keyword, since others have w first, or is not four finite numbers x, y, z, w.
     """
     if guessed:
         raise InvalidValue(BY_KEYWORD)

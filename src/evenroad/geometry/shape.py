@@ -17,7 +17,7 @@ WORLD = ""
 
 
 class Placed(TypedDict, total=False):
-    """Where a shape is, and what it is called: the keywords that all shapes take."""
+    """Keywords of all shapes: pose and name."""
 
     xyz: Sequence[float]
     """Its origin [m]."""
@@ -30,19 +30,18 @@ class Placed(TypedDict, total=False):
     link: str
     """The link that it is fixed to; default: the world."""
     name: str
-    """What a scene calls it; default: its kind with a number, as ``box 0``."""
+    """Its name in a scene; default: its kind with a number, as ``box 0``."""
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class Shape:
-    """What all shapes have: a pose, from the shape's own frame to that of its link, or of the world; and a name.
+    """Base of all shapes: a pose in the frame of the link `link`, or of the world (`WORLD`), and a name.
 
-    `link` is the name of the link that it is fixed to; `WORLD`, an empty text, for the world.  Names do not count when
-    shapes are compared.
+    Comparisons ignore names.
     """
 
     kind: ClassVar[str]
-    """What files call it."""
+    """Name of the shape in files."""
     dimensions: ClassVar[tuple[tuple[str, int], ...]] = ()
     """Names of its dimensions in files, and how many numbers each has."""
 
@@ -69,11 +68,11 @@ class Shape:
         return f"{type(self).__name__}({', '.join(filter(None, parts))})"
 
     def _written(self) -> str:
-        """Return the dimensions as one writes them."""
+        """Return the dimensions for the repr."""
         return ", ".join(f"{key}={getattr(self, key)!r}" for key, _ in self.dimensions)
 
     def _set_pose(self, placed: Placed) -> None:
-        """Keep where it is, and what it is called; InvalidValue for any other keyword, or two places."""
+        """Set pose, link and name; UnknownName for another keyword, InvalidValue for two poses."""
         if strange := sorted(set(placed) - Placed.__annotations__.keys()):
             raise UnknownName.among(f"keyword of a {self.kind}:", strange[0], Placed.__annotations__)
         turned = {key: placed[key] for key in ("xyz", "rpy", "xyzw") if key in placed}
@@ -89,7 +88,7 @@ class Shape:
         set_fields(self, pose=pose, link=placed.get("link", WORLD), name=placed.get("name", ""))
 
     def _lengths(self, **dimensions: object) -> None:
-        """Keep dimensions as floats; InvalidValue for one that is no length > 0 [m]."""
+        """Set dimensions as floats; InvalidValue unless they are finite and > 0 [m]."""
         for name, value in dimensions.items():
             what = f"the {name} of a {self.kind}"
             set_fields(self, **{name: require_positive(what, value, at_most=FARTHEST)})

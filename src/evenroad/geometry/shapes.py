@@ -1,7 +1,6 @@
-"""Shapes of links, obstacles and rigid bodies.
+"""Shapes of links, obstacles and rigid bodies: frozen values with dimensions, a pose, and the link they are fixed to.
 
-A shape is a frozen value with its dimensions, the pose that it has, and the link that it is fixed to (or the
-world).  A new one is a class here, with its distance (``distance.py``) and its capsules (``fit.py``).
+A new one is a class here, with its distance (``distance.py``) and its capsules (``fit.py``).
 """
 
 from __future__ import annotations
@@ -37,15 +36,12 @@ class Box(Shape):
     size : sequence of 3 floats
         Full extents along x, y and z, > 0 [m].
     **placed
-        ``xyz``, ``rpy`` or ``xyzw``, or ``pose``: where it is [m, rad]; ``name``: what a scene calls it; ``link``: what
-        it is fixed to, by default the world.
+        ``xyz``, ``rpy`` or ``xyzw``, or ``pose`` [m, rad]; ``name`` in a scene; ``link``, default the world.
 
     Raises
     ------
-    InvalidValue
-        If a length is not a finite number > 0.
-    UnknownName
-        If there is no such keyword.
+    InvalidValue, UnknownName
+        If a length is not a finite number > 0, or a keyword is unknown.
 
     Examples
     --------
@@ -84,15 +80,12 @@ class Sphere(Shape):
     radius : float
         > 0 [m].
     **placed
-        ``xyz``, ``rpy`` or ``xyzw``, or ``pose``: where it is [m, rad]; ``name``: what a scene calls it; ``link``: what
-        it is fixed to, by default the world.
+        ``xyz``, ``rpy`` or ``xyzw``, or ``pose`` [m, rad]; ``name`` in a scene; ``link``, default the world.
 
     Raises
     ------
-    InvalidValue
-        If a length is not a finite number > 0.
-    UnknownName
-        If there is no such keyword.
+    InvalidValue, UnknownName
+        If a length is not a finite number > 0, or a keyword is unknown.
 
     Examples
     --------
@@ -126,15 +119,12 @@ class Cylinder(Shape):
     radius, length : float
         > 0 [m].
     **placed
-        ``xyz``, ``rpy`` or ``xyzw``, or ``pose``: where it is [m, rad]; ``name``: what a scene calls it; ``link``: what
-        it is fixed to, by default the world.
+        ``xyz``, ``rpy`` or ``xyzw``, or ``pose`` [m, rad]; ``name`` in a scene; ``link``, default the world.
 
     Raises
     ------
-    InvalidValue
-        If a length is not a finite number > 0.
-    UnknownName
-        If there is no such keyword.
+    InvalidValue, UnknownName
+        If a length is not a finite number > 0, or a keyword is unknown.
 
     Examples
     --------
@@ -161,7 +151,7 @@ class Cylinder(Shape):
 
 @dataclass(frozen=True, init=False, repr=False)
 class Capsule(Shape):
-    """All points within a radius of a segment: a cylinder with half balls on its ends.
+    """All points within a radius of a segment: a cylinder with half balls as caps.
 
     ``Capsule(radius, length)`` lies along the z axis of its frame, its middle in the origin.  ``Capsule(a, b, radius)``
     has its segment from `a` to `b`, and is a ball where the two are one point.
@@ -173,15 +163,12 @@ class Capsule(Shape):
     a, b : sequence of 3 floats
         Endpoints of the segment, in place of `length` [m].
     **placed
-        ``xyz``, ``rpy`` or ``xyzw``, or ``pose``: where it is [m, rad]; ``name``: what a scene calls it; ``link``: what
-        it is fixed to, by default the world.
+        ``xyz``, ``rpy`` or ``xyzw``, or ``pose`` [m, rad]; ``name`` in a scene; ``link``, default the world.
 
     Raises
     ------
-    InvalidValue
-        If a length is not a finite number > 0, or there is one too many.
-    UnknownName
-        If there is no such keyword.
+    InvalidValue, UnknownName
+        If a length is not a finite number > 0, or a keyword is unknown.
 
     Examples
     --------
@@ -284,7 +271,7 @@ def along_z(capsule: Capsule) -> Capsule | Sphere:
 
 
 def without_pose(capsule: Capsule) -> Capsule:
-    """Return the same body with its ends in the frame that its pose is given in."""
+    """Return the same body with its endpoints in the parent frame of its pose."""
     if capsule.pose == IDENTITY:
         return capsule
     a, b = (tuple(capsule.pose.apply(end).tolist()) for end in (capsule.a, capsule.b))

@@ -10,8 +10,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._rng import generator
-from evenroad.geometry.containment import share_inside
-from evenroad.geometry.hulls import Hull, Piece, halves
+from evenroad.geometry.hulls import Hull, Piece, halves, share_inside
 from evenroad.robot.kernel.hull_trees import HullTrees, contacts, hull_trees
 from evenroad.robot.kinematics import KinematicTree, held_values, poses_at, with_mimics
 

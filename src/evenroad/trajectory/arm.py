@@ -36,18 +36,17 @@ def arm_trajectory(
     world : ArmWorld
         The arm among its obstacles.
     path : array_like, shape (p, dim)
-        As :attr:`PlanResult.path`.  Joints that turn for ever go the short way round, as they do there, and so may
-        leave the range of one turn.
+        As :attr:`PlanResult.path`.  Continuous joints take the shorter direction and may leave the range of one turn.
     limits : Limits, optional
         Default: those of the robot, see :func:`limits_of`.
     speed : float
-        0 < speed <= 1: takes ``1 / speed`` as long as at full speed.
+        Share of full speed, 0 < speed <= 1.
     deviation, step
         As :func:`make_trajectory`.
     rounded_by_controller : bool
-        Find out, too, how far the controller may round off the corners, for ``.movej.script``.
+        Whether to compute the radii by which the controller may round corners, for ``.movej.script``.
     constraints : pair of CartesianLine and OrientationConstraint, each may be None
-        As the path was planned with: what is driven keeps them, too, within the same tolerances.
+        Those of the plan: the trajectory keeps them, too, within the same tolerances.
 
     Raises
     ------
@@ -61,11 +60,11 @@ def arm_trajectory(
     if len(waypoints) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
     waypoints = _turned_on(world, waypoints)
-    asked = constrained_world(world, waypoints, *constraints)
+    checked = constrained_world(world, waypoints, *constraints)
     trajectory = make_trajectory(
         waypoints,
         within,
-        world=asked,
+        world=checked,
         names=robot.group,
         held={name: value for name, value in held_values(robot).items() if name in controller},
         controller=controller,
@@ -80,11 +79,11 @@ def arm_trajectory(
         positions: Floats = link_poses(robot, q)[:, tip, :3, 3]
         return positions
 
-    return with_radii(trajectory, asked, tip_at)
+    return with_radii(trajectory, checked, tip_at)
 
 
 def _turned_on(world: ArmWorld, path: Floats) -> Floats:
-    """Return a path, (p, dim), whose joints that turn for ever have the turns with which no step is the long way."""
+    """Return a path, (p, dim), whose continuous joints take the shorter direction in every step."""
     if not world.space.flat.wraps:
         return path
     steps = np.diff(path, axis=0)
@@ -93,9 +92,9 @@ def _turned_on(world: ArmWorld, path: Floats) -> Floats:
 
 
 def controller_joints(robot: Robot) -> tuple[str, ...]:
-    """Return the joints that one controller is likely to drive, in the order of the chain.
+    """Return the joints that one controller probably drives, in the order of the chain.
 
-    They are those that are planned for, those before them, and those behind as long as the chain does not branch.
+    They are the planned joints, those before them, and those behind them up to a branch.
     """
     child = {joint.name: joint.child for joint in robot.joints}
     parent_joint = {joint.child: joint for joint in robot.joints}

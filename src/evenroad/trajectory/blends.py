@@ -1,4 +1,4 @@
-"""A path with corners rounded by arcs of circles, and its direction and curvature at every length."""
+"""Paths with corners rounded by arcs of circles."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 from evenroad._arrays import Floats, Ints
 
 _STRAIGHT = 1e-6
-"""Angle below which a corner counts as straight [rad]; the next arc is that much off, at most."""
+"""Angle below which a corner counts as straight [rad]: the largest error of the next arc."""
 
 
 @dataclass(frozen=True, eq=False)
 class RoundedPath:
     """Straight lines and arcs, one after the other (Kunz and Stilman 2012, section IV).
 
-    Row by row of `pieces`: a piece from length ``starts[i]`` to ``starts[i + 1]``; on a line of direction ``along[i]``
-    from ``origin[i]``, where ``bend[i]`` is 0; else on a circle of radius ``1 / bend[i]`` about ``origin[i]``, from
-    the direction ``out[i]``, seen from there, towards ``along[i]``.  Waypoints within the path, (p - 2,), are passed at
-    the lengths `corners`; at the lengths `stops` the direction jumps.
+    Piece i reaches from length ``starts[i]`` to ``starts[i + 1]``.  It is a line from ``origin[i]`` along ``along[i]``
+    where the curvature ``bend[i]`` is 0, else an arc of radius ``1 / bend[i]`` about ``origin[i]``, from the direction
+    ``out[i]`` towards ``along[i]``.  `corners`, (p - 2,), are the lengths at the inner waypoints, `stops` those at
+    which the direction jumps.
     """
 
     starts: Floats
@@ -32,15 +32,15 @@ class RoundedPath:
 
     @property
     def length(self) -> float:
-        """Of the whole path."""
+        """Length of the path."""
         return float(self.starts[-1])
 
     def piece_at(self, s: Floats) -> Ints:
-        """Return for each length the piece that it is on, the later one where two meet."""
+        """Return the piece at each length, the later one where two meet."""
         return np.clip(np.searchsorted(self.starts, s, side="right") - 1, 0, len(self.bend) - 1)
 
     def at(self, s: Floats, piece: Ints | None = None) -> tuple[Floats, Floats, Floats]:
-        """Return place, direction and bend, (n, dim) each, at lengths (n,): the path and its first two derivatives."""
+        """Return positions and their first two derivatives, (n, dim) each, at lengths, (n,)."""
         i = self.piece_at(s) if piece is None else piece
         after = (s - self.starts[i])[:, None]
         bend, out, along = self.bend[i][:, None], self.out[i], self.along[i]
@@ -53,19 +53,19 @@ class RoundedPath:
 
 
 def rounded(path: Floats, deviation: Floats) -> RoundedPath:
-    """Round the corners of a path, (p, dim), no two waypoints in a row equal, p >= 2.
+    """Round the corners of a path, (p, dim), p >= 2, no two waypoints in a row equal.
 
-    The arc at waypoint i passes it at the distance ``deviation[i]``, (p,), at most, and takes half of each of the two
-    motions at most.  Where `deviation` is 0 the path keeps its corner and has to stop there.
+    The arc at waypoint i passes it within ``deviation[i]``, (p,), and replaces at most half of both motions.  Where
+    `deviation` is 0 the path stops at its corner.
     """
     steps = np.diff(path, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     directions = steps / lengths[:, None]
     before, after = directions[:-1], directions[1:]
-    # Half of the angle by which the direction turns, exactly for small ones, too.
+    # Half of the turning angle, exact for small ones, too.
     half = np.arctan2(np.linalg.norm(after - before, axis=1), np.linalg.norm(after + before, axis=1))
     turns = half > 0.5 * _STRAIGHT
-    # A path that turns back on itself has no arc.
+    # A reversal has no arc.
     round_off = turns & (half < 0.5 * np.pi - 1e-3) & (deviation[1:-1] > 0.0)
     available = 0.5 * np.minimum(lengths[:-1], lengths[1:])
     cut = np.zeros(len(path))

@@ -28,25 +28,24 @@ _MESSAGE = "trajectory_msgs/msg/JointTrajectory"
 
 
 def save_trajectory(path: str | os.PathLike[str], trajectory: Trajectory, order: Sequence[str] | None = None) -> None:
-    """Write a trajectory in the format that the name of the file asks for, atomically.
+    """Write a trajectory in the format of the file's suffix, atomically.
 
     Parameters
     ----------
     path : str or path-like
         ``.json`` (read by :func:`load_trajectory`), ``.csv``, ``.yaml`` (ROS 2's ``trajectory_msgs/JointTrajectory``),
-        ``.mcap`` (the same as a bag, on the topic ``/joint_trajectory``; extra ``ros``), ``.script`` (URScript, by the
-        clock) or ``.movej.script`` (URScript, from waypoint to waypoint).
+        ``.mcap`` (the same as a bag, on the topic ``/joint_trajectory``; extra ``ros``), ``.script`` (URScript, timed)
+        or ``.movej.script`` (URScript, by waypoints).
     trajectory : Trajectory
-        Any.
     order : sequence of str, optional
-        The joints of the controller, in its order; default: those that move, then those that are held.
+        The joints of the controller, in its order; default: moving joints, then held ones.
 
     Raises
     ------
     UnknownName
-        For another suffix, or a joint that the trajectory has not.
+        For another suffix, or a joint that the trajectory does not have.
     InvalidValue
-        If a joint that moves is left out; if URScript is asked for joints that are not six.
+        If a moving joint is missing, or a URScript does not have six joints.
     NotAvailable
         If rosbags is not installed.
     BrokenFile
@@ -58,7 +57,7 @@ def save_trajectory(path: str | os.PathLike[str], trajectory: Trajectory, order:
 def save_trajectories(
     paths: Iterable[str | os.PathLike[str]], trajectory: Trajectory, order: Sequence[str] | None = None
 ) -> None:
-    """Write a trajectory to several files, see :func:`save_trajectory`; none if one of them cannot have it."""
+    """Write a trajectory to several files as :func:`save_trajectory` does; to none if one format cannot have it."""
     contents = [(path, WRITERS[format_of(path)](trajectory, order)) for path in paths]
     for path, data in contents:
         with atomic_write(path) as file:
@@ -66,7 +65,7 @@ def save_trajectories(
 
 
 def format_of(path: str | os.PathLike[str]) -> str:
-    """Return the suffix of a file that a trajectory can be written to, or raise UnknownName."""
+    """Return the suffix of a file for trajectories, or raise UnknownName."""
     name = Path(path).name.lower()
     known = [suffix for suffix in WRITERS if name.endswith(suffix) and name != suffix]
     if not known:
@@ -75,10 +74,7 @@ def format_of(path: str | os.PathLike[str]) -> str:
 
 
 def load_trajectory(path: str | os.PathLike[str]) -> Trajectory:
-    """Read a trajectory from the JSON that :func:`save_trajectory` wrote.
-
-    Raises BrokenFile if it cannot be read, or is not what it says: shapes, numbers, order of time, and limits.
-    """
+    """Read a trajectory from the JSON of :func:`save_trajectory`; BrokenFile if its numbers do not fit together."""
     record = read_json_file(path, "trajectory")
     if not isinstance(record, dict) or record.get("format") != FORMAT:
         wrote = "as `evenroad plan --trajectory` writes it"
@@ -109,7 +105,7 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
         raise ValueError("radii must be one number >= 0 for each waypoint within the path, or none")
     held = {str(name): float(value) for name, value in record["held"].items()}
     if not all(map(math.isfinite, held.values())):
-        raise ValueError("places of held joints must be finite numbers")
+        raise ValueError("positions of held joints must be finite numbers")
     if len(set(names) | set(held)) < len(names) + len(held):
         raise ValueError("every joint must be named once")
     moved, allowed = np.abs(np.diff(tables[0], axis=0)), np.diff(times)[:, None] * np.array(limits.velocity)
@@ -189,7 +185,7 @@ def joint_trajectory(trajectory: Trajectory, make: Callable[..., Any], order: Se
     trajectory, order
         As :func:`save_trajectory`.
     make : callable
-        Makes a message: ``make("std_msgs/msg/Header", stamp=..., frame_id=...)``; rows of numbers are arrays, (dim,).
+        Makes a message, as ``make("std_msgs/msg/Header", stamp=..., frame_id=...)``.
     """
     names, tables = trajectory.columns(order)
 
@@ -222,20 +218,12 @@ def _stamp(time: float) -> tuple[int, int]:
     return divmod(round(time * 1e9), 1_000_000_000)
 
 
-def _servoj(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
-    return servoj_script(trajectory, order).encode()
-
-
-def _movej(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
-    return movej_script(trajectory, order).encode()
-
-
 WRITERS: dict[str, Callable[[Trajectory, Sequence[str] | None], bytes]] = {
     ".json": _json,
     ".csv": _csv,
     ".yaml": _yaml,
     ".mcap": _mcap,
-    ".script": _servoj,
-    ".movej.script": _movej,
+    ".script": lambda trajectory, order: servoj_script(trajectory, order).encode(),
+    ".movej.script": lambda trajectory, order: movej_script(trajectory, order).encode(),
 }
-"""Suffix -> what makes the contents of such a file."""
+"""Suffix -> function that returns the contents of a file."""

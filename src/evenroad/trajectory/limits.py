@@ -14,23 +14,23 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.robot import Robot
 
 SECONDS_TO_FULL_SPEED = 0.5
-"""Default time in which a joint reaches its full speed [s]: URDF has no acceleration."""
+"""Default time from rest to full speed [s]: URDF has no acceleration."""
 
 _KINDS = ("velocity", "acceleration", "jerk")
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What each joint can do, in either direction.
+    """Limits of each joint, in both directions.
 
     Attributes
     ----------
     velocity, acceleration : tuples of float
-        > 0, one a joint [rad/s, rad/s^2; m where it slides].
+        > 0, one per joint [rad/s, rad/s^2; m for prismatic ones].
     jerk : tuple of float or None
-        > 0, one a joint [rad/s^3]; None where it may be anything.
+        > 0, one per joint [rad/s^3]; None: no limit.
     along_path : float or None
-        > 0, of all coordinates together, as the speed of a vehicle [m/s]; None where it may be anything.
+        Largest speed of all coordinates together, as of a vehicle, > 0 [m/s]; None: no limit.
     """
 
     velocity: tuple[float, ...]
@@ -51,7 +51,7 @@ class Limits:
             require_positive("along_path", self.along_path)
 
     def at_speed(self, speed: float) -> Limits:
-        """Return the limits with which everything takes ``1 / speed`` as long, 0 < speed <= 1."""
+        """Return the limits at a share of full speed, 0 < speed <= 1."""
         if require_positive("speed", speed) > 1.0:
             raise InvalidValue(f"speed must be at most 1, the robot's own limits, got {speed!r}")
 
@@ -64,20 +64,20 @@ class Limits:
 
 
 def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limits:
-    """Return the limits of the joints that are planned for.
+    """Return the limits of the planned joints.
 
     Parameters
     ----------
     robot : Robot
         Its joints have the velocities of the URDF.
     file : str or path-like, optional
-        MoveIt's ``joint_limits.yaml``; ``max_velocity``, ``max_acceleration`` and ``max_jerk`` replace what is there.
-        A joint without acceleration gets to its full speed in 0.5 s; jerk is limited if it is given for every joint.
+        MoveIt's ``joint_limits.yaml``; its ``max_velocity``, ``max_acceleration`` and ``max_jerk`` come first.  A joint
+        without an acceleration reaches full speed in 0.5 s; jerk is limited if it is given for every joint.
 
     Raises
     ------
     BrokenFile, UnknownName
-        If the file cannot be read, or names a joint or key that is not known.
+        If the file cannot be read, or names an unknown joint or key.
     InvalidValue
         If a limit is not > 0, or a joint has no velocity anywhere.
     """
@@ -99,7 +99,7 @@ def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limit
 
 
 def _read(path: Path, joints: set[str]) -> dict[str, dict[str, float]]:
-    """Return joint -> kind of limit -> value of a file, without those that it says do not hold."""
+    """Return joint -> kind of limit -> value of a file, without those that it switches off."""
     document = read_mapping(path, "joint_limits file")
     table = document.get("joint_limits")
     if not isinstance(table, dict):

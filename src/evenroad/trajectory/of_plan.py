@@ -1,4 +1,4 @@
-"""The trajectory of a plan, in whatever world it was made."""
+"""The trajectory of a plan in any world."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def trajectory_of(
     speed: float,
     **options: Any,
 ) -> Trajectory:
-    """Return what :meth:`PlanResult.trajectory` does."""
+    """See :meth:`PlanResult.trajectory`."""
     known = {*signature(arm_trajectory).parameters} - {"world", "path"}
     for key in options:
         require_known("keyword of trajectory:", key, known)

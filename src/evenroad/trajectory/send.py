@@ -1,4 +1,4 @@
-"""Sending a trajectory to a UR arm, state by state, through ur_rtde; nothing moves unless everything was checked."""
+"""Sends a trajectory to a UR arm, state by state, through ur_rtde, after all checks."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _STOP = 2.0
 
 @dataclass(frozen=True)
 class Sent:
-    """What was done: states sent, and the largest distance of a joint from where it should have been [rad]."""
+    """Number of states sent, and the largest error of a joint [rad]."""
 
     states: int
     largest_error: float
@@ -53,40 +53,40 @@ def send_trajectory(
     order: Sequence[str] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Sent:
-    """Drive a UR arm along a trajectory; unless `go`, only check that it could be done.
+    """Drive a UR arm along a trajectory; without `go`, only check it.
 
-    The states are sent one a cycle, so that the controller stops the arm by itself when the connection is lost.
+    One state is sent per cycle, so the controller stops the arm by itself when the connection is lost.
 
     Parameters
     ----------
     trajectory : Trajectory
-        Of six joints, its states 8 ms (CB3) or 2 ms (e-Series) apart.
+        Six joints, states 8 ms (CB3) or 2 ms (e-Series) apart.
     host : str
         Address of the controller.
     model : str
-        Of the arm, as its controller says it: ``UR5``.
+        Model of the arm, as its controller names it: ``UR5``.
     fastest : float
-        Most speed of a joint that is allowed here, > 0 [rad/s].
+        Largest allowed speed of a joint, > 0 [rad/s].
     go : bool
-        Move.
+        Whether to move the arm.
     order : sequence of str, optional
         As :func:`save_trajectory`.
     progress : callable, optional
-        Called with the states sent, and all of them.
+        Called with the number of states sent, and of all.
 
     Raises
     ------
     InvalidValue
         If the trajectory is too fast or not of a UR arm, the arm is another one, not ready, or not at the start.
     NotAvailable
-        If ur_rtde is not installed, nobody answers, or the connection is lost; or the arm is astray, or was stopped.
+        If ur_rtde is not installed, the connection fails or is lost, the arm leaves the trajectory, or it was stopped.
     """
     limit = require_positive("fastest", fastest)
     names, (positions, velocities, _) = columns_of_ur(trajectory, order)
     cycle = float(trajectory.times[1])
     if not np.isclose(cycle, CYCLES).any():
         raise InvalidValue(f"a controller takes a state every 0.008 s or 0.002 s, these are {cycle:g} s apart")
-    # As the states will be sent, too, whatever the trajectory says of its speeds.
+    # Also the speeds between states as sent.
     driven = np.abs(np.diff(positions, axis=0)) / cycle
     speeds = np.maximum(np.abs(velocities).max(axis=0), driven.max(axis=0))
     if speeds.max() > limit * (1.0 + 1e-9):
@@ -101,7 +101,7 @@ def send_trajectory(
     try:
         return _listened(ours, host, progress)
     finally:
-        # Without a listener, as after Ctrl-C, it stops the arm; where it hangs, the controller does so by itself.
+        # Without a listener, as after Ctrl-C, it stops the arm; if it hangs, the controller does so by itself.
         ours.close()
         process.join(_PATIENCE)
         process.kill()
@@ -109,7 +109,7 @@ def send_trajectory(
 
 
 def _listened(pipe: Any, host: str, progress: Callable[[int, int], None] | None) -> Sent:
-    """Return what the process that talks to the arm says it has done; give up where it is silent."""
+    """Return the result of the process that talks to the arm; raise NotAvailable where it is silent."""
     while True:
         if not pipe.poll(_PATIENCE):
             raise NotAvailable(f"lost the connection to {host!r}; the controller stops the arm by itself")
@@ -126,7 +126,7 @@ def _listened(pipe: Any, host: str, progress: Callable[[int, int], None] | None)
 
 
 def _talk(pipe: Any, host: str, names: Sequence[str], positions: Floats, cycle: float, model: str, go: bool) -> None:
-    """Check, and drive if told to; a process of its own, since ur_rtde may wait for ever for an answer."""
+    """Check, and drive if `go`, in a process of its own, since ur_rtde may wait for ever."""
     try:
         pipe.send(("ready", 0))
         sent = _checked_and_driven(pipe, host, names, positions, cycle, model, go)
@@ -134,7 +134,7 @@ def _talk(pipe: Any, host: str, names: Sequence[str], positions: Floats, cycle: 
     except EvenroadError as error:
         pipe.send((type(error).__name__, str(error)))
     except (KeyboardInterrupt, OSError):
-        # The process that asked is gone, or says so.
+        # The parent process is gone or interrupted.
         pass
 
 
@@ -158,7 +158,7 @@ def _checked_and_driven(
 
 
 class _connection_to:
-    """Turns whatever ur_rtde raises into one line about the controller."""
+    """Turns errors of ur_rtde into one line about the controller."""
 
     def __init__(self, host: str) -> None:
         self.host = host
@@ -196,10 +196,10 @@ def _require_ready(host: str, state: Any, names: Sequence[str], start: Floats, m
 
 
 def _driven(pipe: Any, control: Any, state: Any, names: Sequence[str], positions: Floats, cycle: float) -> Sent:
-    """Send the states; stop the arm whatever happens."""
+    """Send the states; stop the arm in any case."""
     worst, i = 0.0, 0
     try:
-        # The last one again, until the arm has caught up with it.
+        # The last one is repeated until the arm has caught up.
         states = np.concatenate([positions, np.repeat(positions[-1:], held_cycles(cycle), axis=0)])
         for i, q in enumerate(states):
             began = control.initPeriod()

@@ -16,12 +16,12 @@ INTERVALS = 600
 
 _PER_ARC, _PER_LINE = 8, 4
 _WITHIN = 1.0 - 1e-3
-"""Share of the acceleration limits that is used: between two grid points a bend may take a little more."""
+"""Share of the acceleration limits used: between two grid points an arc may take a little more."""
 
 
 @dataclass(frozen=True, eq=False)
 class TimeLaw:
-    """How far along a path one is at what time: the acceleration along it is constant between `times`, (m,)."""
+    """Length along a path as a function of time; the acceleration along it is constant between `times`, (m,)."""
 
     path: RoundedPath
     times: Floats
@@ -31,15 +31,15 @@ class TimeLaw:
 
     @property
     def duration(self) -> float:
-        """Of the whole [s]."""
+        """Duration [s]."""
         return float(self.times[-1])
 
     def length_at(self, t: Floats) -> Floats:
-        """Return how far along the path one is at times, (n,) [s]."""
+        """Return the lengths along the path at times, (n,) [s]."""
         return self._where(np.clip(t, 0.0, self.duration))[1]
 
     def _where(self, t: Floats) -> tuple[Ints, Floats, Floats]:
-        """Return for times within the law the interval, the length, and the speed along the path."""
+        """Return interval, length and speed along the path at times within the duration."""
         i = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.accelerations) - 1)
         after, push = t - self.times[i], self.accelerations[i]
         s = self.lengths[i] + after * (self.speeds[i] + 0.5 * push * after)
@@ -53,7 +53,7 @@ class TimeLaw:
         """Return positions, velocities and accelerations, (n, dim) each, at times, (n,) [s]; at rest outside."""
         inside = (t >= 0.0) & (t <= self.duration)
         i, s, speed = self._where(np.clip(t, 0.0, self.duration))
-        # The end of an interval belongs to its own piece, whose bend may differ from the next one's.
+        # The end of an interval belongs to its own piece, whose curvature may differ from the next one's.
         piece = self.path.piece_at(0.5 * (self.lengths[i] + self.lengths[i + 1]))
         position, direction, bend = self.path.at(s, piece)
         speed = np.where(inside, speed, 0.0)[:, None]
@@ -67,7 +67,9 @@ def fastest(path: RoundedPath, limits: Limits) -> TimeLaw:
     least = np.where(path.bend > 0.0, _PER_ARC, _PER_LINE)
     counts = np.maximum(np.ceil(INTERVALS * share).astype(int), least)
     piece = np.repeat(np.arange(len(counts)), counts)
-    marks = np.concatenate([np.linspace(a, b, n + 1)[1:] for a, b, n in _spans(path.starts, counts)])
+    marks = np.concatenate(
+        [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(path.starts[:-1], path.starts[1:], counts, strict=True)]
+    )
     grid = np.concatenate([[0.0], marks])
     _, ahead, ahead_bend = path.at(grid[:-1], piece)
     _, behind, behind_bend = path.at(grid[1:], piece)
@@ -87,13 +89,13 @@ def fastest(path: RoundedPath, limits: Limits) -> TimeLaw:
     return TimeLaw(path, times, grid, speeds, np.diff(squares) / (2.0 * steps))
 
 
-def stretched(law: TimeLaw, factor: float) -> TimeLaw:
-    """Return the law that takes `factor` as long, >= 1."""
+def slowed(law: TimeLaw, factor: float) -> TimeLaw:
+    """Return the law slowed down by a factor >= 1."""
     return TimeLaw(law.path, law.times * factor, law.lengths, law.speeds / factor, law.accelerations / factor**2)
 
 
 def paused(law: TimeLaw, pause: float) -> TimeLaw:
-    """Return the law with a pause, >= 0 [s], wherever one comes to a stop within the path."""
+    """Return the law with a pause, >= 0 [s], at every stop within the path."""
     stops = 1 + np.flatnonzero(law.speeds[1:-1] == 0.0)
     if pause == 0.0 or len(stops) == 0:
         return law
@@ -107,7 +109,3 @@ def paused(law: TimeLaw, pause: float) -> TimeLaw:
         law.speeds[rows],
         np.insert(law.accelerations, stops, 0.0),
     )
-
-
-def _spans(starts: Floats, counts: Ints) -> list[tuple[float, float, int]]:
-    return list(zip(starts[:-1].tolist(), starts[1:].tolist(), counts.tolist(), strict=True))

@@ -1,4 +1,4 @@
-"""Constraints of the tip, checked again on the trajectory: a rounded corner may violate them."""
+"""Constraints of the tip on a trajectory, whose rounded corners may violate them."""
 
 from __future__ import annotations
 
@@ -21,15 +21,9 @@ from evenroad.space import Space
 
 @dataclass(frozen=True, eq=False)
 class ConstrainedWorld:
-    """An arm's world whose strict check asks, too, whether a path keeps upright, and its ends straight.
+    """An arm's world whose strict check includes the constraints of the tip.
 
-    Attributes
-    ----------
-    world : ArmWorld
-    path : ndarray, shape (p, dim)
-        As planned: the lines begin at its ends.
-    straight : Straight or None
-    upright : UprightWorld or None
+    The Cartesian lines of `straight` begin at the start and the goal of the planned `path`, (p, dim).
     """
 
     world: ArmWorld
@@ -39,12 +33,12 @@ class ConstrainedWorld:
 
     @property
     def space(self) -> Space:
-        """That of the arm."""
+        """Space of the arm."""
         return self.world.space
 
     @property
     def proof(self) -> str:
-        """As the world's: that nothing touches is proved, tilts and lines are measured."""
+        """As the world's: collisions are excluded by proof, tilts and lines are measured."""
         return self.world.proof
 
     def valid(self, q: Floats) -> Bools:
@@ -56,7 +50,7 @@ class ConstrainedWorld:
         return self.world.motion_valid(a, b)
 
     def validate(self, path: Floats) -> Bools:
-        """Return which motions of a path, (p, dim), are proved free and keep their ways on a fine grid: (p - 1,)."""
+        """Return which motions of a path, (p, dim), are proved free and keep the constraints: (p - 1,)."""
         good = self.world.validate(path)
         if self.upright is not None:
             tilted = self.upright.tilts(between(self.world, path, FINE)) > self.upright.tolerance
@@ -64,7 +58,7 @@ class ConstrainedWorld:
         if self.straight is not None:
             chain = chain_of(self.world.robot, self.straight.tip or default_tip(self.world.robot))
             for end, length in ((0, self.straight.retreat), (-1, self.straight.approach)):
-                # What begins elsewhere is a part of a path without its line.
+                # A part of a path that begins elsewhere has no line.
                 if length and np.allclose(path[end], self.path[end], rtol=0.0, atol=1e-9):
                     waypoints = path if end == 0 else path[::-1]
                     off = self._off_line(chain, self.straight, waypoints, length)
@@ -72,10 +66,7 @@ class ConstrainedWorld:
         return good
 
     def _off_line(self, chain: Chain, straight: CartesianLine, waypoints: Floats, length: float) -> Bools:
-        """Return which motions of a path that begins with a line miss it: (p - 1,).
-
-        The corner at its end may be rounded off within half a step of the line.
-        """
+        """Return which motions of a path leave its first line: (p - 1,); the last half step may be rounded."""
         turn, here, away = line_at(chain, straight, waypoints[0])
         off_m, off_rad, along = misses(chain, between(self.world, waypoints, FINE)[1:], here, away, turn)
         over = np.flatnonzero(along >= length - 0.5 * STEP)
@@ -87,7 +78,7 @@ class ConstrainedWorld:
 def constrained_world(
     world: ArmWorld, path: Floats, straight: CartesianLine | None, upright: OrientationConstraint | None
 ) -> ConstrainedWorld | ArmWorld:
-    """Return the world in which a path, (p, dim), keeps the ways it was planned for, if any."""
+    """Return the world in which a path, (p, dim), keeps its constraints, if any."""
     if straight is None and upright is None:
         return world
     within = None

@@ -1,4 +1,4 @@
-"""Trajectory: the state of every joint at every time, made from a path within limits, and checked again."""
+"""Trajectory: states of all joints over time, made from a path within limits, and checked."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from evenroad._checks import as_batch, counted, require_known, require_positive
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.limits import Limits
-from evenroad.trajectory.timing import TimeLaw, fastest, paused, stretched
+from evenroad.trajectory.timing import TimeLaw, fastest, paused, slowed
 from evenroad.world import ValidatesPaths, World
 
 STEP = 0.008
@@ -29,10 +29,10 @@ _FINER = 8
 """Number of states per step at which limits are checked."""
 
 _SAME = 1e-9
-"""Distance in every joint below which two waypoints are one [rad or m]."""
+"""Distance in every joint below which two waypoints are equal [rad or m]."""
 
 _MOST_STATES = 1_000_000
-"""Largest number of states, more than two hours at 125 Hz: beyond it the input is a slip."""
+"""Largest number of states, more than two hours at 125 Hz."""
 
 _HALVINGS = 6
 """Number of times that a blend in collision is halved; then the robot stops at the corner."""
@@ -45,31 +45,31 @@ class Trajectory:
     Attributes
     ----------
     names : tuple of str
-        Of the joints.
+        Names of the joints.
     times : ndarray, shape (n,)
-        From 0 on, equally far apart [s].
+        Times from 0 on, at equal steps [s].
     positions, velocities, accelerations : ndarrays, shape (n, dim)
         [rad or m, and per second].
     waypoints : ndarray, shape (p, dim)
-        Of the path that it was made of.
+        Waypoints of the path.
     limits : Limits
-        Within which it stays.
+        Limits that it keeps.
     deviation : float
-        Largest distance from the path that it was made of [rad or m], measured on a fine grid.
+        Largest distance from the path, on a fine grid [rad or m].
     stops : int
-        At how many corners within the path the robot stands still, since cutting them would touch something.
+        Number of corners at which the robot stops, since rounding them would collide.
     highest : mapping of str to float
-        ``velocity``, ``acceleration`` and ``jerk``: the largest share of a limit that is used, on a fine grid.
+        ``velocity``, ``acceleration`` and ``jerk``: largest share of the limits used, on a fine grid.
     held : mapping of str to float
-        Joints of the same controller that stay where they are, with their places [rad or m].
+        Joints of the same controller that do not move, and their positions [rad or m].
     controller : tuple of str
-        All joints of the controller, in its order; empty where it is not known.
+        All joints of the controller, in its order; empty if unknown.
     proof : str
-        What is shown of the motions from state to state: ``exact``, ``certified`` or ``resolution``; ``unchecked``
-        where there was no world to ask.
+        Proof of the motions from state to state: ``exact``, ``certified`` or ``resolution``; ``unchecked`` without a
+        world.
     radii : tuple of float
-        For each waypoint within the path, how far from it the tip may begin to round it off [m], see
-        :func:`evenroad.trajectory.urscript.with_radii`; empty where nobody asked.
+        Distance of the tip from each inner waypoint at which rounding may begin [m], see
+        :func:`evenroad.trajectory.urscript.with_radii`; empty if not computed.
 
     Examples
     --------
@@ -97,12 +97,12 @@ class Trajectory:
     radii: tuple[float, ...] = ()
 
     def columns(self, order: Sequence[str] | None = None) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
-        """Return names, and positions, velocities and accelerations, of held joints, too.
+        """Return names, positions, velocities and accelerations of moving and held joints.
 
         Parameters
         ----------
         order : sequence of str, optional
-            Of the joints.  Default: that of the controller, else the moving ones first.
+            Order of the joints.  Default: that of the controller, else moving ones first.
 
         Returns
         -------
@@ -111,9 +111,9 @@ class Trajectory:
         Raises
         ------
         UnknownName
-            For a joint that neither moves nor is held.
+            For an unknown joint.
         InvalidValue
-            If one that moves is left out.
+            If a moving one is missing.
 
         Examples
         --------
@@ -141,7 +141,7 @@ class Trajectory:
 
     @property
     def duration(self) -> float:
-        """From the first to the last state [s]."""
+        """Duration [s]."""
         return float(self.times[-1])
 
 
@@ -156,30 +156,27 @@ def make_trajectory(
     deviation: float = DEVIATION,
     step: float = STEP,
 ) -> Trajectory:
-    """Give a path the times at which a robot is fastest along it, its corners rounded.
+    """Return the fastest trajectory along a path with rounded corners.
 
-    Corners become arcs of circles (Kunz and Stilman 2012); the law of time is the fastest for the rounded path within
-    velocities and accelerations (Pham and Pham 2018).  Where jerk is limited, it is then averaged over the time
-    that the largest share ``2 acceleration / jerk`` takes, which keeps all limits.  An arc that is not free is made
-    smaller; where even a small one is not, the robot stops at the corner.
+    Corners become arcs of circles (Kunz and Stilman 2012), with the fastest times within velocities and accelerations
+    (Pham and Pham 2018).  Where jerk is limited, the motion is averaged over the largest ``2 acceleration / jerk``,
+    which keeps all limits.  An arc in collision becomes smaller; where a small one still collides, the robot stops.
 
     Parameters
     ----------
     path : array_like, shape (p, dim)
-        Waypoints, p >= 2, at least two of them different, joined by straight motions.
+        Waypoints joined by straight motions, p >= 2, at least two of them different.
     limits : Limits
-        Of each joint.
     world : World, optional
-        Is asked about the path as it is driven: by its strict check where it has one.  Default: nothing is checked.
+        Checks the trajectory, by its strict check if it has one.  Default: no check.
     names : sequence of str, optional
-        Of the joints; default ``joint_1``, ...
-    held : mapping of str to float, optional
-    controller : sequence of str, optional
-        Handed on.
+        Names of the joints; default ``joint_1``, ...
+    held, controller : mapping of str to float, sequence of str, optional
+        As of :class:`Trajectory`.
     deviation : float
-        How far from the path it may be, >= 0 [rad or m]; 0 stops at every corner.
+        Largest distance from the path, >= 0 [rad or m]; 0 stops at every corner.
     step : float
-        Between two states, > 0 [s].
+        Time between two states, > 0 [s].
 
     Returns
     -------
@@ -189,9 +186,9 @@ def make_trajectory(
     Raises
     ------
     InvalidValue
-        If the path has one place only, an argument is out of its range, or there would be a million states.
+        If all waypoints are equal, an argument is out of range, or there would be a million states.
     NotAvailable
-        If what would be driven is not free, or leaves limits or deviation: the path itself is not free, as a rule.
+        If the trajectory is not free, or violates limits or deviation; mostly the path itself is not free then.
     """
     deviation = require_positive("deviation", deviation, or_zero=True)
     step = require_positive("step", step)
@@ -239,7 +236,7 @@ def make_trajectory(
 
 
 def _apart(path: Floats) -> Floats:
-    """Return a path without waypoints that are where the one before is, up to rounding; its ends stay as they are."""
+    """Return a path without repeated waypoints, up to rounding; the first and the last stay as they are."""
     kept: list[Floats] = []
     for position in path:
         if not kept or np.max(np.abs(position - kept[-1])) > _SAME:
@@ -250,10 +247,10 @@ def _apart(path: Floats) -> Floats:
 
 
 def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeLaw:
-    """Return a law that keeps its limits between the places of its grid, too, and ends on a whole step."""
+    """Return a law that keeps its limits between grid points, too, and ends on a whole step."""
     within = law.times[:-1, None] + np.diff(law.times)[:, None] * np.linspace(0.0, 1.0 - 1e-9, _FINER)
     shares = _shares(law.at(within.ravel()), limits)
-    law = stretched(law, max(1.0, shares["velocity"], math.sqrt(shares["acceleration"])))
+    law = slowed(law, max(1.0, shares["velocity"], math.sqrt(shares["acceleration"])))
     steps = max(math.ceil((law.duration + window) / step - 1e-9), math.floor(window / step) + 1)
     if steps > _MOST_STATES:
         raise InvalidValue(
@@ -261,7 +258,7 @@ def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeL
             f" {_MOST_STATES} of them: take longer steps, or move faster"
         )
     while True:
-        law = stretched(law, (steps * step - window) / law.duration)
+        law = slowed(law, (steps * step - window) / law.duration)
         fine = np.linspace(0.0, law.duration + window, _FINER * steps + 1)
         if max(_shares(law.at(fine), limits).values()) <= 1.0:
             return law
@@ -288,7 +285,7 @@ def _shares(states: tuple[Floats, Floats, Floats], limits: Limits) -> dict[str, 
 
 
 def _distance_to(path: Floats, points: Floats) -> Floats:
-    """Return how far each place, (n, dim), is from a path, (p, dim): (n,)."""
+    """Return the distances of points, (n, dim), from a path, (p, dim): (n,)."""
     nearest = np.full(len(points), np.inf)
     for a, b in pairwise(path):
         along = b - a
@@ -298,7 +295,7 @@ def _distance_to(path: Floats, points: Floats) -> Floats:
 
 
 def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:
-    """Return which motions from state to state are free, (n - 1,), and what shows it."""
+    """Return which motions from state to state are free, (n - 1,), and the proof."""
     if world is None:
         return np.ones(len(positions) - 1, dtype=bool), "unchecked"
     if isinstance(world, ValidatesPaths):
@@ -307,7 +304,7 @@ def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:
 
 
 def _less(cuts: Floats, corners: Floats, lengths: Floats, *, stop: bool) -> Floats:
-    """Return `cuts`, (p,), smaller at the corners that are nearest to the lengths where something is wrong."""
+    """Return `cuts`, (p,), smaller at the corners nearest to the given lengths."""
     if len(corners) == 0:
         return cuts
     near = 1 + np.unique(np.argmin(np.abs(lengths[:, None] - corners), axis=1))

@@ -33,7 +33,7 @@ _CHORDS = 16
 
 
 def servoj_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> str:
-    """Return a program that drives through the states one a cycle, by ``servoj``, and waits at the last one.
+    """Return a program of ``servoj`` that drives through one state per cycle and waits at the last one.
 
     Raises InvalidValue unless there are six joints and the states are 8 ms (CB3) or 2 ms (e-Series) apart.
     """
@@ -49,15 +49,15 @@ def servoj_script(trajectory: Trajectory, order: Sequence[str] | None = None) ->
 
 
 def held_cycles(cycle: float) -> int:
-    """Return for how many cycles the last state is sent again: an arm runs behind by about the time it looks ahead."""
+    """Return the number of cycles for which the last state is repeated: an arm lags by about its lookahead time."""
     return math.ceil(2.0 * LOOKAHEAD / cycle)
 
 
 def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> str:
-    """Return a program that drives to each waypoint of the path by ``movej``.
+    """Return a program of ``movej`` that drives to each waypoint of the path.
 
-    Corners are rounded off as far as `radii` allow, else it stops at each.  No joint is faster, or speeds up faster,
-    than the slowest one may.  Raises InvalidValue unless there are six joints.
+    Corners are rounded by `radii`; without these it stops at each.  All joints keep the limits of the slowest one.
+    Raises InvalidValue unless there are six joints.
     """
     names, _ = columns_of_ur(trajectory, order)
     path = trajectory.waypoints
@@ -72,19 +72,18 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
 
 
 def with_radii(trajectory: Trajectory, world: World, tip_at: Callable[[Floats], Floats]) -> Trajectory:
-    """Return the trajectory with the radii at which a controller may leave the path before a corner, and come back.
+    """Return the trajectory with the radii at which a controller may leave the path before a corner, and return.
 
-    The controller rounds a corner off within the triangle of the places where it leaves and comes back.  A radius is
-    given where the triangle is free: straight motions between the two sides are, at sixteenths of them.
+    The controller stays within the triangle of the corner and the two points where it leaves and returns.  A radius is
+    given where straight motions between its sides, at sixteenths of them, are free.
 
     Parameters
     ----------
     trajectory : Trajectory
-        Of an arm.
     world : World
-        Whose configurations are those of the trajectory.
+        Checks configurations of the trajectory.
     tip_at : callable
-        Where the tip is, (n, 3) [m], at configurations, (n, dim).
+        Returns the positions of the tip, (n, 3) [m], at configurations, (n, dim).
     """
     path, radii = trajectory.waypoints, []
     for before, corner, after in zip(path[:-2], path[1:-1], path[2:], strict=True):
@@ -100,7 +99,7 @@ def _triangle_free(world: World, before: Floats, corner: Floats, after: Floats, 
 
 
 def _radius(tip_at: Callable[[Floats], Floats], before: Floats, corner: Floats, after: Floats, share: float) -> float:
-    """Return the largest radius [m] within which the tip is only where the corner is nearer than `share`."""
+    """Return the largest radius [m] that the tip reaches only within a `share` of the motions at the corner."""
     if share == 0.0:
         return 0.0
     beyond = np.linspace(share, 1.0, 64)[:, None]
@@ -112,7 +111,7 @@ def _radius(tip_at: Callable[[Floats], Floats], before: Floats, corner: Floats, 
 def columns_of_ur(
     trajectory: Trajectory, order: Sequence[str] | None
 ) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
-    """Return what `Trajectory.columns` does of the six joints of a UR arm; InvalidValue for other numbers of joints."""
+    """Return `Trajectory.columns` of the six joints of a UR arm; InvalidValue for another number of joints."""
     names, tables = trajectory.columns(order)
     if len(names) != _JOINTS:
         raise InvalidValue(f"URScript needs the six joints of a UR arm, got {len(names)}: {', '.join(names)}")
@@ -120,7 +119,7 @@ def columns_of_ur(
 
 
 def _program(name: str, start: Floats, moves: Sequence[str]) -> str:
-    """Return a program that refuses to move from anywhere but the start."""
+    """Return a program that moves only from the start."""
     lines = [
         f"def {name}():",
         f"  start = {_row(start)}",
