@@ -4,7 +4,6 @@ from itertools import pairwise
 
 import pytest
 
-from evenroad.errors import InvalidValue, UnknownName
 from evenroad_studies.bench.execute import run_task
 from evenroad_studies.bench.samplers import why_not
 from evenroad_studies.suites import COUNTS, DIMENSIONS, FAIR_RULES, fair_suite
@@ -74,10 +73,3 @@ def test_tasks_run(name):
     outcomes = [run_task(task) for task in tasks]
     assert {each.status for each in outcomes} <= {"solved", "not_connected"}
     assert all(each.valid > 0 for each in outcomes)
-
-
-def test_unknown_problems_and_bad_counts_are_refused():
-    with pytest.raises(UnknownName, match="fair-balls-9d-50"):
-        fair_suite(3, only=["fair-balls-9d-50"])
-    with pytest.raises(InvalidValue, match="runs"):
-        fair_suite(0)

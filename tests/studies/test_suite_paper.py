@@ -4,14 +4,14 @@ from itertools import pairwise
 
 import pytest
 
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import UnknownName
 from evenroad.points import draw
 from evenroad.world.gridmap.shipped import LEVELS, load_maze
 from evenroad_studies.bench.samplers import SAMPLERS, why_not
 from evenroad_studies.bench.searches import search_named
 from evenroad_studies.problems import PROBLEMS
 from evenroad_studies.rules import prm_star_gamma, rule_named
-from evenroad_studies.suites import EXPERIMENTS, SUITES, paper_suite
+from evenroad_studies.suites import EXPERIMENTS, paper_suite
 
 
 def test_every_cell_has_its_runs_or_a_reason():
@@ -90,13 +90,3 @@ def test_only_keeps_the_problems_named():
     assert {task.problem for task in suite.tasks} == {"hypercube-legacy6", "maze-2"}
     with pytest.raises(UnknownName, match="unknown problem of this suite 'nonsense'; known: .*maze-1"):
         paper_suite(only=["nonsense"])
-
-
-@pytest.mark.parametrize("bad", [{"runs": 0}, {"runs": 1.5}, {"seed": -1}])
-def test_numbers_out_of_range_are_refused(bad):
-    with pytest.raises(InvalidValue):
-        paper_suite(**bad)
-
-
-def test_suites_are_known_by_name():
-    assert SUITES["paper"] is paper_suite

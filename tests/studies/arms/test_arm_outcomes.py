@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from studies.benchmarks.arm_tables import PAGES, all_tables, few_table, with_tables
+from studies.benchmarks.arm_tables import PAGES, all_tables, with_tables
 
 from evenroad._npz import digest
 from evenroad.errors import BrokenFile, InvalidValue
@@ -179,26 +179,6 @@ def test_a_damaged_file_of_outcomes_is_refused(tmp_path, harm):
         np.savez(path, **(arrays | {"solved": ~arrays["solved"]}))
     with pytest.raises(BrokenFile, match=r"o\.npz"):
         read_outcomes(path)
-
-
-def test_few_made_milestones_are_compared_with_many_others_by_generator(tmp_path):
-    def task(sampler, n, instance, kind="shelf"):
-        return replace(TASK, problem=f"arm-scara-{kind}", sampler=sampler, n=n, instance=instance)
-
-    runs = [(task("roadmap", 64, i), _answer(i != 0)) for i in range(4)]
-    runs += [(task("control", 256, i), _answer(i == 0)) for i in range(4)]
-    runs += [(task(s, n, 0, "cage"), _answer(True)) for s, n in (("roadmap", 64), ("control", 256))]
-    (row,) = few_table(_outcomes(tmp_path / "a.db", runs)).rows
-    shares = [-100.0, 100.0, 100.0, 100.0]
-    error = np.std(shares, ddof=1) / 2.0
-    assert [entry.text for entry in row] == [
-        "scara",
-        "256 of control",
-        f"+50.0 ± {error:.1f}",
-        *"–––",
-        "–",
-        f"+40.0 ± {np.std([*shares, 0.0], ddof=1) / np.sqrt(5.0):.1f}",
-    ]
 
 
 def test_the_tables_of_the_pages_are_those_of_the_kept_outcomes():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad_studies.arms.results import ALL, arm_lines, table_rows
+from evenroad_studies.arms.results import ALL, arm_lines
 from evenroad_studies.arms.suite import METHODS, arm_tasks
 from evenroad_studies.bench.execute import run_task
 from evenroad_studies.bench.runner import run_tasks
@@ -113,16 +113,6 @@ def test_draws_that_the_roadmap_does_not_have_are_not_compared(tmp_path):
     assert (line.gain, line.error) == (1.0, 0.0)
 
 
-def test_tables_fit_100_columns(tmp_path):
-    success = {(s, i, 0): i % 2 == 0 for s in METHODS for i in range(4)}
-    ((title, rows),) = table_rows(arm_lines(_store(tmp_path / "a.db", success))).items()
-    assert title == ("scara", "10")
-    widths = np.max([[len(text) for text in row] for row in rows], axis=0)
-    assert widths.sum() + len(widths) <= 100
-    assert [row[1] for row in rows][:3] == ["uniform", "owen", "halton"]
-    assert {row[2] for row in rows} == {"4 x 1"}
-
-
 def test_costs_are_drawn_of_the_smallest_a_middle_and_the_largest_roadmap(tmp_path):
     outcomes = [
         (_task("roadmap", i, 0, n), i < solved)
@@ -170,24 +160,6 @@ def test_robots_are_counted_and_not_their_rules(tmp_path):
     ]
     lines = arm_lines(_rows(tmp_path / "a.db", outcomes))
     assert _table(summary_tables(lines), "arms-samplers") == [["10", "roadmap", "–", "100.0"]]
-
-
-def test_samplers_and_rules_that_the_suite_does_not_know_are_in_the_tables(tmp_path):
-    lattice = replace(_task("lattice", 0, 0), rule="radius 0.5", search="connect")
-    tables = summary_tables(arm_lines(_rows(tmp_path / "a.db", [(lattice, True)])))
-    assert _table(tables, "arms-samplers") == [["radius", "lattice, ends k", "100.0"]]
-
-
-def test_gains_on_points_of_the_box_and_on_the_control_and_certain_losses_are_listed(tmp_path):
-    success = {(s, i, 0): s == "control" for s in ("sobol scrambled", "control", "roadmap") for i in range(20)}
-    tables = summary_tables(arm_lines(_store(tmp_path / "a.db", success)))
-    assert _table(tables, "arms-gains") == [
-        ["scara", "10", "owen", "+0.0 ± 0.0"],
-        ["scara", "10", "control", "-100.0 ± 0.0"],
-    ]
-    assert _table(tables, "arms-losses") == [["scara", "10", "64", "control", "shelf", "-100.0 ± 0.0"]]
-    losses = next(table for table in tables if table.name == "arms-losses")
-    assert "Of 2 comparisons by generator the roadmap solves more in 0 and less in 1," in losses.notes[0]
 
 
 def test_without_points_nothing_is_summed_up(tmp_path):

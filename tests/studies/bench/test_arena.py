@@ -1,6 +1,5 @@
 """A Planner Arena database, table by table."""
 
-import sqlite3
 from dataclasses import replace
 
 import pytest
@@ -10,9 +9,9 @@ from evenroad.roadmap import Status
 from evenroad_studies.bench.arena import STATUSES, write_arena
 from evenroad_studies.bench.rows import FAILURES
 from evenroad_studies.bench.store import open_store
-from evenroad_studies.bench.task import Outcome, Task
+from evenroad_studies.bench.task import Outcome
+from tests.studies.bench.tables import TASK, query, write
 
-TASK = Task("maze-1", 0, "uniform", 128, "k=10 earlier", "stock", 0, 1)
 OUTCOMES = {
     TASK: Outcome("solved", 20, 7, 93, 1.25, 0.5),
     replace(TASK, run=1): Outcome("not_connected", 18, None, 40, seconds=0.25),
@@ -23,31 +22,21 @@ OUTCOMES = {
 
 @pytest.fixture
 def store(tmp_path):
-    with open_store(tmp_path / "results.db") as store:
-        for task, outcome in OUTCOMES.items():
-            store.add("paper", task, outcome, "")
+    write(tmp_path / "results.db", OUTCOMES.items())
     return tmp_path / "results.db"
-
-
-def _query(path, sql):
-    connection = sqlite3.connect(path)
-    try:
-        return connection.execute(sql).fetchall()
-    finally:
-        connection.close()
 
 
 def test_an_experiment_has_twelve_columns_and_then_its_parameter(store, tmp_path):
     write_arena(store, tmp_path / "arena.db")
-    columns = " ".join(row[1] for row in _query(tmp_path / "arena.db", "PRAGMA table_info(experiments)"))
+    columns = " ".join(row[1] for row in query(tmp_path / "arena.db", "PRAGMA table_info(experiments)"))
     assert columns == "id name totaltime timelimit memorylimit runcount version hostname cpuinfo date seed setup N"
-    experiments = _query(tmp_path / "arena.db", "SELECT name, N, runcount, totaltime, seed FROM experiments ORDER BY N")
+    experiments = query(tmp_path / "arena.db", "SELECT name, N, runcount, totaltime, seed FROM experiments ORDER BY N")
     assert experiments == [("maze-1", 64, 1, 0.0, 1), ("maze-1", 128, 3, 0.875, 1)]
 
 
 def test_every_run_has_its_planner_and_its_values_and_what_is_not_known_is_null(store, tmp_path):
     assert write_arena(store, tmp_path / "arena.db") == len(OUTCOMES)
-    runs = _query(
+    runs = query(
         tmp_path / "arena.db",
         "SELECT plannerConfigs.name, N, time, solved, description, valid_milestones, valid_milestones_at_solution,"
         " motions_checked, solution_length, run FROM runs JOIN plannerConfigs ON plannerConfigs.id = plannerid"
@@ -72,7 +61,7 @@ def test_every_status_has_a_number_of_its_own():
 def test_an_earlier_export_is_replaced_and_nothing_is_left_behind(store, tmp_path):
     (tmp_path / "arena.db").write_text("something else")
     write_arena(store, tmp_path / "arena.db")
-    assert _query(tmp_path / "arena.db", "SELECT count(*) FROM runs") == [(len(OUTCOMES),)]
+    assert query(tmp_path / "arena.db", "SELECT count(*) FROM runs") == [(len(OUTCOMES),)]
     assert {each.name for each in tmp_path.iterdir()} == {"arena.db", "results.db"}
 
 
@@ -84,13 +73,10 @@ def test_a_store_without_rows_is_not_exported(tmp_path):
     assert not (tmp_path / "arena.db").exists()
 
 
-def test_a_store_is_not_exported_onto_itself(store):
+def test_a_store_is_not_exported_onto_itself_or_into_a_folder_that_is_not_there(store, tmp_path):
     before = store.read_bytes()
     with pytest.raises(InvalidValue, match="onto itself"):
         write_arena(store, store)
     assert store.read_bytes() == before
-
-
-def test_a_folder_that_is_not_there_is_said_first(store, tmp_path):
     with pytest.raises(BrokenFile, match="does not exist"):
         write_arena(store, tmp_path / "missing" / "arena.db")

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from evenroad.errors import UnknownName
 from evenroad.roadmap.search import FREE, EdgeStates
 from evenroad.space import BoxSpace
 from evenroad_studies.bench.searches import SEARCHES, is_connected, milestones_until_connected, search_named
@@ -140,8 +139,3 @@ def test_all_searches_agree_on_whether_there_is_a_path_and_the_shortest_ones_on_
         assert (found["stock"].valid_at_solution is None) != found["stock"].solved
         answers.add(found["connect"].solved)
     assert answers == {True, False}
-
-
-def test_an_unknown_search_gets_the_list():
-    with pytest.raises(UnknownName, match="known: connect, full, lazy, stock"):
-        search_named("nonsense")

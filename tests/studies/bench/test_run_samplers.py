@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from evenroad.errors import NotAvailable, UnknownName
+from evenroad.errors import NotAvailable
 from evenroad.points import draw
 from evenroad.points.bank import Bank
 from evenroad.points.samplers import Halton, Sobol
@@ -61,14 +61,6 @@ def test_from_five_dimensions_on_a_pool_set_comes_with_permuted_coordinates():
     assert "permuted" in points.origin.method
 
 
-@pytest.mark.parametrize("d", [2, 3, 4, 7])
-def test_even_is_constructed_and_so_a_set_of_its_own_each_time(d):
-    first, set_id = _draw("even", 100, d, seed=1)
-    assert set_id == ""
-    assert first.origin.family == "even"
-    assert not np.array_equal(first.points, _draw("even", 100, d, seed=2)[0].points)
-
-
 def test_the_grid_is_one_set_where_it_exists():
     points, set_id = _draw("sukharev", 64, 3)
     assert set_id == "grid"
@@ -85,11 +77,6 @@ def test_a_pool_that_is_not_in_the_bank_says_which_n_there_are():
 def test_the_lattice_ends_at_twelve_dimensions():
     assert why_not("lattice", 10, 12) == ""
     assert "12" in why_not("lattice", 10, 13)
-
-
-def test_an_unknown_sampler_gets_the_list():
-    with pytest.raises(UnknownName, match="known: even, halton paper-blocks"):
-        why_not("nonsense", 10, 2)
 
 
 SPACE = SE3((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), weights=(1.0, 0.3))

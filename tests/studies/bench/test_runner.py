@@ -30,11 +30,6 @@ TASKS = tuple(
 TO_RUN_HALF = len(TASKS) // 2
 
 
-@pytest.fixture
-def path(tmp_path):
-    return tmp_path / "results.db"
-
-
 @pytest.fixture(scope="module")
 def calm(tmp_path_factory):
     """The store of a run of all tasks in this process, to which nothing happened."""
@@ -69,11 +64,6 @@ def test_every_task_gets_a_row_and_the_report_counts_them(path):
     assert len(read_rows(path)) == len(TASKS)
     assert calls[-1] == (len(TASKS), len(TASKS))
     assert calls == sorted(calls)
-
-
-def test_a_second_run_finds_everything_done(calm):
-    report = _run(calm, workers=_workers(lambda tasks, limit: pytest.fail("nothing was left to run")))
-    assert (report.found, report.finished) == (len(TASKS), 0)
 
 
 def test_a_stopped_run_keeps_its_rows_and_goes_on(path, calm):

@@ -3,7 +3,6 @@
 import os
 import re
 import signal
-import sqlite3
 import subprocess
 import sys
 import time
@@ -14,6 +13,7 @@ from evenroad.cli import main
 from evenroad.errors import BrokenFile
 from evenroad_studies.bench.samplers import SAMPLERS
 from evenroad_studies.bench.store import Store, open_store, read_rows
+from tests.studies.bench.tables import query
 from tests.studies.report.stores import made_up, write_store
 
 SMALL = ("bench", "paper", "--runs", 2, "--only", "hypercube-legacy6,corridor-2d-0.1", "--quick", "--jobs", 1)
@@ -47,9 +47,7 @@ def test_a_suite_is_run_shown_within_80_columns_exported_and_found_done_the_next
     for option in ((), ("--arena",)):
         code, out, err = run("export", "results.db", *option, "-o", "arena.db")
         assert (code, f"{len(rows)} runs" in out) == (0, True), err
-        connection = sqlite3.connect(tmp_path / "arena.db")
-        assert connection.execute("SELECT count(*) FROM runs").fetchone() == (len(rows),)
-        connection.close()
+        assert query(tmp_path / "arena.db", "SELECT count(*) FROM runs") == [(len(rows),)]
 
 
 def test_the_table_names_its_rule_and_search_and_the_fair_one_shows_k_10(run, tmp_path):
@@ -140,18 +138,8 @@ def test_bad_input_is_one_line_and_exit_code_2(run, arguments, says):
     assert len(err.splitlines()) == 1
 
 
-def test_a_file_that_is_no_store_is_refused_before_anything_runs(run, tmp_path):
-    (tmp_path / "results.db").write_text("something else, long enough to be no SQLite header\n" * 20)
-    code, _, err = run(*SMALL)
-    assert code == 2
-    assert "not a store of benchmark results" in err
-
-
 def test_a_damaged_store_is_one_line_and_exit_code_2_for_every_verb_that_reads_it(run, tmp_path):
-    connection = sqlite3.connect(write_store(tmp_path / "results.db", made_up(runs=2)))
-    connection.execute("UPDATE rows SET valid = valid + 1 WHERE run = 1")
-    connection.commit()
-    connection.close()
+    query(write_store(tmp_path / "results.db", made_up(runs=2)), "UPDATE rows SET valid = valid + 1 WHERE run = 1")
     for verb in (SMALL, ("report", "results.db", "-o", "out"), ("export", "results.db", "-o", "arena.db")):
         code, _, err = run(*verb)
         assert code == 2

@@ -71,23 +71,6 @@ def test_the_difference_of_sets_and_runs_is_newcombes_interval():
     assert interval.kind == "newcombe over sets"
 
 
-def test_an_interval_over_sets_is_wider_than_one_that_takes_runs_for_independent():
-    """20 sets that either always or never solve, 20 runs each: the sets are what was drawn."""
-    solved, runs = np.repeat([20, 0], [14, 6]), np.full(20, 20)
-    over_sets, over_runs = clustered_rate(solved, runs, "sets"), wilson(solved.sum(), runs.sum())
-    assert over_sets.kind == "wilson over sets"
-    assert over_sets.high - over_sets.low > 3 * (over_runs[1] - over_runs[0])
-
-
-def test_an_interval_over_sets_covers_the_familys_rate():
-    rng = np.random.default_rng(5)
-    chances = rng.beta(2, 2, size=(400, 30))
-    solved = rng.binomial(12, chances)
-    intervals = [clustered_rate(each, np.full(30, 12), "sets") for each in solved]
-    covered = np.mean([each.low <= 0.5 <= each.high for each in intervals])
-    assert 0.90 <= covered <= 0.98
-
-
 @pytest.mark.parametrize(("solved", "sets"), [([5] * 16, 16), ([0] * 12, 12), ([5, 0, 3], 3)])
 def test_sets_that_are_worth_no_more_are_counted_as_runs(solved, sets):
     interval = clustered_rate(solved, [5] * len(solved), "sets")

@@ -24,19 +24,13 @@ def randomise(points, rng=0):
     return randomise_by(points, symmetries_of(points.origin), rng=rng)
 
 
-def permute(points, rng=0):
-    return randomise_by(points, {Symmetry.PERMUTATION}, rng=rng)
+def by(symmetry):
+    """Move a set in one way."""
+    return lambda points, rng=0: randomise_by(points, {symmetry}, rng=rng)
 
 
-def reflect(points, rng=0):
-    return randomise_by(points, {Symmetry.REFLECTION}, rng=rng)
-
-
-def shift(points, rng=0):
-    return randomise_by(points, {Symmetry.SHIFT}, rng=rng)
-
-
-VERBS = {Symmetry.PERMUTATION: permute, Symmetry.REFLECTION: reflect, Symmetry.SHIFT: shift}
+VERBS = {symmetry: by(symmetry) for symmetry in Symmetry}
+reflect = VERBS[Symmetry.REFLECTION]
 
 
 def annealed(n, d, objective, seed=0):
