@@ -170,22 +170,6 @@ def test_an_end_in_collision_is_a_status_that_names_the_two_bodies(run, answer, 
     assert re.search(itself, record["message"])
 
 
-def test_no_path_exits_with_1_and_leaves_no_csv_of_an_earlier_run(answer, tmp_path):
-    (tmp_path / "a.csv").write_text("old")
-    _, shown = answer(*arm_arguments(sampler="uniform"), "-n", 16, code=1)
-    assert "not_connected" in shown
-    assert not (tmp_path / "a.csv").exists()
-    assert "a.csv" not in shown
-
-
-def test_the_default_name_never_overwrites_the_scene(run, desk):
-    (desk / "desk.yaml").rename(desk / "desk.json")
-    before = (desk / "desk.json").read_bytes()
-    assert run(*on_desk(scene="desk.json"), "--no-picture")[0] == 0
-    assert (desk / "desk.json").read_bytes() == before
-    assert (desk / "desk-plan.json").exists()
-
-
 NO_MESH = two_joints("<collision><geometry><mesh filename='gone.stl'/></geometry></collision>")
 POSE_OF_NOTHING = "1\n0 0 0\n0 0 0 0\n0 0 0 0\n.\n"
 FILES = {

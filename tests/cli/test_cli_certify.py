@@ -16,7 +16,7 @@ def sets(tmp_path):
     np.save(tmp_path / "four.npy", draw("even", 64, 4).points)
 
 
-def test_json_says_what_python_says(run, sets):
+def test_json_says_what_python_says_of_the_box_with_the_sides_that_are_given(run, sets):
     code, out, err = run("certify", "two.npz", "--connect-radius", 0.3, "--clearance", 0.1, "--length", 2, "--json")
     record = json.loads(out)
     certificate = certify(draw("cover", 200, 2), Radius(0.3), BoxSpace([0.0, 0.0], [1.0, 1.0]))
@@ -26,9 +26,6 @@ def test_json_says_what_python_says(run, sets):
     assert record["longest"] == certificate.longest(2.0, 0.1)
     assert record["clearance_for_factor"]["2"] == certificate.clearance_for(2.0)
     assert record["complete_from_clearance"] == certificate.dispersion
-
-
-def test_the_box_has_the_sides_that_are_given(run, sets):
     record = json.loads(run("certify", "two.npz", "--sides", "10,5", "-k", 20, "--json")[1])
     certificate = certify(draw("cover", 200, 2), KNearest(20), BoxSpace([0.0, 0.0], [10.0, 5.0]))
     assert record["between"] == certificate.between

@@ -12,7 +12,6 @@ from evenroad.cli.plan_parts import print_plan
 from evenroad.planning import PRM, plan
 from evenroad.points import PointSet, save_points
 from evenroad.world import GridMap
-from tests.studies.report.stores import solved, task, write_store
 
 SAID = ("[ms]", "[bold]", "[/]", "scene[red].yaml", ":key:")
 
@@ -50,24 +49,6 @@ def test_progress_is_a_bar_on_a_terminal_and_gone_at_the_end(capsys, monkeypatch
     said = re.sub(r"\033\[[\d;]*m", "", capsys.readouterr().err)
     assert re.search(r"work \[ms\] .* 25 %, best 0.5, left ", said)
     assert said.endswith("\033[1A\033[2K")
-
-
-def test_a_plan_says_in_which_unit_its_times_are(run):
-    code, out, _ = run("demo", "--level", 1, "-n", 256)
-    assert code == 0
-    assert re.search(r"^time \[ms\] .*\d", out, re.MULTILINE)
-
-
-def test_the_fair_suite_says_in_which_unit_its_differences_are(run, tmp_path):
-    rows = [
-        (task("fair-balls-3d-50", sampler, 256, each, instance=each), solved(each % 2 == place))
-        for place, sampler in enumerate(("uniform", "korobov"))
-        for each in range(12)
-    ]
-    write_store(tmp_path / "results.db", rows)
-    code, out, _ = run("report", "results.db", "-o", "out")
-    assert code == 0
-    assert "[points]" in out
 
 
 @pytest.mark.parametrize("name", ["set[red].npz", "[bold]", "a:key:b"])

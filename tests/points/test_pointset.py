@@ -17,13 +17,10 @@ unit = st.floats(0, 1, exclude_max=True, allow_subnormal=True)
 arrays = hnp.arrays(np.float64, st.tuples(st.integers(0, 20), st.integers(1, 6)), elements=unit)
 
 
-def test_the_array_cannot_be_written_to():
+def test_the_array_is_a_copy_of_the_callers_and_cannot_be_written_to():
     points = PointSet([[0.5, 0.25]])
     with pytest.raises(ValueError, match="read-only"):
         points.points[0, 0] = 0.1
-
-
-def test_the_callers_array_is_copied():
     given_array = np.array([[0.5, 0.25]])
     points = PointSet(given_array)
     given_array[0, 0] = 0.75
@@ -167,11 +164,8 @@ def test_points_save_themselves_and_are_read_again(tmp_path, name):
     assert (again.origin == points.origin) is (name == "set.npz")
     assert np.array_equal([row for row in again], points[:])  # noqa: C416
     assert again.shape == (20, 3)
-
-
-def test_a_suffix_that_is_not_known_is_told(tmp_path):
     with pytest.raises(UnknownName, match=r"\.csv, \.npy, \.npz"):
-        draw("halton", 20, 3).save(tmp_path / "set.txt")
+        points.save(tmp_path / "set.txt")
 
 
 def _array_file(shape):

@@ -25,12 +25,6 @@ def test_a_world_that_plans_by_itself_is_asked():
     assert len(plan(world, (10, 30), (50, 30), smooth=False).path) > len(result.path)
 
 
-def test_no_path_is_proved():
-    result = plan(two_rooms(gap=3), (10, 30), (50, 30))
-    assert result.status == "not_connected"
-    assert result.message.startswith("proved: there is no path")
-
-
 def test_for_any_other_world_points_grow():
     world = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: (np.abs(q[:, 0] - 0.5) > 0.1) | (q[:, 1] > 0.9), 0.01)
     # Time enough also where code is compiled first.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from evenroad import _npz, load_roadmap
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.errors import BrokenFile
 from evenroad.points import draw
 from evenroad.roadmap import KNearest
 from evenroad.roadmap.point_roadmap import roadmap_of_points
@@ -40,12 +40,6 @@ def test_a_roadmap_comes_back_as_it_was_and_plans_alike(file):
     one, other = (roadmap.within(WORLD).plan(*QUERY) for roadmap in (ROADMAP, again))
     assert one.path.tobytes() == other.path.tobytes()
     assert one.counts == other.counts
-
-
-@pytest.mark.parametrize("shape", [(20, 21), (3, 3)])
-def test_a_world_of_another_space_is_refused(file, shape):
-    with pytest.raises(InvalidValue, match="another space"):
-        load_roadmap(file).within(GridMap(np.zeros(shape, dtype=bool)).world(1.0))
 
 
 def _with_arrays(change):

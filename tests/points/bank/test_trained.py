@@ -14,16 +14,13 @@ class TestHickernell(SamplerContract):
     shapes = ((16, 2), (64, 2), (1024, 2))
 
 
-def test_a_set_that_does_not_ship_is_refused_with_what_there_is_and_how_to_make_it():
+def test_a_set_that_does_not_ship_and_an_unknown_family_are_refused_with_what_there_is():
     with pytest.raises(
         NotAvailable, match=r"hickernell has no set of n=11 in d=2; it has n = 16, .*evenroad train -n 11 -d 2"
     ):
         draw("hickernell", 11, 2)
     with pytest.raises((NotAvailable, UnknownName), match="mpmc"):
         draw("mpmc", 11, 2)
-
-
-def test_an_unknown_family_is_refused_with_the_list():
     with pytest.raises(UnknownName, match="known: hickernell, mpmc"):
         Trained("odd")
 

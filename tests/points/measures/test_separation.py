@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
 from evenroad.points.measures.separation import log_riesz_of_columns, riesz_rooted, separation
+from tests.differences import slopes
 
 
 def slow_separation(points, periodic):
@@ -26,9 +27,12 @@ def test_separation_is_the_smallest_distance_of_two_points(n, d, periodic):
     assert separation(points, periodic) == pytest.approx(slow_separation(points, periodic), rel=1e-12)
 
 
-def test_coincident_points_have_separation_zero():
+def test_coincident_points_have_separation_zero_a_huge_energy_and_no_nan():
     assert separation(np.full((2, 3), 0.5)) == 0.0
     assert separation([[0.0, 0.0], [0.5, 0.5], [0.0, 0.0]], periodic=True) == 0.0
+    points = np.full((3, 4), 0.25)
+    assert riesz_rooted(points) > 1e90
+    assert not log_riesz(points, want_gradient=True)[1].any()
 
 
 def log_riesz(points, s=None, periodic=True, want_gradient=False):
@@ -71,12 +75,7 @@ def test_gradients_are_those_of_central_differences(d, s, periodic):
     value, gradient = log_riesz(points, s, periodic, want_gradient=True)
     assert value == log_riesz(points, s, periodic)[0]
     assert math.exp(value / (s or 2 * d)) == riesz_rooted(points, s, periodic)
-    slow = np.empty_like(points)
-    for place in np.ndindex(*points.shape):
-        up, down = points.copy(), points.copy()
-        up[place] += 1e-6
-        down[place] -= 1e-6
-        slow[place] = (log_riesz(up, s, periodic)[0] - log_riesz(down, s, periodic)[0]) / 2e-6
+    slow = slopes(lambda x: log_riesz(x, s, periodic)[0], points)
     np.testing.assert_allclose(gradient.T, slow, atol=1e-6 * np.abs(slow).max())
 
 
@@ -104,12 +103,6 @@ def test_the_root_of_an_energy_beyond_floats_is_a_float():
     assert np.isfinite(gradient).all()
     assert gradient[13, 0] > 0 > gradient[13, 1]
     assert gradient[13, 0] == pytest.approx(1 / distance, rel=1e-9)
-
-
-def test_coincident_points_have_a_huge_energy_and_no_nan():
-    points = np.full((3, 4), 0.25)
-    assert riesz_rooted(points) > 1e90
-    assert not log_riesz(points, want_gradient=True)[1].any()
 
 
 @pytest.mark.parametrize("n", [0, 1])

@@ -44,14 +44,11 @@ def test_it_bounds_the_l2_star_discrepancy():
         assert MEASURES["star"].rooted(points) <= star_discrepancy(points) <= 1.0
 
 
-def test_work_beyond_the_budget_is_refused_before_it_starts():
+def test_no_points_and_work_beyond_the_budget_are_refused_before_it_starts():
     points = np.random.default_rng(0).random((200, 10))
     with pytest.raises(NotAvailable, match=r"n=200 points in d=10 takes about 10\^16 steps, the budget is 1e\+10"):
         star_discrepancy(points)
     with pytest.raises(NotAvailable, match="the budget is 1e"):
         star_discrepancy(points[:20, :2], budget=10)
-
-
-def test_no_points_have_no_star_discrepancy():
     with pytest.raises(InvalidValue, match="at least one point"):
         star_discrepancy(np.zeros((0, 2)))

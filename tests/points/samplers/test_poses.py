@@ -40,11 +40,8 @@ def test_none_or_all_of_the_poses_may_be_in_the_slice(share, most):
 
 
 @pytest.mark.parametrize("share", [-0.1, 1.5, float("nan"), "half"])
-def test_a_share_that_is_none_is_refused(share):
+def test_a_share_that_is_none_and_another_dimension_are_refused(share):
     with pytest.raises(InvalidValue, match="share"):
         Sliced(share)
-
-
-def test_slices_are_of_space_alone():
     with pytest.raises(InvalidValue, match="d = 6"):
         Sliced().draw(10, 3)

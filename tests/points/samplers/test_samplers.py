@@ -71,16 +71,14 @@ class TestSukharev(SamplerContract):
     shapes = ((1, 1), (7, 1), (64, 2), (27, 3))
     draws_depend_on_rng = False
 
-    def test_points_are_the_centres_of_equal_cells(self):
+    def test_points_are_the_centres_of_equal_cells_of_any_cube(self):
         expected = [[0.25, 0.25], [0.25, 0.75], [0.75, 0.25], [0.75, 0.75]]
         np.testing.assert_array_equal(self.sampler.draw(4, 2).points, expected)
+        assert (self.sampler.draw(1, 100).points == 0.5).all()
 
     def test_another_count_is_refused_and_the_two_nearest_are_named(self):
         with pytest.raises(NotAvailable, match=r"n=100 .* 64 and 125"):
             self.sampler.draw(100, 3)
-
-    def test_one_point_is_the_middle_of_any_cube(self):
-        assert (self.sampler.draw(1, 100).points == 0.5).all()
 
     @given(k=st.integers(1, 40), d=st.integers(1, 4), less=st.booleans())
     def test_the_largest_grid_is_found_exactly_whatever_floats_say(self, k, d, less):
@@ -121,12 +119,9 @@ class TestLattice(SamplerContract):
             self.sampler.draw(10, 13)
 
 
-def test_an_unknown_sampler_is_refused_with_the_list():
+def test_an_unknown_sampler_and_an_option_that_it_does_not_have_are_refused_with_the_list():
     with pytest.raises(UnknownName, match="unknown sampler 'sobel'; known: .*halton.*sobol"):
         draw("sobel", 8, 2)
-
-
-def test_an_option_that_a_sampler_does_not_have_is_refused():
     with pytest.raises(UnknownName, match="option of sampler 'uniform'"):
         make_sampler("uniform", scramble=True)
 

@@ -10,18 +10,9 @@ from hypothesis import strategies as st
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.measures import MEASURES, riesz_rooted
 from evenroad_studies.training.objective import Objective, Term, known_names, parse_objective
+from tests.differences import slopes
 
 POINTS = np.random.default_rng(0).random((12, 3))
-
-
-def slow_gradient(objective, points):
-    gradient = np.empty_like(points)
-    for place in np.ndindex(*points.shape):
-        up, down = points.copy(), points.copy()
-        up[place] += 1e-6
-        down[place] -= 1e-6
-        gradient[place] = (objective.value(up) - objective.value(down)) / 2e-6
-    return gradient
 
 
 @pytest.mark.parametrize("name", MEASURES)
@@ -62,7 +53,7 @@ def test_only_a_bare_energy_beside_other_terms_turns_a_sum_into_logs():
 def test_gradients_are_those_of_central_differences(text):
     objective = parse_objective(text)
     value, gradient = objective.with_gradient(POINTS)
-    slow = slow_gradient(objective, POINTS)
+    slow = slopes(objective.value, POINTS)
     assert value == objective.value(POINTS)
     np.testing.assert_allclose(gradient, slow, atol=1e-7 * np.abs(slow).max())
 
