@@ -1,7 +1,5 @@
 """A call with arguments that there are not is answered by an error of ours that says which there are."""
 
-from __future__ import annotations
-
 import pytest
 
 from evenroad._call import explains_calls
@@ -28,17 +26,14 @@ def test_what_is_right_is_done_as_before():
     assert steer.__name__ == "steer"
 
 
-@pytest.mark.parametrize(
-    ("call", "error", "text"),
-    [
-        (lambda: steer([1], angel=1), UnknownName, "'angel'; known: angle, speed; did you mean 'angle'?"),
-        (lambda: steer([1], 2), InvalidValue, "called as steer(speed, *, angle): takes 1 positional"),
-        (lambda: steer(), InvalidValue, "missing 1 required positional argument: 'speed'"),
-        (lambda: steer([1], speed=[2]), InvalidValue, "multiple values for argument 'speed'"),
-        (lambda: Wheel(raduis=1), UnknownName, "keyword of Wheel: 'raduis'; known: radius"),
-        (lambda: Wheel(1).turned(to=1), UnknownName, "keyword of turned: 'to'; known: by"),
-    ],
-)
+@pytest.mark.parametrize(("call", "error", "text"), [
+    (lambda: steer([1], angel=1), UnknownName, "'angel'; known: angle, speed; did you mean 'angle'?"),
+    (lambda: steer([1], 2), InvalidValue, "called as steer(speed, *, angle): takes 1 positional"),
+    (lambda: steer(), InvalidValue, "missing 1 required positional argument: 'speed'"),
+    (lambda: steer([1], speed=[2]), InvalidValue, "multiple values for argument 'speed'"),
+    (lambda: Wheel(raduis=1), UnknownName, "keyword of Wheel: 'raduis'; known: radius"),
+    (lambda: Wheel(1).turned(to=1), UnknownName, "keyword of turned: 'to'; known: by"),
+])  # fmt: skip
 def test_a_wrong_call_is_told_what_there_is(call, error, text):
     with pytest.raises(error) as raised:
         call()

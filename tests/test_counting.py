@@ -1,7 +1,5 @@
 """Counting: same answers, and every question counted."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is public says what it takes, gives and raises, and shows it by an example that runs here."""
 
-from __future__ import annotations
-
 import doctest
 import importlib
 import inspect

@@ -15,6 +15,7 @@ from evenroad._files import atomic_write, looks_like, not_a, read_json_file
 from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile
 from evenroad.points.npz import load_points
+from tests.refused import refused
 
 
 def _saved(save, path, *arrays):
@@ -83,26 +84,21 @@ def test_whatever_is_read_the_error_is_ours(tmp_path, what, reader):
     assert "not a" in text or "not YAML" in text or "not JSON" in text
 
 
-@pytest.mark.parametrize(
-    ("reader", "text", "says"),
-    [
-        ("YAML", "a: [1, 2\n", "is not YAML, as a scene is: line 2, column 1: "),
-        ("YAML", "a: 1\n b: 2", "is not YAML, as a scene is: line 2, column 3: "),
-        ("JSON", "{", "is not JSON, as a plan is: line 1, column 2"),
-        ("JSON", '{"a":\n 1,}', "is not JSON, as a plan is: line 2, column "),
-    ],
-)
+@pytest.mark.parametrize(("reader", "text", "says"), [
+    ("YAML", "a: [1, 2\n", "is not YAML, as a scene is: line 2, column 1: "),
+    ("YAML", "a: 1\n b: 2", "is not YAML, as a scene is: line 2, column 3: "),
+    ("JSON", "{", "is not JSON, as a plan is: line 1, column 2"),
+    ("JSON", '{"a":\n 1,}', "is not JSON, as a plan is: line 2, column "),
+])  # fmt: skip
 def test_what_does_not_parse_is_said_with_its_place(tmp_path, reader, text, says):
     (tmp_path / "a").write_text(text)
     with pytest.raises((yaml.YAMLError, json.JSONDecodeError)):
         (yaml.safe_load if reader == "YAML" else json.loads)(text)
-    with pytest.raises(BrokenFile, match=says):
-        READERS[reader](tmp_path / "a")
+    refused(BrokenFile, says, READERS[reader], tmp_path / "a")
 
 
 def test_a_missing_file_is_said_to_be_missing(tmp_path):
-    with pytest.raises(BrokenFile, match="cannot read the plan .*nowhere"):
-        read_json_file(Path("nowhere"), "plan")
+    refused(BrokenFile, "cannot read the plan .*nowhere", read_json_file, Path("nowhere"), "plan")
 
 
 def test_an_array_of_python_objects_is_never_unpacked(tmp_path):

@@ -11,6 +11,7 @@ from evenroad.robot.certified import CertifiedWorld
 from evenroad.space import SE2, SE3, BoxSpace, Circle, JointSpace, Rectangle
 from evenroad.world import FunctionWorld, GridMap
 from tests.counting import Counting
+from tests.refused import refused
 
 
 class Colour(Enum):
@@ -54,8 +55,7 @@ def test_a_fingerprint_is_the_same_in_any_process():
 
 @pytest.mark.parametrize("value", [len, object(), Pair(lambda: 0), np.array([object()])])
 def test_what_cannot_be_known_again_has_none(value):
-    with pytest.raises(NotAvailable, match="no fingerprint"):
-        fingerprint_of(value)
+    refused(NotAvailable, "no fingerprint", fingerprint_of, value)
 
 
 def _free(q):
@@ -72,8 +72,7 @@ def test_a_function_has_a_fingerprint_by_the_name_that_its_user_gives():
         FunctionWorld(SE2((0, 0), (1, 2)), _free, 0.1, name="cell 7"),
     ]
     assert len({world.fingerprint() for world in (one, *others)}) == 4
-    with pytest.raises(NotAvailable, match="only with a name"):
-        FunctionWorld(space, _free, 0.1).fingerprint()
+    refused(NotAvailable, "only with a name", lambda: FunctionWorld(space, _free, 0.1).fingerprint())
 
 
 def test_an_arm_whose_motions_are_proved_is_another_world_than_the_arm():

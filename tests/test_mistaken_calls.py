@@ -3,8 +3,6 @@
 The calls were written down before it was tried what they answer.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 

@@ -9,6 +9,7 @@ from evenroad import qmc
 from evenroad.errors import Exhausted, InvalidValue, NotAvailable, UnknownName
 from evenroad.points import draw
 from evenroad.points.measures import MEASURES, riesz_rooted, separation
+from tests.refused import refused
 
 SEED = 170382760648021597650530316304495310428
 
@@ -76,26 +77,22 @@ class EngineContract:
 
     def test_the_old_name_of_the_seed_works_but_not_beside_the_new_one(self):
         np.testing.assert_array_equal(self.engine(rng=None, seed=3).random(9), self.engine(rng=3).random(9))
-        with pytest.raises(InvalidValue, match="not both"):
-            self.engine(rng=3, seed=3)
+        refused(InvalidValue, "not both", self.engine, rng=3, seed=3)
 
     @pytest.mark.parametrize("bad", [0, -1, 1.5, "2", None, True])
     def test_a_dimension_that_is_no_positive_integer_is_refused(self, bad):
-        with pytest.raises(InvalidValue, match="d must be an integer >= 1"):
-            self.engine(d=bad)
+        refused(InvalidValue, "d must be an integer >= 1", self.engine, d=bad)
 
     @pytest.mark.parametrize("bad", [-1, 1.5, "2", None])
     def test_a_number_of_points_that_is_no_count_is_refused(self, bad):
         engine = self.engine()
         for ask in (engine.random, engine.fast_forward):
-            with pytest.raises(InvalidValue, match="n must be an integer >= 0"):
-                ask(bad)
+            refused(InvalidValue, "n must be an integer >= 0", ask, bad)
         assert engine.num_generated == 0
 
     @pytest.mark.parametrize("bad", [-1, "7", 0.5, True])
     def test_a_seed_of_another_kind_is_refused(self, bad):
-        with pytest.raises(InvalidValue, match="rng must be"):
-            self.engine(rng=bad)
+        refused(InvalidValue, "rng must be", self.engine, rng=bad)
 
     def test_scipys_own_tools_take_it(self):
         quadrature = qmc_quad(
@@ -123,8 +120,7 @@ class SetContract(EngineContract):
         engine = self.engine()
         engine.random(self.n - 3)
         for ask in (engine.random, engine.fast_forward, lambda n: engine.integers(10, n=n)):
-            with pytest.raises(Exhausted, match=f"asked for 4 more points, but 3 of the {self.n} are left"):
-                ask(4)
+            refused(Exhausted, f"asked for 4 more points, but 3 of the {self.n} are left", ask, 4)
         assert engine.num_generated == self.n - 3
         np.testing.assert_array_equal(engine.random(3), engine.points.points[-3:])
         assert engine.random(0).shape == (0, self.d)
@@ -147,12 +143,9 @@ class SetContract(EngineContract):
 
     def test_options_that_there_are_not_are_refused(self):
         for bad in (0, -1, 1.5, "2", None, True):
-            with pytest.raises(InvalidValue, match="n must be an integer >= 1"):
-                self.engine(n=bad)
-        with pytest.raises(UnknownName, match="scramble"):
-            self.engine(scramble=True)
-        with pytest.raises(ValueError, match="'toto' is not a valid optimization method"):
-            self.engine(optimization="toto")
+            refused(InvalidValue, "n must be an integer >= 1", self.engine, n=bad)
+        refused(UnknownName, "scramble", self.engine, scramble=True)
+        refused(ValueError, "'toto' is not a valid optimization method", self.engine, optimization="toto")
 
     def test_scipys_optimization_is_applied_to_what_is_handed_out(self):
         plain, optimised = self.engine(), self.engine(optimization="random-cd")
@@ -170,8 +163,7 @@ class TestGrowing(EngineContract):
         np.testing.assert_array_equal(engine.random(601), draw("growing", 601, self.d, rng=SEED).points)
         engine.fast_forward(2**30 - 603)
         for ask in (engine.random, engine.fast_forward):
-            with pytest.raises(Exhausted, match="asked for 3 more points, but the sequence ends 2 points on"):
-                ask(3)
+            refused(Exhausted, "asked for 3 more points, but the sequence ends 2 points on", ask, 3)
         assert engine.num_generated == 2**30 - 2
 
 
@@ -184,8 +176,7 @@ class TestHickernell(SetContract):
 
     def test_a_size_that_does_not_ship_is_refused_and_those_that_do_are_named(self, monkeypatch, tmp_path):
         monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path))
-        with pytest.raises(NotAvailable, match="n=61 in d=2; it has n = .*64"):
-            self.engine(n=61)
+        refused(NotAvailable, "n=61 in d=2; it has n = .*64", self.engine, n=61)
 
 
 class TestKorobov(SetContract):

@@ -238,35 +238,32 @@ def test_bad_input_gets_one_line_and_exit_code_2_and_nothing_is_written(changes,
 ON_A_MAP = ("plan", "a.png", "--robot-radius", 1, "--start", 1, 1, "--goal", 2, 2)
 
 
-@pytest.mark.parametrize(
-    ("words", "says"),
-    [
-        (
-            ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home"),
-            ": missing from evenroad plan: --goal, or --goal-pose; all options: evenroad plan --help\n",
-        ),
-        ((*arm_arguments(), "--improve", "-n", 64), "--improve goes without points"),
-        (
-            ("plan", "box-reach.yaml", "--start", "home", "--goal", "inside"),
-            "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not neither",
-        ),
-        (
-            ("plan", "desk.yaml", *ON_A_MAP[2:]),
-            "desk.yaml is a scene, no map: give the arm that moves in it with --robot",
-        ),
-        *(
-            ((*ON_A_MAP, *option), f"{option[0]} goes with --robot only")
-            for option in (("--deg",), ("--srdf", "a.srdf"), ("--group", "g"), ("--resolution", 0.1))
-        ),
-        (("robot", "cycle.urdf"), "form a cycle"),
-        (("robot", "arm.urdf", "--package", "parts"), "--package must be of the form NAME=VALUE, got 'parts'"),
-        (("robot", "arm.urdf", "--xacro", "=1"), "--xacro must be of the form NAME=VALUE, got '=1'"),
-        (
-            ("robot", "arm.urdf", "--group", "a", "--group", "a", "--write-srdf", "arm.srdf"),
-            "joint 'a' is named twice in the group",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("words", "says"), [
+    (
+        ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home"),
+        ": missing from evenroad plan: --goal, or --goal-pose; all options: evenroad plan --help\n",
+    ),
+    ((*arm_arguments(), "--improve", "-n", 64), "--improve goes without points"),
+    (
+        ("plan", "box-reach.yaml", "--start", "home", "--goal", "inside"),
+        "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not neither",
+    ),
+    (
+        ("plan", "desk.yaml", *ON_A_MAP[2:]),
+        "desk.yaml is a scene, no map: give the arm that moves in it with --robot",
+    ),
+    *(
+        ((*ON_A_MAP, *option), f"{option[0]} goes with --robot only")
+        for option in (("--deg",), ("--srdf", "a.srdf"), ("--group", "g"), ("--resolution", 0.1))
+    ),
+    (("robot", "cycle.urdf"), "form a cycle"),
+    (("robot", "arm.urdf", "--package", "parts"), "--package must be of the form NAME=VALUE, got 'parts'"),
+    (("robot", "arm.urdf", "--xacro", "=1"), "--xacro must be of the form NAME=VALUE, got '=1'"),
+    (
+        ("robot", "arm.urdf", "--group", "a", "--group", "a", "--write-srdf", "arm.srdf"),
+        "joint 'a' is named twice in the group",
+    ),
+])  # fmt: skip
 def test_what_does_not_go_together_gets_one_line_too(refuse, desk, words, says):
     (desk / "cycle.urdf").write_text(FILES["cycle.urdf"])
     assert says in refuse(*words)

@@ -46,20 +46,16 @@ def test_nothing_guaranteed_is_an_answer_with_exit_code_1(run, sets):
     assert run("certify", "two.npz", "--clearance", 0.01)[0] == 1
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("two.npz", "--clearance", "0"), "--clearance must be"),
-        (("two.npz", "--length", "1"), "--length goes with --clearance"),
-        (("two.npz", "--sides", "1"), "--sides must be 2 numbers"),
-        (("two.npz", "--sides", "1,x"), "--sides must be 2 numbers"),
-        (("two.npz", "-k", "3", "--connect-radius", "1"), "not both"),
-        (("two.npz", "-k", "2", "--goals", "2"), "k has to be above 2"),
-        (("two.npz", "--connect-radius", "-1"), "connection radius"),
-        (("two.npz", "--goals", "0"), "--goals must be"),
-        (("none.npz",), "no such file"),
-    ],
-)
+@pytest.mark.parametrize(("words", "said"), [
+    (("two.npz", "--clearance", "0"), "--clearance must be"),
+    (("two.npz", "--length", "1"), "--length goes with --clearance"),
+    (("two.npz", "--sides", "1"), "--sides must be 2 numbers"),
+    (("two.npz", "--sides", "1,x"), "--sides must be 2 numbers"),
+    (("two.npz", "-k", "3", "--connect-radius", "1"), "not both"),
+    (("two.npz", "-k", "2", "--goals", "2"), "k has to be above 2"),
+    (("two.npz", "--connect-radius", "-1"), "connection radius"),
+    (("two.npz", "--goals", "0"), "--goals must be"), (("none.npz",), "no such file"),
+])  # fmt: skip
 @pytest.mark.usefixtures("sets")
 def test_bad_input_is_one_line(refuse, words, said):
     assert said in refuse("certify", *words)

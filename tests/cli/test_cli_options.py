@@ -11,6 +11,7 @@ import tyro
 
 from evenroad.cli.options import read_options
 from evenroad.errors import EvenroadError
+from tests.refused import refused
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,22 +59,19 @@ def test_of_an_option_given_twice_the_last_one_counts():
     assert read("cake.txt", "--n", "3", "-n", "4").n == 4
 
 
-@pytest.mark.parametrize(
-    ("words", "says"),
-    [
-        ("", "missing from evenroad bake: RECIPE; all options: evenroad bake --help"),
-        ("a b", "evenroad bake has no use for the word 'b'"),
-        ("a -n many", "-n/--n must be a whole number, got 'many'"),
-        ("a -n 1.5", "-n/--n must be a whole number, got '1.5'"),
-        ("a --heat warm", "--heat must be a number, got 'warm'"),
-        ("a --oven sun", "invalid choice 'sun' for argument '--oven'. Expected one of ('gas', 'wood')"),
-        ("a --heat", "missing value for argument '--heat'"),
-        ("a --glazed-twice=yes", "evenroad bake has no use for the word 'yes'"),
-        ("a --nuts 3", "unknown option of evenroad bake: '--nuts'; known: --fruit, --glazed-twice"),
-        ("--nuts 3", "unknown option of evenroad bake: '--nuts'; known: --fruit, --glazed-twice"),
-        ("a -x", "evenroad bake has no use for the word '-x'"),
-    ],
-)
+@pytest.mark.parametrize(("words", "says"), [
+    ("", "missing from evenroad bake: RECIPE; all options: evenroad bake --help"),
+    ("a b", "evenroad bake has no use for the word 'b'"),
+    ("a -n many", "-n/--n must be a whole number, got 'many'"),
+    ("a -n 1.5", "-n/--n must be a whole number, got '1.5'"),
+    ("a --heat warm", "--heat must be a number, got 'warm'"),
+    ("a --oven sun", "invalid choice 'sun' for argument '--oven'. Expected one of ('gas', 'wood')"),
+    ("a --heat", "missing value for argument '--heat'"),
+    ("a --glazed-twice=yes", "evenroad bake has no use for the word 'yes'"),
+    ("a --nuts 3", "unknown option of evenroad bake: '--nuts'; known: --fruit, --glazed-twice"),
+    ("--nuts 3", "unknown option of evenroad bake: '--nuts'; known: --fruit, --glazed-twice"),
+    ("a -x", "evenroad bake has no use for the word '-x'"),
+])  # fmt: skip
 def test_what_cannot_be_read_is_named_with_what_is_allowed(words, says):
     with pytest.raises(EvenroadError) as error:
         read(*words.split())
@@ -83,8 +81,7 @@ def test_what_cannot_be_read_is_named_with_what_is_allowed(words, says):
 @pytest.mark.parametrize("width", [50, 80, 100])
 def test_the_help_tells_of_every_option_its_default_and_stays_within_the_width(width, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(width))
-    with pytest.raises(SystemExit, match="0"):
-        read("--help")
+    refused(SystemExit, "0", read, "--help")
     text = capsys.readouterr().out
     assert text.startswith("usage: evenroad bake [-h] [OPTIONS] RECIPE\n\nBake a cake.\n")
     assert max(map(len, text.splitlines())) <= width
@@ -108,8 +105,7 @@ class Iced(Bake):
 
 def test_the_help_lists_a_verbs_own_options_first_and_its_texts_in_one_piece(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "100")
-    with pytest.raises(SystemExit, match="0"):
-        read_options("ice", Iced, ["--help"])
+    refused(SystemExit, "0", read_options, "ice", Iced, ["--help"])
     text = capsys.readouterr().out
     named = [word for word in text.split() if word in ("--sampler", "--many", "--heat", "--glazed-twice")]
     assert named == ["--sampler", "--many", "--heat", "--glazed-twice"]
@@ -121,8 +117,7 @@ def test_a_name_that_an_option_once_had_is_taken_where_the_verb_has_todays():
     words = ["cake.txt", "--many", "red"]
     assert read_options("ice", Iced, [*words, "--family", "aunts"]).sampler == "aunts"
     assert read_options("ice", Iced, [*words, "--family=aunts"]).sampler == "aunts"
-    with pytest.raises(EvenroadError, match="unknown option of evenroad bake: '--family'"):
-        read("cake.txt", "--family", "aunts")
+    refused(EvenroadError, "unknown option of evenroad bake: '--family'", read, "cake.txt", "--family", "aunts")
 
 
 def test_what_completes_words_knows_every_verb(run):
@@ -133,16 +128,13 @@ def test_what_completes_words_knows_every_verb(run):
     assert run("--tyro-print-completion")[2] == "evenroad: error: unknown shell ''; known: bash, fish, zsh\n"
 
 
-@pytest.mark.parametrize(
-    ("words", "says"),
-    [
-        ("plan a.png --robot-radius 1 --start 1 1 --goal 2 2 -n many", "-n/--n must be a whole number, got 'many'"),
-        ("points -n 16 -d 2", "missing from evenroad points: -o PATH, --out PATH; all options: evenroad"),
-        ("measure", "missing from evenroad measure: SET"),
-        ("train -n 16 -d 2 -o a --method sgd", "invalid choice 'sgd' for argument '--method'. Expected"),
-        ("plot", "unknown verb 'plot'; known: bench, certify, demo, export"),
-    ],
-)
+@pytest.mark.parametrize(("words", "says"), [
+    ("plan a.png --robot-radius 1 --start 1 1 --goal 2 2 -n many", "-n/--n must be a whole number, got 'many'"),
+    ("points -n 16 -d 2", "missing from evenroad points: -o PATH, --out PATH; all options: evenroad"),
+    ("measure", "missing from evenroad measure: SET"),
+    ("train -n 16 -d 2 -o a --method sgd", "invalid choice 'sgd' for argument '--method'. Expected"),
+    ("plot", "unknown verb 'plot'; known: bench, certify, demo, export"),
+])  # fmt: skip
 def test_a_wrong_word_is_one_line_and_exit_code_2(refuse, words, says):
     assert refuse(*words.split()).startswith(f"evenroad: error: {says}")
 

@@ -108,16 +108,12 @@ def test_csv_has_one_waypoint_a_row_and_that_of_an_earlier_run_does_not_pass_for
     assert "a.csv" not in shown
 
 
-@pytest.mark.parametrize(
-    ("out", "name"),
-    [
-        (None, "maze1"),
-        *((out, "way") for out in ("way", "way.json", "way.png")),
-        # A long name that the file system takes, and brackets, which are no markup.
-        ("x" * 245, "x" * 245),
-        ("res[bold]x[y]", "res[bold]x[y]"),
-    ],
-)
+@pytest.mark.parametrize(("out", "name"), [
+    (None, "maze1"),
+    *((out, "way") for out in ("way", "way.json", "way.png")),
+    # A long name that the file system takes, and brackets, which are no markup.
+    ("x" * 245, "x" * 245), ("res[bold]x[y]", "res[bold]x[y]"),
+])  # fmt: skip
 def test_files_have_the_name_that_is_asked_for_or_the_maps(run, tmp_path, out, name):
     code, said, err = run(*plan_arguments(**({} if out is None else {"out": out})))
     assert (code, err) == (0, "")
@@ -268,13 +264,10 @@ def test_the_record_holds_all_that_is_needed_to_ask_again(answer):
     assert {key: record["query"][key] for key in asked} == asked
 
 
-@pytest.mark.parametrize(
-    ("error", "code", "says"),
-    [
-        (KeyboardInterrupt, 130, "interrupted"),
-        (MemoryError("Unable to allocate 3 EiB"), 2, "evenroad: error: not enough memory: Unable to allocate 3 EiB\n"),
-    ],
-)
+@pytest.mark.parametrize(("error", "code", "says"), [
+    (KeyboardInterrupt, 130, "interrupted"),
+    (MemoryError("Unable to allocate 3 EiB"), 2, "evenroad: error: not enough memory: Unable to allocate 3 EiB\n"),
+])  # fmt: skip
 def test_an_interrupt_and_too_little_memory_leave_no_half_file(run, tmp_path, monkeypatch, error, code, says):
     def fail(*_args, **_kwargs):
         raise error

@@ -38,38 +38,30 @@ def test_out_of_reach_is_an_answer_with_a_picture(run, tmp_path):
 DOWN = ("--goal-pose", "0.4 -0.3 0.5 180 0 0", "--deg", "--start", "20 -90 90 -90 -90 0")
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (("--goal-pose", "0.6 0 0.2 0 0 0 2"), "norm 1, got 2"),
-        (("--goal-pose", "0.6 0 nan"), "finite numbers, got '0.6 0 nan'"),
-        ((*POSE, "--tolerance", "-1"), "position_tolerance must be a finite number >= 0"),
-        (("--goal-pose", "0.6 0 0.2", "--free-axis", "z"), "--free-axis needs a rotation"),
-        (("--goal", "inside", "--tip", "tool0"), "--tip goes with --goal-pose"),
-        ((), "missing from evenroad plan: --goal, or --goal-pose"),
-        ((*DOWN, "--straight", "0"), "must have a length"),
-        ((*DOWN, "--straight", "far"), "--straight must be 1 or 2 finite numbers, got 'far'"),
-        ((*DOWN, "--straight", "0.1", "--away", "0 0 0"), "away must be a direction"),
-        ((*DOWN, "--away", "up"), "--away goes with --straight"),
-        ((*DOWN, "--upright", "-1"), "tolerance of upright must be a finite number > 0"),
-        ((*DOWN, "--upright", "nan"), "tolerance of upright must be a finite number > 0, got nan"),
-        ((*DOWN, "--upright", "5", "--upright-axis", "up"), "axis of upright must be"),
-        ((*DOWN, "--upright-axis", "z"), "--upright-axis goes with --upright"),
-    ],
-)
+@pytest.mark.parametrize(("options", "said"), [
+    (("--goal-pose", "0.6 0 0.2 0 0 0 2"), "norm 1, got 2"),
+    (("--goal-pose", "0.6 0 nan"), "finite numbers, got '0.6 0 nan'"),
+    ((*POSE, "--tolerance", "-1"), "position_tolerance must be a finite number >= 0"),
+    (("--goal-pose", "0.6 0 0.2", "--free-axis", "z"), "--free-axis needs a rotation"),
+    (("--goal", "inside", "--tip", "tool0"), "--tip goes with --goal-pose"),
+    ((), "missing from evenroad plan: --goal, or --goal-pose"),
+    ((*DOWN, "--straight", "0"), "must have a length"),
+    ((*DOWN, "--straight", "far"), "--straight must be 1 or 2 finite numbers, got 'far'"),
+    ((*DOWN, "--straight", "0.1", "--away", "0 0 0"), "away must be a direction"),
+    ((*DOWN, "--away", "up"), "--away goes with --straight"),
+    ((*DOWN, "--upright", "-1"), "tolerance of upright must be a finite number > 0"),
+    ((*DOWN, "--upright", "nan"), "tolerance of upright must be a finite number > 0, got nan"),
+    ((*DOWN, "--upright", "5", "--upright-axis", "up"), "axis of upright must be"),
+    ((*DOWN, "--upright-axis", "z"), "--upright-axis goes with --upright"),
+])  # fmt: skip
 def test_what_is_wrong_with_a_goal_pose_or_a_path_is_said_in_one_line(refuse, options, said):
     assert said in refuse(*ON_UR5, *options)
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (("--tip", "hand"), "unknown link of 'ur5': 'hand'"),
-        (("--tip", "base_link"), "moves the link 'base_link'"),
-        (("--frame", "hand"), "unknown link of 'ur5': 'hand'"),
-        (("--frame", "wrist_1_link"), "must stand still"),
-    ],
-)
+@pytest.mark.parametrize(("options", "said"), [
+    (("--tip", "hand"), "unknown link of 'ur5': 'hand'"), (("--tip", "base_link"), "moves the link 'base_link'"),
+    (("--frame", "hand"), "unknown link of 'ur5': 'hand'"), (("--frame", "wrist_1_link"), "must stand still"),
+])  # fmt: skip
 def test_a_link_that_cannot_be_is_refused_before_a_world_is_made(refuse, monkeypatch, options, said):
     monkeypatch.setattr("evenroad.planning.arm_request.ArmWorld", lambda *_, **__: pytest.fail("a world was made"))
     assert said in refuse(*ON_UR5, *POSE, *options)

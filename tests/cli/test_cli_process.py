@@ -97,19 +97,15 @@ set_handler = signal.signal
 """
 
 
-@pytest.mark.parametrize(
-    "run",
-    [
-        # While numba compiles, LLVM calls Python, and drops what that raises.
-        IN_A_CALLBACK.format("while True: time.sleep(0.01)"),
-        IN_A_CALLBACK.format("raise RuntimeError('no compiled object yet')"),
-        # SciPy's Sobol points come out as zeros after it; Cython prints what it drops.
-        IN_CYTHON,
-        # A second one while files are closed: the next who looks for signals is the call that turns them off.
-        LATE,
-    ],
-    ids=["in a callback", "in a callback that fails", "in Cython", "while leaving"],
-)
+@pytest.mark.parametrize("run", [
+    # While numba compiles, LLVM calls Python, and drops what that raises.
+    IN_A_CALLBACK.format("while True: time.sleep(0.01)"),
+    IN_A_CALLBACK.format("raise RuntimeError('no compiled object yet')"),
+    # SciPy's Sobol points come out as zeros after it; Cython prints what it drops.
+    IN_CYTHON,
+    # A second one while files are closed: the next who looks for signals is the call that turns them off.
+    LATE,
+], ids=["in a callback", "in a callback that fails", "in Cython", "while leaving"])  # fmt: skip
 def test_an_interrupt_that_others_drop_is_not_lost_and_leaves_no_traceback(run):
     done = with_verbs_that(run)
     assert (done.returncode, done.stderr) == INTERRUPTED

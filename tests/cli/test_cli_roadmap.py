@@ -34,31 +34,28 @@ def test_a_plan_along_it_is_that_of_python_and_proved(answer, made):
     assert again["path"] == record["path"]
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["roadmap", "ur5", "-n", "0"], "n must be"),
-        (["roadmap", "ur5", "-n", "99999"], "n must be at most 32768"),
-        (["roadmap", "ur5", "-k", "0"], "k must be"),
-        (["roadmap", "ur5", "--resolution", "0"], "resolution must be"),
-        (["roadmap", "ur5", "--resolution", "1e-9"], "resolution must be larger"),
-        (["roadmap", "ur5", "--seed", "-1"], "--seed must be"),
-        (["roadmap", "ur5", "-o", "."], "must end with a file name"),
-        (["roadmap", "nobody"], "there is no robot file 'nobody'"),
-        (["roadmap", "ur5", "--group", "left"], "unknown group 'left'"),
-        (["roadmap", "ur5", "--group", ""], "the group has no joint"),
-        (["roadmap", "ur5", "--cell", "none.yaml"], "there is no scene file none.yaml"),
-        (["roadmap", "ur5", "--cell", "limits.yaml"], "unknown joint in the limits of scene 'limits': 'knee'"),
-        (["roadmap", "ur5", "-o", "no/where.roadmap"], "no"),
-        (["roadmap", "ur5", "--cell", "cell.yaml", "-o", "cell.yaml"], "would overwrite"),
-        ([*ALONG, "--roadmap", "cell.yaml"], "is text, not a .npz roadmap"),
-        ([*ALONG, "--roadmap", "none"], "no such file: none"),
-        ([*ALONG, "--roadmap", "none", "-n", "5"], "goes without points"),
-        ([*ALONG, "--roadmap", "none", "--improve"], "goes without points"),
-        ([*ALONG, "--roadmap", "none", "--group", "a"], "--group goes with --robot"),
-        ([*ALONG, "--roadmap", "x", "--robot-radius", "1"], "not both"),
-    ],
-)
+@pytest.mark.parametrize(("words", "said"), [
+    (["roadmap", "ur5", "-n", "0"], "n must be"),
+    (["roadmap", "ur5", "-n", "99999"], "n must be at most 32768"),
+    (["roadmap", "ur5", "-k", "0"], "k must be"),
+    (["roadmap", "ur5", "--resolution", "0"], "resolution must be"),
+    (["roadmap", "ur5", "--resolution", "1e-9"], "resolution must be larger"),
+    (["roadmap", "ur5", "--seed", "-1"], "--seed must be"),
+    (["roadmap", "ur5", "-o", "."], "must end with a file name"),
+    (["roadmap", "nobody"], "there is no robot file 'nobody'"),
+    (["roadmap", "ur5", "--group", "left"], "unknown group 'left'"),
+    (["roadmap", "ur5", "--group", ""], "the group has no joint"),
+    (["roadmap", "ur5", "--cell", "none.yaml"], "there is no scene file none.yaml"),
+    (["roadmap", "ur5", "--cell", "limits.yaml"], "unknown joint in the limits of scene 'limits': 'knee'"),
+    (["roadmap", "ur5", "-o", "no/where.roadmap"], "no"),
+    (["roadmap", "ur5", "--cell", "cell.yaml", "-o", "cell.yaml"], "would overwrite"),
+    ([*ALONG, "--roadmap", "cell.yaml"], "is text, not a .npz roadmap"),
+    ([*ALONG, "--roadmap", "none"], "no such file: none"),
+    ([*ALONG, "--roadmap", "none", "-n", "5"], "goes without points"),
+    ([*ALONG, "--roadmap", "none", "--improve"], "goes without points"),
+    ([*ALONG, "--roadmap", "none", "--group", "a"], "--group goes with --robot"),
+    ([*ALONG, "--roadmap", "x", "--robot-radius", "1"], "not both"),
+])  # fmt: skip
 def test_bad_input_gets_one_line_and_nothing_is_written(refuse, tmp_path, words, said):
     (tmp_path / "cell.yaml").write_text(CELL)
     (tmp_path / "limits.yaml").write_text(WRONG_LIMITS)

@@ -49,24 +49,21 @@ def test_the_name_that_the_sampler_once_had_is_still_taken(run, tmp_path):
     np.testing.assert_array_equal(np.load(tmp_path / "sample.npy"), np.load(tmp_path / "family.npy"))
 
 
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (("-n", 0, "-d", 2, "-o", "a.npy"), "n must be an integer >= 1, got 0"),
-        (("-n", 8, "-d", 0, "-o", "a.npy"), "d must be an integer >= 1, got 0"),
-        (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.csv, \.npy, \.npz"),
-        (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
-        (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
-        (("-n", 8, "-d", 2, "--plain", "-o", "a.npy"), "--plain does not go .* 'even', only with halton and sobol"),
-        (("-n", 8, "-d", 2, "--sampler", "sobol", "--skip", -1, "-o", "a.npy"), "--skip must be an integer >= 0"),
-        (("-n", 8, "-d", 2, "--sampler", "sukharev", "-o", "a.npy"), r"are 4 and 9 \(or allow_fewer\)"),
-        (("-n", 8, "-d", 2, "--seed", -1, "-o", "a.npy"), "--seed must be an integer >= 0, got -1"),
-        (
-            ("-n", 11, "-d", 2, "--sampler", "hickernell", "-o", "a.npy"),
-            "it has n = 16, 32.*evenroad train -n 11 -d 2 --objective hickernell",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "says"), [
+    (("-n", 0, "-d", 2, "-o", "a.npy"), "n must be an integer >= 1, got 0"),
+    (("-n", 8, "-d", 0, "-o", "a.npy"), "d must be an integer >= 1, got 0"),
+    (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.csv, \.npy, \.npz"),
+    (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
+    (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
+    (("-n", 8, "-d", 2, "--plain", "-o", "a.npy"), "--plain does not go .* 'even', only with halton and sobol"),
+    (("-n", 8, "-d", 2, "--sampler", "sobol", "--skip", -1, "-o", "a.npy"), "--skip must be an integer >= 0"),
+    (("-n", 8, "-d", 2, "--sampler", "sukharev", "-o", "a.npy"), r"are 4 and 9 \(or allow_fewer\)"),
+    (("-n", 8, "-d", 2, "--seed", -1, "-o", "a.npy"), "--seed must be an integer >= 0, got -1"),
+    (
+        ("-n", 11, "-d", 2, "--sampler", "hickernell", "-o", "a.npy"),
+        "it has n = 16, 32.*evenroad train -n 11 -d 2 --objective hickernell",
+    ),
+])  # fmt: skip
 def test_bad_requests_for_points_get_one_line(refuse, arguments, says):
     assert re.search(says, refuse("points", *arguments))
 
@@ -120,16 +117,10 @@ def test_a_measure_that_cannot_be_had_is_empty_and_says_why(run):
     assert "at least 2 points" in " ".join(out.split())
 
 
-@pytest.mark.parametrize(
-    ("array", "says"),
-    [
-        (np.array([[0.5, 1.5]]), r"coordinate \[0, 1\] is 1.5"),
-        (np.array([[np.nan, 0.5]]), "nan"),
-        (np.zeros(5), "shape"),
-        (np.array([["a"]]), "array of numbers"),
-        (np.empty((0, 2)), "no points"),
-    ],
-)
+@pytest.mark.parametrize(("array", "says"), [
+    (np.array([[0.5, 1.5]]), r"coordinate \[0, 1\] is 1.5"), (np.array([[np.nan, 0.5]]), "nan"), (np.zeros(5), "shape"),
+    (np.array([["a"]]), "array of numbers"), (np.empty((0, 2)), "no points"),
+])  # fmt: skip
 def test_an_array_that_is_no_point_set_is_refused(refuse, array, says):
     np.save("bad.npy", array)
     assert re.search(says, refuse("measure", "bad.npy"))

@@ -43,23 +43,19 @@ def test_a_fifth_of_the_speed_takes_five_times_as_long(run):
     assert np.abs(slow.velocities).max() <= 0.2 * 3.2 + 1e-9
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["--speed", "0.5"], "--speed goes with --trajectory only"),
-        (["--trajectory", "t.txt"], "unknown format of a trajectory '.txt'"),
-        (["--trajectory", "t.json", "--speed", "2"], "speed must be at most 1"),
-        (["--trajectory", "t.json", "--limits", "none.yaml"], "none.yaml"),
-        (["--trajectory", "t.json", "--step", "0"], "step"),
-        (["--trajectory", "t.script", "--step", "0.01"], "0.008"),
-        (["--trajectory", "t.csv", "--controller-joints", "a,b"], "unknown joint"),
-        (["--trajectory", "none/t.csv"], "none"),
-        (["--trajectory", "box-reach.csv"], "another result"),
-        (["--trajectory", "t.json", "--out", "t"], "another result"),
-        (["--trajectory", "box-reach.json"], "another result"),
-        (["--trajectory", "t.json", "--trajectory", "./t.json"], "another result"),
-    ],
-)
+@pytest.mark.parametrize(("words", "said"), [
+    (["--speed", "0.5"], "--speed goes with --trajectory only"),
+    (["--trajectory", "t.txt"], "unknown format of a trajectory '.txt'"),
+    (["--trajectory", "t.json", "--speed", "2"], "speed must be at most 1"),
+    (["--trajectory", "t.json", "--limits", "none.yaml"], "none.yaml"),
+    (["--trajectory", "t.json", "--step", "0"], "step"),
+    (["--trajectory", "t.script", "--step", "0.01"], "0.008"),
+    (["--trajectory", "t.csv", "--controller-joints", "a,b"], "unknown joint"),
+    (["--trajectory", "none/t.csv"], "none"), (["--trajectory", "box-reach.csv"], "another result"),
+    (["--trajectory", "t.json", "--out", "t"], "another result"),
+    (["--trajectory", "box-reach.json"], "another result"),
+    (["--trajectory", "t.json", "--trajectory", "./t.json"], "another result"),
+])  # fmt: skip
 def test_bad_input_is_one_line_and_nothing_is_written(refuse, words, said):
     assert said in refuse(*REACH, *words)
 

@@ -26,17 +26,13 @@ def test_a_plan_becomes_a_moving_picture_and_a_scene_shows_the_arm_at_rest(run, 
         assert picture.convert("RGB").tobytes() != first
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["box-reach.yaml"], "give --robot"),
-        (["none.json"], "cannot read the plan none.json"),
-        (["bad.json"], "is not a plan of evenroad"),
-        (["box-reach.yaml", "--robot", "ur5", "--gif", "out.png"], "--gif must name a .gif"),
-        (["box-reach.yaml", "--robot", "ur5", "--port", "70000"], "port"),
-        (["box-reach.yaml", "--robot", "none"], "none"),
-    ],
-)
+@pytest.mark.parametrize(("words", "said"), [
+    (["box-reach.yaml"], "give --robot"), (["none.json"], "cannot read the plan none.json"),
+    (["bad.json"], "is not a plan of evenroad"),
+    (["box-reach.yaml", "--robot", "ur5", "--gif", "out.png"], "--gif must name a .gif"),
+    (["box-reach.yaml", "--robot", "ur5", "--port", "70000"], "port"),
+    (["box-reach.yaml", "--robot", "none"], "none"),
+])  # fmt: skip
 def test_bad_input_is_one_line(refuse, tmp_path, words, said):
     (tmp_path / "bad.json").write_text(json.dumps({"query": {"start": [0, 0]}}))
     assert said in refuse("view", *words)

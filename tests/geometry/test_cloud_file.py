@@ -5,6 +5,7 @@ import pytest
 
 from evenroad.errors import BrokenFile, UnknownName
 from evenroad.geometry import load_cloud
+from tests.refused import refused
 
 POINTS = np.array([[0.5, -1.25, 2.0], [3.0, 4.5, -5.75], [0.125, 0.0, 1.0]])
 
@@ -113,19 +114,15 @@ def test_a_broken_file_is_refused_in_one_line(tmp_path, name, content, says):
 
 
 def test_a_missing_file_and_an_unknown_format_are_refused(tmp_path):
-    with pytest.raises(BrokenFile, match=r"no such file: .*scan\.ply"):
-        load_cloud(tmp_path / "scan.ply")
-    with pytest.raises(UnknownName, match=r"'\.las'; known: \.npy, \.pcd, \.ply, \.xyz"):
-        load_cloud(tmp_path / "scan.las")
+    refused(BrokenFile, r"no such file: .*scan\.ply", load_cloud, tmp_path / "scan.ply")
+    refused(UnknownName, r"'\.las'; known: \.npy, \.pcd, \.ply, \.xyz", load_cloud, tmp_path / "scan.las")
 
 
 def test_complex_numbers_are_no_points(tmp_path):
     np.save(tmp_path / "scan.npy", POINTS.astype(complex))
-    with pytest.raises(BrokenFile, match="complex"):
-        load_cloud(tmp_path / "scan.npy")
+    refused(BrokenFile, "complex", load_cloud, tmp_path / "scan.npy")
 
 
 def test_no_pickle_is_opened(tmp_path):
     np.save(tmp_path / "scan.npy", np.array([{}], dtype=object), allow_pickle=True)
-    with pytest.raises(BrokenFile, match="not a readable cloud"):
-        load_cloud(tmp_path / "scan.npy")
+    refused(BrokenFile, "not a readable cloud", load_cloud, tmp_path / "scan.npy")

@@ -9,6 +9,7 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry import Box, Capsule, Cylinder, Mesh, PointCloud, Pose, Sphere, TriangleMesh
 from evenroad.geometry.hulls import Hull, halves, piece_of
 from evenroad.geometry.mesh import convex_hull
+from tests.refused import refused
 from tests.robot.mesh_arms import fork
 
 TURNED = Pose((0.1, -0.2, 0.3), (0.0, -1.0, 0.0, 0.6, 0.0, -0.8, 0.8, 0.0, 0.6))
@@ -47,8 +48,7 @@ def test_round_shapes_are_kept():
     assert stick.is_round
     assert ball.radius == pytest.approx(0.2, abs=1e-8)
     np.testing.assert_array_equal(stick.points, [[0, 0, -0.2], [0, 0, 0.2]])
-    with pytest.raises(InvalidValue, match="no hull"):
-        piece_of(PointCloud(np.zeros((1, 3))))
+    refused(InvalidValue, "no hull", piece_of, PointCloud(np.zeros((1, 3))))
 
 
 def test_many_corners_become_few_that_contain_the_others_by_little():
@@ -117,5 +117,4 @@ def test_the_hull_of_points_is_convex_faces_outward_and_holds_them_all():
 def test_the_hull_of_a_flat_mesh_is_a_micrometre_thick_and_of_one_place_refused():
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 0]], dtype=float)
     assert np.ptp(convex_hull(square).vertices, axis=0) == pytest.approx((1.0, 1.0, 1e-6), abs=1.1e-6)
-    with pytest.raises(InvalidValue, match="the mesh nothing has no convex hull: 0 points"):
-        convex_hull(np.zeros((0, 3)), "nothing")
+    refused(InvalidValue, "the mesh nothing has no convex hull: 0 points", convex_hull, np.zeros((0, 3)), "nothing")

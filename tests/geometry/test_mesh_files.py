@@ -1,7 +1,5 @@
 """Meshes as values and from files, and what is said without coal; tests_peers has the worlds themselves."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np
@@ -10,6 +8,7 @@ import pytest
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.geometry import TriangleMesh, load_mesh
 from evenroad.geometry.mesh import merged
+from tests.refused import refused
 
 CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 2) for z in (0, 3)], dtype=np.float64)
 SIDES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -50,22 +49,16 @@ def test_meshes_are_read_only():
         CUBE.vertices[0, 0] = 5.0
 
 
-@pytest.mark.parametrize(
-    ("vertices", "triangles", "text"),
-    [
-        (np.zeros((3, 2)), [[0, 1, 2]], "vertices"),
-        ([[0, 0, np.nan], [0, 0, 1], [0, 1, 0]], [[0, 1, 2]], "finite"),
-        (np.eye(3), [[0, 1]], "triangles"),
-        (np.eye(3), [[0.0, 1.0, 2.0]], "integers"),
-        (np.eye(3), [[0, 1, 3]], "rows of the 3 vertices"),
-        (np.eye(3), [[0, 1, -1]], "rows of the 3 vertices"),
-        (np.eye(3), np.empty((0, 3), dtype=int), "one triangle or more"),
-        (np.eye(3), [[0, 1, 2], [0]], "triangles"),
-    ],
-)
+@pytest.mark.parametrize(("vertices", "triangles", "text"), [
+    (np.zeros((3, 2)), [[0, 1, 2]], "vertices"),
+    ([[0, 0, np.nan], [0, 0, 1], [0, 1, 0]], [[0, 1, 2]], "finite"),
+    (np.eye(3), [[0, 1]], "triangles"), (np.eye(3), [[0.0, 1.0, 2.0]], "integers"),
+    (np.eye(3), [[0, 1, 3]], "rows of the 3 vertices"), (np.eye(3), [[0, 1, -1]], "rows of the 3 vertices"),
+    (np.eye(3), np.empty((0, 3), dtype=int), "one triangle or more"),
+    (np.eye(3), [[0, 1, 2], [0]], "triangles"),
+])  # fmt: skip
 def test_arrays_that_are_no_mesh_are_refused(vertices, triangles, text):
-    with pytest.raises(InvalidValue, match=text):
-        TriangleMesh(vertices, triangles)
+    refused(InvalidValue, text, TriangleMesh, vertices, triangles)
 
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "dae"])
@@ -114,10 +107,8 @@ def test_a_plain_text_stl_is_read(tmp_path):
 
 
 def test_files_that_hold_no_mesh_are_refused(tmp_path):
-    with pytest.raises(BrokenFile, match=r"gone\.stl is missing"):
-        load_mesh(tmp_path / "gone.stl")
-    with pytest.raises(BrokenFile, match="missing"):
-        load_mesh(tmp_path)
+    refused(BrokenFile, r"gone\.stl is missing", load_mesh, tmp_path / "gone.stl")
+    refused(BrokenFile, "missing", load_mesh, tmp_path)
     for name, content in [
         ("empty.stl", b""),
         ("noise.stl", b"\x00\xff" * 300),
@@ -129,10 +120,8 @@ def test_files_that_hold_no_mesh_are_refused(tmp_path):
         ("broken.dae", b"<COLLADA>"),
     ]:
         (tmp_path / name).write_bytes(content)
-        with pytest.raises(BrokenFile, match=name.replace(".", r"\.")):
-            load_mesh(tmp_path / name)
-    with pytest.raises(InvalidValue, match="scale"):
-        load_mesh(tmp_path / "text.obj", scale=0.0)
+        refused(BrokenFile, name.replace(".", r"\."), load_mesh, tmp_path / name)
+    refused(InvalidValue, "scale", load_mesh, tmp_path / "text.obj", scale=0.0)
 
 
 def test_a_ply_that_is_cut_off_is_refused_and_not_read_in_part(tmp_path):
@@ -150,8 +139,7 @@ def test_a_ply_that_is_cut_off_is_refused_and_not_read_in_part(tmp_path):
     assert len(load_mesh(tmp_path / "cube.ply").triangles) == 12
     for lost in (3, 8, 9, 30, 60):
         (tmp_path / "cube.ply").write_text(whole[:-lost])
-        with pytest.raises(BrokenFile, match="cut off|cannot read"):
-            load_mesh(tmp_path / "cube.ply")
+        refused(BrokenFile, "cut off|cannot read", load_mesh, tmp_path / "cube.ply")
 
 
 @pytest.mark.parametrize(("module", "file"), [("trimesh", "one.stl"), ("collada", "one.dae")])
@@ -159,5 +147,4 @@ def test_without_what_reads_a_file_the_extra_is_named(tmp_path, monkeypatch, mod
     pytest.importorskip(module)
     (tmp_path / file).write_text(ASCII_STL)
     monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(NotAvailable, match=rf"{file} needs the extra: pip install 'evenroad\[mesh\]'"):
-        load_mesh(tmp_path / file)
+    refused(NotAvailable, rf"{file} needs the extra: pip install 'evenroad\[mesh\]'", load_mesh, tmp_path / file)

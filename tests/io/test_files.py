@@ -14,6 +14,7 @@ from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.planning import PRM, plan
 from evenroad.points import draw
 from evenroad.world import GridMap
+from tests.refused import refused
 
 
 def test_a_reader_sees_the_old_file_until_the_new_one_is_whole(tmp_path):
@@ -94,8 +95,7 @@ def test_a_file_that_is_taken_for_an_abandoned_one_before_its_lock_is_made_again
 @pytest.mark.parametrize("name", ["no/such/folder.txt", "file.txt/inside.txt", ""])
 def test_a_folder_that_cannot_be_written_is_known_before_the_work(tmp_path, name):
     (tmp_path / "file.txt").write_text("")
-    with pytest.raises(BrokenFile, match="cannot write"):
-        require_writable_folder(tmp_path / name)
+    refused(BrokenFile, "cannot write", require_writable_folder, tmp_path / name)
 
 
 def _record():
@@ -114,8 +114,7 @@ def test_the_record_survives_json_and_holds_what_was_asked():
 def test_numbers_that_are_not_json_are_refused_and_the_old_file_stays(tmp_path):
     path = tmp_path / "a.json"
     save_json(path, {"x": 1})
-    with pytest.raises(ValueError, match="JSON"):
-        save_json(path, {"x": float("nan")})
+    refused(ValueError, "JSON", save_json, path, {"x": float("nan")})
     assert json.loads(path.read_text()) == {"x": 1}
 
 

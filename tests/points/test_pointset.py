@@ -12,6 +12,7 @@ from hypothesis.extra import numpy as hnp
 
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.points import Origin, PointSet, draw, load_points, save_points
+from tests.refused import refused
 
 unit = st.floats(0, 1, exclude_max=True, allow_subnormal=True)
 arrays = hnp.arrays(np.float64, st.tuples(st.integers(0, 20), st.integers(1, 6)), elements=unit)
@@ -29,14 +30,12 @@ def test_the_array_is_a_copy_of_the_callers_and_cannot_be_written_to():
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -0.1, 1.0, 1.5])
 def test_a_coordinate_outside_the_cube_is_named_with_its_place(bad):
-    with pytest.raises(InvalidValue, match=r"\[1, 0\]"):
-        PointSet([[0.5, 0.5], [bad, 0.5]])
+    refused(InvalidValue, r"\[1, 0\]", PointSet, [[0.5, 0.5], [bad, 0.5]])
 
 
 @pytest.mark.parametrize("shape", [(3,), (3, 0), (2, 2, 2), ()])
 def test_only_matrices_are_point_sets(shape):
-    with pytest.raises(InvalidValue, match="shape"):
-        PointSet(np.zeros(shape))
+    refused(InvalidValue, "shape", PointSet, np.zeros(shape))
 
 
 @pytest.mark.parametrize("bad", [
@@ -46,8 +45,7 @@ def test_only_matrices_are_point_sets(shape):
     np.zeros((2, 2), dtype="M8[s]"), np.zeros((2, 2), dtype="V8"), [[None]], [[10**400]], [[0.5, 0.5], [0.5]],
 ])  # fmt: skip
 def test_what_is_not_a_real_number_is_refused(bad):
-    with pytest.raises(InvalidValue, match="array of numbers"):
-        PointSet(bad)
+    refused(InvalidValue, "array of numbers", PointSet, bad)
 
 
 def test_an_error_repeats_only_a_little_of_a_long_value():
@@ -102,30 +100,22 @@ def saved(tmp_path):
     return path
 
 
-@pytest.mark.parametrize(
-    ("changes", "says"),
-    [
-        ({"points": np.zeros((5, 2))}, "do not match their hash"),
-        ({"points": np.zeros((5, 2), dtype=np.float32)}, "dtype float32"),
-        ({"points": np.full((5, 2), 1.5)}, "must lie in"),
-        ({"points": np.full((5, 2), np.nan)}, "must lie in"),
-        ({"points": np.zeros(10)}, "shape"),
-        ({"hash": None}, "holds"),
-        ({"extra": np.zeros(1)}, "holds"),
-        ({"origin": "{"}, "set.npz"),
-        ({"origin": '{"family": "a", "colour": "red"}'}, "keys among"),
-        ({"origin": "[1]"}, "keys among"),
-        ({"origin": "{}"}, "family"),
-        ({"origin": '{"family": 3}'}, "the origin's family cannot be 3"),
-        ({"origin": '{"family": "a", "seed": "1"}'}, "the origin's seed cannot be '1'"),
-        ({"origin": '{"family": "a", "start": null}'}, "the origin's start cannot be None"),
-        ({"origin": "[" * 100_000}, "set.npz"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "says"), [
+    ({"points": np.zeros((5, 2))}, "do not match their hash"),
+    ({"points": np.zeros((5, 2), dtype=np.float32)}, "dtype float32"),
+    ({"points": np.full((5, 2), 1.5)}, "must lie in"), ({"points": np.full((5, 2), np.nan)}, "must lie in"),
+    ({"points": np.zeros(10)}, "shape"), ({"hash": None}, "holds"), ({"extra": np.zeros(1)}, "holds"),
+    ({"origin": "{"}, "set.npz"),
+    ({"origin": '{"family": "a", "colour": "red"}'}, "keys among"),
+    ({"origin": "[1]"}, "keys among"), ({"origin": "{}"}, "family"),
+    ({"origin": '{"family": 3}'}, "the origin's family cannot be 3"),
+    ({"origin": '{"family": "a", "seed": "1"}'}, "the origin's seed cannot be '1'"),
+    ({"origin": '{"family": "a", "start": null}'}, "the origin's start cannot be None"),
+    ({"origin": "[" * 100_000}, "set.npz"),
+])  # fmt: skip
 def test_a_file_that_was_changed_is_refused_with_the_reason(saved, changes, says):
     _rewrite(saved, **changes)
-    with pytest.raises(BrokenFile, match=says):
-        load_points(saved)
+    refused(BrokenFile, says, load_points, saved)
 
 
 def _three_members_that_are_empty(path):
@@ -139,20 +129,14 @@ def _plain_array(path):
         np.save(file, np.zeros((2, 2)))
 
 
-@pytest.mark.parametrize(
-    ("make", "says"),
-    [
-        (lambda path: None, r"no such file: .*set\.npz"),
-        (_plain_array, "plain array"),
-        (_three_members_that_are_empty, "points is no array"),
-        (lambda path: np.savez(path, points=np.array([object()], dtype=object), origin="{}", hash=""), "npz"),
-    ],
-    ids=["missing", "a plain array", "members that are no arrays", "a pickle"],
-)
+@pytest.mark.parametrize(("make", "says"), [
+    (lambda path: None, r"no such file: .*set\.npz"),
+    (_plain_array, "plain array"), (_three_members_that_are_empty, "points is no array"),
+    (lambda path: np.savez(path, points=np.array([object()], dtype=object), origin="{}", hash=""), "npz"),
+], ids=["missing", "a plain array", "members that are no arrays", "a pickle"])  # fmt: skip
 def test_a_file_that_is_something_else_is_refused(tmp_path, make, says):
     make(tmp_path / "set.npz")
-    with pytest.raises(BrokenFile, match=says):
-        load_points(tmp_path / "set.npz")
+    refused(BrokenFile, says, load_points, tmp_path / "set.npz")
 
 
 @pytest.mark.parametrize("name", ["set.npz", "set.npy", "set.csv"])
@@ -164,8 +148,7 @@ def test_points_save_themselves_and_are_read_again(tmp_path, name):
     assert (again.origin == points.origin) is (name == "set.npz")
     assert np.array_equal([row for row in again], points[:])  # noqa: C416
     assert again.shape == (20, 3)
-    with pytest.raises(UnknownName, match=r"\.csv, \.npy, \.npz"):
-        points.save(tmp_path / "set.txt")
+    refused(UnknownName, r"\.csv, \.npy, \.npz", points.save, tmp_path / "set.txt")
 
 
 def _array_file(shape):
@@ -233,7 +216,6 @@ def test_a_failed_save_leaves_the_old_file_and_no_litter(saved, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(np, "savez", full_disk)
-    with pytest.raises(BrokenFile, match="No space left"):
-        save_points(saved, PointSet([[0.5]]))
+    refused(BrokenFile, "No space left", save_points, saved, PointSet([[0.5]]))
     assert saved.read_bytes() == before
     assert list(saved.parent.iterdir()) == [saved]

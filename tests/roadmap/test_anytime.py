@@ -9,6 +9,7 @@ from evenroad.points.samplers.lattice import Lattice
 from evenroad.roadmap import Budget, KNearest, Radius, Status
 from evenroad.world.gridmap.shipped import load_maze
 from tests.plan_on import plan_growing, plan_on
+from tests.refused import refused
 from tests.roadmap.worlds import ChanceWorld
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)
@@ -77,15 +78,10 @@ def test_it_stops_when_the_path_has_settled():
         assert min(costs[:i]) < 0.99 * min(costs[: i - 1])
 
 
-@pytest.mark.parametrize(
-    ("budget", "points", "asked"),
-    [
-        (Budget(motions=1), None, 1),
-        (Budget(motions=25), None, 25),
-        (Budget(samples=40), 40, None),
-        (Budget(seconds=1e-9), None, 0),
-    ],
-)
+@pytest.mark.parametrize(("budget", "points", "asked"), [
+    (Budget(motions=1), None, 1), (Budget(motions=25), None, 25), (Budget(samples=40), 40, None),
+    (Budget(seconds=1e-9), None, 0),
+])  # fmt: skip
 def test_a_budget_is_kept_to_and_named(budget, points, asked):
     world = ChanceWorld(4, 1.0, 0.0)
     result = plan_growing(world, START, GOAL, first=16, budget=budget)
@@ -120,19 +116,14 @@ def test_the_same_seed_gives_the_same_bits():
 
 def test_sets_that_do_not_extend_one_another_are_refused():
     blocked = ChanceWorld(4, 1.0, 0.0)
-    with pytest.raises(InvalidValue, match="do not begin with"):
-        plan_growing(blocked, START, GOAL, Lattice())
-    with pytest.raises(InvalidValue, match="not a Generator"):
-        plan_growing(blocked, START, GOAL, rng=np.random.default_rng(0))
+    refused(InvalidValue, "do not begin with", plan_growing, blocked, START, GOAL, Lattice())
+    refused(InvalidValue, "not a Generator", plan_growing, blocked, START, GOAL, rng=np.random.default_rng(0))
 
 
 def test_ends_in_collision_and_bad_arguments():
     world = ChanceWorld(0, 0.0, 1.0)
     assert plan_growing(world, (0.3, 0.3), GOAL).status is Status.START_INVALID
-    with pytest.raises(UnknownName, match="budget, settled, solved"):
-        plan_growing(world, START, GOAL, until="bored")
-    with pytest.raises(InvalidValue, match="first"):
-        plan_growing(world, START, GOAL, first=0)
+    refused(UnknownName, "budget, settled, solved", plan_growing, world, START, GOAL, until="bored")
+    refused(InvalidValue, "first", plan_growing, world, START, GOAL, first=0)
     for bad in (dict(samples=0), dict(motions=0), dict(seconds=np.nan), dict(seconds=0), dict(seconds=-1.0)):
-        with pytest.raises(InvalidValue, match=next(iter(bad))):
-            Budget(**bad)
+        refused(InvalidValue, next(iter(bad)), Budget, **bad)

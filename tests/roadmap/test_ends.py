@@ -22,6 +22,7 @@ from evenroad.robot_roadmap.query import search
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.space import SE3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
+from tests.refused import refused
 from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, ur5
 
 PLANE = BoxSpace((0.0, 0.0), (1.0, 1.0))
@@ -34,20 +35,13 @@ def result(path, start=A, goals=(B,), index=0, status=Status.SOLVED, **more):
     return PlanResult(status=status, message="", path=path, **asked, **more)
 
 
-@pytest.mark.parametrize(
-    ("wrong", "where"),
-    [
-        (result([C, B]), "start"),
-        (result([A, C]), "end"),
-        (result([B, A]), "start"),
-        (result([A, B], goals=[B, C], index=1), "end"),
-        (result([A + 2.0 * NEAR, B]), "start"),
-        (result([A, B - 2.0 * NEAR]), "end"),
-        (result([A, [np.nan, 0.9]]), "end"),
-        (result([A, B], milestone_path=np.array([C, B])), "start"),
-        (result([A, B], milestone_path=np.array([A, C])), "end"),
-    ],
-)
+@pytest.mark.parametrize(("wrong", "where"), [
+    (result([C, B]), "start"), (result([A, C]), "end"), (result([B, A]), "start"),
+    (result([A, B], goals=[B, C], index=1), "end"), (result([A + 2.0 * NEAR, B]), "start"),
+    (result([A, B - 2.0 * NEAR]), "end"), (result([A, [np.nan, 0.9]]), "end"),
+    (result([A, B], milestone_path=np.array([C, B])), "start"),
+    (result([A, B], milestone_path=np.array([A, C])), "end"),
+])  # fmt: skip
 def test_a_path_that_leads_elsewhere_is_a_fault_and_no_error_of_the_input(wrong, where):
     with pytest.raises(AssertionError, match=f"does not {where} where it was asked to, but .* away") as raised:
         require_start_and_goal(PLANE, wrong)
@@ -75,8 +69,7 @@ def test_both_signs_of_a_quaternion_are_one_place():
     other = np.array([0.5, 0.5, 0.5, 1.0, 0.0, 0.0, 0.0])
     opposite = pose * [1, 1, 1, -1, -1, -1, -1]
     require_start_and_goal(space, result([opposite, other], start=pose, goals=[other]))
-    with pytest.raises(AssertionError, match="start"):
-        require_start_and_goal(space, result([other, other], start=pose, goals=[other]))
+    refused(AssertionError, "start", require_start_and_goal, space, result([other, other], start=pose, goals=[other]))
 
 
 class Astray(PlainTrees):
@@ -97,8 +90,7 @@ class Short(PlainTrees):
 def test_what_a_connector_found_is_looked_at(connector, smooth):
     world = FunctionWorld(PLANE, lambda q: np.ones(len(q), dtype=bool), 0.1)
     problem = Problem(world, np.asarray(A, float), np.array([B], float), budget=Budget(), smooth=smooth)
-    with pytest.raises(AssertionError, match="does not end"):
-        solve_by(problem, connector)
+    refused(AssertionError, "does not end", solve_by, problem, connector)
 
 
 def test_what_a_robot_roadmap_found_is_looked_at(monkeypatch):
@@ -111,8 +103,7 @@ def test_what_a_robot_roadmap_found_is_looked_at(monkeypatch):
 
     monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.search", astray)
     for shorten in (True, False):
-        with pytest.raises(AssertionError, match="does not start"):
-            known.plan(a, b, shorten=shorten)
+        refused(AssertionError, "does not start", known.plan, a, b, shorten=shorten)
 
 
 def test_what_lies_between_straight_lines_is_looked_at():
@@ -127,8 +118,7 @@ def test_what_lies_between_straight_lines_is_looked_at():
     astray = False
     assert plan_tip_motion(asked, CartesianLine(approach=0.03), None, plan).solved
     astray = True
-    with pytest.raises(AssertionError, match="does not start"):
-        plan_tip_motion(asked, CartesianLine(approach=0.03), None, plan)
+    refused(AssertionError, "does not start", plan_tip_motion, asked, CartesianLine(approach=0.03), None, plan)
 
 
 def test_ends_of_joints_that_turn_for_ever_may_be_asked_for_after_any_turns():

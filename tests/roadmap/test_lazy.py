@@ -9,6 +9,7 @@ from evenroad.roadmap import Complete, KNearest, Radius, Status
 from evenroad.roadmap.rules import ascending
 from evenroad.world.gridmap.shipped import load_maze
 from tests.plan_on import plan_on
+from tests.refused import refused
 from tests.roadmap.worlds import ChanceWorld, costs_from
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)
@@ -145,8 +146,7 @@ def test_a_number_of_points_is_drawn_from_the_even_family():
     assert drawn.counts["points"] == 128
     assert drawn.path.tobytes() == plan_on(world, START, GOAL, draw("even", 128, 2)).path.tobytes()
     for wrong in (0, -3, True, 2.5, "512", [[0.5, 0.5]]):
-        with pytest.raises(InvalidValue, match="points"):
-            plan_on(world, START, GOAL, wrong)
+        refused(InvalidValue, "points", plan_on, world, START, GOAL, wrong)
 
 
 @pytest.mark.parametrize("level", [1, 2, 3])
@@ -183,15 +183,11 @@ def test_the_shortcut_keeps_to_the_edge_cost():
     assert "path of cost" in result.message
 
 
-@pytest.mark.parametrize(
-    ("option", "text"),
-    [
-        ({"edge_cost": lambda a, b: np.zeros(len(a))}, "at least the length"),
-        ({"edge_cost": lambda a, b: np.full(len(a), np.nan)}, "finite"),
-        ({"edge_cost": lambda a, b: 7.0}, "shape"),
-        ({"search": "lazzy"}, "full, lazy"),
-    ],
-)
+@pytest.mark.parametrize(("option", "text"), [
+    ({"edge_cost": lambda a, b: np.zeros(len(a))}, "at least the length"),
+    ({"edge_cost": lambda a, b: np.full(len(a), np.nan)}, "finite"),
+    ({"edge_cost": lambda a, b: 7.0}, "shape"),
+    ({"search": "lazzy"}, "full, lazy"),
+])  # fmt: skip
 def test_an_edge_cost_that_cannot_be_one_and_an_unknown_search_are_refused(option, text):
-    with pytest.raises((InvalidValue, UnknownName), match=text):
-        plan_on(ChanceWorld(0), START, GOAL, draw("sobol", 8, 2), **option)
+    refused((InvalidValue, UnknownName), text, plan_on, ChanceWorld(0), START, GOAL, draw("sobol", 8, 2), **option)

@@ -11,6 +11,7 @@ from evenroad.points import draw
 from evenroad.roadmap import KNearest
 from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.world import GridMap
+from tests.refused import refused
 
 GAP = np.zeros((20, 20), dtype=bool)
 GAP[9, :14] = True
@@ -56,21 +57,17 @@ def _plain_array(path):
     path.with_suffix(".npy").replace(path)
 
 
-@pytest.mark.parametrize(
-    ("damage", "text"),
-    [
-        (lambda path: path.write_bytes(path.read_bytes()[:-200]), "not a readable"),
-        (_with_arrays(lambda arrays: arrays["edges"].sort(axis=0)), "does not match its digest"),
-        (_with_arrays(lambda arrays: arrays.pop("edges")), "holds"),
-        (_plain_array, "plain array"),
-        (lambda path: path.write_bytes(b"hello"), "is text"),
-        (lambda path: path.unlink(), "no such file"),
-    ],
-)
+@pytest.mark.parametrize(("damage", "text"), [
+    (lambda path: path.write_bytes(path.read_bytes()[:-200]), "not a readable"),
+    (_with_arrays(lambda arrays: arrays["edges"].sort(axis=0)), "does not match its digest"),
+    (_with_arrays(lambda arrays: arrays.pop("edges")), "holds"),
+    (_plain_array, "plain array"),
+    (lambda path: path.write_bytes(b"hello"), "is text"),
+    (lambda path: path.unlink(), "no such file"),
+])  # fmt: skip
 def test_damaged_files_are_refused_with_the_reason(file, damage, text):
     damage(file)
-    with pytest.raises(BrokenFile, match=text):
-        load_roadmap(file)
+    refused(BrokenFile, text, load_roadmap, file)
 
 
 def test_a_file_that_was_written_again_replaces_the_old_one_and_nothing_stays_beside_it(file):
@@ -101,27 +98,20 @@ def _rewritten(path, **changed):
     _npz.write_npz(path, arrays | {"digest": np.array(_npz.digest(arrays))})
 
 
-@pytest.mark.parametrize(
-    ("changed", "text"),
-    [
-        (dict(origin="{"), "origin is no JSON"),
-        (dict(origin="[1]"), "object with keys among"),
-        (dict(origin='{"colour": 1}'), "object with keys among"),
-        (dict(origin="{}"), "Origin"),
-        (dict(origin='{"family": "even", "method": 7}'), "the origin's method cannot be 7"),
-        (dict(rule="k=many"), "unknown connection rule"),
-        (dict(rule="k=0 symmetrised"), "k must be"),
-        (dict(points=np.full((100, 2), 1.5)), r"\[0, 1\)"),
-        (dict(points=3.0), "points must be"),
-        (dict(edges=np.array([[0, 100]], dtype=np.int32)), "milestones 0 .. 99"),
-        (dict(edges=np.array([[0, 1]])), "edges must be int32"),
-        (dict(lengths=np.zeros(3)), "lengths must be"),
-        (dict(milestones=np.zeros(100)), "milestones must be"),
-        (dict(format=99), "format 99"),
-        (dict(version="0.0.1"), "of evenroad 0.0.1"),
-    ],
-)
+@pytest.mark.parametrize(("changed", "text"), [
+    (dict(origin="{"), "origin is no JSON"),
+    (dict(origin="[1]"), "object with keys among"),
+    (dict(origin='{"colour": 1}'), "object with keys among"),
+    (dict(origin="{}"), "Origin"),
+    (dict(origin='{"family": "even", "method": 7}'), "the origin's method cannot be 7"),
+    (dict(rule="k=many"), "unknown connection rule"), (dict(rule="k=0 symmetrised"), "k must be"),
+    (dict(points=np.full((100, 2), 1.5)), r"\[0, 1\)"),
+    (dict(points=3.0), "points must be"),
+    (dict(edges=np.array([[0, 100]], dtype=np.int32)), "milestones 0 .. 99"),
+    (dict(edges=np.array([[0, 1]])), "edges must be int32"), (dict(lengths=np.zeros(3)), "lengths must be"),
+    (dict(milestones=np.zeros(100)), "milestones must be"), (dict(format=99), "format 99"),
+    (dict(version="0.0.1"), "of evenroad 0.0.1"),
+])  # fmt: skip
 def test_a_file_whose_digest_fits_is_checked_all_the_same(file, changed, text):
     _rewritten(file, **changed)
-    with pytest.raises(BrokenFile, match=text):
-        load_roadmap(file)
+    refused(BrokenFile, text, load_roadmap, file)

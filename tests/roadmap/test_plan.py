@@ -71,15 +71,10 @@ def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
         assert "directions" not in message(family, 64, 3, 3)
 
 
-@pytest.mark.parametrize(
-    ("start", "goal", "status"),
-    [
-        ((2, 9.5), (18, 18), Status.START_INVALID),
-        ((2, 2), (18, 9.5), Status.GOAL_INVALID),
-        ((0.5, 2), (18, 18), Status.START_INVALID),
-        ((2, 9.5), (18, 9.5), Status.START_INVALID),
-    ],
-)
+@pytest.mark.parametrize(("start", "goal", "status"), [
+    ((2, 9.5), (18, 18), Status.START_INVALID), ((2, 2), (18, 9.5), Status.GOAL_INVALID),
+    ((0.5, 2), (18, 18), Status.START_INVALID), ((2, 9.5), (18, 9.5), Status.START_INVALID),
+])  # fmt: skip
 def test_an_end_in_collision_is_an_answer_and_nothing_is_searched(start, goal, status):
     result = plan_on(WALL.world(1.0), start, goal, draw("halton", 64, 2))
     assert result.status is status

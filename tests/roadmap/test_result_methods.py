@@ -85,19 +85,16 @@ def test_a_result_is_one_line():
     assert "\n" not in repr(RESULT) + repr(WORLD) + repr(WORLD.grid)
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: BLOCKED.resample(0.1), "no path"),
-        (lambda: BLOCKED.trajectory(), "no path"),
-        (lambda: BLOCKED.save("way.csv"), "no path"),
-        (lambda: RESULT.save("way.txt"), "known: .csv, .json, .png"),
-        (lambda: RESULT.resample(0), "step must be"),
-        (lambda: RESULT.trajectory("limits.yaml"), "Limits(velocity"),
-        (lambda: RESULT.trajectory(speed=0), "speed must be"),
-        (lambda: RESULT.plot(world=3), "a int"),
-    ],
-)
+@pytest.mark.parametrize(("call", "words"), [
+    (lambda: BLOCKED.resample(0.1), "no path"),
+    (lambda: BLOCKED.trajectory(), "no path"),
+    (lambda: BLOCKED.save("way.csv"), "no path"),
+    (lambda: RESULT.save("way.txt"), "known: .csv, .json, .png"),
+    (lambda: RESULT.resample(0), "step must be"),
+    (lambda: RESULT.trajectory("limits.yaml"), "Limits(velocity"),
+    (lambda: RESULT.trajectory(speed=0), "speed must be"),
+    (lambda: RESULT.plot(world=3), "a int"),
+])  # fmt: skip
 def test_what_cannot_be_done_is_told(call, words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(er.errors.EvenroadError) as error:

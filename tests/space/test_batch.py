@@ -1,7 +1,5 @@
 """What is said about a batch that cannot be read."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,9 +1,9 @@
 import numpy as np
-import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.space import SE2, BoxSpace
 from evenroad.space.path import configuration_at, motion_lengths, path_length, resample, subdivide
+from tests.refused import refused
 
 SQUARE = BoxSpace((0.0, 0.0), (4.0, 4.0))
 PATH = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 0.0], [3.0, 1.0]])
@@ -44,8 +44,6 @@ def test_a_place_on_a_path_is_where_a_share_of_its_length_leads():
 
 def test_what_is_no_step_and_no_share_is_refused():
     for step in (0.0, -1.0, np.nan, np.inf):
-        with pytest.raises(InvalidValue, match="step"):
-            resample(PATH, SQUARE, step)
+        refused(InvalidValue, "step", resample, PATH, SQUARE, step)
     for share in (-0.1, 1.1, np.nan):
-        with pytest.raises(InvalidValue, match=r"t must lie in \[0, 1\]"):
-            configuration_at(PATH, SQUARE, share)
+        refused(InvalidValue, r"t must lie in \[0, 1\]", configuration_at, PATH, SQUARE, share)

@@ -1,7 +1,5 @@
 """Distances of all pairs are those of pair after pair, in every space."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rectangle: the contract of a space, and its own geometry."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

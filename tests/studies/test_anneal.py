@@ -9,6 +9,7 @@ from evenroad.points.measures import MEASURES, separation
 from evenroad_studies import anneal as module
 from evenroad_studies.anneal import first_rate, learning_rate, noise_over_rate
 from evenroad_studies.training.objective import parse_objective
+from tests.refused import refused
 
 
 def anneal(n, d, objective="hickernell", **options):
@@ -71,8 +72,7 @@ def test_a_start_is_taken_and_never_made_worse():
     again = anneal(30, 4, steps=5, start=PointSet(start))
     assert again.value <= MEASURES["hickernell"].rooted(start)
     np.testing.assert_allclose(again.points, start, atol=0.2)
-    with pytest.raises(InvalidValue, match=r"start must have shape \(31, 4\), got \(30, 4\)"):
-        anneal(31, 4, steps=5, start=start)
+    refused(InvalidValue, r"start must have shape \(31, 4\), got \(30, 4\)", anneal, 31, 4, steps=5, start=start)
 
 
 def test_a_start_at_the_faces_is_moved_off_them():
@@ -126,14 +126,11 @@ def test_the_noise_follows_its_rule(text, n, d, noise):
 
 
 @pytest.mark.parametrize(("changes", "text"), [
-    ({"n": 0}, "n must be an integer >= 1"),
-    ({"d": 0}, "d must be an integer >= 1"),
-    ({"n": 2.0}, "n must be an integer >= 1"),
-    ({"steps": 0}, "steps must be an integer >= 1"),
+    ({"n": 0}, "n must be an integer >= 1"), ({"d": 0}, "d must be an integer >= 1"),
+    ({"n": 2.0}, "n must be an integer >= 1"), ({"steps": 0}, "steps must be an integer >= 1"),
     ({"rng": None}, "rng must be an int"),
     ({"n": 1, "objective": "riesz"}, "needs at least 2 points"),
 ])  # fmt: skip
 def test_arguments_out_of_range_are_refused(changes, text):
     arguments = {"n": 4, "d": 2, "steps": 3, **changes}
-    with pytest.raises(InvalidValue, match=text):
-        anneal(**arguments)
+    refused(InvalidValue, text, anneal, **arguments)

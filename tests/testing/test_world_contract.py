@@ -1,7 +1,5 @@
 """The world contract finds the mistakes that it is there for."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import textwrap
@@ -66,19 +64,15 @@ def contract_of(world):
     return contract
 
 
-@pytest.mark.parametrize(
-    ("world", "test"),
-    [
-        (OnlyTheFirstEnd(), "test_a_motion_and_its_reverse_get_one_result"),
-        (OnlyTheFirstEnd(), "test_a_free_motion_has_free_endpoints"),
-        (OnlyTheEnds(), "test_a_free_motion_is_free_along_its_length"),
-        (ByTheWholeBatch(), "test_a_batch_gives_what_its_rows_give"),
-        (EverythingFree(), "test_answers_are_booleans_one_a_row"),
-        (Numbers(), "test_answers_are_booleans_one_a_row"),
-        (Overwriting(), "test_arguments_are_left_alone_and_may_be_read_only_or_strided"),
-    ],
-    ids=lambda value: value if isinstance(value, str) else type(value).__name__,
-)
+@pytest.mark.parametrize(("world", "test"), [
+    (OnlyTheFirstEnd(), "test_a_motion_and_its_reverse_get_one_result"),
+    (OnlyTheFirstEnd(), "test_a_free_motion_has_free_endpoints"),
+    (OnlyTheEnds(), "test_a_free_motion_is_free_along_its_length"),
+    (ByTheWholeBatch(), "test_a_batch_gives_what_its_rows_give"),
+    (EverythingFree(), "test_answers_are_booleans_one_a_row"),
+    (Numbers(), "test_answers_are_booleans_one_a_row"),
+    (Overwriting(), "test_arguments_are_left_alone_and_may_be_read_only_or_strided"),
+], ids=lambda value: value if isinstance(value, str) else type(value).__name__)  # fmt: skip
 def test_a_mistake_is_found(world, test):
     with pytest.raises(AssertionError):
         getattr(contract_of(world), test)()

@@ -10,6 +10,7 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
 from evenroad.trajectory.files import save_trajectories
 from evenroad.trajectory.send import send_trajectory
+from tests.refused import refused
 
 NAMES = ("a", "b", "c", "d", "e")
 
@@ -85,11 +86,9 @@ def test_movej_goes_from_waypoint_to_waypoint(trajectory, tmp_path):
 
 
 def test_urscript_needs_six_joints_and_the_cycle_of_a_controller(trajectory, tmp_path):
-    with pytest.raises(InvalidValue, match="six joints"):
-        save_trajectory(tmp_path / "t.script", trajectory, NAMES)
+    refused(InvalidValue, "six joints", save_trajectory, tmp_path / "t.script", trajectory, NAMES)
     slow = make_trajectory([[0.0] * 6, [1.0] * 6], Limits((1.0,) * 6, (1.0,) * 6), step=0.01)
-    with pytest.raises(InvalidValue, match=r"0\.008"):
-        save_trajectory(tmp_path / "t.script", slow)
+    refused(InvalidValue, r"0\.008", save_trajectory, tmp_path / "t.script", slow)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -101,38 +100,26 @@ def test_several_files_are_all_written_or_none(trajectory, tmp_path):
 
 @pytest.mark.parametrize("order", [(*NAMES, "elbow"), NAMES[:3]])
 def test_an_order_must_have_the_joints_that_move(trajectory, tmp_path, order):
-    with pytest.raises((UnknownName, InvalidValue), match="joint"):
-        save_trajectory(tmp_path / "t.csv", trajectory, order)
+    refused((UnknownName, InvalidValue), "joint", save_trajectory, tmp_path / "t.csv", trajectory, order)
 
 
 @pytest.mark.parametrize("name", ["t.txt", "t", ".json"])
 def test_an_unknown_format_is_named(trajectory, tmp_path, name):
-    with pytest.raises(UnknownName, match="format of a trajectory"):
-        save_trajectory(tmp_path / name, trajectory)
+    refused(UnknownName, "format of a trajectory", save_trajectory, tmp_path / name, trajectory)
 
 
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        ({"format": "other"}, "format"),
-        ({"times": [0.0]}, "belong together"),
-        ({"joint_names": ["a"]}, "waypoints"),
-        ({"positions": None}, "damaged"),
-        ({"velocities": [[1e9] * 5]}, "belong together"),
-        ({"limits": {"velocity": [0.1] * 5, "acceleration": [1.0] * 5}}, "faster"),
-        ({"limits": 3}, "damaged"),
-        ({"waypoints": [[0.0] * 4] * 3}, "waypoints"),
-        ({"radii": [0.1] * 9}, "radii"),
-        ({"held": {"tool": float("nan")}}, "held"),
-        ({"held": {NAMES[0]: 0.0}}, "named once"),
-    ],
-)
+@pytest.mark.parametrize(("change", "said"), [
+    ({"format": "other"}, "format"), ({"times": [0.0]}, "belong together"), ({"joint_names": ["a"]}, "waypoints"),
+    ({"positions": None}, "damaged"), ({"velocities": [[1e9] * 5]}, "belong together"),
+    ({"limits": {"velocity": [0.1] * 5, "acceleration": [1.0] * 5}}, "faster"),
+    ({"limits": 3}, "damaged"), ({"waypoints": [[0.0] * 4] * 3}, "waypoints"), ({"radii": [0.1] * 9}, "radii"),
+    ({"held": {"tool": float("nan")}}, "held"), ({"held": {NAMES[0]: 0.0}}, "named once"),
+])  # fmt: skip
 def test_a_damaged_file_is_named(trajectory, tmp_path, change, said):
     file = tmp_path / "t.json"
     save_trajectory(file, trajectory)
     file.write_text(json.dumps(json.loads(file.read_text()) | change))
-    with pytest.raises(BrokenFile, match=said):
-        load_trajectory(file)
+    refused(BrokenFile, said, load_trajectory, file)
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"format": "evenroad trajectory 1"}', "\x00"])
@@ -141,8 +128,7 @@ def test_what_is_no_trajectory_is_named(tmp_path, text):
     file.write_text(text)
     with pytest.raises(BrokenFile):
         load_trajectory(file)
-    with pytest.raises(BrokenFile, match="cannot read"):
-        load_trajectory(tmp_path / "none.json")
+    refused(BrokenFile, "cannot read", load_trajectory, tmp_path / "none.json")
 
 
 def test_a_file_whose_times_go_back_is_refused(trajectory, tmp_path):
@@ -151,8 +137,7 @@ def test_a_file_whose_times_go_back_is_refused(trajectory, tmp_path):
     record = json.loads(file.read_text())
     record["times"][3] = record["times"][2]
     file.write_text(json.dumps(record))
-    with pytest.raises(BrokenFile, match="grow"):
-        load_trajectory(file)
+    refused(BrokenFile, "grow", load_trajectory, file)
 
 
 def test_a_file_whose_steps_differ_is_refused(trajectory, tmp_path):
@@ -162,12 +147,10 @@ def test_a_file_whose_steps_differ_is_refused(trajectory, tmp_path):
     record = json.loads(file.read_text())
     record["times"][-1] += 10.0
     file.write_text(json.dumps(record))
-    with pytest.raises(BrokenFile, match="equal steps"):
-        load_trajectory(file)
+    refused(BrokenFile, "equal steps", load_trajectory, file)
 
 
 def test_sending_asks_how_fast_the_states_are_not_what_they_say():
     made = make_trajectory([[0.0] * 6, [1.0] * 6], Limits((2.0,) * 6, (4.0,) * 6))
     quiet = replace(made, velocities=np.zeros_like(made.velocities))
-    with pytest.raises(InvalidValue, match="faster than"):
-        send_trajectory(quiet, "127.0.0.1", model="UR5", fastest=0.5)
+    refused(InvalidValue, "faster than", send_trajectory, quiet, "127.0.0.1", model="UR5", fastest=0.5)

@@ -3,6 +3,7 @@ import pytest
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.robot import load_robot
 from evenroad.trajectory import Limits, limits_of
+from tests.refused import refused
 
 
 @pytest.fixture
@@ -40,26 +41,20 @@ def test_jerk_is_limited_where_every_joint_has_one(arm, tmp_path):
     assert limits_of(arm, write(tmp_path, "joint_limits:\n" + rows)).jerk == (50.0,) * 6
 
 
-@pytest.mark.parametrize(
-    ("text", "error", "said"),
-    [
-        ("joint_limits: 3\n", BrokenFile, "mapping"),
-        ("joint_limits: {elbow: {}}\n", UnknownName, "elbow"),
-        ("joint_limits: {elbow_joint: 3}\n", BrokenFile, "elbow_joint"),
-        ("joint_limits: {elbow_joint: {max_speed: 3}}\n", UnknownName, "max_speed"),
-        ("joint_limits: {elbow_joint: {max_velocity: 0}}\n", InvalidValue, "max_velocity of elbow_joint"),
-        ("joint_limits: {elbow_joint: {max_acceleration: fast}}\n", InvalidValue, "max_acceleration"),
-    ],
-)
+@pytest.mark.parametrize(("text", "error", "said"), [
+    ("joint_limits: 3\n", BrokenFile, "mapping"), ("joint_limits: {elbow: {}}\n", UnknownName, "elbow"),
+    ("joint_limits: {elbow_joint: 3}\n", BrokenFile, "elbow_joint"),
+    ("joint_limits: {elbow_joint: {max_speed: 3}}\n", UnknownName, "max_speed"),
+    ("joint_limits: {elbow_joint: {max_velocity: 0}}\n", InvalidValue, "max_velocity of elbow_joint"),
+    ("joint_limits: {elbow_joint: {max_acceleration: fast}}\n", InvalidValue, "max_acceleration"),
+])  # fmt: skip
 def test_bad_files_are_named(arm, tmp_path, text, error, said):
-    with pytest.raises(error, match=said):
-        limits_of(arm, write(tmp_path, text))
+    refused(error, said, limits_of, arm, write(tmp_path, text))
 
 
 @pytest.mark.parametrize("speed", [0.0, -1.0, 1.5, float("nan")])
 def test_speed_is_a_share(speed):
-    with pytest.raises(InvalidValue, match="speed"):
-        Limits((1.0,), (1.0,)).at_speed(speed)
+    refused(InvalidValue, "speed", lambda: Limits((1.0,), (1.0,)).at_speed(speed))
 
 
 @pytest.mark.parametrize("rows", [((0.0,), (1.0,)), ((1.0,), (1.0, 1.0)), ((1.0,), (float("inf"),)), ((), ())])

@@ -15,6 +15,7 @@ from evenroad.cli import main
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory import Limits, make_trajectory, save_trajectory, send
 from evenroad.trajectory.send import ASTRAY, AT_START, send_trajectory
+from tests.refused import refused
 
 START = [0.1, -1.5, 0.3, -1.2, 0.2, 0.0]
 RUNNING, NORMAL, REDUCED = 7, 1, 2
@@ -154,32 +155,28 @@ def test_nothing_moves_from_another_place_than_the_start(there, joint, side):
         if moved:
             assert sent().states > STATES
             continue
-        with pytest.raises(InvalidValue, match=f"not at the start: joint_{joint + 1} is at .* more than 0.01"):
-            sent()
+        refused(InvalidValue, f"not at the start: joint_{joint + 1} is at .* more than 0.01", sent)
         assert (arm.places, "control" in arm.calls) == ([], False)
 
 
 def test_the_start_is_that_of_the_trajectory_not_its_goal(there):
     moves = trajectory(away=0.1)
     arm = there(q=moves.positions[-1])
-    with pytest.raises(InvalidValue, match="not at the start"):
-        sent(moves)
+    refused(InvalidValue, "not at the start", sent, moves)
     assert arm.places == []
 
 
 @pytest.mark.parametrize("safety", [0, *range(3, 14)])
 def test_nothing_moves_in_any_other_mode_of_safety(there, safety):
     arm = there(safety=safety)
-    with pytest.raises(InvalidValue, match=f"not ready to move: robot mode 7, safety mode {safety}"):
-        sent()
+    refused(InvalidValue, f"not ready to move: robot mode 7, safety mode {safety}", sent)
     assert (arm.places, "control" in arm.calls) == ([], False)
 
 
 @pytest.mark.parametrize("mode", [-1, *range(7), 8])
 def test_nothing_moves_unless_the_robot_runs(there, mode):
     arm = there(mode=mode)
-    with pytest.raises(InvalidValue, match=f"not ready to move: robot mode {mode}"):
-        sent()
+    refused(InvalidValue, f"not ready to move: robot mode {mode}", sent)
     assert (arm.places, "control" in arm.calls) == ([], False)
 
 
@@ -189,15 +186,13 @@ def test_nothing_moves_unless_the_robot_runs(there, mode):
 )
 def test_another_arm_is_not_moved_nor_faster_than_allowed(there, options, asked, said):
     arm = there(**options)
-    with pytest.raises(InvalidValue, match=said):
-        sent(make_trajectory([START, np.add(START, 0.02 * np.eye(6)[1])], LIMITS), **asked)
+    refused(InvalidValue, said, sent, make_trajectory([START, np.add(START, 0.02 * np.eye(6)[1])], LIMITS), **asked)
     assert arm.places == []
 
 
 def test_an_arm_that_its_safety_stops_is_told_no_more(there):
     arm = there(stops=STATES - 1)
-    with pytest.raises(NotAvailable, match="stopped after .* by its safety"):
-        sent()
+    refused(NotAvailable, "stopped after .* by its safety", sent)
     assert len(arm.places) == STATES
     assert stopped(arm)
 
@@ -205,8 +200,7 @@ def test_an_arm_that_its_safety_stops_is_told_no_more(there):
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_an_arm_that_goes_astray_is_stopped_at_once(there, side):
     arm = there(off=side * 1.01 * ASTRAY, since=STATES - 1)
-    with pytest.raises(NotAvailable, match="joint_3 is 0.303 rad astray"):
-        sent()
+    refused(NotAvailable, "joint_3 is 0.303 rad astray", sent)
     assert len(arm.places) == STATES
     assert stopped(arm)
 
@@ -221,8 +215,7 @@ def test_one_that_lags_by_less_goes_on_and_is_told_by_how_much(there):
 
 def test_a_connection_that_is_lost_ends_it_and_stop_is_tried(there):
     arm = there(lost=STATES - 1)
-    with pytest.raises(NotAvailable, match="lost the connection after"):
-        sent()
+    refused(NotAvailable, "lost the connection after", sent)
     assert len(arm.places) == STATES
     assert stopped(arm)
 

@@ -9,6 +9,7 @@ from evenroad import FunctionWorld
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.space import BoxSpace
 from evenroad.trajectory import Limits, make_trajectory
+from tests.refused import refused
 
 
 def zigzag(seed, p=6, dim=3):
@@ -119,8 +120,7 @@ def test_a_corner_that_touches_is_cut_less(reach):
 
 def test_a_path_that_is_not_free_is_refused():
     world = FunctionWorld(BoxSpace([-1.0], [3.0]), lambda q: np.abs(q[:, 0] - 1.0) > 0.1, resolution=0.01)
-    with pytest.raises(NotAvailable, match="not proved free"):
-        make_trajectory([[0.0], [2.0]], Limits((1.0,), (1.0,)), world=world)
+    refused(NotAvailable, "not proved free", make_trajectory, [[0.0], [2.0]], Limits((1.0,), (1.0,)), world=world)
 
 
 def test_waypoints_that_repeat_are_one():
@@ -134,19 +134,11 @@ def test_waypoints_that_repeat_are_one():
     assert nearly.positions[-1, 1] == pytest.approx(1 + 1e-12, abs=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("path", "options", "said"),
-    [
-        ([[0, 0], [0, 0]], {}, "somewhere"),
-        ([[0, 0], [1e-12, 1e-12]], {}, "somewhere"),
-        ([[0, 0, 0]], {}, r"shape \(n, 2\)"),
-        ([[0, 0], [np.nan, 1]], {}, "finite"),
-        ([[0, 0], [1, 1]], {"deviation": -1.0}, "deviation"),
-        ([[0, 0], [1, 1]], {"step": 0.0}, "step"),
-        ([[0, 0], [1, 1]], {"names": ["a"]}, "names"),
-        ([[0, 0], [1, 1]], {"step": 1e-9}, "longer steps"),
-    ],
-)
+@pytest.mark.parametrize(("path", "options", "said"), [
+    ([[0, 0], [0, 0]], {}, "somewhere"), ([[0, 0], [1e-12, 1e-12]], {}, "somewhere"),
+    ([[0, 0, 0]], {}, r"shape \(n, 2\)"), ([[0, 0], [np.nan, 1]], {}, "finite"),
+    ([[0, 0], [1, 1]], {"deviation": -1.0}, "deviation"), ([[0, 0], [1, 1]], {"step": 0.0}, "step"),
+    ([[0, 0], [1, 1]], {"names": ["a"]}, "names"), ([[0, 0], [1, 1]], {"step": 1e-9}, "longer steps"),
+])  # fmt: skip
 def test_bad_input_is_named(path, options, said):
-    with pytest.raises(InvalidValue, match=said):
-        make_trajectory(path, Limits((1.0, 1.0), (1.0, 1.0)), **options)
+    refused(InvalidValue, said, make_trajectory, path, Limits((1.0, 1.0), (1.0, 1.0)), **options)

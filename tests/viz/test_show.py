@@ -9,6 +9,7 @@ from PIL import Image
 
 import evenroad as er
 import evenroad.viz.show as shows
+from tests.refused import refused
 
 CELLS = np.zeros((40, 60), dtype=bool)
 MAP = er.GridMap(CELLS, resolution=0.1)
@@ -69,8 +70,7 @@ def test_without_a_browser_it_is_said_and_nothing_is_left_open(pages, monkeypatc
     closed = []
     monkeypatch.setattr(shows.webbrowser, "open", lambda address: False)
     monkeypatch.setattr(Page, "close", lambda page: closed.append(page))
-    with pytest.raises(er.errors.NotAvailable, match=r"no browser .* result\.plot"):
-        er.show(OF_AN_ARM)
+    refused(er.errors.NotAvailable, r"no browser .* result\.plot", er.show, OF_AN_ARM)
     assert len(closed) == 1
 
 
@@ -86,5 +86,4 @@ def test_maps_and_disks_are_pictures(what, notebook, monkeypatch):
 
 @pytest.mark.parametrize("what", ["plan.json", None, np.zeros((3, 2))])
 def test_only_plans_and_maps_are_shown(what):
-    with pytest.raises(er.errors.InvalidValue, match="a plan or a map can be shown"):
-        er.show(what)
+    refused(er.errors.InvalidValue, "a plan or a map can be shown", er.show, what)

@@ -9,19 +9,15 @@ from evenroad.viz.surfaces import link_surfaces, surface_of
 AT = Pose.from_rpy((0.3, -0.2, 0.5), (0.4, -0.3, 1.1))
 
 
-@pytest.mark.parametrize(
-    ("shape", "distance"),
-    [
-        (Sphere(0.2, pose=AT), lambda p: np.linalg.norm(p, axis=1) - 0.2),
-        (Box((0.2, 0.4, 0.6), pose=AT), lambda p: np.abs(np.abs(p) / [0.1, 0.2, 0.3]).max(axis=1) - 1.0),
-        (Cylinder(0.1, 0.5, pose=AT), lambda p: np.maximum(np.hypot(p[:, 0], p[:, 1]) - 0.1, np.abs(p[:, 2]) - 0.25)),
-        (
-            Capsule((0, 0, -0.25), (0, 0, 0.25), 0.1, pose=AT),
-            lambda p: np.linalg.norm(p - np.clip(p, [0, 0, -0.25], [0, 0, 0.25]), axis=1) - 0.1,
-        ),
-    ],
-    ids=lambda each: getattr(each, "kind", ""),
-)
+@pytest.mark.parametrize(("shape", "distance"), [
+    (Sphere(0.2, pose=AT), lambda p: np.linalg.norm(p, axis=1) - 0.2),
+    (Box((0.2, 0.4, 0.6), pose=AT), lambda p: np.abs(np.abs(p) / [0.1, 0.2, 0.3]).max(axis=1) - 1.0),
+    (Cylinder(0.1, 0.5, pose=AT), lambda p: np.maximum(np.hypot(p[:, 0], p[:, 1]) - 0.1, np.abs(p[:, 2]) - 0.25)),
+    (
+        Capsule((0, 0, -0.25), (0, 0, 0.25), 0.1, pose=AT),
+        lambda p: np.linalg.norm(p - np.clip(p, [0, 0, -0.25], [0, 0, 0.25]), axis=1) - 0.1,
+    ),
+], ids=lambda each: getattr(each, "kind", ""))  # fmt: skip
 def test_the_corners_of_a_surface_lie_on_its_body(shape, distance):
     vertices, triangles = surface_of(shape)
     np.testing.assert_allclose(distance(AT.local(vertices)), 0.0, atol=1e-6)

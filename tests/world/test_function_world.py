@@ -1,7 +1,5 @@
 """FunctionWorld: the states it asks for, their order, how many calls, and answers that are none."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -16,6 +14,7 @@ from evenroad.testing import WorldContract
 from evenroad.world import Explains, FunctionWorld
 from evenroad.world.bisection import between_endpoints
 from evenroad.world.protocol import ValidatesPaths
+from tests.refused import refused
 
 SQUARE = BoxSpace([0.0, 0.0], [1.0, 1.0])
 
@@ -117,14 +116,11 @@ def test_with_a_resolution_a_part_the_finer_division_counts():
         assert len(asked.states) == n + 1
 
 
-@pytest.mark.parametrize(
-    ("is_free", "b", "asked_for"),
-    [
-        (lambda q: np.abs(q[:, 0] - 0.5) > 0.01, (1.0, 0.0), 3),  # the middle, after both ends
-        (lambda q: q[:, 0] > 0.5, (1.0, 0.0), 1),
-        (lambda q: q[:, 0] < 0.5, (1.0, 0.0), 2),
-    ],
-)
+@pytest.mark.parametrize(("is_free", "b", "asked_for"), [
+    (lambda q: np.abs(q[:, 0] - 0.5) > 0.01, (1.0, 0.0), 3),  # the middle, after both ends
+    (lambda q: q[:, 0] > 0.5, (1.0, 0.0), 1),
+    (lambda q: q[:, 0] < 0.5, (1.0, 0.0), 2),
+])  # fmt: skip
 def test_a_blocked_end_is_found_before_any_state_between_and_a_blocked_middle_next(is_free, b, asked_for):
     asked = Asked(is_free)
     assert not FunctionWorld(SQUARE, asked, 0.001, vectorised=True).motion_valid([[0.0, 0.0]], [b])[0]
@@ -164,21 +160,17 @@ def test_a_function_cannot_write_into_the_callers_configurations():
         q += 1.0
         return np.ones(len(q), dtype=bool)
 
-    with pytest.raises(ValueError, match="read-only"):
-        FunctionWorld(SQUARE, careless, 0.1).valid(np.zeros((2, 2)))
+    refused(ValueError, "read-only", lambda: FunctionWorld(SQUARE, careless, 0.1).valid(np.zeros((2, 2))))
 
 
-@pytest.mark.parametrize(
-    ("answer", "vectorised"),
-    [
-        (lambda q: np.ones(len(q)), True),
-        (lambda q: np.ones(len(q), dtype=int), True),
-        (lambda q: np.ones((len(q), 1), dtype=bool), True),
-        (lambda q: np.ones(len(q) + 1, dtype=bool), True),
-        (lambda q: None, True),
-        *((lambda q, answer=answer: answer, False) for answer in (1, None, np.array([True]), "free")),
-    ],
-)
+@pytest.mark.parametrize(("answer", "vectorised"), [
+    (lambda q: np.ones(len(q)), True),
+    (lambda q: np.ones(len(q), dtype=int), True),
+    (lambda q: np.ones((len(q), 1), dtype=bool), True),
+    (lambda q: np.ones(len(q) + 1, dtype=bool), True),
+    (lambda q: None, True),
+    *((lambda q, answer=answer: answer, False) for answer in (1, None, np.array([True]), "free")),
+])  # fmt: skip
 def test_an_answer_that_is_none_is_refused_and_the_function_named(answer, vectorised):
     def my_checker(q):
         return answer(q)
@@ -203,15 +195,10 @@ def test_why_a_configuration_is_not_free_is_said():
     assert "outside_a_disk" in world.explain(np.array([0.5, 0.5]))
 
 
-@pytest.mark.parametrize(
-    ("space", "extent"),
-    [
-        (BoxSpace((-1, -2), (2, 2)), 5.0),
-        (Circle(), np.pi),
-        (SE2((-5, -5), (5, 5)), math.sqrt(200 + np.pi**2)),
-        (SE3((0, 0, 0), (1, 1, 1)), math.sqrt(3) + np.pi / 2),
-    ],
-)
+@pytest.mark.parametrize(("space", "extent"), [
+    (BoxSpace((-1, -2), (2, 2)), 5.0), (Circle(), np.pi), (SE2((-5, -5), (5, 5)), math.sqrt(200 + np.pi**2)),
+    (SE3((0, 0, 0), (1, 1, 1)), math.sqrt(3) + np.pi / 2),
+])  # fmt: skip
 def test_without_a_resolution_a_hundredth_of_the_extent_is_taken(space, extent):
     resolution = FunctionWorld(space, lambda q: np.ones(len(q), dtype=bool)).resolution
     assert 0.9 * extent <= 100 * resolution <= extent
@@ -220,30 +207,25 @@ def test_without_a_resolution_a_hundredth_of_the_extent_is_taken(space, extent):
 PLANE = SE2([0, 0], [1, 1])
 
 
-@pytest.mark.parametrize(
-    ("space", "function", "resolution", "text"),
-    [
-        *(
-            (SQUARE, outside_a_disk, resolution, "resolution")
-            for resolution in (0.0, -1.0, math.nan, math.inf, "fine", [0.1], (0.1, 0.1))
-        ),
-        *(
-            (PLANE, outside_a_disk, resolution, "resolution")
-            for resolution in (np.array(0.1), [0.1], [0.1, 0.0], [0.1, 0.1, 0.1], ["a", "b"])
-        ),
-        (SQUARE, np.ones(3), 0.1, "is_valid"),
-        *((space, np.isfinite, 0.1, ".") for space in ("abc", 3, [(0, 1, 2)], None, [(1, 0)])),
-    ],
-)
+@pytest.mark.parametrize(("space", "function", "resolution", "text"), [
+    *(
+        (SQUARE, outside_a_disk, resolution, "resolution")
+        for resolution in (0.0, -1.0, math.nan, math.inf, "fine", [0.1], (0.1, 0.1))
+    ),
+    *(
+        (PLANE, outside_a_disk, resolution, "resolution")
+        for resolution in (np.array(0.1), [0.1], [0.1, 0.0], [0.1, 0.1, 0.1], ["a", "b"])
+    ),
+    (SQUARE, np.ones(3), 0.1, "is_valid"),
+    *((space, np.isfinite, 0.1, ".") for space in ("abc", 3, [(0, 1, 2)], None, [(1, 0)])),
+])  # fmt: skip
 def test_what_is_no_space_no_function_or_no_resolution_is_refused(space, function, resolution, text):
-    with pytest.raises(InvalidValue, match=text):
-        FunctionWorld(space, function, resolution)
+    refused(InvalidValue, text, FunctionWorld, space, function, resolution)
 
 
 def test_a_resolution_far_too_small_is_an_error_and_no_endless_wait():
     world = FunctionWorld(SQUARE, outside_a_disk, 1e-12)
-    with pytest.raises(InvalidValue, match="resolution must be larger"):
-        world.motion_valid([[0.0, 0.0]], [[0.0, 1.0]])
+    refused(InvalidValue, "resolution must be larger", world.motion_valid, [[0.0, 0.0]], [[0.0, 1.0]])
 
 
 def _ball(radius):

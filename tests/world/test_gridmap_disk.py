@@ -1,7 +1,5 @@
 """The disk world where the answer is known by heart: walls, gaps, touching, borders, bad input."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -11,6 +9,7 @@ from evenroad.errors import InvalidValue
 from evenroad.testing import WorldContract
 from evenroad.world import GridMap, MapFrame
 from evenroad.world.gridmap import DiskWorld
+from tests.refused import refused
 from tests.world.gridmap_oracle import distance_to_obstacles
 
 
@@ -42,16 +41,12 @@ class TestDiskOnTurnedRosMap(WorldContract):
 def test_the_text_of_an_error_names_the_place():
     world = GridMap(scattered()).world(2.5)
     q = world.space.from_cube(np.random.default_rng(0).random((10, 2)))
-    with pytest.raises(InvalidValue, match="shape"):
-        world.valid(np.append(q[0], 1.0))
-    with pytest.raises(InvalidValue, match="length"):
-        world.motion_valid(q[:3], q[:4])
+    refused(InvalidValue, "shape", world.valid, np.append(q[0], 1.0))
+    refused(InvalidValue, "length", world.motion_valid, q[:3], q[:4])
     wrong = q.copy()
     wrong[5, 0] = np.nan
-    with pytest.raises(InvalidValue, match=r"\[5, 0\]"):
-        world.valid(wrong)
-    with pytest.raises(InvalidValue, match="b must be finite"):
-        world.motion_valid(q, wrong)
+    refused(InvalidValue, r"\[5, 0\]", world.valid, wrong)
+    refused(InvalidValue, "b must be finite", world.motion_valid, q, wrong)
 
 
 # ---- walls and gaps
@@ -239,10 +234,8 @@ def test_distance_agrees_with_the_oracle():
 
 @pytest.mark.parametrize("radius", [0, 0.0, -1.0, math.nan, math.inf, "6", None, True])
 def test_a_radius_that_is_no_positive_number_is_refused(radius):
-    with pytest.raises(InvalidValue, match=r"radius must be a finite number > 0, got"):
-        GridMap(empty()).world(radius)
-    with pytest.raises(InvalidValue, match="radius"):
-        DiskWorld(GridMap(empty()), radius)
+    refused(InvalidValue, r"radius must be a finite number > 0, got", lambda: GridMap(empty()).world(radius))
+    refused(InvalidValue, "radius", DiskWorld, GridMap(empty()), radius)
 
 
 @pytest.mark.parametrize("clearance", [-0.1, math.nan, math.inf, "1"])

@@ -1,7 +1,5 @@
 """Verdicts of the disk world against the slow oracle, on thousands of small maps and motions."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where pixels lie: bare images, ROS maps, turned ROS maps."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -9,6 +7,7 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.world import GridMap, MapFrame
+from tests.refused import refused
 
 YAW = 0.9
 
@@ -106,21 +105,13 @@ def test_a_point_absurdly_far_away_is_outside():
     np.testing.assert_array_equal(grid.world(1e-4).nearest_obstacle(far), far)
 
 
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [
-        ({"resolution": 0.0}, "resolution"),
-        ({"resolution": -1.0}, "resolution"),
-        ({"resolution": math.nan}, "resolution"),
-        ({"rows": 0}, "rows"),
-        ({"origin": (math.inf, 0.0)}, "origin"),
-        ({"yaw": math.nan}, "yaw"),
-        ({"yaw": 0.5, "y_up": False}, "yaw must be 0"),
-    ],
-)
+@pytest.mark.parametrize(("change", "text"), [
+    ({"resolution": 0.0}, "resolution"), ({"resolution": -1.0}, "resolution"), ({"resolution": math.nan}, "resolution"),
+    ({"rows": 0}, "rows"), ({"origin": (math.inf, 0.0)}, "origin"), ({"yaw": math.nan}, "yaw"),
+    ({"yaw": 0.5, "y_up": False}, "yaw must be 0"),
+])  # fmt: skip
 def test_a_frame_of_impossible_numbers_is_refused(change, text):
-    with pytest.raises(InvalidValue, match=text):
-        MapFrame(**{"rows": 4, "cols": 6, "y_up": True, **change})
+    refused(InvalidValue, text, MapFrame, **{"rows": 4, "cols": 6, "y_up": True, **change})
 
 
 def test_a_map_keeps_a_read_only_copy_of_its_cells():
@@ -137,10 +128,8 @@ def test_a_map_keeps_a_read_only_copy_of_its_cells():
     [np.zeros((0, 3), np.bool_), np.zeros(4, np.bool_), np.zeros((2, 2), np.uint8), np.zeros((2, 2, 2), np.bool_)],
 )
 def test_cells_that_are_no_boolean_image_are_refused(occupied):
-    with pytest.raises(InvalidValue, match="boolean array"):
-        GridMap(occupied)
+    refused(InvalidValue, "boolean array", GridMap, occupied)
 
 
 def test_a_frame_of_another_size_is_refused():
-    with pytest.raises(InvalidValue, match="6 rows and 4 columns"):
-        GridMap(np.zeros((6, 4), dtype=np.bool_), MapFrame(rows=4, cols=6))
+    refused(InvalidValue, "6 rows and 4 columns", GridMap, np.zeros((6, 4), dtype=np.bool_), MapFrame(rows=4, cols=6))

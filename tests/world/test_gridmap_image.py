@@ -1,7 +1,5 @@
 """Bare images as maps: which pixels are obstacles, and files that are refused."""
 
-from __future__ import annotations
-
 import os
 import struct
 import zlib
@@ -14,6 +12,7 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.world import MapFrame, load_map
 from evenroad.world.gridmap import load_image
 from evenroad.world.gridmap.load import LARGEST_IMAGE
+from tests.refused import refused
 
 
 def saved(folder, image, name="map.png", **options):
@@ -47,8 +46,7 @@ def test_dark_pixels_are_obstacles_and_the_limit_of_dark_can_be_moved(tmp_path):
 
 @pytest.mark.parametrize("dark", [0, -1, 256, np.nan, "128"])
 def test_a_limit_outside_the_scale_is_refused(tmp_path, dark):
-    with pytest.raises(InvalidValue, match="dark must be"):
-        load_image(saved(tmp_path, grey(0)), dark=dark)
+    refused(InvalidValue, "dark must be", load_image, saved(tmp_path, grey(0)), dark=dark)
 
 
 def test_rows_and_columns_keep_their_places(tmp_path):
@@ -182,5 +180,4 @@ def test_an_image_without_read_permission_is_refused(tmp_path):
 
 @pytest.mark.parametrize("name", ["map.jpg", "map", "map.yaml.bak"])
 def test_an_unknown_suffix_is_refused_with_the_known_ones(name):
-    with pytest.raises(UnknownName, match=r"\.pgm, \.png, \.yaml, \.yml"):
-        load_map(name)
+    refused(UnknownName, r"\.pgm, \.png, \.yaml, \.yml", load_map, name)

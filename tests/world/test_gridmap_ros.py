@@ -1,7 +1,5 @@
 """ROS map_server files: what each pixel means in each mode, and files that are refused."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -194,53 +192,31 @@ def test_a_key_that_is_there_twice_is_refused(tmp_path):
     assert "map.yaml has the key 'occupied_thresh' twice, in lines 5 and 7" in refusal(path, BrokenFile)
 
 
-@pytest.mark.parametrize(
-    ("key", "value", "words"),
-    [
-        ("resolution", "0", "resolution"),
-        ("resolution", "-0.05", "-0.05"),
-        ("resolution", ".nan", "nan"),
-        ("resolution", "1" + "0" * 400, "resolution"),
-        ("resolution", "fine", "'fine'"),
-        ("resolution", "5e-2", "1.0e-2, not 1e-2"),
-        ("resolution", "true", "True"),
-        ("resolution", "", "None"),
-        ("origin", "[0, 0]", "[x, y, yaw]"),
-        ("origin", "[0, 0, 0, 0]", "[x, y, yaw]"),
-        ("origin", "0", "[x, y, yaw]"),
-        ("origin", "[0, .inf, 0]", "inf"),
-        ("origin", "[0, 1e3, 0]", "'1e3'"),
-        ("negate", "2", "negate"),
-        ("negate", "1.0", "negate"),
-        ("negate", "maybe", "'maybe'"),
-        ("occupied_thresh", "1.01", "1.01"),
-        ("occupied_thresh", "0.196", "free_thresh < occupied_thresh"),
-        ("occupied_thresh", "high", "'high'"),
-        ("free_thresh", "-0.1", "-0.1"),
-        ("free_thresh", "0.7", "0.7"),
-        ("image", "''", "name of a file"),
-        ("image", "[a.png]", "name of a file"),
-        ("image", "7", "name of a file"),
-        ("mode", "7", "known: raw, scale, trinary"),
-        ("mode", "", "known: raw, scale, trinary"),
-        ("mode", "[raw]", "known: raw, scale, trinary"),
-    ],
-)
+@pytest.mark.parametrize(("key", "value", "words"), [
+    ("resolution", "0", "resolution"), ("resolution", "-0.05", "-0.05"), ("resolution", ".nan", "nan"),
+    ("resolution", "1" + "0" * 400, "resolution"), ("resolution", "fine", "'fine'"),
+    ("resolution", "5e-2", "1.0e-2, not 1e-2"), ("resolution", "true", "True"), ("resolution", "", "None"),
+    ("origin", "[0, 0]", "[x, y, yaw]"), ("origin", "[0, 0, 0, 0]", "[x, y, yaw]"), ("origin", "0", "[x, y, yaw]"),
+    ("origin", "[0, .inf, 0]", "inf"), ("origin", "[0, 1e3, 0]", "'1e3'"), ("negate", "2", "negate"),
+    ("negate", "1.0", "negate"), ("negate", "maybe", "'maybe'"), ("occupied_thresh", "1.01", "1.01"),
+    ("occupied_thresh", "0.196", "free_thresh < occupied_thresh"),
+    ("occupied_thresh", "high", "'high'"), ("free_thresh", "-0.1", "-0.1"), ("free_thresh", "0.7", "0.7"),
+    ("image", "''", "name of a file"), ("image", "[a.png]", "name of a file"), ("image", "7", "name of a file"),
+    ("mode", "7", "known: raw, scale, trinary"), ("mode", "", "known: raw, scale, trinary"),
+    ("mode", "[raw]", "known: raw, scale, trinary"),
+])  # fmt: skip
 def test_a_value_of_the_wrong_type_or_range_is_named(tmp_path, key, value, words):
     text = refusal(written(tmp_path, row(0), **{key: value}), (InvalidValue, UnknownName))
     assert words in text
     assert "map.yaml" in text
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
-        *(b"", b"just text", b"- a\n- b\n", b"a: [1", b"a: b: c", b"a: 2001-99-99", b"[" * 5000),
-        b"image: !!python/object:os.system x",
-        b"\xff\xfe\x00image: \x80",
-        b"image: map.png\n7: x\n[1, 2]: y\n",
-    ],
-)
+@pytest.mark.parametrize("content", [
+    *(b"", b"just text", b"- a\n- b\n", b"a: [1", b"a: b: c", b"a: 2001-99-99", b"[" * 5000),
+    b"image: !!python/object:os.system x",
+    b"\xff\xfe\x00image: \x80",
+    b"image: map.png\n7: x\n[1, 2]: y\n",
+])  # fmt: skip
 def test_a_file_that_is_no_yaml_mapping_with_keys_of_text_is_refused(tmp_path, content):
     path = tmp_path / "map.yaml"
     path.write_bytes(content)

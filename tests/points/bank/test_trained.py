@@ -7,6 +7,7 @@ from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import draw
 from evenroad.points.bank import Trained
 from tests.points.samplers.sampler_contract import SamplerContract
+from tests.refused import refused
 
 
 class TestHickernell(SamplerContract):
@@ -19,10 +20,8 @@ def test_a_set_that_does_not_ship_and_an_unknown_family_are_refused_with_what_th
         NotAvailable, match=r"hickernell has no set of n=11 in d=2; it has n = 16, .*evenroad train -n 11 -d 2"
     ):
         draw("hickernell", 11, 2)
-    with pytest.raises((NotAvailable, UnknownName), match="mpmc"):
-        draw("mpmc", 11, 2)
-    with pytest.raises(UnknownName, match="known: hickernell, mpmc"):
-        Trained("odd")
+    refused((NotAvailable, UnknownName), "mpmc", draw, "mpmc", 11, 2)
+    refused(UnknownName, "known: hickernell, mpmc", Trained, "odd")
 
 
 def test_stored_values_are_float32():

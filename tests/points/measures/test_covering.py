@@ -91,17 +91,12 @@ def test_a_cover_keeps_the_lattices_covering_radius_up_to_the_faces(d):
     assert upper < 1.4 * covering_radius(d) * 500 ** (-1 / d)
 
 
-@pytest.mark.parametrize(
-    ("points", "options", "said"),
-    [
-        (np.empty((0, 2)), {}, "at least one point"),
-        ([[0.5, 0.5]], {"sides": [1.0]}, "sides must be 2"),
-        ([[0.5, 0.5]], {"sides": [1.0, 0.0]}, "sides must be 2"),
-        ([[0.5, 0.5]], {"wrapping": [True]}, "wrapping must be 2"),
-        ([[0.5, 0.5]], {"work": 0}, "work must be"),
-        ([[0.5, 1.5]], {}, "lie in"),
-    ],
-)
+@pytest.mark.parametrize(("points", "options", "said"), [
+    (np.empty((0, 2)), {}, "at least one point"), ([[0.5, 0.5]], {"sides": [1.0]}, "sides must be 2"),
+    ([[0.5, 0.5]], {"sides": [1.0, 0.0]}, "sides must be 2"),
+    ([[0.5, 0.5]], {"wrapping": [True]}, "wrapping must be 2"),
+    ([[0.5, 0.5]], {"work": 0}, "work must be"), ([[0.5, 1.5]], {}, "lie in"),
+])  # fmt: skip
 def test_bad_input_is_named(points, options, said):
     with pytest.raises(InvalidValue, match=said):
         dispersion_bounds(points, **options)

@@ -13,6 +13,7 @@ from evenroad.errors import InvalidValue
 from evenroad.points import PointSet
 from evenroad.points.measures import MEASURES
 from tests.differences import slopes
+from tests.refused import refused
 
 WEIGHTED = [name for name, measure in MEASURES.items() if measure.weighted]
 UNWEIGHTED = [name for name, measure in MEASURES.items() if not measure.weighted]
@@ -125,9 +126,7 @@ def test_a_coordinate_that_all_points_share_has_a_finite_gradient(name):
 
 
 @pytest.mark.parametrize(("ours", "theirs", "method"), [
-    ("centred", "squared", "CD"),
-    ("wrap_around", "squared", "WD"),
-    ("mixture", "squared", "MD"),
+    ("centred", "squared", "CD"), ("wrap_around", "squared", "WD"), ("mixture", "squared", "MD"),
     ("star", "rooted", "L2-star"),  # scipy gives this one, and only this one, as a root
 ])  # fmt: skip
 def test_scipy_agrees(ours, theirs, method):
@@ -211,19 +210,15 @@ def test_a_point_set_is_taken_as_it_is():
 ])  # fmt: skip
 def test_bad_points_and_none_are_refused(bad):
     for name, measure in MEASURES.items():
-        with pytest.raises(InvalidValue, match="points must"):
-            measure.rooted(bad)
-        with pytest.raises(InvalidValue, match=rf"{name} needs at least one point.*\(0, 3\)"):
-            measure.squared(np.zeros((0, 3)))
+        refused(InvalidValue, "points must", measure.rooted, bad)
+        refused(InvalidValue, rf"{name} needs at least one point.*\(0, 3\)", measure.squared, np.zeros((0, 3)))
 
 
 @pytest.mark.parametrize("weights", [[1.0], [1.0, -0.1], [1.0, math.nan], [[1.0, 1.0]], ["a", "b"]])
 def test_bad_weights_are_refused(weights):
-    with pytest.raises(InvalidValue, match="weights must be 2 finite numbers"):
-        MEASURES["hickernell"].squared([[0.5, 0.5]], weights)
+    refused(InvalidValue, "weights must be 2 finite numbers", MEASURES["hickernell"].squared, [[0.5, 0.5]], weights)
 
 
 @pytest.mark.parametrize("name", UNWEIGHTED)
 def test_a_measure_without_a_constant_part_says_that_it_takes_no_weights(name):
-    with pytest.raises(InvalidValue, match=f"{name} takes no coordinate weights"):
-        MEASURES[name].squared([[0.5, 0.5]], [1.0, 1.0])
+    refused(InvalidValue, f"{name} takes no coordinate weights", MEASURES[name].squared, [[0.5, 0.5]], [1.0, 1.0])

@@ -18,6 +18,7 @@ from evenroad.points.measures.rank_one import (
 )
 from evenroad.points.measures.short_vectors import lattice_basis, short_vectors
 from evenroad.points.samplers.korobov import korobov_generator
+from tests.refused import refused
 
 
 def korobov_vector(n, d):
@@ -147,27 +148,20 @@ def test_other_points_have_no_generating_vector(family):
     assert generating_vector(np.zeros((1, 2))) is None
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        ((0, (1, 2)), "n must be"),
-        ((2**26 + 1, (1, 2)), "n must be at most 67108864"),
-        ((8, (2, 4)), "without common divisor with n=8"),
-        ((8, (1.0, 3.0)), "vector must be 1 .. 16 whole numbers"),
-        ((8, [1] * 17), "vector must be 1 .. 16 whole numbers"),
-        ((8, (1, 3), (1.0,)), "scale must be 2 finite numbers > 0"),
-        ((8, (1, 3), (1.0, 0.0)), "scale must be 2 finite numbers > 0"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "said"), [
+    ((0, (1, 2)), "n must be"), ((2**26 + 1, (1, 2)), "n must be at most 67108864"),
+    ((8, (2, 4)), "without common divisor with n=8"),
+    ((8, (1.0, 3.0)), "vector must be 1 .. 16 whole numbers"),
+    ((8, [1] * 17), "vector must be 1 .. 16 whole numbers"),
+    ((8, (1, 3), (1.0,)), "scale must be 2 finite numbers > 0"),
+    ((8, (1, 3), (1.0, 0.0)), "scale must be 2 finite numbers > 0"),
+])  # fmt: skip
 def test_what_is_no_lattice_is_refused(arguments, said):
-    with pytest.raises(InvalidValue, match=said):
-        lattice_basis(*arguments)
-    with pytest.raises(InvalidValue, match="k must be"):
-        neighbour_directions(8, (1, 3), 0)
+    refused(InvalidValue, said, lattice_basis, *arguments)
+    refused(InvalidValue, "k must be", neighbour_directions, 8, (1, 3), 0)
 
 
 def test_lattices_of_all_too_many_short_vectors_are_refused():
     # All points lie on the diagonal.
-    with pytest.raises(NotAvailable, match="too many are short"):
-        successive_minima(2**24, (1, 1, 1))
+    refused(NotAvailable, "too many are short", successive_minima, 2**24, (1, 1, 1))
     assert successive_minima(500, (1, 1, 1))[0] == pytest.approx(3**0.5 / 500)

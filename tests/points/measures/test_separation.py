@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from evenroad.errors import InvalidValue
 from evenroad.points.measures.separation import log_riesz_of_columns, riesz_rooted, separation
 from tests.differences import slopes
+from tests.refused import refused
 
 
 def slow_separation(points, periodic):
@@ -108,11 +109,9 @@ def test_the_root_of_an_energy_beyond_floats_is_a_float():
 @pytest.mark.parametrize("n", [0, 1])
 @pytest.mark.parametrize("measure", [separation, riesz_rooted])
 def test_fewer_than_two_points_have_neither(measure, n):
-    with pytest.raises(InvalidValue, match=f"at least 2 points, got {n}"):
-        measure(np.zeros((n, 2)))
+    refused(InvalidValue, f"at least 2 points, got {n}", measure, np.zeros((n, 2)))
 
 
 @pytest.mark.parametrize("s", [0, -2, 1.5, True, "4"])
 def test_an_exponent_that_is_no_positive_integer_is_refused(s):
-    with pytest.raises(InvalidValue, match="s must be an integer >= 1"):
-        riesz_rooted([[0.1], [0.2]], s=s)
+    refused(InvalidValue, "s must be an integer >= 1", riesz_rooted, [[0.1], [0.2]], s=s)

@@ -7,6 +7,7 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, Sampler
+from tests.refused import refused
 
 
 class SamplerContract:
@@ -56,10 +57,8 @@ class SamplerContract:
     @pytest.mark.parametrize("bad", [0, -1, 2.5, True, "8", None])
     def test_a_count_that_is_no_positive_integer_is_refused_by_name(self, bad):
         n, d = self.shapes[-1]
-        with pytest.raises(InvalidValue, match="n must be an integer >= 1"):
-            self.sampler.draw(bad, d)
-        with pytest.raises(InvalidValue, match="d must be an integer >= 1"):
-            self.sampler.draw(n, bad)
+        refused(InvalidValue, "n must be an integer >= 1", self.sampler.draw, bad, d)
+        refused(InvalidValue, "d must be an integer >= 1", self.sampler.draw, n, bad)
 
     def test_the_sampler_is_a_frozen_value(self):
         assert dataclasses.is_dataclass(self.sampler)

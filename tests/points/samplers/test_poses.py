@@ -6,6 +6,7 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.points.samplers.poses import Sliced
 from evenroad.space import SO3
+from tests.refused import refused
 
 
 @pytest.mark.parametrize("n", [1, 2, 7, 33])
@@ -41,7 +42,5 @@ def test_none_or_all_of_the_poses_may_be_in_the_slice(share, most):
 
 @pytest.mark.parametrize("share", [-0.1, 1.5, float("nan"), "half"])
 def test_a_share_that_is_none_and_another_dimension_are_refused(share):
-    with pytest.raises(InvalidValue, match="share"):
-        Sliced(share)
-    with pytest.raises(InvalidValue, match="d = 6"):
-        Sliced().draw(10, 3)
+    refused(InvalidValue, "share", Sliced, share)
+    refused(InvalidValue, "d = 6", lambda: Sliced().draw(10, 3))

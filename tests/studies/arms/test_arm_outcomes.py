@@ -14,6 +14,7 @@ from evenroad_studies.arms.outcomes import Way, outcomes_of, paired, read_outcom
 from evenroad_studies.arms.results import HEADER, csv_of, lines_of
 from evenroad_studies.bench.store import open_store, read_rows
 from evenroad_studies.bench.task import Outcome, Task
+from tests.refused import refused
 
 DOCS = Path(__file__).parents[3] / "studies" / "docs"
 TASK = Task("arm-scara-shelf", 0, "uniform", 64, "k=10 ends=64", "kept", 0, 1)
@@ -123,8 +124,7 @@ def test_the_two_streams_of_problems_are_kept_apart(tmp_path):
 
 
 def test_no_runs_are_not_written(tmp_path):
-    with pytest.raises(InvalidValue, match="no runs"):
-        write_outcomes(tmp_path / "o.npz", {})
+    refused(InvalidValue, "no runs", write_outcomes, tmp_path / "o.npz", {})
 
 
 def _written(tmp_path, **changed):
@@ -162,8 +162,7 @@ WRONG = [
 
 @pytest.mark.parametrize(("name", "change", "says"), WRONG)
 def test_a_file_of_outcomes_that_cannot_be_is_refused(tmp_path, name, change, says):
-    with pytest.raises(BrokenFile, match=rf"o\.npz.*{says}"):
-        read_outcomes(_written(tmp_path, **{name: change}))
+    refused(BrokenFile, rf"o\.npz.*{says}", read_outcomes, _written(tmp_path, **{name: change}))
 
 
 @pytest.mark.parametrize("harm", ["cut", "flipped", "other"])
@@ -177,8 +176,7 @@ def test_a_damaged_file_of_outcomes_is_refused(tmp_path, harm):
         with np.load(path) as archive:
             arrays = dict(archive)
         np.savez(path, **(arrays | {"solved": ~arrays["solved"]}))
-    with pytest.raises(BrokenFile, match=r"o\.npz"):
-        read_outcomes(path)
+    refused(BrokenFile, r"o\.npz", read_outcomes, path)
 
 
 def test_the_tables_of_the_pages_are_those_of_the_kept_outcomes():

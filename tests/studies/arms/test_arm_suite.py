@@ -15,6 +15,7 @@ from evenroad_studies.bench.store import open_store, read_rows
 from evenroad_studies.bench.task import Outcome, Task
 from evenroad_studies.report.arms import draw_costs, summary_tables
 from evenroad_studies.workers import in_process
+from tests.refused import refused
 
 SMALL = dict(runs=2, only=["scara", "shelf"], draws=1, counts=[16], samplers=["sobol scrambled", "roadmap", "trees"])
 
@@ -40,10 +41,8 @@ def test_names_choose_problems_robots_and_generators():
     assert chosen("scara", "shelf") == {"arm-scara-shelf"}
     assert len(chosen("shelf")) == 5
     assert len(chosen()) == 25
-    with pytest.raises(UnknownName, match="robot"):
-        chosen("arm-ur6-cage")
-    with pytest.raises(InvalidValue, match="counts"):
-        arm_tasks(1, counts=[4])
+    refused(UnknownName, "robot", chosen, "arm-ur6-cage")
+    refused(InvalidValue, "counts", arm_tasks, 1, counts=[4])
 
 
 def test_a_run_gives_answers_that_are_the_same_again(tmp_path):

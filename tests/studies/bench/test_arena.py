@@ -10,6 +10,7 @@ from evenroad_studies.bench.arena import STATUSES, write_arena
 from evenroad_studies.bench.rows import FAILURES
 from evenroad_studies.bench.store import open_store
 from evenroad_studies.bench.task import Outcome
+from tests.refused import refused
 from tests.studies.bench.tables import TASK, query, write
 
 OUTCOMES = {
@@ -68,15 +69,12 @@ def test_an_earlier_export_is_replaced_and_nothing_is_left_behind(store, tmp_pat
 def test_a_store_without_rows_is_not_exported(tmp_path):
     with open_store(tmp_path / "results.db"):
         pass
-    with pytest.raises(NotAvailable, match="has no rows"):
-        write_arena(tmp_path / "results.db", tmp_path / "arena.db")
+    refused(NotAvailable, "has no rows", write_arena, tmp_path / "results.db", tmp_path / "arena.db")
     assert not (tmp_path / "arena.db").exists()
 
 
 def test_a_store_is_not_exported_onto_itself_or_into_a_folder_that_is_not_there(store, tmp_path):
     before = store.read_bytes()
-    with pytest.raises(InvalidValue, match="onto itself"):
-        write_arena(store, store)
+    refused(InvalidValue, "onto itself", write_arena, store, store)
     assert store.read_bytes() == before
-    with pytest.raises(BrokenFile, match="does not exist"):
-        write_arena(store, tmp_path / "missing" / "arena.db")
+    refused(BrokenFile, "does not exist", write_arena, store, tmp_path / "missing" / "arena.db")

@@ -18,6 +18,7 @@ from evenroad_studies.bench.schedulers import dask_workers
 from evenroad_studies.bench.store import open_store, read_rows
 from evenroad_studies.bench.task import Task
 from evenroad_studies.workers import in_process
+from tests.refused import refused
 from tests.studies.bench.tables import table_of
 
 PATIENCE = "3s"
@@ -95,13 +96,11 @@ def test_a_cluster_that_loses_a_worker_gives_the_table_of_one_process_and_withou
     address, add_workers, running = scheduler
     with monkeypatch.context() as change:
         change.setattr(schedulers, "WORKER_SECONDS", 0.5)
-        with pytest.raises(NotAvailable, match="has no workers"):
-            dask_workers(address)
+        refused(NotAvailable, "has no workers", dask_workers, address)
     add_workers("a", "b")
     with monkeypatch.context() as change:
         change.setattr(schedulers, "__version__", "0.0.0")
-        with pytest.raises(NotAvailable, match="have evenroad .*, here it is 0.0.0"):
-            dask_workers(address)
+        refused(NotAvailable, "have evenroad .*, here it is 0.0.0", dask_workers, address)
     workers = dask_workers(address)
     executor = workers.make()
     _waited_for(lambda: workers.count(executor) >= 2)
@@ -127,15 +126,13 @@ def test_a_cluster_that_loses_a_worker_gives_the_table_of_one_process_and_withou
 def test_an_unreachable_scheduler_is_said_within_seconds(monkeypatch):
     monkeypatch.setattr(schedulers, "CONNECT_SECONDS", 1.0)
     began = time.monotonic()
-    with pytest.raises(NotAvailable, match="no Dask scheduler answers at"):
-        dask_workers("tcp://127.0.0.1:9")
+    refused(NotAvailable, "no Dask scheduler answers at", dask_workers, "tcp://127.0.0.1:9")
     assert time.monotonic() - began < 20.0
 
 
 def test_without_the_package_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(NotAvailable, match=r"pip install 'evenroad\[dask\]'"):
-        dask_workers("tcp://127.0.0.1:8786")
+    refused(NotAvailable, r"pip install 'evenroad\[dask\]'", dask_workers, "tcp://127.0.0.1:8786")
 
 
 @pytest.mark.parametrize("address", [
@@ -143,8 +140,7 @@ def test_without_the_package_the_extra_is_named(monkeypatch):
     "tcp://a b:1", "",
 ])  # fmt: skip
 def test_an_address_of_another_form_is_refused_with_an_example(address):
-    with pytest.raises(InvalidValue, match="of the form tcp://host:8786"):
-        dask_workers(address)
+    refused(InvalidValue, "of the form tcp://host:8786", dask_workers, address)
 
 
 @pytest.mark.parametrize("address", ["tcp://host.example.org:8786", "tls://10.0.0.1:1", "tcp://[::1]:8786"])
@@ -153,5 +149,4 @@ def test_addresses_of_machines_are_of_that_form(address):
 
 
 def test_an_encrypted_connection_without_certificates_is_refused():
-    with pytest.raises(NotAvailable, match="needs certificates"):
-        dask_workers("tls://127.0.0.1:8786")
+    refused(NotAvailable, "needs certificates", dask_workers, "tls://127.0.0.1:8786")

@@ -131,16 +131,13 @@ def test_an_exception_is_a_row_with_its_traceback(problems):
     assert "the checker fell over" in outcome.error
 
 
-@pytest.mark.parametrize(
-    ("change", "says"),
-    [
-        ({"problem": "nonsense"}, "unknown problem 'nonsense'; known: "),
-        ({"sampler": "nonsense"}, "unknown sampler 'nonsense'; known: "),
-        ({"rule": "nonsense"}, "unknown connection rule 'nonsense'; known: "),
-        ({"search": "nonsense"}, "unknown search 'nonsense'; known: "),
-        ({"sampler": "hickernell", "n": 100}, "it has n = 16"),
-    ],
-)
+@pytest.mark.parametrize(("change", "says"), [
+    ({"problem": "nonsense"}, "unknown problem 'nonsense'; known: "),
+    ({"sampler": "nonsense"}, "unknown sampler 'nonsense'; known: "),
+    ({"rule": "nonsense"}, "unknown connection rule 'nonsense'; known: "),
+    ({"search": "nonsense"}, "unknown search 'nonsense'; known: "),
+    ({"sampler": "hickernell", "n": 100}, "it has n = 16"),
+])  # fmt: skip
 def test_a_task_of_something_unknown_fails_with_the_list(change, says):
     outcome = run_task(replace(TASK, **change))
     assert outcome.status == "failed"

@@ -17,6 +17,7 @@ from evenroad_studies.bench.runner import Chunker, Done, run_chunk, run_tasks
 from evenroad_studies.bench.store import open_store, read_rows
 from evenroad_studies.bench.task import Outcome, Task
 from evenroad_studies.workers import ProcessPool, SerialExecutor, Workers, in_process, processes
+from tests.refused import refused
 from tests.studies.bench.tables import table_of
 
 TASKS = tuple(
@@ -166,8 +167,7 @@ def test_workers_that_die_again_and_again_end_the_run_with_advice(path):
     def die(tasks, limit):
         raise BrokenExecutor("gone")
 
-    with pytest.raises(WorkerLost, match="fewer --jobs.*run it again to go on"):
-        _run(path, workers=_workers(die))
+    refused(WorkerLost, "fewer --jobs.*run it again to go on", _run, path, workers=_workers(die))
     # Those that were tried alone and died twice are known for it; a next run starts behind them.
     lost = len(read_rows(path))
     assert 0 < lost < len(TASKS)
@@ -212,8 +212,7 @@ def test_tasks_that_never_reached_a_worker_are_run_in_their_order(path):
 
 
 def test_workers_that_cannot_be_sent_anything_end_the_run_without_blaming_a_task(path):
-    with pytest.raises(WorkerLost, match="run it again to go on"):
-        _run(path, workers=Workers(_Refuses, lambda executor: 1))
+    refused(WorkerLost, "run it again to go on", _run, path, workers=Workers(_Refuses, lambda executor: 1))
     assert len(read_rows(path)) == 0
 
 
@@ -243,8 +242,7 @@ def test_a_store_that_cannot_be_written_ends_the_run_and_no_finished_row_is_lost
             store._connection.execute("PRAGMA query_only = 1")
             run_tasks("test", TASKS, store, Workers(lambda: executor, lambda executor: 2))
 
-    with pytest.raises(BrokenFile, match=f"{len(TASKS[:8])} finished rows left in .*rescue: the next run"):
-        run()
+    refused(BrokenFile, f"{len(TASKS[:8])} finished rows left in .*rescue: the next run", run)
     assert executor.is_let_go
     assert len(executor.ran) == 8
     report = _run(path)
@@ -295,8 +293,7 @@ def test_a_cancelled_chunk_is_run_again(path):
 
 @pytest.mark.parametrize("limit", [0.0, -1.0, np.nan, np.inf, 1e300, 1.1e6])
 def test_a_limit_is_a_positive_number_that_clocks_can_take(path, limit):
-    with pytest.raises(InvalidValue, match="limit must be"):
-        _run(path, limit=limit)
+    refused(InvalidValue, "limit must be", _run, path, limit=limit)
 
 
 def test_the_limit_reaches_the_worker_and_the_longest_is_no_failure(path):

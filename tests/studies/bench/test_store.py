@@ -15,6 +15,7 @@ from evenroad_studies.bench import task as task_module
 from evenroad_studies.bench.store import joined, open_store, read_rows, read_sessions
 from evenroad_studies.bench.store_file import SCHEMA
 from evenroad_studies.bench.task import PROTOCOL, Outcome, Task
+from tests.refused import refused
 from tests.studies.bench.tables import FAILED, NOT_CONNECTED, SOLVED, TASK, query, write
 
 
@@ -249,27 +250,20 @@ def _of_another_schema(path):
     query(path, f"PRAGMA user_version = {SCHEMA + 1}")
 
 
-@pytest.mark.parametrize(
-    ("make", "says"),
-    [
-        (lambda path: path.write_bytes(b"a,b\n1,2\n" * 100), "not a store of benchmark results"),
-        (lambda path: query(path, "CREATE TABLE runs (id INTEGER)"), "not a store of benchmark results"),
-        (_of_another_schema, f"schema version {SCHEMA + 1}, this evenroad reads {SCHEMA}"),
-    ],
-)
+@pytest.mark.parametrize(("make", "says"), [
+    (lambda path: path.write_bytes(b"a,b\n1,2\n" * 100), "not a store of benchmark results"),
+    (lambda path: query(path, "CREATE TABLE runs (id INTEGER)"), "not a store of benchmark results"),
+    (_of_another_schema, f"schema version {SCHEMA + 1}, this evenroad reads {SCHEMA}"),
+])  # fmt: skip
 def test_a_file_of_another_kind_or_version_is_refused_and_left_alone(path, make, says):
     make(path)
     before = path.read_bytes()
     for use in (lambda: read_rows(path), lambda: write(path, [])):
-        with pytest.raises(BrokenFile, match=says):
-            use()
+        refused(BrokenFile, says, use)
     assert path.read_bytes() == before
 
 
 def test_a_store_that_is_not_there_or_cannot_be_is_refused(tmp_path):
-    with pytest.raises(BrokenFile, match="no such store"):
-        read_rows(tmp_path / "missing.db")
-    with pytest.raises(BrokenFile, match="does not exist"):
-        write(tmp_path / "missing" / "results.db", [])
-    with pytest.raises(BrokenFile, match="it is a folder"):
-        write(tmp_path, [])
+    refused(BrokenFile, "no such store", read_rows, tmp_path / "missing.db")
+    refused(BrokenFile, "does not exist", write, tmp_path / "missing" / "results.db", [])
+    refused(BrokenFile, "it is a folder", write, tmp_path, [])

@@ -12,6 +12,7 @@ import pytest
 
 from evenroad.errors import BrokenFile
 from evenroad_studies.bench.store import open_store, read_rows, read_sessions
+from tests.refused import refused
 from tests.studies.bench.tables import FAILED, NOT_CONNECTED, SOLVED, TASK, query, table_of, write
 
 MUTANTS = 400
@@ -66,27 +67,19 @@ def test_a_damaged_store_gives_the_same_rows_and_sessions_or_an_error_of_ours(pa
     assert refused > MUTANTS / 3
 
 
-@pytest.mark.parametrize(
-    "statement",
-    [
-        "UPDATE rows SET valid = valid + 1 WHERE run = 6",
-        "UPDATE rows SET length = 1.3 WHERE run = 6",
-        "UPDATE rows SET run = 60 WHERE run = 6",
-        "UPDATE rows SET protocol = protocol - 1 WHERE run = 6",
-        "UPDATE rows SET key = zeroblob(32) WHERE run = 6",
-        "UPDATE rows SET key = 'a text' WHERE run = 6",
-        "UPDATE rows SET status = 9999 WHERE run = 6",
-        "UPDATE rows SET n = 'many' WHERE run = 6",
-        "UPDATE names SET text = 'maze-4' WHERE text = 'maze-1'",
-        "DELETE FROM names WHERE text = 'solved'",
-    ],
-)
+@pytest.mark.parametrize("statement", [
+    "UPDATE rows SET valid = valid + 1 WHERE run = 6", "UPDATE rows SET length = 1.3 WHERE run = 6",
+    "UPDATE rows SET run = 60 WHERE run = 6", "UPDATE rows SET protocol = protocol - 1 WHERE run = 6",
+    "UPDATE rows SET key = zeroblob(32) WHERE run = 6", "UPDATE rows SET key = 'a text' WHERE run = 6",
+    "UPDATE rows SET status = 9999 WHERE run = 6", "UPDATE rows SET n = 'many' WHERE run = 6",
+    "UPDATE names SET text = 'maze-4' WHERE text = 'maze-1'",
+    "DELETE FROM names WHERE text = 'solved'",
+])  # fmt: skip
 def test_a_row_that_is_not_as_it_was_written_is_refused_by_readers_and_writers(path, statement):
     _write(path)
     query(path, statement)
     for use in (read_rows, lambda path: read_rows(path, problems=["maze-2"]), _finished):
-        with pytest.raises(BrokenFile, match="results.db is damaged: "):
-            use(path)
+        refused(BrokenFile, "results.db is damaged: ", use, path)
 
 
 def test_a_key_that_is_not_its_tasks_is_refused_whatever_the_checksum_says(path, monkeypatch):
@@ -94,8 +87,7 @@ def test_a_key_that_is_not_its_tasks_is_refused_whatever_the_checksum_says(path,
     monkeypatch.setattr("evenroad_studies.bench.task.key_of", lambda *fields: "00" * 32)
     _write(path, rows=1)
     monkeypatch.undo()
-    with pytest.raises(BrokenFile, match="has the fields of another task"):
-        read_rows(path)
+    refused(BrokenFile, "has the fields of another task", read_rows, path)
 
 
 # Places where a store cannot be.
@@ -115,14 +107,12 @@ def other_user():
 
 def test_a_lock_that_cannot_be_made_or_is_another_users_is_named(path, other_user):
     path.with_name("results.db.lock").mkdir()
-    with pytest.raises(BrokenFile, match="results.db.lock beside it: Is a directory"):
-        _write(path)
+    refused(BrokenFile, "results.db.lock beside it: Is a directory", _write, path)
     lock = other_user / "results.db.lock"
     lock.touch()
     lock.chmod(0o600)
     os.seteuid(65534)
-    with pytest.raises(BrokenFile, match="results.db.lock beside it: Permission denied"):
-        _write(other_user / "results.db")
+    refused(BrokenFile, "results.db.lock beside it: Permission denied", _write, other_user / "results.db")
 
 
 @pytest.mark.parametrize("length", [248, 251, 255, 256, 5000])

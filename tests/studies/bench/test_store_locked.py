@@ -11,6 +11,7 @@ import pytest
 from evenroad.errors import BrokenFile
 from evenroad_studies.bench.store import leave_rows, open_store, read_rows
 from evenroad_studies.bench.store_file import COLUMNS
+from tests.refused import refused
 from tests.studies.bench.tables import FAILED, NOT_CONNECTED, SOLVED, TASK, query, write
 
 
@@ -48,8 +49,7 @@ def test_a_store_that_stays_locked_keeps_what_was_left_beside_it(path, monkeypat
     other = sqlite3.connect(path, isolation_level=None)
     other.execute("BEGIN IMMEDIATE")
     for _ in range(2):
-        with pytest.raises(BrokenFile, match="locked"):
-            write(path, [])
+        refused(BrokenFile, "locked", write, path, [])
         assert beside.read_text() == left
     other.close()
     write(path, [])
@@ -142,6 +142,5 @@ def test_without_room_beside_the_store_rows_go_to_a_temporary_folder_or_are_said
 def test_a_file_in_the_place_of_left_rows_that_is_something_else_is_refused_and_left_alone(path, text):
     beside = path.with_name("results.db.rescue")
     beside.write_text(text, encoding="latin-1")
-    with pytest.raises(BrokenFile, match="does not hold rows of a store.*move it away"):
-        write(path, [])
+    refused(BrokenFile, "does not hold rows of a store.*move it away", write, path, [])
     assert beside.read_text(encoding="latin-1") == text

@@ -113,23 +113,20 @@ def test_rows_that_a_store_could_not_take_are_named_and_taken_in_by_the_same_com
     assert not (tmp_path / "results.db.rescue").exists()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (("bench", "nonsense"), "unknown suite 'nonsense'; known: arms, fair, paper"),
-        (("bench", "--only", "nonsense"), "unknown problem of this suite 'nonsense'; known: chain-10d, "),
-        (("bench", "--runs", 0), "runs must be an integer >= 1"),
-        (("bench", "--seed", "-1"), "seed must be an integer >= 0"),
-        (("bench", "--jobs", 0, "--quick"), "jobs must be an integer >= 1"),
-        (("bench", "--limit", 0, *SMALL[2:]), "limit must be a finite number > 0"),
-        (("bench", "--limit", "1e300", *SMALL[2:]), "limit must be at most 1e+06 s, got 1e+300"),
-        (("bench", "--limit", "60", "--scheduler", "tcp://127.0.0.1:9"), "--limit does not go with --scheduler"),
-        (("bench", "--jobs", 2, "--scheduler", "tcp://127.0.0.1:9"), "--jobs does not go with --scheduler"),
-        (("bench", "--store", "missing/results.db", *SMALL[2:]), "the folder missing does not exist"),
-        (("export", "missing.db", "-o", "arena.db"), "no such store: missing.db"),
-        (("bench", "arms", "--draws", 0), "draws must be an integer >= 1, got 0"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "says"), [
+    (("bench", "nonsense"), "unknown suite 'nonsense'; known: arms, fair, paper"),
+    (("bench", "--only", "nonsense"), "unknown problem of this suite 'nonsense'; known: chain-10d, "),
+    (("bench", "--runs", 0), "runs must be an integer >= 1"),
+    (("bench", "--seed", "-1"), "seed must be an integer >= 0"),
+    (("bench", "--jobs", 0, "--quick"), "jobs must be an integer >= 1"),
+    (("bench", "--limit", 0, *SMALL[2:]), "limit must be a finite number > 0"),
+    (("bench", "--limit", "1e300", *SMALL[2:]), "limit must be at most 1e+06 s, got 1e+300"),
+    (("bench", "--limit", "60", "--scheduler", "tcp://127.0.0.1:9"), "--limit does not go with --scheduler"),
+    (("bench", "--jobs", 2, "--scheduler", "tcp://127.0.0.1:9"), "--jobs does not go with --scheduler"),
+    (("bench", "--store", "missing/results.db", *SMALL[2:]), "the folder missing does not exist"),
+    (("export", "missing.db", "-o", "arena.db"), "no such store: missing.db"),
+    (("bench", "arms", "--draws", 0), "draws must be an integer >= 1, got 0"),
+])  # fmt: skip
 def test_bad_input_is_one_line_and_exit_code_2(run, arguments, says):
     code, _, err = run(*arguments)
     assert code == 2

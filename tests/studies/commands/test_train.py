@@ -51,37 +51,28 @@ def test_orders_are_what_is_searched_for_the_star_discrepancy_of_the_plane(run, 
     assert out.strip().endswith(f"best {best:.6g}")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (("-n", 0), "n must be"),
-        (("--objective", "hickernel"), "known: .*hickernell"),
-        (("--objective", "hickernell+"), "column"),
-        (("--steps", 0), "steps"),
-        (("-o", "no/where"), "does not exist"),
-        (("--sets", 0), "sets must be"),
-        (("-n", 1, "--objective", "riesz"), "at least 2 points"),
-        (("--seed", -1), "seed must be"),
-        (("--jobs", 0), "jobs must be"),
-        (("--refine", 5), "--refine does not go with the method 'anneal'"),
-        (("--method", "order"), "in d = 2 for --objective star, not in d = 2 for 'hickernell'"),
-        (("--method", "order", "--objective", "star", "-d", 3), "not in d = 3"),
-        (("--method", "order", "--objective", "star", "--refine", 3), "--refine does not go"),
-        (("--judge", "star"), "--judge does not go with the method 'anneal'"),
-        (("--objective", "star", "--judge", "star"), "--judge does not go with the method 'order'"),
-        (("--method", "order", "--objective", "star", "--start", "sobol"), "--start does not go"),
-        (("--method", "mpmc", "--start", "grid"), "unknown start 'grid'.*kronecker"),
-        (("--method", "mpmc", "--judge", "star", "-d", 3), "not in d = 3"),
-        (("--method", "mpmc", "--refine", -1), "refine must be"),
-        (("--method", "mpmc", "--jobs", 0), "jobs must be"),
-        (("--method", "mpmc", "-n", 1), "n must be"),
-        # An error repeats a little of what was asked for.
-        (("--objective", "x" * 5000), "xxx"),
-        (("--objective", "hickernell+" * 500), "column"),
-        (("--objective", "(" * 5000), "column"),
-        (("--objective", "1" * 5000 + "*riesz"), "column"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "says"), [
+    (("-n", 0), "n must be"), (("--objective", "hickernel"), "known: .*hickernell"),
+    (("--objective", "hickernell+"), "column"), (("--steps", 0), "steps"), (("-o", "no/where"), "does not exist"),
+    (("--sets", 0), "sets must be"),
+    (("-n", 1, "--objective", "riesz"), "at least 2 points"),
+    (("--seed", -1), "seed must be"), (("--jobs", 0), "jobs must be"),
+    (("--refine", 5), "--refine does not go with the method 'anneal'"),
+    (("--method", "order"), "in d = 2 for --objective star, not in d = 2 for 'hickernell'"),
+    (("--method", "order", "--objective", "star", "-d", 3), "not in d = 3"),
+    (("--method", "order", "--objective", "star", "--refine", 3), "--refine does not go"),
+    (("--judge", "star"), "--judge does not go with the method 'anneal'"),
+    (("--objective", "star", "--judge", "star"), "--judge does not go with the method 'order'"),
+    (("--method", "order", "--objective", "star", "--start", "sobol"), "--start does not go"),
+    (("--method", "mpmc", "--start", "grid"), "unknown start 'grid'.*kronecker"),
+    (("--method", "mpmc", "--judge", "star", "-d", 3), "not in d = 3"),
+    (("--method", "mpmc", "--refine", -1), "refine must be"),
+    (("--method", "mpmc", "--jobs", 0), "jobs must be"), (("--method", "mpmc", "-n", 1), "n must be"),
+    # An error repeats a little of what was asked for.
+    (("--objective", "x" * 5000), "xxx"), (("--objective", "hickernell+" * 500), "column"),
+    (("--objective", "(" * 5000), "column"),
+    (("--objective", "1" * 5000 + "*riesz"), "column"),
+])  # fmt: skip
 def test_bad_requests_to_train_leave_no_folder(run, tmp_path, arguments, says):
     size = () if "-n" in arguments else ("-n", 8)
     code, out, err = run("train", "-d", 2, "-o", "sets", *size, *arguments)

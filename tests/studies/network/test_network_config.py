@@ -6,6 +6,7 @@ import pytest
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad_studies.network import NetworkConfig
+from tests.refused import refused
 
 
 @pytest.mark.parametrize(("name", "value"), [
@@ -13,17 +14,13 @@ from evenroad_studies.network import NetworkConfig
     ("rate", float("inf")), ("noise", -1e-6), ("noise", float("nan")),
 ])  # fmt: skip
 def test_a_value_out_of_range_is_refused_by_name(name, value):
-    with pytest.raises(InvalidValue, match=f"{name} must be .*, got"):
-        NetworkConfig(**{"n": 16, "d": 2, name: value})
+    refused(InvalidValue, f"{name} must be .*, got", NetworkConfig, **{"n": 16, "d": 2, name: value})
 
 
 def test_names_that_nobody_knows_are_refused():
-    with pytest.raises(UnknownName, match="column 4.*'nonsense'"):
-        NetworkConfig(16, 2, objective="2 *nonsense")
-    with pytest.raises(UnknownName, match="start.*'grid'.*sobol"):
-        NetworkConfig(16, 2, start="grid")
-    with pytest.raises(UnknownName, match="judge.*'me'.*star"):
-        NetworkConfig(16, 2, judge="me")
+    refused(UnknownName, "column 4.*'nonsense'", NetworkConfig, 16, 2, objective="2 *nonsense")
+    refused(UnknownName, "start.*'grid'.*sobol", NetworkConfig, 16, 2, start="grid")
+    refused(UnknownName, "judge.*'me'.*star", NetworkConfig, 16, 2, judge="me")
 
 
 def test_the_start_is_kronecker_in_the_plane_but_for_prefixes_unless_it_is_asked_for():
@@ -34,8 +31,7 @@ def test_the_start_is_kronecker_in_the_plane_but_for_prefixes_unless_it_is_asked
 
 
 def test_the_exact_star_discrepancy_judges_in_the_plane_alone():
-    with pytest.raises(InvalidValue, match="in d = 2 alone, not in d = 3"):
-        NetworkConfig(16, 3, judge="star")
+    refused(InvalidValue, "in d = 2 alone, not in d = 3", NetworkConfig, 16, 3, judge="star")
 
 
 def test_two_spellings_of_an_objective_are_the_same_config():

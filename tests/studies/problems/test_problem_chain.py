@@ -1,7 +1,5 @@
 """The chain among the problems: the protocol's numbers."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

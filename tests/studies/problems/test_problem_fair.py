@@ -93,16 +93,10 @@ def test_the_sizes_are_those_of_the_calibration_that_is_kept():
             assert abs(float(row["uniform"]) - difficulty) < 7
 
 
-@pytest.mark.parametrize(
-    ("draw", "dim", "cell", "worlds", "share"),
-    [
-        (draw_balls, 3, (Family.BALLS, 3), 300, 0.02),
-        (draw_boxes, 3, (Family.BOXES, 3), 300, 0.02),
-        (draw_clutter, 2, (Family.SE2, 3), 60, 0.0),
-        (draw_clutter, 3, (Family.SE3, 6), 60, 0.0),
-    ],
-    ids=["balls", "boxes", "clutter in the plane", "clutter in space"],
-)
+@pytest.mark.parametrize(("draw", "dim", "cell", "worlds", "share"), [
+    (draw_balls, 3, (Family.BALLS, 3), 300, 0.02), (draw_boxes, 3, (Family.BOXES, 3), 300, 0.02),
+    (draw_clutter, 2, (Family.SE2, 3), 60, 0.0), (draw_clutter, 3, (Family.SE3, 6), 60, 0.0),
+], ids=["balls", "boxes", "clutter in the plane", "clutter in space"])  # fmt: skip
 def test_no_place_is_freer_than_another_at_the_faces_and_in_the_middle(draw, dim, cell, worlds, share):
     random, size = np.random.default_rng(5), SIZES[cell][1]
     at_face, in_middle = [], []

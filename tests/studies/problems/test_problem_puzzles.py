@@ -1,7 +1,5 @@
 """Cubicles and Twistycool: the protocol's numbers, free shares, and what is walled off from what."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

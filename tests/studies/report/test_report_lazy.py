@@ -69,15 +69,11 @@ def test_without_lazy_runs_there_is_nothing_to_compare(tmp_path):
     assert lazy_checks(runs_from(tmp_path / "a.db", _rows(lazy=False))) == ()
 
 
-@pytest.mark.parametrize(
-    ("rules", "text"),
-    [
-        (RULES, "k=4, 20 symmetrised"),
-        (("k=4 symmetrised",), "k=4 symmetrised"),
-        (("radius* gamma=3", "k=4 symmetrised"), "k=4 symmetrised, radius* gamma=3"),
-        (("k=4 earlier", "k=4 symmetrised"), "k=4 earlier, k=4 symmetrised"),
-    ],
-)
+@pytest.mark.parametrize(("rules", "text"), [
+    (RULES, "k=4, 20 symmetrised"), (("k=4 symmetrised",), "k=4 symmetrised"),
+    (("radius* gamma=3", "k=4 symmetrised"), "k=4 symmetrised, radius* gamma=3"),
+    (("k=4 earlier", "k=4 symmetrised"), "k=4 earlier, k=4 symmetrised"),
+])  # fmt: skip
 def test_rules_that_are_pooled_are_named_in_short(rules, text):
     settings = [Setting("fair-se2-50", rule, "connect") for rule in rules]
     others = [Setting("fair-se2-50", "k=6 other", "lazy"), Setting("maze-1", "k=7 other", "connect")]

@@ -9,6 +9,7 @@ from scipy import stats
 from evenroad.errors import InvalidValue
 from evenroad_studies.statistics.rates import bonett_price, fisher_exact, holm, mcnemar_exact, wilson
 from evenroad_studies.statistics.units import spread_over_sets
+from tests.refused import refused
 
 counts = st.integers(1, 400).flatmap(lambda runs: st.tuples(st.integers(0, runs), st.just(runs)))
 
@@ -58,8 +59,7 @@ def test_the_paired_interval_covers_the_truth_about_95_times_in_100():
 
 
 def test_more_discordant_pairs_than_pairs_are_refused():
-    with pytest.raises(InvalidValue, match="pairs"):
-        bonett_price(6, 5, 10)
+    refused(InvalidValue, "pairs", bonett_price, 6, 5, 10)
 
 
 @given(counts, counts)
@@ -95,8 +95,7 @@ def test_holm_is_the_step_down_procedure(values):
 
 @pytest.mark.parametrize("values", [[math.nan], [1.5], [-0.1], [[0.5]]])
 def test_holm_refuses_what_is_no_p_value(values):
-    with pytest.raises(InvalidValue, match="p-values"):
-        holm(values)
+    refused(InvalidValue, "p-values", holm, values)
 
 
 def test_spread_over_sets_of_a_worked_example():

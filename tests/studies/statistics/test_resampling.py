@@ -185,18 +185,14 @@ def test_units_without_a_difference_and_a_single_one_are_no_evidence(sums, p):
 IMPOSSIBLE = [([], []), ([1], [1, 2]), ([1, 1], [0, 1])]
 
 
-@pytest.mark.parametrize(
-    ("call", "numbers"),
-    [
-        *((resampled_ratios, each) for each in [*IMPOSSIBLE[:2], ([1], [0]), ([math.nan], [1])]),
-        *((clustered_difference, (*each, "sets")) for each in [*IMPOSSIBLE[:2], ([3], [2]), ([0], [0])]),
-        *((student_interval, (*each, "sets")) for each in IMPOSSIBLE),
-        (samples_needed, ((64, 32), [0.1, 0.2], [[0.1, 0.2]], [10, 10])),
-        (samples_needed, ((32,), [0.1, 0.2], [[0.1]], [10, 10])),
-        (samples_needed, ((32,), [0.1], [0.1], [10])),
-        (samples_needed, ((), [], [[]], [])),
-    ],
-)
+@pytest.mark.parametrize(("call", "numbers"), [
+    *((resampled_ratios, each) for each in [*IMPOSSIBLE[:2], ([1], [0]), ([math.nan], [1])]),
+    *((clustered_difference, (*each, "sets")) for each in [*IMPOSSIBLE[:2], ([3], [2]), ([0], [0])]),
+    *((student_interval, (*each, "sets")) for each in IMPOSSIBLE),
+    (samples_needed, ((64, 32), [0.1, 0.2], [[0.1, 0.2]], [10, 10])),
+    (samples_needed, ((32,), [0.1, 0.2], [[0.1]], [10, 10])),
+    (samples_needed, ((32,), [0.1], [0.1], [10])), (samples_needed, ((), [], [[]], [])),
+])  # fmt: skip
 def test_impossible_numbers_and_shapes_are_refused(call, numbers):
     with pytest.raises(InvalidValue):
         call(*numbers)

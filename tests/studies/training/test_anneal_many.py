@@ -13,6 +13,7 @@ from evenroad.points import load_points
 from evenroad.points.measures import MEASURES
 from evenroad_studies.anneal import SCHEDULE, anneal
 from evenroad_studies.training import anneal_many
+from tests.refused import refused
 
 SMALL = {"n": 8, "d": 2, "objective": "star", "steps": 20}
 
@@ -118,16 +119,13 @@ def kill_a_child(step, steps, best):
 
 
 @pytest.mark.parametrize(("changes", "text"), [
-    ({"n": 9}, "n=8, asked for n=9"),
-    ({"d": 3}, "d=2, asked for d=3"),
+    ({"n": 9}, "n=8, asked for n=9"), ({"d": 3}, "d=2, asked for d=3"),
     ({"objective": "centred"}, "objective='star', asked for objective='centred'"),
-    ({"steps": 21}, "steps=20, asked for steps=21"),
-    ({"rng": 1}, "seed=0, asked for seed=1"),
+    ({"steps": 21}, "steps=20, asked for steps=21"), ({"rng": 1}, "seed=0, asked for seed=1"),
 ])  # fmt: skip
 def test_a_folder_of_another_request_is_refused(tmp_path, changes, text):
     anneal_many(**SMALL, folder=tmp_path, workers=1)
-    with pytest.raises(InvalidValue, match=text):
-        anneal_many(**{**SMALL, **changes}, folder=tmp_path, workers=1)
+    refused(InvalidValue, text, anneal_many, **{**SMALL, **changes}, folder=tmp_path, workers=1)
 
 
 @pytest.mark.parametrize("schedule", [{"schedule": SCHEDULE - 1}, {}], ids=["another", "not written down, once"])
@@ -147,16 +145,12 @@ def test_a_strange_set_in_the_folder_is_refused(tmp_path):
     ours.mkdir()
     anneal_many(**SMALL, rng=1, folder=other, workers=1)
     os.rename(other / "set-0000.npz", ours / "set-0000.npz")
-    with pytest.raises(InvalidValue, match="holds another set"):
-        anneal_many(**SMALL, rng=0, folder=ours, workers=1)
+    refused(InvalidValue, "holds another set", anneal_many, **SMALL, rng=0, folder=ours, workers=1)
 
 
 @pytest.mark.parametrize(("changes", "text"), [
-    ({"sets": 0}, "sets must be an integer >= 1"),
-    ({"workers": 0}, "workers must be an integer >= 1"),
-    ({"rng": -1}, "rng must be an int >= 0"),
-    ({"rng": None}, "rng must be an int >= 0"),
+    ({"sets": 0}, "sets must be an integer >= 1"), ({"workers": 0}, "workers must be an integer >= 1"),
+    ({"rng": -1}, "rng must be an int >= 0"), ({"rng": None}, "rng must be an int >= 0"),
 ])  # fmt: skip
 def test_arguments_out_of_range_are_refused(changes, text):
-    with pytest.raises(InvalidValue, match=text):
-        anneal_many(**{**SMALL, **changes})
+    refused(InvalidValue, text, anneal_many, **{**SMALL, **changes})

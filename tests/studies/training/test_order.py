@@ -9,6 +9,7 @@ from evenroad.points import draw
 from evenroad.points.measures import star_discrepancy
 from evenroad_studies.training import order_many
 from evenroad_studies.training.order import place_order, search_orders
+from tests.refused import refused
 
 
 def order_of(points):
@@ -67,13 +68,11 @@ def test_one_point_has_its_known_place():
 
 @pytest.mark.parametrize("order", [[], [0, 0], [1, 2], [[0]]])
 def test_what_is_no_order_is_refused(order):
-    with pytest.raises(InvalidValue, match="each of 0 .. n - 1 once"):
-        place_order(order)
+    refused(InvalidValue, "each of 0 .. n - 1 once", place_order, order)
 
 
 def test_many_sets_are_kept_in_a_folder(tmp_path):
     sets = order_many(8, 2, steps=50, workers=1, folder=tmp_path)
     assert order_many(8, 2, steps=50, workers=1, folder=tmp_path) == sets
     assert [each.origin.method for each in sets] == ["order", "order"]
-    with pytest.raises(InvalidValue, match="steps"):
-        order_many(8, 2, steps=51, workers=1, folder=tmp_path)
+    refused(InvalidValue, "steps", order_many, 8, 2, steps=51, workers=1, folder=tmp_path)

@@ -48,8 +48,7 @@ def test_a_randomised_set_has_the_value_of_its_objective(name, seed, n, d):
 
 
 @pytest.mark.parametrize(("objective", "legal"), [
-    ("hickernell", {Symmetry.PERMUTATION}),
-    ("riesz", set(Symmetry)),
+    ("hickernell", {Symmetry.PERMUTATION}), ("riesz", set(Symmetry)),
     ("asd+10*riesz", {Symmetry.PERMUTATION, Symmetry.REFLECTION}),
     ("wrap_around + 2*riesz", set(Symmetry)),
     ("riesz_open+riesz", {Symmetry.PERMUTATION, Symmetry.REFLECTION}),

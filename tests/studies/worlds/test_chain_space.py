@@ -1,7 +1,5 @@
 """ChainSpace: the contract, and the distance joint by joint."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The kinematic chain: the contract, crossings in plain sight and by the definition, motions state by state."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

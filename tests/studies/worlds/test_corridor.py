@@ -1,7 +1,5 @@
 """The hypercube corridor: its definition word by word, free volume, motions, and both orders of OMPL's demo."""
 
-from __future__ import annotations
-
 import itertools
 import math
 
@@ -143,19 +141,12 @@ def test_the_legacy_problem_is_the_one_of_the_paper():
     assert world.resolution == 0.001 * math.sqrt(10)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "error", "text"),
-    [
-        ((0, 0.1), InvalidValue, "d must"),
-        ((2.5, 0.1), InvalidValue, "d must"),
-        ((2, 0.0), InvalidValue, "lam"),
-        ((2, 1.0), InvalidValue, "lam"),
-        ((2, math.nan), InvalidValue, "lam"),
-        ((2, 0.1, 3), InvalidValue, "checked"),
-        ((2, 0.1, 0), InvalidValue, "checked"),
-        ((2, 0.1, None, "left"), UnknownName, "'left'; known: comment, demo"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "error", "text"), [
+    ((0, 0.1), InvalidValue, "d must"), ((2.5, 0.1), InvalidValue, "d must"), ((2, 0.0), InvalidValue, "lam"),
+    ((2, 1.0), InvalidValue, "lam"), ((2, math.nan), InvalidValue, "lam"), ((2, 0.1, 3), InvalidValue, "checked"),
+    ((2, 0.1, 0), InvalidValue, "checked"),
+    ((2, 0.1, None, "left"), UnknownName, "'left'; known: comment, demo"),
+])  # fmt: skip
 def test_parameters_that_make_no_corridor_are_refused(arguments, error, text):
     with pytest.raises(error, match=text):
         Corridor(*arguments)

@@ -6,6 +6,7 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.testing import WorldContract
 from evenroad_studies.worlds import PeriodicBalls, PeriodicBoxes
+from tests.refused import refused
 
 
 def some_balls(d, n, radius, seed=0):
@@ -140,23 +141,14 @@ def test_without_balls_all_motions_in_the_cube_are_free():
     ([[0.5, 1.5]], 0.1, "1.5"), ([[0.5, 0.5]], 0.0, "radius"),
 ])  # fmt: skip
 def test_balls_that_cannot_be_are_refused(centres, radius, match):
-    with pytest.raises(InvalidValue, match=match):
-        PeriodicBalls(centres, radius)
+    refused(InvalidValue, match, PeriodicBalls, centres, radius)
 
 
-@pytest.mark.parametrize(
-    ("d", "axes", "centres", "half", "match"),
-    [
-        (0, [[0]], [[0.5]], [[0.1]], "d must"),
-        (2, [0], [[0.5]], [[0.1]], "axes"),
-        (2, [[0.5]], [[0.5]], [[0.1]], "axes"),
-        (2, [[2]], [[0.5]], [[0.1]], "0 .. 1, got 2"),
-        (2, [[1, 1]], [[0.5, 0.5]], [[0.1, 0.1]], "different"),
-        (2, [[0, 1]], [[0.5]], [[0.1, 0.1]], "centres"),
-        (2, [[0, 1]], [[0.5, 0.5]], [[0.1, 0.6]], "0.6"),
-        (2, [[0, 1]], [[0.5, 0.5]], [[0.1, 0.0]], "0.0"),
-    ],
-)
+@pytest.mark.parametrize(("d", "axes", "centres", "half", "match"), [
+    (0, [[0]], [[0.5]], [[0.1]], "d must"), (2, [0], [[0.5]], [[0.1]], "axes"), (2, [[0.5]], [[0.5]], [[0.1]], "axes"),
+    (2, [[2]], [[0.5]], [[0.1]], "0 .. 1, got 2"), (2, [[1, 1]], [[0.5, 0.5]], [[0.1, 0.1]], "different"),
+    (2, [[0, 1]], [[0.5]], [[0.1, 0.1]], "centres"), (2, [[0, 1]], [[0.5, 0.5]], [[0.1, 0.6]], "0.6"),
+    (2, [[0, 1]], [[0.5, 0.5]], [[0.1, 0.0]], "0.0"),
+])  # fmt: skip
 def test_boxes_that_cannot_be_are_refused(d, axes, centres, half, match):
-    with pytest.raises(InvalidValue, match=match):
-        PeriodicBoxes(d, axes, centres, half)
+    refused(InvalidValue, match, PeriodicBoxes, d, axes, centres, half)

@@ -1,7 +1,5 @@
 """Bodies of boxes among boxes: the contract, overlap by linear programs, motions state by state, bad input."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -13,6 +11,7 @@ from evenroad.space import SE2, SE3, SO3, BoxSpace, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
 from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld, shell
+from tests.refused import refused
 from tests.studies.worlds.solids_oracle import (
     ELL,
     FLAT_ELL,
@@ -134,22 +133,14 @@ def test_the_explanation_names_the_obstacle():
 
 def test_boxes_that_are_none_are_refused():
     for wrong in ([0.0], [0.0] * 4, [np.nan, 0, 0], "ab"):
-        with pytest.raises(InvalidValue, match="centre"):
-            OrientedBox(wrong, [1, 1, 1])
-    with pytest.raises(InvalidValue, match="half_extents"):
-        OrientedBox([0, 0], [1, -1])
-    with pytest.raises(InvalidValue, match="half_extents"):
-        OrientedBox([0, 0], [1, 1, 1])
-    with pytest.raises(InvalidValue, match="perpendicular"):
-        OrientedBox([0, 0], [1, 1], [1, 0.1, 0, 1])
-    with pytest.raises(InvalidValue, match="reflection"):
-        OrientedBox([0, 0, 0], [1, 1, 1], [1, 0, 0, 0, 1, 0, 0, 0, -1])
-    with pytest.raises(InvalidValue, match="low must not exceed high"):
-        OrientedBox.spanning((0, 0), (1, -1))
-    with pytest.raises(InvalidValue, match="norm"):
-        rotation_from_quaternion(xyzw=[0, 0, 0, 0])
-    with pytest.raises(InvalidValue, match="shell"):
-        shell(FLAT_ELL[0])
+        refused(InvalidValue, "centre", OrientedBox, wrong, [1, 1, 1])
+    refused(InvalidValue, "half_extents", OrientedBox, [0, 0], [1, -1])
+    refused(InvalidValue, "half_extents", OrientedBox, [0, 0], [1, 1, 1])
+    refused(InvalidValue, "perpendicular", OrientedBox, [0, 0], [1, 1], [1, 0.1, 0, 1])
+    refused(InvalidValue, "reflection", OrientedBox, [0, 0, 0], [1, 1, 1], [1, 0, 0, 0, 1, 0, 0, 0, -1])
+    refused(InvalidValue, "low must not exceed high", OrientedBox.spanning, (0, 0), (1, -1))
+    refused(InvalidValue, "norm", rotation_from_quaternion, xyzw=[0, 0, 0, 0])
+    refused(InvalidValue, "shell", shell, FLAT_ELL[0])
 
 
 @pytest.mark.parametrize(
@@ -158,23 +149,17 @@ def test_boxes_that_are_none_are_refused():
     ids=["1-D", "joints", "heading first", "rotations"],
 )
 def test_spaces_that_no_body_moves_in_are_refused(space):
-    with pytest.raises(InvalidValue, match="space must be"):
-        SolidWorld(space, ELL, [], 0.1)
+    refused(InvalidValue, "space must be", SolidWorld, space, ELL, [], 0.1)
 
 
 def test_parameters_that_make_no_world_are_refused():
     space = SE3([0, 0, 0], [10, 10, 10])
-    with pytest.raises(InvalidValue, match="body must be one box or more"):
-        SolidWorld(space, [], [], (0.1, 0.1))
-    with pytest.raises(InvalidValue, match="body must be OrientedBox values of 3"):
-        SolidWorld(space, FLAT_ELL, [], (0.1, 0.1))
-    with pytest.raises(InvalidValue, match="obstacles must be OrientedBox"):
-        SolidWorld(space, ELL, ["crate"], (0.1, 0.1))
+    refused(InvalidValue, "body must be one box or more", SolidWorld, space, [], [], (0.1, 0.1))
+    refused(InvalidValue, "body must be OrientedBox values of 3", SolidWorld, space, FLAT_ELL, [], (0.1, 0.1))
+    refused(InvalidValue, "obstacles must be OrientedBox", SolidWorld, space, ELL, ["crate"], (0.1, 0.1))
     for wrong in (0.1, (0.1,), (0.1, 0.0), (0.1, np.inf), (1e-12, 0.1)):
-        with pytest.raises(InvalidValue, match="resolution"):
-            SolidWorld(space, ELL, [], wrong)
-    with pytest.raises(InvalidValue, match="resolution"):
-        SolidWorld(BoxSpace([0, 0], [1, 1]), FLAT_ELL, [], (0.1, 0.1))
+        refused(InvalidValue, "resolution", SolidWorld, space, ELL, [], wrong)
+    refused(InvalidValue, "resolution", SolidWorld, BoxSpace([0, 0], [1, 1]), FLAT_ELL, [], (0.1, 0.1))
 
 
 def test_a_box_of_geometry_is_the_same_box_with_its_pose():

@@ -12,6 +12,7 @@ from evenroad.points.pointset import PointSet
 from evenroad_studies.anneal import anneal
 from evenroad_studies.training import anneal_many
 from evenroad_studies.training.bank import MEASURED, Recipe, build, recipes, store
+from tests.refused import refused
 
 SHIPPED = [each for each in recipes() if Bank().has(each.family, each.n, each.d)]
 QUICK = [each for each in SHIPPED if each.n <= 512]
@@ -83,12 +84,9 @@ def test_which_set_is_drawn_depends_on_rng_alone(small_bank, tmp_path):
 
 
 def test_an_n_that_is_not_there_is_refused_and_those_that_are_are_named(small_bank):
-    with pytest.raises(NotAvailable, match="hickernell has no set of n=9 in d=2; it has n = 8"):
-        small_bank.cell("hickernell", 9, 2)
-    with pytest.raises(NotAvailable, match="hickernell has no sets in d=3; it has d = 2"):
-        small_bank.cell("hickernell", 8, 3)
-    with pytest.raises(UnknownName, match="unknown family in the bank: 'huge'; known: hickernell"):
-        small_bank.cell("huge", 8, 2)
+    refused(NotAvailable, "hickernell has no set of n=9 in d=2; it has n = 8", small_bank.cell, "hickernell", 9, 2)
+    refused(NotAvailable, "hickernell has no sets in d=3; it has d = 2", small_bank.cell, "hickernell", 8, 3)
+    refused(UnknownName, "unknown family in the bank: 'huge'; known: hickernell", small_bank.cell, "huge", 8, 2)
 
 
 def test_an_empty_folder_is_an_empty_bank(tmp_path):
@@ -104,23 +102,19 @@ def _damage_array(folder):
     np.save(folder / ARRAY, sets)
 
 
-@pytest.mark.parametrize(
-    ("damage", "says"),
-    [
-        (_damage_array, "set 1 does not match the hash"),
-        (lambda folder: (folder / ARRAY).unlink(), "cannot be read"),
-        (lambda folder: (folder / ARRAY).write_bytes(b"no"), "cannot be read"),
-        (lambda folder: np.save(folder / ARRAY, np.zeros((3, 8, 2))), "not a float32 array"),
-        (lambda folder: np.save(folder / ARRAY, np.zeros((2, 8, 2), "f4")), "of shape"),
-        (lambda folder: (folder / INDEX).write_text("{"), "index"),
-        (lambda folder: (folder / INDEX).write_text('{"hickernell": {"2": {"8": {}}}}'), "no record"),
-        (lambda folder: (folder / INDEX).write_text("[]"), "JSON object"),
-    ],
-)
+@pytest.mark.parametrize(("damage", "says"), [
+    (_damage_array, "set 1 does not match the hash"),
+    (lambda folder: (folder / ARRAY).unlink(), "cannot be read"),
+    (lambda folder: (folder / ARRAY).write_bytes(b"no"), "cannot be read"),
+    (lambda folder: np.save(folder / ARRAY, np.zeros((3, 8, 2))), "not a float32 array"),
+    (lambda folder: np.save(folder / ARRAY, np.zeros((2, 8, 2), "f4")), "of shape"),
+    (lambda folder: (folder / INDEX).write_text("{"), "index"),
+    (lambda folder: (folder / INDEX).write_text('{"hickernell": {"2": {"8": {}}}}'), "no record"),
+    (lambda folder: (folder / INDEX).write_text("[]"), "JSON object"),
+])  # fmt: skip
 def test_a_damaged_bank_is_refused_with_the_reason(small_bank, damage, says):
     damage(small_bank.folder)
-    with pytest.raises(BrokenFile, match=says):
-        small_bank.cell("hickernell", 8, 2).load()
+    refused(BrokenFile, says, lambda: small_bank.cell("hickernell", 8, 2).load())
 
 
 def test_a_build_goes_on_where_it_stopped(small_bank, tmp_path):
