@@ -18,6 +18,7 @@ from evenroad.world import FunctionWorld
 from tests.clear_paths import DiscWorld, Plane, shortest_around
 from tests.plan_on import plan_on
 from tests.points.measures.dispersion_oracle import dispersion_l2, dispersion_linf
+from tests.refused import refused
 
 SQUARE = BoxSpace([0.0, 0.0], [1.0, 1.0])
 OPEN = DiscWorld(2, (Plane((0, 1), np.array([[9.0, 9.0]]), np.array([0.1])),))
@@ -169,8 +170,7 @@ def test_neighbours_among_any_valid_milestones_reach_as_far_as_promised(sampler)
 def test_a_rule_that_is_not_known_is_certified_by_its_graph():
     points = draw("cover", 150, 2)
     world = random_discs(np.random.default_rng(1), 2)
-    with pytest.raises(NotAvailable, match="promises nothing before the world is known"):
-        certify(points, Fewer(12), SQUARE)
+    refused(NotAvailable, "promises nothing before the world is known", certify, points, Fewer(12), SQUARE)
     result = plan_on(world, [0.01, 0.02], [0.98, 0.97], points, rule=Fewer(12), shorten=False, certify=True)
     q = points.points[world.valid(points.points)]
     gap = least_gap(q, Fewer(12).edges(q, SQUARE))
@@ -221,14 +221,10 @@ def test_on_a_torus_no_motion_longer_than_half_a_turn_counts():
 
 def test_what_cannot_be_certified_is_refused():
     points = draw("even", 32, 3)
-    with pytest.raises(NotAvailable, match="flat, not SO3"):
-        certify(points, Radius(1.0), SO3())
-    with pytest.raises(InvalidValue, match="the points have d=3"):
-        certify(points, Radius(1.0), SQUARE)
-    with pytest.raises(NotAvailable, match="k has to be above 3"):
-        certify(draw("even", 32, 2), KNearest(3), SQUARE, goals=3)
-    with pytest.raises(InvalidValue, match="clearance must be"):
-        certify(draw("even", 32, 2), Radius(1.0), SQUARE).factor(0.0)
+    refused(NotAvailable, "flat, not SO3", certify, points, Radius(1.0), SO3())
+    refused(InvalidValue, "the points have d=3", certify, points, Radius(1.0), SQUARE)
+    refused(NotAvailable, "k has to be above 3", certify, draw("even", 32, 2), KNearest(3), SQUARE, goals=3)
+    refused(InvalidValue, "clearance must be", lambda: certify(draw("even", 32, 2), Radius(1.0), SQUARE).factor(0.0))
     world = FunctionWorld(SQUARE, lambda q: np.ones(len(q), dtype=bool), 0.1)
     for option in ({"success_only": True}, {"edge_cost": SQUARE.distance}):
         with pytest.raises(InvalidValue, match="certify speaks of shortest paths"):

@@ -101,18 +101,10 @@ def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
     assert even_points(40, space, KNearest(4), rng=3) == draw("even", 40, space.cube_dim, rng=3)
 
 
-@pytest.mark.parametrize(
-    ("d", "rule", "near"),
-    [
-        (10, KNearest(4), True),
-        (12, KNearest(6), True),
-        (10, KNearest(7), False),
-        (7, KNearest(4), True),
-        (6, KNearest(4), False),
-        (10, Radius(0.5), False),
-        (10, None, False),
-    ],
-)
+@pytest.mark.parametrize(("d", "rule", "near"), [
+    (10, KNearest(4), True), (12, KNearest(6), True), (10, KNearest(7), False), (7, KNearest(4), True),
+    (6, KNearest(4), False), (10, Radius(0.5), False), (10, None, False),
+])  # fmt: skip
 def test_in_a_box_of_many_dimensions_points_of_a_sparse_roadmap_are_drawn_in(d, rule, near):
     points = draw("even", 30, d, rng=3)
     box = BoxSpace([0.0] * d, [2.0] * d)

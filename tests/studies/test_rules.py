@@ -9,6 +9,7 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import draw
 from evenroad.roadmap import KNearest, Radius
 from evenroad_studies.rules import KEarlier, RadiusStar, prm_star_gamma, rule_named
+from tests.refused import refused
 from tests.roadmap.clouds import clouds
 
 
@@ -47,7 +48,5 @@ def test_the_radius_of_prm_star_is_the_formula_of_karaman_and_frazzoli():
 def test_names_lead_back_to_the_rules_of_the_studies_and_to_evenroads():
     for rule in (KEarlier(10), RadiusStar(2.0), KNearest(4), Radius(0.5)):
         assert rule_named(str(rule)) == rule
-    with pytest.raises(UnknownName, match="k=K earlier, k=K symmetrised"):
-        rule_named("k=10")
-    with pytest.raises(InvalidValue, match="gamma"):
-        RadiusStar(0.0)
+    refused(UnknownName, "k=K earlier, k=K symmetrised", rule_named, "k=10")
+    refused(InvalidValue, "gamma", RadiusStar, 0.0)
