@@ -92,8 +92,7 @@ def test_whatever_is_read_the_error_is_ours(tmp_path, what, reader):
 ])  # fmt: skip
 def test_what_does_not_parse_is_said_with_its_place(tmp_path, reader, text, says):
     (tmp_path / "a").write_text(text)
-    with pytest.raises((yaml.YAMLError, json.JSONDecodeError)):
-        (yaml.safe_load if reader == "YAML" else json.loads)(text)
+    refused((yaml.YAMLError, json.JSONDecodeError), "", yaml.safe_load if reader == "YAML" else json.loads, text)
     refused(BrokenFile, says, READERS[reader], tmp_path / "a")
 
 

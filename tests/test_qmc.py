@@ -124,8 +124,7 @@ class SetContract(EngineContract):
         assert engine.num_generated == self.n - 3
         np.testing.assert_array_equal(engine.random(3), engine.points.points[-3:])
         assert engine.random(0).shape == (0, self.d)
-        with pytest.raises(Exhausted):
-            engine.random()
+        refused(Exhausted, "", engine.random)
 
     def test_the_same_seed_gives_the_same_bits_and_others_differ_as_those_without_do(self):
         for seed in (SEED, 0):

@@ -12,6 +12,7 @@ from evenroad.geometry import Pose
 from evenroad.robot import ArmWorld, CartesianLine, Obstacle, Scene, link_poses, load_robot
 from evenroad.robot.cartesian_line import line_from
 from evenroad.robot.chain import chain_of
+from tests.refused import refused
 
 UR5, ARM7 = load_robot("ur5"), load_robot("arm7")
 BENT = {"ur5": [0.3, -1.2, 1.4, -0.8, 0.9, 0.2], "arm7": [0.3, 0.6, 0.1, 1.2, 0.3, 0.7, -0.4]}
@@ -122,11 +123,7 @@ def test_where_there_is_no_straight_way_the_answer_says_so():
 
 
 def test_a_line_that_is_none_is_refused():
-    with pytest.raises(InvalidValue, match="must have a length"):
-        CartesianLine()
-    with pytest.raises(InvalidValue, match="approach must be a finite number >= 0, got nan"):
-        CartesianLine(math.nan)
-    with pytest.raises(InvalidValue, match="away must be a direction, got zeros"):
-        CartesianLine(0.1, away=(0, 0, 0))
-    with pytest.raises(InvalidValue, match="away must be x, -x, .* or 3 finite numbers, got 'down'"):
-        CartesianLine(0.1, away="down")
+    refused(InvalidValue, "must have a length", CartesianLine)
+    refused(InvalidValue, "approach must be a finite number >= 0, got nan", CartesianLine, math.nan)
+    refused(InvalidValue, "away must be a direction, got zeros", CartesianLine, 0.1, away=(0, 0, 0))
+    refused(InvalidValue, "away must be x, -x, .* or 3 finite numbers, got 'down'", CartesianLine, 0.1, away="down")

@@ -20,31 +20,23 @@ def test_robots_and_scenes_of_one_content_have_one_fingerprint_in_every_process(
     assert said.stdout.split() == [UR5.fingerprint(), CELL.fingerprint()]
 
 
-@pytest.mark.parametrize(
-    "other",
-    [
-        with_group(UR5, UR5.group[:5]),
-        with_group(UR5, UR5.group[:5], {"wrist_3_joint": 0.1}),
-        with_limits(UR5, {"elbow_joint": (-1.0, 1.0)}),
-        replace(UR5, pairs=UR5.pairs[1:]),
-        replace(UR5, capsules=(replace(UR5.capsules[0], radius=0.0601), *UR5.capsules[1:])),
-    ],
-    ids=["group", "held", "limits", "pairs", "capsule"],
-)
+@pytest.mark.parametrize("other", [
+    with_group(UR5, UR5.group[:5]),
+    with_group(UR5, UR5.group[:5], {"wrist_3_joint": 0.1}),
+    with_limits(UR5, {"elbow_joint": (-1.0, 1.0)}),
+    replace(UR5, pairs=UR5.pairs[1:]),
+    replace(UR5, capsules=(replace(UR5.capsules[0], radius=0.0601), *UR5.capsules[1:])),
+], ids=["group", "held", "limits", "pairs", "capsule"])  # fmt: skip
 def test_what_decides_verdicts_changes_a_robots_fingerprint(other):
     assert other.fingerprint() != UR5.fingerprint()
 
 
-@pytest.mark.parametrize(
-    "other",
-    [
-        CELL.with_(Obstacle("ball", Sphere(0.1))),
-        CELL.without("table"),
-        replace(CELL, allowed=frozenset()),
-        replace(CELL, obstacles=(CELL.obstacles[0].at(Pose((0, 0, 1e-9))), *CELL.obstacles[1:])),
-    ],
-    ids=["more", "less", "allowed", "moved"],
-)
+@pytest.mark.parametrize("other", [
+    CELL.with_(Obstacle("ball", Sphere(0.1))),
+    CELL.without("table"),
+    replace(CELL, allowed=frozenset()),
+    replace(CELL, obstacles=(CELL.obstacles[0].at(Pose((0, 0, 1e-9))), *CELL.obstacles[1:])),
+], ids=["more", "less", "allowed", "moved"])  # fmt: skip
 def test_what_decides_verdicts_changes_a_scenes_fingerprint(other):
     assert other.fingerprint() != CELL.fingerprint()
 

@@ -15,6 +15,7 @@ from evenroad.robot.load import DATA
 from evenroad.robot_roadmap.build import arm_roadmap, build_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.static_scene import joined_scenes
+from tests.refused import refused
 from tests.robot.kernel_arms import random_scene
 
 UR5 = load_robot("ur5")
@@ -30,16 +31,9 @@ SHAPES = {
 }
 
 
-@pytest.mark.parametrize(
-    ("name", "link"),
-    [
-        ("box", "tool0"),
-        ("cylinder", "tool0"),
-        ("ball", "tool0"),
-        ("cylinder", "forearm_link"),
-        ("ball", "forearm_link"),
-    ],
-)
+@pytest.mark.parametrize(("name", "link"), [
+    ("box", "tool0"), ("cylinder", "tool0"), ("ball", "tool0"), ("cylinder", "forearm_link"), ("ball", "forearm_link"),
+])  # fmt: skip
 def test_verdicts_are_those_of_a_urdf_with_the_object_welded_on(tmp_path, name, link):
     shape, element = SHAPES[name]
     text = (DATA / "ur5.urdf").read_text().replace("</robot>", WELDED)
@@ -125,28 +119,22 @@ def test_an_attached_object_of_a_scene_file_is_held_and_may_touch_what_it_says(t
 
 def test_a_world_of_a_robot_that_does_not_hold_what_its_scene_attaches_is_refused():
     scene = Scene(name="pick", attached=(HeldObject("crate", BOX, "tool0"),))
-    with pytest.raises(InvalidValue, match=r"attaches 'crate', which the robot does not hold: give .* in_scene"):
-        ArmWorld(UR5, scene)
+    refused(InvalidValue, r"attaches 'crate', which the robot does not hold: give .* in_scene", ArmWorld, UR5, scene)
     assert ArmWorld(in_scene(UR5, scene), scene).valid(np.zeros((1, 6))).shape == (1,)
 
 
 def test_what_is_attached_twice_or_to_nothing_is_refused():
     crate = HeldObject("crate", BOX, "tool0")
-    with pytest.raises(InvalidValue, match="attached twice under one name"):
-        UR5.holding(crate).holding(crate)
-    with pytest.raises(InvalidValue, match="attached twice: crate"):
-        Scene(name="pick", attached=(crate, crate))
+    refused(InvalidValue, "attached twice under one name", lambda: UR5.holding(crate).holding(crate))
+    refused(InvalidValue, "attached twice: crate", Scene, name="pick", attached=(crate, crate))
     other = HeldObject("crate", Sphere(0.1), "tool0")
     with pytest.raises(InvalidValue, match="have two bodies of that name"):
         in_scene(UR5.holding(other), Scene(name="pick", attached=(crate,)))
     with pytest.raises(InvalidValue, match="attached and as an obstacle"):
         Scene((Obstacle.of("crate", "sphere", (0.1,)),), name="pick", attached=(crate,))
-    with pytest.raises(UnknownName, match="'hand'; known: base_link"):
-        UR5.holding(BOX, "hand")
-    with pytest.raises(UnknownName, match="'finger'; known: base_link"):
-        UR5.holding(BOX, "tool0", touches=["finger"])
-    with pytest.raises(InvalidValue, match="must be a Shape, got 'box'"):
-        UR5.holding("box", "tool0")
+    refused(UnknownName, "'hand'; known: base_link", UR5.holding, BOX, "hand")
+    refused(UnknownName, "'finger'; known: base_link", UR5.holding, BOX, "tool0", touches=["finger"])
+    refused(InvalidValue, "must be a Shape, got 'box'", UR5.holding, "box", "tool0")
 
 
 @pytest.mark.parametrize(
@@ -160,8 +148,7 @@ def test_what_is_attached_twice_or_to_nothing_is_refused():
 )  # fmt: skip
 def test_what_is_wrong_with_an_attached_object_is_said(tmp_path, entry, match):
     (tmp_path / "pick.yaml").write_text(f"obstacles: {{}}\nattach:\n  crate: {entry}\n")
-    with pytest.raises((InvalidValue, UnknownName), match=match):
-        load_scene(tmp_path / "pick.yaml")
+    refused((InvalidValue, UnknownName), match, load_scene, tmp_path / "pick.yaml")
 
 
 def test_a_robots_roadmap_serves_a_robot_with_its_hands_full():
@@ -190,15 +177,13 @@ def test_a_robots_roadmap_serves_a_robot_with_its_hands_full():
 
 
 def test_a_roadmap_is_made_of_a_robot_with_empty_hands():
-    with pytest.raises(InvalidValue, match="empty hands"):
-        build_roadmap(ArmWorld(UR5.holding(BOX, "tool0")), 8)
+    refused(InvalidValue, "empty hands", build_roadmap, ArmWorld(UR5.holding(BOX, "tool0")), 8)
 
 
 def test_a_file_that_attaches_something_twice_is_refused(tmp_path):
     entry = "  crate: {shape: sphere, radius: 0.1, link: tool0}\n"
     (tmp_path / "pick.yaml").write_text(f"obstacles: {{}}\nattach:\n{entry}{entry}")
-    with pytest.raises(BrokenFile, match="crate"):
-        load_scene(tmp_path / "pick.yaml")
+    refused(BrokenFile, "crate", load_scene, tmp_path / "pick.yaml")
 
 
 def test_a_goal_pose_may_be_that_of_what_is_held():

@@ -34,18 +34,12 @@ def limits(*joints):
     return first.kind, first.lower, first.upper
 
 
-@pytest.mark.parametrize(
-    ("followers", "expected"),
-    [
-        ([follower(-1.0, 1.0, 2.0)], (-0.5, 0.5)),
-        ([follower(-1.0, 1.0, -2.0, 0.5)], (-0.25, 0.75)),
-        ([follower(-1.0, 0.2, 1.0), follower(-0.3, 1.0, 0.5, name="c")], (-0.6, 0.2)),
-        ([follower(-9.0, 9.0, 1.0)], (-1.0, 1.0)),
-        ([follower(-math.inf, math.inf, 5.0)], (-1.0, 1.0)),
-        ([follower(-1.0, 1.0, 0.0, 0.5)], (-1.0, 1.0)),
-    ],
-    ids=["half as far", "the other way", "two of them", "wider", "turns on", "stays"],
-)
+@pytest.mark.parametrize(("followers", "expected"), [
+    ([follower(-1.0, 1.0, 2.0)], (-0.5, 0.5)), ([follower(-1.0, 1.0, -2.0, 0.5)], (-0.25, 0.75)),
+    ([follower(-1.0, 0.2, 1.0), follower(-0.3, 1.0, 0.5, name="c")], (-0.6, 0.2)),
+    ([follower(-9.0, 9.0, 1.0)], (-1.0, 1.0)), ([follower(-math.inf, math.inf, 5.0)], (-1.0, 1.0)),
+    ([follower(-1.0, 1.0, 0.0, 0.5)], (-1.0, 1.0)),
+], ids=["half as far", "the other way", "two of them", "wider", "turns on", "stays"])  # fmt: skip
 def test_limits_of_a_leader_are_narrowed_to_those_of_its_mimics(followers, expected):
     kind, *found = limits(leader(-1.0, 1.0), *followers)
     assert kind == "revolute"
@@ -63,16 +57,12 @@ def test_limits_written_alike_up_to_rounding_stay_as_they_are_written():
     assert limits(leader(-7.0, 7.0), follower(-0.7, 0.7, 0.1)) == ("revolute", -7.0, 7.0)
 
 
-@pytest.mark.parametrize(
-    "alone",
-    [
-        follower(2.0, 3.0, 1.0),
-        follower(-1.0, 1.0, 0.0, 1.5),
-        follower(2.5, 2.6, -1.0, 0.0),
-        follower(0.0, 0.0, 1.0, -0.25),
-    ],
-    ids=["never within", "stays outside", "the other way", "cannot move"],
-)
+@pytest.mark.parametrize("alone", [
+    follower(2.0, 3.0, 1.0),
+    follower(-1.0, 1.0, 0.0, 1.5),
+    follower(2.5, 2.6, -1.0, 0.0),
+    follower(0.0, 0.0, 1.0, -0.25),
+], ids=["never within", "stays outside", "the other way", "cannot move"])  # fmt: skip
 def test_limits_of_a_mimic_that_leave_its_leader_no_way_to_go_are_not_heeded(alone):
     assert limits(leader(-1.0, 1.0), alone) == ("revolute", -1.0, 1.0)
 

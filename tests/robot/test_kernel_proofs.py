@@ -20,6 +20,7 @@ from evenroad.robot.scene import Obstacle, Scene
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
 from evenroad.world.protocol import ValidatesPaths
+from tests.refused import refused
 from tests.robot.kernel_arms import (
     STRAIGHT,
     Z,
@@ -180,8 +181,7 @@ def test_the_tolerance_says_how_near_a_proof_goes(gap, tolerance, proved):
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, math.nan])
 def test_a_tolerance_out_of_range_is_named(tolerance):
-    with pytest.raises(InvalidValue, match="tolerance"):
-        CertifiedWorld(IN_BOX, tolerance)
+    refused(InvalidValue, "tolerance", CertifiedWorld, IN_BOX, tolerance)
 
 
 def test_explain_is_that_of_the_world_inside():
@@ -226,8 +226,7 @@ def test_one_verdict_a_motion():
     path = np.stack([home, home + 0.1, home + 0.1])
     assert IN_BOX.validate(path).tolist() == [True, True]
     assert IN_BOX.validate(path[:1]).shape == (0,)
-    with pytest.raises(InvalidValue, match="path must have shape"):
-        IN_BOX.validate(path[0])
+    refused(InvalidValue, "path must have shape", IN_BOX.validate, path[0])
 
 
 @pytest.mark.parametrize("backend", ["lanes", "scalar"])

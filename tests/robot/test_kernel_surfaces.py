@@ -233,19 +233,14 @@ def test_copies_of_a_world_find_its_clouds_again():
 NAMED_APART = BALLS[0].vertices[BALLS[0].triangles].reshape(-1, 3), np.arange(240).reshape(-1, 3)
 
 
-@pytest.mark.parametrize(
-    ("mesh", "closed", "turned"),
-    [
-        (BALLS[0], 1.0, True),
-        (merged(BOXES), 1.0, True),
-        (half_open(BALLS[0]), 0.0, True),
-        (half_turned(BALLS[0]), 1.0, False),
-        (merged((BALLS[0], half_open(BALLS[2]))), 80 / 240, True),
-        (soup(5, 20), 0.0, True),
-        # Corners that are named apart but lie in one place.
-        (TriangleMesh(*NAMED_APART), 1.0, True),
-    ],
-)
+@pytest.mark.parametrize(("mesh", "closed", "turned"), [
+    (BALLS[0], 1.0, True), (merged(BOXES), 1.0, True), (half_open(BALLS[0]), 0.0, True),
+    (half_turned(BALLS[0]), 1.0, False),
+    (merged((BALLS[0], half_open(BALLS[2]))), 80 / 240, True),
+    (soup(5, 20), 0.0, True),
+    # Corners that are named apart but lie in one place.
+    (TriangleMesh(*NAMED_APART), 1.0, True),
+])  # fmt: skip
 def test_closed_parts_are_found(mesh, closed, turned):
     parts, sides = closed_parts(mesh)
     assert (parts.mean(), sides) == (pytest.approx(closed), turned)

@@ -154,16 +154,13 @@ def test_a_planning_scene_has_meshes(tmp_path):
     np.testing.assert_array_equal(cup.body.triangles.vertices, [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "says"),
-    [
-        ("[0, 1, 2]}", "[0, 1, 9]}", "name rows"),
-        ("[0, 1, 2]}", "[0, 1, 1.7]}", "mesh of object 'cup' .* must have whole vertex_indices, got 1.7"),
-        ("triangles: [{vertex_indices: [0, 1, 2]}]", "triangles: []", "one triangle or more"),
-        ("[0, 1, 0]]", "[0, 1]]", "a vertex of a mesh of object 'cup'"),
-        ("mesh_poses: [{", "mesh_poses: [], more: [{", "a pose for each mesh, got 1 and 0"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "says"), [
+    ("[0, 1, 2]}", "[0, 1, 9]}", "name rows"),
+    ("[0, 1, 2]}", "[0, 1, 1.7]}", "mesh of object 'cup' .* must have whole vertex_indices, got 1.7"),
+    ("triangles: [{vertex_indices: [0, 1, 2]}]", "triangles: []", "one triangle or more"),
+    ("[0, 1, 0]]", "[0, 1]]", "a vertex of a mesh of object 'cup'"),
+    ("mesh_poses: [{", "mesh_poses: [], more: [{", "a pose for each mesh, got 1 and 0"),
+])  # fmt: skip
 def test_a_mesh_of_a_planning_scene_that_is_none_is_refused(tmp_path, old, new, says):
     text = _yaml(CUP)
     assert old in text

@@ -14,6 +14,7 @@ from evenroad.robot.chain import chain_of
 from evenroad.robot.inverse_kinematics import reach
 from evenroad.robot.orientation_constraint import OrientationWorld, orientation_world
 from evenroad.robot.pose_goal import PoseGoal
+from tests.refused import refused
 from tests.robot.kernel_arms import random_scene
 
 ARM7 = load_robot("arm7")
@@ -138,12 +139,9 @@ def test_lines_keep_another_link_upright_too():
 
 
 def test_a_tolerance_that_is_none_is_refused():
-    with pytest.raises(InvalidValue, match="tolerance of upright must be a finite number > 0, got 0"):
-        OrientationConstraint(0.0)
-    with pytest.raises(InvalidValue, match="at most"):
-        OrientationConstraint(4.0)
-    with pytest.raises(InvalidValue, match="axis of upright must be"):
-        OrientationConstraint(0.1, axis="up")
+    refused(InvalidValue, "tolerance of upright must be a finite number > 0, got 0", OrientationConstraint, 0.0)
+    refused(InvalidValue, "at most", OrientationConstraint, 4.0)
+    refused(InvalidValue, "axis of upright must be", OrientationConstraint, 0.1, axis="up")
 
 
 def test_a_path_that_is_tilted_by_too_much_on_the_finer_grid_is_not_handed_out(monkeypatch):

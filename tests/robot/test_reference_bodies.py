@@ -10,6 +10,7 @@ from evenroad.geometry.shapes import Capsule, Sphere
 from evenroad.robot.load import load_robot
 from evenroad.robot.reference.coal_world import capsule_shapes, original_shapes, sound_shapes
 from evenroad.robot.urdf import read_urdf
+from tests.refused import refused
 from tests.robot.kernel_arms import ur5
 from tests.robot.mesh_arms import fork, write_fork_arm
 from tests.robot.urdf_texts import joint, link, urdf, write
@@ -55,20 +56,16 @@ def test_a_capsule_as_a_shape_has_its_ends_where_they_were(b):
     np.testing.assert_allclose(np.array(shape.pose.xyz) + 0.5 * length * axis, capsule.b, atol=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("keep", "add", "says"),
-    [
-        (lambda shape: False, (), "one or more; got 0"),
-        (lambda shape: shape.link != "forearm", (), "none of forearm"),
-        (lambda shape: True, ("hand",), "links that are not there: hand"),
-    ],
-)
+@pytest.mark.parametrize(("keep", "add", "says"), [
+    (lambda shape: False, (), "one or more; got 0"),
+    (lambda shape: shape.link != "forearm", (), "none of forearm"),
+    (lambda shape: True, ("hand",), "links that are not there: hand"),
+])  # fmt: skip
 def test_a_link_without_shapes_is_no_free_pass(keep, add, says):
     robot = ur5()
     shapes = [shape for shape in capsule_shapes(robot) if keep(shape)]
     shapes += [Sphere(0.1, link=name) for name in add]
-    with pytest.raises(InvalidValue, match=says):
-        sound_shapes(robot, shapes)
+    refused(InvalidValue, says, sound_shapes, robot, shapes)
 
 
 @pytest.mark.parametrize("scale", ["1 1 1", "0.001 0.001 0.001", "1 -1 2"])
@@ -83,8 +80,7 @@ def test_a_mesh_has_the_scale_of_the_urdf(tmp_path, scale):
 def test_a_mesh_scaled_flat_is_refused(tmp_path):
     path = write_fork_arm(tmp_path)
     shape = next(shape for shape in read_urdf(path).shapes if shape.link == "fork")
-    with pytest.raises(InvalidValue, match=r"scale of mesh fork\.stl must not be 0"):
-        replace(shape, scale=(1.0, 0.0, 1.0))
+    refused(InvalidValue, r"scale of mesh fork\.stl must not be 0", replace, shape, scale=(1.0, 0.0, 1.0))
 
 
 def test_capsules_that_are_given_as_shapes_lie_where_they_lie_on_the_robot():

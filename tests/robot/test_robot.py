@@ -16,6 +16,7 @@ from evenroad.robot import (
     with_group,
     with_limits,
 )
+from tests.refused import refused
 from tests.robot.urdf_texts import joint, link, urdf, write
 
 UR5 = load_robot("ur5")
@@ -85,8 +86,7 @@ def test_a_tool_of_shapes_collides_where_the_bare_arm_does_not():
     ],
 )  # fmt: skip
 def test_a_tool_that_cannot_be_joined_is_refused(make, error, says):
-    with pytest.raises(error, match=says):
-        make()
+    refused(error, says, make)
 
 
 def test_two_arms_of_one_kind_are_joined_with_a_prefix():
@@ -100,8 +100,7 @@ def test_a_rigid_tool_is_loaded_like_a_robot(tmp_path):
     tool = load_robot(write(tmp_path, urdf(link("rod"), name="rod")))
     assert tool.group == ()
     assert UR5.with_tool(tool, at="tool0").capsules[-1] == tool.capsules[0]
-    with pytest.raises(InvalidValue, match="one joint or more"):
-        ArmWorld(tool, Scene(name="empty"))
+    refused(InvalidValue, "one joint or more", ArmWorld, tool, Scene(name="empty"))
 
 
 def test_a_rigid_tool_is_capsules_as_they_are():
@@ -109,17 +108,13 @@ def test_a_rigid_tool_is_capsules_as_they_are():
     assert UR5.with_tool([rod], at="tool0").capsules[-1] == Capsule(rod.a, rod.b, 0.01, link="tool")
 
 
-@pytest.mark.parametrize(
-    "called",
-    [
-        lambda robot: in_scene(robot, Scene(name="nothing")),
-        lambda robot: with_limits(robot, {}),
-        lambda robot: with_group(robot, ()),
-        lambda robot: named_states(robot),
-        lambda robot: at_states(robot, ["home"]),
-        lambda robot: configuration(robot, "home"),
-    ],
-)
+@pytest.mark.parametrize("called", [
+    lambda robot: in_scene(robot, Scene(name="nothing")),
+    lambda robot: with_limits(robot, {}),
+    lambda robot: with_group(robot, ()),
+    lambda robot: named_states(robot),
+    lambda robot: at_states(robot, ["home"]),
+    lambda robot: configuration(robot, "home"),
+])  # fmt: skip
 def test_a_name_in_place_of_a_robot_is_refused(called):
-    with pytest.raises(InvalidValue, match=r"robot must be a Robot, as load_robot.* gives it, got 'ur5'"):
-        called("ur5")
+    refused(InvalidValue, r"robot must be a Robot, as load_robot.* gives it, got 'ur5'", called, "ur5")

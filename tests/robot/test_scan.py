@@ -24,6 +24,7 @@ from evenroad.robot import (
 )
 from evenroad.robot_roadmap.build import arm_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
+from tests.refused import refused
 from tests.robot.surface_oracle import all_clearance
 
 UPRIGHT = "0,-1.5707963,0,-1.5707963,0,0"
@@ -70,27 +71,21 @@ def test_a_scene_has_clouds_from_files_beside_it(tmp_path):
     assert scan.shape == "cloud"
 
 
-@pytest.mark.parametrize(
-    ("entry", "error", "says"),
-    [
-        (dict(file="no.ply"), BrokenFile, "no such file: .*no.ply"),
-        (dict(file="scan.las"), UnknownName, "'.las'; known"),
-        (dict(file=7), InvalidValue, "file of obstacle 'scan' .* got 7"),
-        (dict(radius=0), InvalidValue, "radius of obstacle 'scan' .* > 0, got 0"),
-        (dict(radius=-0.1), InvalidValue, "radius .* got -0.1"),
-        (dict(radius="wide"), InvalidValue, "radius"),
-        (dict(margin=0.1), InvalidValue, "goes with seen_at"),
-        (dict(seen_at="home", margin=-1), InvalidValue, "margin of a scan .* got -1"),
-        (dict(seen_at=3), InvalidValue, "seen_at of obstacle 'scan' .* got 3"),
-        (dict(size=[1, 1, 1]), UnknownName, "'size'"),
-        (dict(cell="yes"), InvalidValue, "true or false"),
-    ],
-)
+@pytest.mark.parametrize(("entry", "error", "says"), [
+    (dict(file="no.ply"), BrokenFile, "no such file: .*no.ply"),
+    (dict(file="scan.las"), UnknownName, "'.las'; known"),
+    (dict(file=7), InvalidValue, "file of obstacle 'scan' .* got 7"),
+    (dict(radius=0), InvalidValue, "radius of obstacle 'scan' .* > 0, got 0"),
+    (dict(radius=-0.1), InvalidValue, "radius .* got -0.1"), (dict(radius="wide"), InvalidValue, "radius"),
+    (dict(margin=0.1), InvalidValue, "goes with seen_at"),
+    (dict(seen_at="home", margin=-1), InvalidValue, "margin of a scan .* got -1"),
+    (dict(seen_at=3), InvalidValue, "seen_at of obstacle 'scan' .* got 3"),
+    (dict(size=[1, 1, 1]), UnknownName, "'size'"), (dict(cell="yes"), InvalidValue, "true or false"),
+])  # fmt: skip
 def test_a_scan_that_is_not_sound_is_refused(tmp_path, capsys, entry, error, says):
     np.save(tmp_path / "a.npy", table(10))
     file = write_scene(tmp_path, dict(shape="cloud", file="a.npy", radius=0.01) | entry)
-    with pytest.raises(error, match=says):
-        load_scene(file)
+    refused(error, says, load_scene, file)
     assert main(["plan", str(file), "--robot", "ur5", "--start", UPRIGHT, "--goal", UPRIGHT]) == 2
     assert capsys.readouterr().err.splitlines()[-1].startswith("evenroad: error: ")
 
@@ -99,8 +94,7 @@ def test_without_a_radius_or_a_file_nothing_is_read(tmp_path):
     for missing in ("file", "radius"):
         entry = {"shape": "cloud", "file": "a.npy", "radius": 0.01}
         del entry[missing]
-        with pytest.raises(EvenroadError, match=missing):
-            load_scene(write_scene(tmp_path, entry))
+        refused(EvenroadError, missing, load_scene, write_scene(tmp_path, entry))
 
 
 def test_the_robots_own_points_go_and_the_others_stay(ur5):
@@ -113,8 +107,7 @@ def test_the_robots_own_points_go_and_the_others_stay(ur5):
     assert len(left.points) == len(others)
     np.testing.assert_allclose(left.pose.apply(left.points), others, atol=1e-12)
     assert without_robot(PointCloud(own, 0.005), ur5, q, 0.0) is None
-    with pytest.raises(InvalidValue, match="margin"):
-        without_robot(cloud, ur5, q, -1.0)
+    refused(InvalidValue, "margin", without_robot, cloud, ur5, q, -1.0)
 
 
 def test_where_it_was_seen_the_robot_is_free_with_the_margin_to_spare(ur5):
@@ -140,8 +133,7 @@ def test_a_cloud_of_the_robot_alone_leaves_nothing(ur5):
 )
 def test_where_a_robot_cannot_stand_it_has_seen_nothing(ur5, seen_at, error, says):
     scan = Scene((Obstacle("scan", PointCloud(table(10), 0.01), seen=Seen(seen_at)),), name="s")
-    with pytest.raises(error, match=says):
-        arm_request(ur5, scan, UPRIGHT, UPRIGHT, Reading())
+    refused(error, says, arm_request, ur5, scan, UPRIGHT, UPRIGHT, Reading())
 
 
 def test_the_command_plans_above_a_scanned_table(tmp_path, monkeypatch, ur5, capsys):
@@ -215,18 +207,14 @@ def test_meshes_of_every_format_are_the_box_that_they_are(tmp_path, ur5, suffix)
     assert (of_mesh.valid(q) != of_box.valid(q)).mean() < 0.02
 
 
-@pytest.mark.parametrize(
-    ("entry", "error", "says"),
-    [
-        (dict(file="no.stl"), BrokenFile, "mesh .*no.stl is missing"),
-        (dict(file="empty.obj"), BrokenFile, "empty.obj"),
-        (dict(scale=0), InvalidValue, "scale of mesh board.stl must not be 0"),
-        (dict(scale=[1, 2]), InvalidValue, "scale of obstacle 'scan'"),
-        (dict(file=None), InvalidValue, "file of obstacle 'scan' .* got None"),
-        (dict(radius=0.1), UnknownName, "'radius'"),
-        (dict(seen_at="home"), UnknownName, "'seen_at'"),
-    ],
-)
+@pytest.mark.parametrize(("entry", "error", "says"), [
+    (dict(file="no.stl"), BrokenFile, "mesh .*no.stl is missing"),
+    (dict(file="empty.obj"), BrokenFile, "empty.obj"),
+    (dict(scale=0), InvalidValue, "scale of mesh board.stl must not be 0"),
+    (dict(scale=[1, 2]), InvalidValue, "scale of obstacle 'scan'"),
+    (dict(file=None), InvalidValue, "file of obstacle 'scan' .* got None"),
+    (dict(radius=0.1), UnknownName, "'radius'"), (dict(seen_at="home"), UnknownName, "'seen_at'"),
+])  # fmt: skip
 def test_a_mesh_that_is_not_sound_is_refused(tmp_path, entry, error, says):
     (tmp_path / "empty.obj").write_text("v 0 0 0\n")
     whole = dict(shape="mesh", file=shelf_file(tmp_path, ".stl")) | entry

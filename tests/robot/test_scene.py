@@ -11,6 +11,7 @@ from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, PointCloud, Sphere
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, load_scene
 from evenroad.robot.scene_file import SCENES, is_scene
+from tests.refused import refused
 from tests.robot.urdf_texts import write
 
 GOOD = """
@@ -186,21 +187,15 @@ def test_a_scene_with_and_without_an_obstacle_is_another_scene():
     assert both.allowed == {("base", "ball"), ("base", "wall")}
     assert both.without("wall") == scene
     assert both.without("wall", "ball") == Scene(name="s", states=scene.states)
-    with pytest.raises(InvalidValue, match=r"twice: \['ball'\]"):
-        scene.with_(BALL)
-    with pytest.raises(UnknownName, match="obstacle of scene 's': 'table'; known: ball"):
-        scene.without("table")
+    refused(InvalidValue, r"twice: \['ball'\]", scene.with_, BALL)
+    refused(UnknownName, "obstacle of scene 's': 'table'; known: ball", scene.without, "table")
 
 
-@pytest.mark.parametrize(
-    "pose",
-    [
-        Pose.from_matrix(QUARTER),
-        Pose.from_quaternion((1, 2, 3), xyzw=(0, 0, 1, 1)),
-        Pose.from_rpy((1, 2, 3), (0, 0, np.pi / 2)),
-    ],
-    ids=["matrix", "quaternion", "rpy"],
-)
+@pytest.mark.parametrize("pose", [
+    Pose.from_matrix(QUARTER),
+    Pose.from_quaternion((1, 2, 3), xyzw=(0, 0, 1, 1)),
+    Pose.from_rpy((1, 2, 3), (0, 0, np.pi / 2)),
+], ids=["matrix", "quaternion", "rpy"])  # fmt: skip
 def test_an_obstacle_takes_its_pose_as_people_have_it(pose):
     post = Obstacle("post", Cylinder(0.1, 2.0)).at(pose)
     assert post.xyz == (1, 2, 3)
@@ -278,8 +273,7 @@ BALLS = {"obstacles": [{"sphere": 0.1}, {"shape": "sphere", "radius": 0.1, "xyz"
 def test_obstacles_of_a_list_without_names_get_one_as_shapes_do():
     assert [each.name for each in Scene(BALLS).obstacles] == ["sphere 0", "sphere 1"]
     twice = {"obstacles": [LISTED, LISTED]}
-    with pytest.raises(InvalidValue, match="of their own, twice: 'table'"):
-        Scene(twice)
+    refused(InvalidValue, "of their own, twice: 'table'", Scene, twice)
 
 
 def test_a_planning_scene_of_moveit_is_a_scene_without_a_file():

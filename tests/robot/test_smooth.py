@@ -197,19 +197,16 @@ def test_of_a_path_that_nobody_proved_nothing_is_returned_that_is_not_proved():
     assert min(empty, left) >= 5
 
 
-@pytest.mark.parametrize(
-    "path",
-    [
-        np.full((3, 5), np.nan),
-        np.stack([START, START + np.inf, START]),
-        np.zeros((3, 4)),
-        np.zeros((3, 6)),
-        np.zeros(5),
-        [START],
-        [START, START + np.nan],
-        [START, GOAL, ["x"] * 5],
-    ],
-)
+@pytest.mark.parametrize("path", [
+    np.full((3, 5), np.nan),
+    np.stack([START, START + np.inf, START]),
+    np.zeros((3, 4)),
+    np.zeros((3, 6)),
+    np.zeros(5),
+    [START],
+    [START, START + np.nan],
+    [START, GOAL, ["x"] * 5],
+])  # fmt: skip
 def test_what_is_no_path_is_not_tightened_but_refused(path):
     with pytest.raises(InvalidValue):
         smooth(box_world(), path, batches=BATCHES)

@@ -11,6 +11,7 @@ from evenroad.robot import ArmWorld, Scene, configuration, held_values, load_mod
 from evenroad.robot.groups import chains, choose_group, group_notes
 from evenroad.robot.srdf import read_srdf, srdf_text
 from evenroad.robot.urdf import read_urdf
+from tests.refused import refused
 from tests.robot.urdf_texts import LIMIT, SPHERE, joint, link, urdf, write
 
 ARM = urdf(
@@ -35,18 +36,15 @@ def read(tmp_path):
     return lambda inside: (arm, read_srdf(srdf_of(tmp_path, inside), arm))
 
 
-@pytest.mark.parametrize(
-    ("inside", "joints"),
-    [
-        ("<chain base_link='base' tip_link='hand'/>", ("shoulder", "elbow")),
-        ("<chain base_link='upper' tip_link='hand'/>", ("elbow",)),
-        ("<joint name='elbow'/><joint name='shoulder'/>", ("shoulder", "elbow")),
-        ("<joint name='flange'/><joint name='grip'/>", ("grip",)),
-        ("<joint name='grip'/><joint name='follower'/>", ("grip",)),
-        ("<link name='lower'/><link name='base'/>", ("elbow",)),
-        ("<group name='fingers'/><joint name='elbow'/>", ("elbow", "grip")),
-    ],
-)
+@pytest.mark.parametrize(("inside", "joints"), [
+    ("<chain base_link='base' tip_link='hand'/>", ("shoulder", "elbow")),
+    ("<chain base_link='upper' tip_link='hand'/>", ("elbow",)),
+    ("<joint name='elbow'/><joint name='shoulder'/>", ("shoulder", "elbow")),
+    ("<joint name='flange'/><joint name='grip'/>", ("grip",)),
+    ("<joint name='grip'/><joint name='follower'/>", ("grip",)),
+    ("<link name='lower'/><link name='base'/>", ("elbow",)),
+    ("<group name='fingers'/><joint name='elbow'/>", ("elbow", "grip")),
+])  # fmt: skip
 def test_a_group_is_what_moves_of_its_parts_in_the_order_of_the_urdf(read, inside, joints):
     _, srdf = read(f"<group name='g'>{inside}</group><group name='fingers'><joint name='grip'/></group>")
     assert srdf.groups["g"] == joints
@@ -143,12 +141,9 @@ def test_a_note_on_what_the_robot_lacks_is_one_short_line(tmp_path):
 
 def test_an_srdf_that_is_no_xml_or_missing_is_named(tmp_path):
     arm = read_urdf(write(tmp_path, ARM))
-    with pytest.raises(BrokenFile, match=r"arm\.urdf\.txt is text, not XML"):
-        read_srdf(write(tmp_path, "hello", "arm.urdf.txt"), arm)
-    with pytest.raises(BrokenFile, match=r"arm\.urdf is a URDF, not an SRDF"):
-        read_srdf(write(tmp_path, ARM, "arm.urdf"), arm)
-    with pytest.raises(BrokenFile, match="cannot read the SRDF"):
-        read_srdf(tmp_path / "none.srdf", arm)
+    refused(BrokenFile, r"arm\.urdf\.txt is text, not XML", read_srdf, write(tmp_path, "hello", "arm.urdf.txt"), arm)
+    refused(BrokenFile, r"arm\.urdf is a URDF, not an SRDF", read_srdf, write(tmp_path, ARM, "arm.urdf"), arm)
+    refused(BrokenFile, "cannot read the SRDF", read_srdf, tmp_path / "none.srdf", arm)
 
 
 def test_without_a_wish_the_group_is_the_srdfs_only_one_or_all_that_moves_by_itself(read):
@@ -176,15 +171,10 @@ TWO_GROUPS = """
 """
 
 
-@pytest.mark.parametrize(
-    ("wanted", "joints"),
-    [
-        ("fingers,arm", ("grip", "shoulder", "elbow")),
-        (["arm", "fingers"], ("shoulder", "elbow", "grip")),
-        ("forearm,arm", ("elbow", "shoulder")),
-        ("grip,arm", ("grip", "shoulder", "elbow")),
-    ],
-)
+@pytest.mark.parametrize(("wanted", "joints"), [
+    ("fingers,arm", ("grip", "shoulder", "elbow")), (["arm", "fingers"], ("shoulder", "elbow", "grip")),
+    ("forearm,arm", ("elbow", "shoulder")), ("grip,arm", ("grip", "shoulder", "elbow")),
+])  # fmt: skip
 def test_several_groups_are_one_in_the_order_of_the_wish(read, wanted, joints):
     arm, srdf = read(TWO_GROUPS)
     assert choose_group(arm, srdf, wanted) == joints
@@ -203,22 +193,17 @@ def test_two_groups_have_their_states_in_one_and_plan_together_in_the_order_of_t
     np.testing.assert_allclose(turned.path[-1], [0.1, 0.3, 0.5])
 
 
-@pytest.mark.parametrize(
-    ("wanted", "kind", "says"),
-    [
-        ("knee", UnknownName, "unknown group 'knee'; known: g, h"),
-        ("elbow,knee", UnknownName, "unknown joint of the group 'knee'; known: elbow, grip, shoulder"),
-        ("elbow,follower", InvalidValue, "'follower' cannot be planned for: it follows 'grip'"),
-        ("elbow,flange", InvalidValue, "'flange' cannot be planned for: it is fixed"),
-        ("elbow,elbow", InvalidValue, "named twice"),
-        ("h", InvalidValue, "group 'h' has no joint"),
-        ([], InvalidValue, "no joint"),
-    ],
-)
+@pytest.mark.parametrize(("wanted", "kind", "says"), [
+    ("knee", UnknownName, "unknown group 'knee'; known: g, h"),
+    ("elbow,knee", UnknownName, "unknown joint of the group 'knee'; known: elbow, grip, shoulder"),
+    ("elbow,follower", InvalidValue, "'follower' cannot be planned for: it follows 'grip'"),
+    ("elbow,flange", InvalidValue, "'flange' cannot be planned for: it is fixed"),
+    ("elbow,elbow", InvalidValue, "named twice"), ("h", InvalidValue, "group 'h' has no joint"),
+    ([], InvalidValue, "no joint"),
+])  # fmt: skip
 def test_a_group_that_cannot_be_planned_for_is_refused(read, wanted, kind, says):
     arm, srdf = read("<group name='g'><joint name='elbow'/></group><group name='h'/>")
-    with pytest.raises(kind, match=says):
-        choose_group(arm, srdf, wanted)
+    refused(kind, says, choose_group, arm, srdf, wanted)
 
 
 def groups_of(groups):
@@ -249,8 +234,7 @@ def test_of_several_groups_the_longest_chain_is_the_arm(read, groups, joints):
 @pytest.mark.parametrize("groups", [("shoulder", "elbow"), ("shoulder elbow grip", "elbow grip")])
 def test_where_no_group_is_the_arm_the_option_is_named(read, groups):
     arm, srdf = read(groups_of({f"g{i}": members for i, members in enumerate(groups)}))
-    with pytest.raises(InvalidValue, match=r"several groups.*--group.*: g0, g1"):
-        choose_group(arm, srdf, None)
+    refused(InvalidValue, r"several groups.*--group.*: g0, g1", choose_group, arm, srdf, None)
 
 
 def fingers(lower, upper):

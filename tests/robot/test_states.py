@@ -14,6 +14,7 @@ from evenroad.robot import (
     named_states,
     with_group,
 )
+from tests.refused import refused
 from tests.robot.urdf_texts import LIMIT, joint, link, two_joints, urdf, write
 
 
@@ -82,8 +83,7 @@ def test_a_state_that_lacks_a_joint_or_breaks_a_limit_is_refused(ur5):
     scene = Scene((), name="s", states={"half": {"elbow_joint": 1.0}, "far": dict.fromkeys(ur5.group, 4.0)})
     with pytest.raises(InvalidValue, match="the state 'half' has no value for shoulder_pan_joint, shoulder_lift_joint"):
         configuration(ur5, "half", scene)
-    with pytest.raises(InvalidValue, match="'far' puts joint 'elbow_joint' at 4 rad"):
-        configuration(ur5, "far", scene)
+    refused(InvalidValue, "'far' puts joint 'elbow_joint' at 4 rad", configuration, ur5, "far", scene)
 
 
 def test_a_continuous_joint_takes_any_angle(tmp_path):
@@ -126,16 +126,14 @@ def test_two_states_that_differ_in_what_is_not_planned_for_are_refused(only_a):
 
 
 def test_a_state_is_never_taken_for_the_posture_that_it_is_not(only_a):
-    with pytest.raises(InvalidValue, match="'up' has joint 'b' at 0.5, where 'arm' holds it at 0"):
-        configuration(only_a, "up", UP)
+    refused(InvalidValue, "'up' has joint 'b' at 0.5, where 'arm' holds it at 0", configuration, only_a, "up", UP)
 
 
 def test_a_state_cannot_hold_a_joint_outside_its_limits_nor_one_that_is_not_there(only_a):
     scene = Scene((), name="s", states={"far": {"a": 0, "b": 99}, "odd": {"a": 0, "knee": 1}})
     with pytest.raises(InvalidValue, match="the state 'far' puts joint 'b' at 99 rad, 98 rad outside its limits"):
         at_states(only_a, ("far", "0"), scene)
-    with pytest.raises(UnknownName, match="joint of the state 'odd': 'knee'; known: a, b"):
-        at_states(only_a, ("odd", "0"), scene)
+    refused(UnknownName, "joint of the state 'odd': 'knee'; known: a, b", at_states, only_a, ("odd", "0"), scene)
 
 
 def test_a_state_beyond_a_limit_by_rounding_holds_the_joint_there(only_a):
@@ -151,5 +149,4 @@ def test_a_joint_with_blanks_in_its_name_can_be_given_by_name(tmp_path):
     for written in ("my joint=0.5,the other one=-0.25", "my joint = 0.5 the other one=-0.25"):
         np.testing.assert_array_equal(configuration(robot, written), [0.5, -0.25])
     np.testing.assert_array_equal(configuration(robot, "the other one=-0.25"), [0, -0.25])
-    with pytest.raises(UnknownName, match="'joint'"):
-        configuration(robot, "joint=0.5")
+    refused(UnknownName, "'joint'", configuration, robot, "joint=0.5")

@@ -239,19 +239,12 @@ def test_a_sequence_of_the_callers_leads_elsewhere_and_goes_on_behind_its_end(sp
     assert len(counts) == 3
 
 
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [
-        ({"start": START[:4]}, "start must have shape"),
-        ({"goals": GOAL}, "goals must have shape"),
-        ({"goals": np.empty((0, 5))}, "goals must have shape"),
-        ({"goals": [GOAL * np.nan]}, "must be finite"),
-        ({"most_motions": 0}, "most_motions"),
-        ({"seconds": 0.0}, "seconds"),
-        ({"seconds": float("nan")}, "seconds"),
-        ({"sequence": np.full((3, 5), 2.0)}, "unit cube"),
-    ],
-)
+@pytest.mark.parametrize(("change", "text"), [
+    ({"start": START[:4]}, "start must have shape"), ({"goals": GOAL}, "goals must have shape"),
+    ({"goals": np.empty((0, 5))}, "goals must have shape"), ({"goals": [GOAL * np.nan]}, "must be finite"),
+    ({"most_motions": 0}, "most_motions"), ({"seconds": 0.0}, "seconds"), ({"seconds": float("nan")}, "seconds"),
+    ({"sequence": np.full((3, 5), 2.0)}, "unit cube"),
+])  # fmt: skip
 def test_arguments_that_make_no_sense_are_refused(world, change, text):
     arguments = {"start": START, "goals": [GOAL]} | change
     with pytest.raises(InvalidValue, match=text):

@@ -9,6 +9,7 @@ from evenroad.robot import ArmWorld, Scene, in_scene, load_model
 from evenroad.robot.reference.coal_world import original_shapes
 from evenroad.robot.urdf import read_urdf
 from evenroad.robot.urdf_xml import RobotFile, find_mesh
+from tests.refused import refused
 from tests.robot.urdf_texts import LIMIT, SPHERE, joint, link, two_joints, urdf, write
 
 
@@ -176,17 +177,13 @@ def test_a_slide_of_huge_limits_is_held_until_a_scene_limits_it(tmp_path):
     assert ArmWorld(in_scene(both, Scene(name="s", limits={"b": (0.0, 0.5)})), Scene(name="s")).space.dim == 2
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "\n\n<?xml version='1.0'?>" + two_joints(),
-        two_joints().replace("<link", "<sensor:camera><sensor:x/></sensor:camera><link", 1),
-        two_joints().replace("<link", "<link xlink:href='somewhere'", 1),
-        two_joints() + "\n\0",
-        two_joints().replace("<axis xyz='0 1 0'/>", "<axis xyz='0 1 0'/><axis xyz='0 1 0'/>"),
-    ],
-    ids=["blank lines first", "a prefix of nobody", "an attribute of nobody", "a zero last", "an axis twice"],
-)
+@pytest.mark.parametrize("text", [
+    "\n\n<?xml version='1.0'?>" + two_joints(),
+    two_joints().replace("<link", "<sensor:camera><sensor:x/></sensor:camera><link", 1),
+    two_joints().replace("<link", "<link xlink:href='somewhere'", 1),
+    two_joints() + "\n\0",
+    two_joints().replace("<axis xyz='0 1 0'/>", "<axis xyz='0 1 0'/><axis xyz='0 1 0'/>"),
+], ids=["blanks first", "a prefix of nobody", "an attribute of nobody", "a zero last", "an axis twice"])  # fmt: skip
 def test_xml_is_read_that_other_readers_of_urdfs_take(tmp_path, text):
     assert read_urdf(write(tmp_path, text)).order == ("a", "b")
 
@@ -205,8 +202,7 @@ def test_what_is_drawn_is_the_body_where_that_is_wanted(tmp_path):
 def test_a_robot_that_is_only_drawn_is_refused_with_what_would_help(tmp_path):
     drawn = "<visual><geometry><box size='1 2 3'/></geometry></visual>"
     path = write(tmp_path, urdf(link("x", drawn), link("y", drawn), joint("a", "x", "y")))
-    with pytest.raises(BrokenFile, match="no collision geometry at all: .*--use-visuals takes what is drawn"):
-        load_model(path)
+    refused(BrokenFile, "no collision geometry at all: .*--use-visuals takes what is drawn", load_model, path)
     assert len(load_model(path, use_visuals=True).bodies) == 2
 
 
@@ -318,22 +314,15 @@ def test_what_is_broken_is_named_in_one_line(case, tmp_path):
 
 
 def test_a_file_that_is_missing_is_named(tmp_path):
-    with pytest.raises(BrokenFile, match="cannot read the robot .*nowhere.urdf: No such file"):
-        read_urdf(tmp_path / "nowhere.urdf")
+    refused(BrokenFile, "cannot read the robot .*nowhere.urdf: No such file", read_urdf, tmp_path / "nowhere.urdf")
 
 
-@pytest.mark.parametrize(
-    ("name", "place"),
-    [
-        ("part.stl", "my_robot/urdf/part.stl"),
-        ("../meshes/part.stl", "my_robot/meshes/part.stl"),
-        ("package://my_robot/meshes/part.stl", "my_robot/meshes/part.stl"),
-        ("package://other/part.stl", "other/part.stl"),
-        ("package://in_ros/part.stl", "ros/in_ros/part.stl"),
-        ("package://my%20own/part.stl", "my own/part.stl"),
-        ("file://{}/far/part.stl", "far/part.stl"),
-    ],
-)
+@pytest.mark.parametrize(("name", "place"), [
+    ("part.stl", "my_robot/urdf/part.stl"), ("../meshes/part.stl", "my_robot/meshes/part.stl"),
+    ("package://my_robot/meshes/part.stl", "my_robot/meshes/part.stl"),
+    ("package://other/part.stl", "other/part.stl"), ("package://in_ros/part.stl", "ros/in_ros/part.stl"),
+    ("package://my%20own/part.stl", "my own/part.stl"), ("file://{}/far/part.stl", "far/part.stl"),
+])  # fmt: skip
 def test_meshes_are_found_where_urdfs_and_ros_put_them(tmp_path, monkeypatch, name, place):
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "ros"))
     (tmp_path / "my_robot" / "urdf").mkdir(parents=True)

@@ -126,8 +126,7 @@ def test_a_damaged_file_is_named(trajectory, tmp_path, change, said):
 def test_what_is_no_trajectory_is_named(tmp_path, text):
     file = tmp_path / "t.json"
     file.write_text(text)
-    with pytest.raises(BrokenFile):
-        load_trajectory(file)
+    refused(BrokenFile, "", load_trajectory, file)
     refused(BrokenFile, "cannot read", load_trajectory, tmp_path / "none.json")
 
 

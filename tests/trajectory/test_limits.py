@@ -59,5 +59,4 @@ def test_speed_is_a_share(speed):
 
 @pytest.mark.parametrize("rows", [((0.0,), (1.0,)), ((1.0,), (1.0, 1.0)), ((1.0,), (float("inf"),)), ((), ())])
 def test_limits_are_positive_and_as_many_as_joints(rows):
-    with pytest.raises(InvalidValue):
-        Limits(*rows)
+    refused(InvalidValue, "", Limits, *rows)

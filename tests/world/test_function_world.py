@@ -184,8 +184,7 @@ def test_errors_of_the_function_itself_come_through():
     def broken(q):
         raise ZeroDivisionError
 
-    with pytest.raises(ZeroDivisionError):
-        FunctionWorld(SQUARE, broken, 0.1).valid([[0.1, 0.2]])
+    refused(ZeroDivisionError, "", lambda: FunctionWorld(SQUARE, broken, 0.1).valid([[0.1, 0.2]]))
 
 
 def test_why_a_configuration_is_not_free_is_said():

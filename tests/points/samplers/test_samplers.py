@@ -127,10 +127,8 @@ def test_a_start_index_below_zero_is_refused(start):
 
 
 def test_every_error_is_both_ours_and_a_builtin():
-    with pytest.raises(EvenroadError):
-        draw("uniform", 0, 2)
-    with pytest.raises(ValueError):
-        draw("uniform", 0, 2)
+    refused(EvenroadError, "", draw, "uniform", 0, 2)
+    refused(ValueError, "", draw, "uniform", 0, 2)
 
 
 def test_every_name_makes_a_sampler_of_that_name():

@@ -72,8 +72,7 @@ def test_a_stopped_run_keeps_its_rows_and_goes_on(path, calm):
         if finished >= TO_RUN_HALF:
             raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt):
-        _run(path, callback=stop)
+    refused(KeyboardInterrupt, "", _run, path, callback=stop)
     kept = len(read_rows(path))
     assert TO_RUN_HALF <= kept < len(TASKS)
     report = _run(path)

@@ -119,8 +119,7 @@ def test_a_lock_that_cannot_be_made_or_is_another_users_is_named(path, other_use
 def test_a_name_that_is_too_long_is_an_error_of_ours(tmp_path, length):
     path = tmp_path / ("r" * length)
     for use in (read_rows, _write):
-        with pytest.raises(BrokenFile):
-            use(path)
+        refused(BrokenFile, "", use, path)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -80,8 +80,7 @@ def test_a_store_that_can_be_written_again_takes_what_waits(path):
     with open_store(path) as store:
         store.add("paper", TASK, SOLVED, "")
         store._connection.execute("PRAGMA query_only = 1")
-        with pytest.raises(BrokenFile):
-            store.commit()
+        refused(BrokenFile, "", store.commit)
         store._connection.execute("PRAGMA query_only = 0")
         store.commit()
     assert len(read_rows(path)) == 1

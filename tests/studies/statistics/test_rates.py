@@ -30,8 +30,7 @@ def test_wilson_takes_whole_tables_at_once():
 
 @pytest.mark.parametrize(("solved", "runs"), [(-1, 5), (6, 5), (0, 0), (0.5, 3), (math.nan, 3)])
 def test_impossible_counts_are_refused(solved, runs):
-    with pytest.raises(InvalidValue):
-        wilson(solved, runs)
+    refused(InvalidValue, "", wilson, solved, runs)
 
 
 @given(st.integers(0, 60), st.integers(0, 60))
@@ -114,5 +113,4 @@ def test_sets_that_are_alike_spread_as_chance_says():
 
 def test_one_set_has_no_spread():
     assert spread_over_sets([3], [4]).sd == 0.0
-    with pytest.raises(InvalidValue):
-        spread_over_sets([], [])
+    refused(InvalidValue, "", spread_over_sets, [], [])

@@ -18,6 +18,7 @@ from evenroad_studies.statistics.resampling import (
     samples_needed,
 )
 from evenroad_studies.statistics.units import clustered_difference, sign_flip_test
+from tests.refused import refused
 
 
 def test_a_bootstrap_resamples_whole_units():
@@ -60,8 +61,7 @@ def test_sign_flips_of_single_pairs_are_mcnemars_test(first, second, ties):
 
 
 def test_sign_flips_take_whole_numbers_only():
-    with pytest.raises(InvalidValue, match="whole"):
-        sign_flip_test([0.5])
+    refused(InvalidValue, "whole", sign_flip_test, [0.5])
 
 
 def test_a_paired_difference_keeps_the_pairs_of_a_unit_together():
@@ -194,8 +194,7 @@ IMPOSSIBLE = [([], []), ([1], [1, 2]), ([1, 1], [0, 1])]
     (samples_needed, ((32,), [0.1], [0.1], [10])), (samples_needed, ((), [], [[]], [])),
 ])  # fmt: skip
 def test_impossible_numbers_and_shapes_are_refused(call, numbers):
-    with pytest.raises(InvalidValue):
-        call(*numbers)
+    refused(InvalidValue, "", call, *numbers)
 
 
 def test_the_wider_of_two_intervals_is_taken():

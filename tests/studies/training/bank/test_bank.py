@@ -137,8 +137,7 @@ def test_a_kill_between_array_and_index_leaves_the_bank_as_it_was(small_bank, mo
         raise KeyboardInterrupt
 
     monkeypatch.setattr(json, "dumps", killed)
-    with pytest.raises(KeyboardInterrupt):
-        store(other, sets, small_bank.folder)
+    refused(KeyboardInterrupt, "", store, other, sets, small_bank.folder)
     assert not small_bank.has("hickernell", 9, 2)
     assert small_bank.cell("hickernell", 8, 2).load().shape == (3, 8, 2)
 
