@@ -108,10 +108,9 @@ def test_what_is_compiled_is_said_once_and_only_when_it_is(monkeypatch, capsys):
     assert compiling() == ""
 
 
-@pytest.mark.parametrize(
-    ("start", "extra"),
-    [("-0.9,0", ()), ("a=-0.9", ("-n", 256)), ("a=-51.5662015617741,b=0", ("--deg",)), (("-0.9", "0"), ())],
-)
+@pytest.mark.parametrize(("start", "extra"), [
+    ("-0.9,0", ()), ("a=-0.9", ("-n", 256)), ("a=-51.5662015617741,b=0", ("--deg",)), (("-0.9", "0"), ()),
+])  # fmt: skip
 @pytest.mark.usefixtures("desk")
 def test_a_configuration_of_a_robot_of_ones_own_can_be_written_in_several_ways(answer, start, extra):
     words = start if isinstance(start, tuple) else (start,)

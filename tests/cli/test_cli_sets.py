@@ -33,10 +33,9 @@ def test_the_help_names_every_sampler(run, verb):
     assert set(SAMPLERS) <= set(named)
 
 
-@pytest.mark.parametrize(
-    ("words", "options"),
-    [("halton --plain --skip 3", {"scramble": False, "start": 3}), ("sukharev --allow-fewer", {"allow_fewer": True})],
-)
+@pytest.mark.parametrize(("words", "options"), [
+    ("halton --plain --skip 3", {"scramble": False, "start": 3}), ("sukharev --allow-fewer", {"allow_fewer": True}),
+])  # fmt: skip
 def test_points_take_the_options_of_a_sampler_that_plans_take(run, tmp_path, words, options):
     name, *rest = words.split()
     assert run("points", "-n", 20, "-d", 3, "--sampler", name, *rest, "-o", "a.npy")[0] == 0

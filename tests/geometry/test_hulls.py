@@ -25,10 +25,9 @@ def beyond(points, hull):
     return (points @ equations[:, :3].T + equations[:, 3]).max() - hull.radius
 
 
-@pytest.mark.parametrize(
-    ("shape", "corners"),
-    [(Box((0.3, 0.2, 0.1), pose=TURNED, link="a"), 8), (Cylinder(0.2, 0.5, pose=TURNED, link="a"), 64)],
-)
+@pytest.mark.parametrize(("shape", "corners"), [
+    (Box((0.3, 0.2, 0.1), pose=TURNED, link="a"), 8), (Cylinder(0.2, 0.5, pose=TURNED, link="a"), 64),
+])  # fmt: skip
 def test_a_hull_contains_its_shape_and_little_else(shape, corners):
     hull = piece_of(shape).hull
     size = 0.5 * np.array(shape.size if isinstance(shape, Box) else (0.4, 0.4, 0.5))

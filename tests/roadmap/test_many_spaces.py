@@ -85,10 +85,9 @@ def test_the_default_k_grows_with_the_dimension(planner, d, k):
     assert result.rule == f"k={k} symmetrised"
 
 
-@pytest.mark.parametrize(
-    ("rule", "sampler"),
-    [(KNearest(4), Sliced()), (KNearest(6), Sliced()), (KNearest(7), Sobol()), (Radius(0.5), Sobol()), (None, Sobol())],
-)
+@pytest.mark.parametrize(("rule", "sampler"), [
+    (KNearest(4), Sliced()), (KNearest(6), Sliced()), (KNearest(7), Sobol()), (Radius(0.5), Sobol()), (None, Sobol()),
+])  # fmt: skip
 def test_a_number_of_points_in_space_means_sliced_poses_for_few_neighbours_and_sobol_for_more(rule, sampler):
     space = SE3((0.0, 0.0, 0.0), (2.0, 1.0, 1.0))
     assert even_points(40, space, rule, rng=3) == sampler.draw(40, 6, rng=3)

@@ -242,18 +242,15 @@ def test_scene_files_say_all_of_this(desk):
     assert len(points) == (point_distance(box, scanned()) > 0.01).sum() < len(scanned())
 
 
-@pytest.mark.parametrize(
-    ("change", "error", "says"),
-    [
-        ({"allowed": {"scan": [{"link": "block"}]}}, er.errors.InvalidValue, "one of near_ends and within"),
-        ({"allowed": {"scan": [{"near_ends": 1}]}}, er.errors.BrokenFile, "link"),
-        ({"allowed": {"scan": [{"link": "block", "near_ends": -1}]}}, er.errors.InvalidValue, "near_ends .* got -1"),
-        ({"allowed": {"scan": [{"link": "block", "within": {"shape": "mesh"}}]}}, er.errors.UnknownName, "within of"),
-        ({"obstacles": {"scan": SCAN | {"cut": [CUT | {"grow": 9}]}}}, er.errors.InvalidValue, "leaves nothing"),
-        ({"obstacles": {"scan": SCAN | {"cut": "block"}}}, er.errors.InvalidValue, "must be a list"),
-        ({"obstacles": {"scan": {"shape": "sphere", "radius": 1}}}, er.errors.InvalidValue, "of a cloud alone"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("change", "error", "says"), [
+    ({"allowed": {"scan": [{"link": "block"}]}}, er.errors.InvalidValue, "one of near_ends and within"),
+    ({"allowed": {"scan": [{"near_ends": 1}]}}, er.errors.BrokenFile, "link"),
+    ({"allowed": {"scan": [{"link": "block", "near_ends": -1}]}}, er.errors.InvalidValue, "near_ends .* got -1"),
+    ({"allowed": {"scan": [{"link": "block", "within": {"shape": "mesh"}}]}}, er.errors.UnknownName, "within of"),
+    ({"obstacles": {"scan": SCAN | {"cut": [CUT | {"grow": 9}]}}}, er.errors.InvalidValue, "leaves nothing"),
+    ({"obstacles": {"scan": SCAN | {"cut": "block"}}}, er.errors.InvalidValue, "must be a list"),
+    ({"obstacles": {"scan": {"shape": "sphere", "radius": 1}}}, er.errors.InvalidValue, "of a cloud alone"),
+])  # fmt: skip
 def test_what_a_scene_file_says_wrongly_of_them_is_refused(desk, change, error, says):
     with pytest.raises(error, match=says):
         load_scene(desk(**change))
@@ -265,11 +262,9 @@ def segment_to_points(points, a, b):
     return np.min([np.linalg.norm(points - place, axis=1) for place in places], axis=0)
 
 
-@pytest.mark.parametrize(
-    "shape",
-    [Box((0.2, 0.4, 0.1)), Sphere(0.2), Cylinder(0.1, 0.4), Capsule((0, 0.1, 0), (0.2, 0, 0.1), 0.1)],
-    ids=lambda shape: shape.kind,
-)
+@pytest.mark.parametrize("shape", [
+    Box((0.2, 0.4, 0.1)), Sphere(0.2), Cylinder(0.1, 0.4), Capsule((0, 0.1, 0), (0.2, 0, 0.1), 0.1),
+], ids=lambda shape: shape.kind)  # fmt: skip
 def test_distances_from_shapes_are_those_from_all_that_is_in_them(shape):
     rng = np.random.default_rng(5)
     shape = replace(shape, pose=Pose.from_rpy((0.1, -0.2, 0.3), (0.4, 0.5, 0.6)))

@@ -90,9 +90,6 @@ def test_the_two_backends_give_the_same_motions():
     np.testing.assert_array_equal(*verdicts)
 
 
-# ---- words
-
-
 def test_explain_names_the_two_links_that_touch():
     world = five_joints()
     assert world.explain([0.0, -math.pi / 2, 3.0, 0.0, 0.0]) == "'base' touches 'forearm'"
@@ -134,9 +131,6 @@ def test_bodies_that_stand_in_contact_block_everything_and_are_named():
     assert not world.valid(np.zeros((3, 6))).any()
     assert not world.motion_valid(np.zeros((3, 6)), np.ones((3, 6))).any()
     assert world.explain(np.zeros(6)) == "'base' touches 'post'"
-
-
-# ---- limits
 
 
 def test_outside_the_limits_nothing_is_free_however_far():
@@ -205,9 +199,6 @@ def test_a_world_can_be_sent_to_another_process():
     q = world.space.from_cube(np.random.default_rng(3).random((200, 5)))
     for sent in (pickle.loads(pickle.dumps(world)), copy.deepcopy(world)):
         np.testing.assert_array_equal(sent.valid(q), world.valid(q))
-
-
-# ---- values that are refused
 
 
 @pytest.mark.parametrize(("changes", "error", "words"), [

@@ -137,15 +137,12 @@ def test_what_is_attached_twice_or_to_nothing_is_refused():
     refused(InvalidValue, "must be a Shape, got 'box'", UR5.holding, "box", "tool0")
 
 
-@pytest.mark.parametrize(
-    ("entry", "match"),
-    [
-        ("{shape: box, size: [1, 1, 1]}", "must have the link that carries it"),
-        ("{shape: box, size: [1, 1, .nan], link: tool0}", "must be"),
-        ("{shape: cone, link: tool0}", "unknown shape of attached 'crate'"),
-        ("{shape: sphere, radius: 0.1, link: tool0, touches: wrist}", "must be a list of links and obstacles"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("entry", "match"), [
+    ("{shape: box, size: [1, 1, 1]}", "must have the link that carries it"),
+    ("{shape: box, size: [1, 1, .nan], link: tool0}", "must be"),
+    ("{shape: cone, link: tool0}", "unknown shape of attached 'crate'"),
+    ("{shape: sphere, radius: 0.1, link: tool0, touches: wrist}", "must be a list of links and obstacles"),
+])  # fmt: skip
 def test_what_is_wrong_with_an_attached_object_is_said(tmp_path, entry, match):
     (tmp_path / "pick.yaml").write_text(f"obstacles: {{}}\nattach:\n  crate: {entry}\n")
     refused((InvalidValue, UnknownName), match, load_scene, tmp_path / "pick.yaml")

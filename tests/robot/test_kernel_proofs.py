@@ -189,9 +189,6 @@ def test_explain_is_that_of_the_world_inside():
     assert CertifiedWorld(IN_BOX).explain(q) == IN_BOX.explain(q)
 
 
-# ---- the strict check of a path that is handed out
-
-
 class Careless(FunctionWorld):
     """A world without a strict check: there is something to find then."""
 

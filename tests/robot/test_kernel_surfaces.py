@@ -208,11 +208,9 @@ def test_it_is_told_which_link_touches_which_cloud():
     assert "it is free" not in said
 
 
-@pytest.mark.parametrize(
-    ("robot", "body"),
-    [(ur5(), PointCloud([[0.0, 0.0, 0.0]], 0.1)), (thin(ur5()), Mesh(ball(0, 0, 0, 1.0)))],
-    ids=["a cloud", "inside of a mesh"],
-)
+@pytest.mark.parametrize(("robot", "body"), [
+    (ur5(), PointCloud([[0.0, 0.0, 0.0]], 0.1)), (thin(ur5()), Mesh(ball(0, 0, 0, 1.0))),
+], ids=["a cloud", "inside of a mesh"])  # fmt: skip
 def test_what_does_not_move_is_looked_at_once(robot, body):
     scene = Scene((Obstacle("wall", body),), name="one")
     world = ArmWorld(robot, scene)

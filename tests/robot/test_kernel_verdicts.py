@@ -92,11 +92,9 @@ def following(multiplier):
     return replace(robot, joints=joints, group=(*robot.group[:3], *robot.group[4:]))
 
 
-@pytest.mark.parametrize(
-    "robot",
-    [ur5(100.0), ur5(1e4), ur5(1e6), following(30.0), following(-1000.0)],
-    ids=["16 turns", "1600 turns", "no limit", "mimic x30", "mimic x-1000"],
-)
+@pytest.mark.parametrize("robot", [
+    ur5(100.0), ur5(1e4), ur5(1e6), following(30.0), following(-1000.0),
+], ids=["16 turns", "1600 turns", "no limit", "mimic x30", "mimic x-1000"])  # fmt: skip
 def test_large_angles_cost_no_digits(robot):
     scene = random_scene(5)
     space = ArmWorld(robot, scene).space

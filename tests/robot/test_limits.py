@@ -84,9 +84,6 @@ def test_plan_arm_gives_the_status_and_texts_name_the_scene(tmp_path):
         er.plan(NARROW, FREE, "elbow_joint=2", robot=ur5())
 
 
-# ---- five printed decimals
-
-
 def written():
     """The UR5 with an elbow that ends at pi as it is written, and a wrist that ends at a value of five decimals."""
     return with_limits(ur5(), {"elbow_joint": (-WRITTEN, WRITTEN), "wrist_3_joint": (-2.70526, 2.70526)})

@@ -102,25 +102,21 @@ def test_bodies_of_the_user_take_the_place_of_a_links_own(tmp_path):
     assert [body.given for body in model.bodies] == [False, False, True]
 
 
-@pytest.mark.parametrize(
-    ("text", "kind", "says"),
-    [
-        ("ghost: [{centre: [0, 0, 0], radius: 1}]", UnknownName, "link in .*'ghost'; known: base"),
-        ("lower: [{centre: [0, 0, 0], radius: 1, colour: red}]", UnknownName, "'colour'; known: centre, radius"),
-        ("lower: [{a: [0, 0, 0], radius: 1}]", BrokenFile, "a body of link 'lower' in .* lacks b"),
-        ("lower: [{centre: [0, 0], radius: 1}]", InvalidValue, r"must be a list of 3 finite numbers, got \[0, 0\]"),
-        ("lower: [{centre: [0, 0, 0], radius: 0}]", InvalidValue, "radius of .* > 0, got 0.0"),
-        ("lower: [{centre: [0, 0, 0], radius: 1e-2}]", InvalidValue, "got '1e-2' .*decimal point"),
-        ("lower: []", InvalidValue, "has no body"),
-        ("lower: [{centre: [0, 0, 0], radius: 1}]\nlower: [{centre: [0, 0, 0], radius: 2}]\n", BrokenFile,
-            "bodies.yaml has the key 'lower' twice, in lines 1 and 2"),
-        ("lower: [{centre: [0, 0, 0], radius: 1, radius: 2}]", BrokenFile,
-            "has the key 'radius' twice, in lines 1 and 1"),
-        ("lower: 3", BrokenFile, "must have a list"),
-        ("hello", BrokenFile, "is not a file of bodies"),
-        ("a: [", BrokenFile, "is not YAML"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("text", "kind", "says"), [
+    ("ghost: [{centre: [0, 0, 0], radius: 1}]", UnknownName, "link in .*'ghost'; known: base"),
+    ("lower: [{centre: [0, 0, 0], radius: 1, colour: red}]", UnknownName, "'colour'; known: centre, radius"),
+    ("lower: [{a: [0, 0, 0], radius: 1}]", BrokenFile, "a body of link 'lower' in .* lacks b"),
+    ("lower: [{centre: [0, 0], radius: 1}]", InvalidValue, r"must be a list of 3 finite numbers, got \[0, 0\]"),
+    ("lower: [{centre: [0, 0, 0], radius: 0}]", InvalidValue, "radius of .* > 0, got 0.0"),
+    ("lower: [{centre: [0, 0, 0], radius: 1e-2}]", InvalidValue, "got '1e-2' .*decimal point"),
+    ("lower: []", InvalidValue, "has no body"),
+    ("lower: [{centre: [0, 0, 0], radius: 1}]\nlower: [{centre: [0, 0, 0], radius: 2}]\n", BrokenFile,
+        "bodies.yaml has the key 'lower' twice, in lines 1 and 2"),
+    ("lower: [{centre: [0, 0, 0], radius: 1, radius: 2}]", BrokenFile,
+        "has the key 'radius' twice, in lines 1 and 1"),
+    ("lower: 3", BrokenFile, "must have a list"), ("hello", BrokenFile, "is not a file of bodies"),
+    ("a: [", BrokenFile, "is not YAML"),
+])  # fmt: skip
 def test_bodies_that_are_wrong_are_named(tmp_path, text, kind, says):
     with pytest.raises(EvenroadError, match=says) as caught:
         load_robot(write(tmp_path, two_joints()), bodies=write(tmp_path, text, "bodies.yaml"))

@@ -76,15 +76,12 @@ def test_a_tool_of_shapes_collides_where_the_bare_arm_does_not():
     assert ArmWorld(arm, scene).explain(q[0]) == "'tool' touches 'ball'"
 
 
-@pytest.mark.parametrize(
-    ("make", "error", "says"),
-    [
-        (lambda: UR5.with_tool([Box((1, 1, 1))], at="hand"), UnknownName, "link of 'ur5': 'hand'; known: .*tool0"),
-        (lambda: UR5.with_tool([], at="tool0"), InvalidValue, "must have a body"),
-        (lambda: UR5.with_tool(UR5, at="tool0"), InvalidValue, "names of their links, both have .*prefix="),
-        (lambda: UR5.with_tool([PointCloud(np.zeros((1, 3)))], at="tool0"), InvalidValue, "cloud of 1 points"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("make", "error", "says"), [
+    (lambda: UR5.with_tool([Box((1, 1, 1))], at="hand"), UnknownName, "link of 'ur5': 'hand'; known: .*tool0"),
+    (lambda: UR5.with_tool([], at="tool0"), InvalidValue, "must have a body"),
+    (lambda: UR5.with_tool(UR5, at="tool0"), InvalidValue, "names of their links, both have .*prefix="),
+    (lambda: UR5.with_tool([PointCloud(np.zeros((1, 3)))], at="tool0"), InvalidValue, "cloud of 1 points"),
+])  # fmt: skip
 def test_a_tool_that_cannot_be_joined_is_refused(make, error, says):
     refused(error, says, make)
 

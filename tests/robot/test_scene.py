@@ -219,21 +219,18 @@ def test_a_capsule_as_an_obstacle_is_along_z_whatever_its_ends():
     assert Obstacle("ball", Capsule((1, 0, 0), (1, 0, 0), 0.1)).shape == "sphere"
 
 
-@pytest.mark.parametrize(
-    ("make", "error", "says"),
-    [
-        (lambda: Obstacle.of("x", "cone", (1.0,)), UnknownName, "box, capsule, cylinder, sphere"),
-        (lambda: Obstacle.of("x", "box", (1.0, 1.0)), InvalidValue, "obstacle 'x': a box must have 3"),
-        (lambda: Obstacle.of("x", "sphere", (-1.0,)), InvalidValue, "obstacle 'x': .* > 0, got -1"),
-        (lambda: Obstacle.of("x", "sphere", (1.0,), (0, np.inf, 0)), InvalidValue, "'x': xyz .*inf"),
-        (lambda: Obstacle.of("x", "sphere", (1.0,), (0, 0, 0), (2.0,) * 9), InvalidValue, "'x': rotation"),
-        (lambda: Obstacle("x", PointCloud(np.zeros((1, 3)), 0.0)), InvalidValue,
-            "radius of a cloud must be a finite number > 0"),
-        (lambda: Obstacle("x", Mesh("part.stl")), BrokenFile, "mesh part.stl is missing"),
-        (lambda: Obstacle("x", "box"), InvalidValue, "cylinder, capsule, cloud, mesh, got a box"),
-        (lambda: Obstacle("x", Sphere(1.0, link="hand")), InvalidValue, "not to a link, got 'hand'"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("make", "error", "says"), [
+    (lambda: Obstacle.of("x", "cone", (1.0,)), UnknownName, "box, capsule, cylinder, sphere"),
+    (lambda: Obstacle.of("x", "box", (1.0, 1.0)), InvalidValue, "obstacle 'x': a box must have 3"),
+    (lambda: Obstacle.of("x", "sphere", (-1.0,)), InvalidValue, "obstacle 'x': .* > 0, got -1"),
+    (lambda: Obstacle.of("x", "sphere", (1.0,), (0, np.inf, 0)), InvalidValue, "'x': xyz .*inf"),
+    (lambda: Obstacle.of("x", "sphere", (1.0,), (0, 0, 0), (2.0,) * 9), InvalidValue, "'x': rotation"),
+    (lambda: Obstacle("x", PointCloud(np.zeros((1, 3)), 0.0)), InvalidValue,
+        "radius of a cloud must be a finite number > 0"),
+    (lambda: Obstacle("x", Mesh("part.stl")), BrokenFile, "mesh part.stl is missing"),
+    (lambda: Obstacle("x", "box"), InvalidValue, "cylinder, capsule, cloud, mesh, got a box"),
+    (lambda: Obstacle("x", Sphere(1.0, link="hand")), InvalidValue, "not to a link, got 'hand'"),
+])  # fmt: skip
 def test_an_obstacle_that_is_not_sound_is_refused(make, error, says):
     with pytest.raises(error, match=says) as caught:
         make()
@@ -289,31 +286,28 @@ def test_two_scenes_share_nothing_that_can_change():
     assert second.states == {}
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: Scene("table.yaml"), "is read from its file by load_scene"),
-        (lambda: Scene([TABLE], obstacle=1), "states; did you mean 'obstacles'"),
-        (lambda: Scene([TABLE], obstacles=[TABLE]), "Scene is called as Scene(obstacles, *, name, allowed"),
-        (lambda: Scene("cell", [TABLE]), "Scene is called as Scene(obstacles, *, name, allowed"),
-        (lambda: Scene(["table"]), "er.Box((x, y, z), xyz=...)"),
-        (lambda: Scene([np.zeros(3)]), "er.Box((x, y, z), xyz=...)"),
-        (lambda: Scene("table", name="cell"), "must be a list of shapes"),
-        (lambda: Scene(7), "must be a list of shapes"),
-        (lambda: Scene([TABLE], name=3), "must be a text"),
-        (lambda: Scene([TABLE, TABLE]), "names of their own"),
-        (lambda: Scene({"obstacle": {}}), "obstacles"),
-        (lambda: Scene({"obstacles": {"can": {"shape": "tin"}}}), "obstacle 'can' in scene"),
-        (lambda: Scene({"obstacles": MAPPING}, limits={"a": (0, 1)}), "put limits into it"),
-        (lambda: Box((1, 1, 1), position=(0, 0, 0)), "known: link, name, pose, rpy, xyz, xyzw"),
-        (lambda: Box((1, 1, 1), xyz=(0, 0, 0), pose=Pose()), "got both"),
-        (lambda: Box((1, 1, 1), pose=(0, 0, 0)), "must be a Pose"),
-        (lambda: Box((1, 1)), "size of a box"),
-        (lambda: Capsule(0.1), "Capsule(radius, length)"),
-        (lambda: Capsule(0.1, 0.2, 0.3, 0.4), "each once"),
-        (lambda: Mesh(7), "vertices (v, 3)"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("call", "words"), [
+    (lambda: Scene("table.yaml"), "is read from its file by load_scene"),
+    (lambda: Scene([TABLE], obstacle=1), "states; did you mean 'obstacles'"),
+    (lambda: Scene([TABLE], obstacles=[TABLE]), "Scene is called as Scene(obstacles, *, name, allowed"),
+    (lambda: Scene("cell", [TABLE]), "Scene is called as Scene(obstacles, *, name, allowed"),
+    (lambda: Scene(["table"]), "er.Box((x, y, z), xyz=...)"),
+    (lambda: Scene([np.zeros(3)]), "er.Box((x, y, z), xyz=...)"),
+    (lambda: Scene("table", name="cell"), "must be a list of shapes"),
+    (lambda: Scene(7), "must be a list of shapes"),
+    (lambda: Scene([TABLE], name=3), "must be a text"),
+    (lambda: Scene([TABLE, TABLE]), "names of their own"),
+    (lambda: Scene({"obstacle": {}}), "obstacles"),
+    (lambda: Scene({"obstacles": {"can": {"shape": "tin"}}}), "obstacle 'can' in scene"),
+    (lambda: Scene({"obstacles": MAPPING}, limits={"a": (0, 1)}), "put limits into it"),
+    (lambda: Box((1, 1, 1), position=(0, 0, 0)), "known: link, name, pose, rpy, xyz, xyzw"),
+    (lambda: Box((1, 1, 1), xyz=(0, 0, 0), pose=Pose()), "got both"),
+    (lambda: Box((1, 1, 1), pose=(0, 0, 0)), "must be a Pose"),
+    (lambda: Box((1, 1)), "size of a box"),
+    (lambda: Capsule(0.1), "Capsule(radius, length)"),
+    (lambda: Capsule(0.1, 0.2, 0.3, 0.4), "each once"),
+    (lambda: Mesh(7), "vertices (v, 3)"),
+])  # fmt: skip
 def test_a_scene_that_is_none_is_told_what_to_write(call, words):
     with pytest.raises(EvenroadError) as error:
         call()

@@ -214,15 +214,12 @@ def groups_of(groups):
     )
 
 
-@pytest.mark.parametrize(
-    ("groups", "joints"),
-    [
-        # The arm, its hand, and both: the chain that is no gripper's.
-        ({"both": "shoulder elbow grip", "arm": "shoulder elbow", "hand": "grip"}, ("shoulder", "elbow")),
-        ({"forearm": "elbow", "arm": "shoulder elbow", "manipulator": "shoulder elbow"}, ("shoulder", "elbow")),
-        ({"both": "shoulder grip", "hand": "grip"}, ("grip",)),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("groups", "joints"), [
+    # The arm, its hand, and both: the chain that is no gripper's.
+    ({"both": "shoulder elbow grip", "arm": "shoulder elbow", "hand": "grip"}, ("shoulder", "elbow")),
+    ({"forearm": "elbow", "arm": "shoulder elbow", "manipulator": "shoulder elbow"}, ("shoulder", "elbow")),
+    ({"both": "shoulder grip", "hand": "grip"}, ("grip",)),
+])  # fmt: skip
 def test_of_several_groups_the_longest_chain_is_the_arm(read, groups, joints):
     arm, srdf = read(groups_of(groups))
     assert choose_group(arm, srdf, None) == joints

@@ -54,24 +54,21 @@ def test_a_joint_that_is_not_named_stays_within_its_limits(tmp_path):
     np.testing.assert_array_equal(configuration(load_robot(write(tmp_path, text)), "a=0.5"), [0.5, 0.2])
 
 
-@pytest.mark.parametrize(
-    ("text", "kind", "says"),
-    [
-        ("0,0,3.5,0,0,0", InvalidValue,
-            "puts joint 'elbow_joint' at 3.5 rad, 0.358 rad outside its limits .-3.14159, 3.14159."),
-        ("elbow_joint=-4", InvalidValue, "joint 'elbow_joint' at -4 rad, 0.858 rad outside"),
-        ("0,0,0", InvalidValue, "has 6 numbers, shoulder_pan_joint,.*; got 3 in '0,0,0'"),
-        ("0,0,0,0,0,nan", InvalidValue, "joint 'wrist_3_joint' must be a finite number, got 'nan'"),
-        ("0,0,x,0,0,0", InvalidValue, "joint 'elbow_joint' must be a finite number, got 'x'"),
-        ("elbow_joint=x", InvalidValue, "got 'x'"),
-        ("elbow_joint=1,elbow_joint=2", InvalidValue, "given twice"),
-        ("elbow_joint=1,2", InvalidValue, "'2' is not of the form name=value"),
-        ("knee=1", UnknownName, "joint of 'ur5': 'knee'; known: elbow_joint"),
-        ("hom", UnknownName,
-            "unknown state 'hom'; known: home, zero; did you mean 'home'.; or give 6 numbers: shoulder_pan_joint,"),
-        ("", InvalidValue, "must not be empty"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("text", "kind", "says"), [
+    ("0,0,3.5,0,0,0", InvalidValue,
+        "puts joint 'elbow_joint' at 3.5 rad, 0.358 rad outside its limits .-3.14159, 3.14159."),
+    ("elbow_joint=-4", InvalidValue, "joint 'elbow_joint' at -4 rad, 0.858 rad outside"),
+    ("0,0,0", InvalidValue, "has 6 numbers, shoulder_pan_joint,.*; got 3 in '0,0,0'"),
+    ("0,0,0,0,0,nan", InvalidValue, "joint 'wrist_3_joint' must be a finite number, got 'nan'"),
+    ("0,0,x,0,0,0", InvalidValue, "joint 'elbow_joint' must be a finite number, got 'x'"),
+    ("elbow_joint=x", InvalidValue, "got 'x'"),
+    ("elbow_joint=1,elbow_joint=2", InvalidValue, "given twice"),
+    ("elbow_joint=1,2", InvalidValue, "'2' is not of the form name=value"),
+    ("knee=1", UnknownName, "joint of 'ur5': 'knee'; known: elbow_joint"),
+    ("hom", UnknownName,
+        "unknown state 'hom'; known: home, zero; did you mean 'home'.; or give 6 numbers: shoulder_pan_joint,"),
+    ("", InvalidValue, "must not be empty"),
+])  # fmt: skip
 def test_what_is_no_configuration_is_refused_in_one_line(ur5, text, kind, says):
     with pytest.raises(EvenroadError, match=says) as caught:
         configuration(ur5, text)

@@ -135,13 +135,10 @@ def test_a_body_that_is_flat_is_thin_and_not_left_out(tmp_path):
     assert [note.partition(" is ")[2] for note in robot.notes] == ["taken as 1e-06 m thick"] * 2
 
 
-@pytest.mark.parametrize(
-    ("inside", "limits", "says"),
-    [
-        ("<limit effort='1' velocity='1'/>", (0.0, 0.0), "has no lower and upper limit: 0 by .*, so that it cannot"),
-        ("<limit lower='-1' effort='1' velocity='1'/>", (-1.0, 0.0), "has no upper limit: 0 by the specification$"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("inside", "limits", "says"), [
+    ("<limit effort='1' velocity='1'/>", (0.0, 0.0), "has no lower and upper limit: 0 by .*, so that it cannot"),
+    ("<limit lower='-1' effort='1' velocity='1'/>", (-1.0, 0.0), "has no upper limit: 0 by the specification$"),
+])  # fmt: skip
 def test_limits_that_are_not_given_are_0_as_the_specification_says(tmp_path, inside, limits, says):
     text = urdf(link("x"), link("y"), joint("a", "x", "y", inside=inside))
     robot = read_urdf(write(tmp_path, text))

@@ -174,19 +174,16 @@ def with_last(row, **changes):
     return *row[:-1], replace(row[-1], **changes)
 
 
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        (lambda r: with_group(r, r.group[:2]),
-            "for another group of .* without elbow_joint among its joints of the group"),
-        (lambda r: r.with_tool([Capsule((0, 0, 0), (0, 0, 0.1), 0.02)], "wrist3"), "with tool among its links"),
-        (lambda r: replace(r, pairs=r.pairs[1:]), "among its tested pairs"),
-        (lambda r: replace(r, held={"wrist_1_joint": 1.0}), "'wrist_1_joint' was held at 0, now at 1"),
-        (lambda r: replace(r, capsules=r.capsules[:-1]), r"'wrist3' differ: it had 1, .*; this one has none"),
-        (lambda r: replace(r, capsules=with_last(r.capsules, radius=0.2)), "one has 1, a capsule of radius 0.2 from"),
-        (lambda r: replace(r, joints=with_last(r.joints, xyz=(0, 0, 0.1))), r"'wrist_3_joint' had xyz \(.*\), now \("),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("change", "said"), [
+    (lambda r: with_group(r, r.group[:2]),
+        "for another group of .* without elbow_joint among its joints of the group"),
+    (lambda r: r.with_tool([Capsule((0, 0, 0), (0, 0, 0.1), 0.02)], "wrist3"), "with tool among its links"),
+    (lambda r: replace(r, pairs=r.pairs[1:]), "among its tested pairs"),
+    (lambda r: replace(r, held={"wrist_1_joint": 1.0}), "'wrist_1_joint' was held at 0, now at 1"),
+    (lambda r: replace(r, capsules=r.capsules[:-1]), r"'wrist3' differ: it had 1, .*; this one has none"),
+    (lambda r: replace(r, capsules=with_last(r.capsules, radius=0.2)), "one has 1, a capsule of radius 0.2 from"),
+    (lambda r: replace(r, joints=with_last(r.joints, xyz=(0, 0, 0.1))), r"'wrist_3_joint' had xyz \(.*\), now \("),
+])  # fmt: skip
 def test_another_robot_is_refused_with_what_differs(roadmap, change, said):
     refused(InvalidValue, said, within, roadmap, TABLE, change(ur5(joints=3)))
 

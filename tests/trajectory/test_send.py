@@ -180,10 +180,9 @@ def test_nothing_moves_unless_the_robot_runs(there, mode):
     assert (arm.places, "control" in arm.calls) == ([], False)
 
 
-@pytest.mark.parametrize(
-    ("options", "asked", "said"),
-    [({"model": "UR10"}, {}, "is a UR10, not a UR5"), ({}, {"fastest": 0.01}, "faster than the 0.01 rad/s allowed")],
-)
+@pytest.mark.parametrize(("options", "asked", "said"), [
+    ({"model": "UR10"}, {}, "is a UR10, not a UR5"), ({}, {"fastest": 0.01}, "faster than the 0.01 rad/s allowed"),
+])  # fmt: skip
 def test_another_arm_is_not_moved_nor_faster_than_allowed(there, options, asked, said):
     arm = there(**options)
     refused(InvalidValue, said, sent, make_trajectory([START, np.add(START, 0.02 * np.eye(6)[1])], LIMITS), **asked)

@@ -49,9 +49,6 @@ def test_the_text_of_an_error_names_the_place():
     refused(InvalidValue, "b must be finite", world.motion_valid, q, wrong)
 
 
-# ---- walls and gaps
-
-
 @pytest.mark.parametrize("radius", [1e-9, 0.1, 0.5, 3.0])
 @pytest.mark.parametrize("angle", np.linspace(0.0, 1.4, 15))
 def test_a_wall_one_pixel_thick_stops_a_motion(radius, angle):
@@ -97,9 +94,6 @@ def test_a_motion_along_a_grid_line_between_two_walls_is_blocked_and_beside_one_
     assert not world.motion_valid([[20.0, 20.0]], [[40.0, 20.0]])[0]
     assert world.motion_valid([[20.0, 21.25]], [[40.0, 21.25]])[0]
     assert world.motion_valid([[20.0, 22.0]], [[40.0, 22.0]])[0]
-
-
-# ---- touching
 
 
 def test_a_disk_that_just_touches_a_wall_is_free():
@@ -155,9 +149,6 @@ def test_a_corner_that_is_passed_just_before_a_long_motion_ends_blocks_it(angle,
         assert world.motion_valid([start, end], [end, start]).tolist() == [free, free]
 
 
-# ---- the map's extent
-
-
 def test_outside_the_map_nothing_is_free():
     world = GridMap(empty()).world(0.001)
     outside = [[-1.0, 5.0], [5.0, -1e-9], [60.0, 5.0], [5.0, 40.5], [1e300, 1e300], [0.0, 0.0], [60.0, 40.0]]
@@ -194,9 +185,6 @@ def test_motions_too_short_to_measure_are_as_free_as_their_ends():
         np.testing.assert_array_equal(world.motion_valid(a, a + step), world.valid(a) & world.valid(a + step))
 
 
-# ---- distance and nearest point
-
-
 def test_the_distance_is_from_the_disk_to_the_nearest_obstacle_and_negative_where_it_overlaps():
     world = GridMap(with_cells(empty(), (20, 30))).world(1.0)
     q = [[30.5, 15.0], [27.0, 16.0], [3.0, 20.0], [30.5, 20.5], [-5.0, 1.0], [30.0, 15.0]]
@@ -227,9 +215,6 @@ def test_distance_agrees_with_the_oracle():
         q = rng.random((8, 2)) * [cols, rows]
         expected = [distance_to_obstacles(p, p, occupied) - 1.0 for p in q.tolist()]
         np.testing.assert_allclose(GridMap(occupied).world(1.0).distance(q), expected, atol=1e-12)
-
-
-# ---- bad input
 
 
 @pytest.mark.parametrize("radius", [0, 0.0, -1.0, math.nan, math.inf, "6", None, True])

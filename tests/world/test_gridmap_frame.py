@@ -123,10 +123,9 @@ def test_a_map_keeps_a_read_only_copy_of_its_cells():
         grid.occupied[0, 0] = True
 
 
-@pytest.mark.parametrize(
-    "occupied",
-    [np.zeros((0, 3), np.bool_), np.zeros(4, np.bool_), np.zeros((2, 2), np.uint8), np.zeros((2, 2, 2), np.bool_)],
-)
+@pytest.mark.parametrize("occupied", [
+    np.zeros((0, 3), np.bool_), np.zeros(4, np.bool_), np.zeros((2, 2), np.uint8), np.zeros((2, 2, 2), np.bool_),
+])  # fmt: skip
 def test_cells_that_are_no_boolean_image_are_refused(occupied):
     refused(InvalidValue, "boolean array", GridMap, occupied)
 

@@ -32,9 +32,6 @@ def png_header(columns, rows):
     return b"\x89PNG\r\n\x1a\n" + chunk + struct.pack(">I", 1000) + b"IDAT"
 
 
-# ---- which pixels are obstacles
-
-
 def test_dark_pixels_are_obstacles_and_the_limit_of_dark_can_be_moved(tmp_path):
     grid = load_image(saved(tmp_path, grey(0, 127, 128, 255)))
     assert grid.occupied.tolist() == [[True, True, False, False]]
@@ -97,18 +94,13 @@ def test_sixteen_bit_greys_keep_their_depth(tmp_path):
         assert load_image(path).occupied.tolist() == [[True, True, False, False]]
 
 
-@pytest.mark.parametrize(
-    "content",
-    [b"P2\n# drawn by hand\n4 1\n255\n0 127 128 255\n", b"P5 4 1 255\n\x00\x7f\x80\xff"],
-    ids=["ascii", "binary"],
-)
+@pytest.mark.parametrize("content", [
+    b"P2\n# drawn by hand\n4 1\n255\n0 127 128 255\n", b"P5 4 1 255\n\x00\x7f\x80\xff",
+], ids=["ascii", "binary"])  # fmt: skip
 def test_both_kinds_of_pgm_are_read(tmp_path, content):
     path = tmp_path / "map.pgm"
     path.write_bytes(content)
     assert load_map(path).occupied.tolist() == [[True, True, False, False]]
-
-
-# ---- files that are refused
 
 
 def assert_refused(path, *words):

@@ -43,9 +43,6 @@ def row(*levels, dtype=np.uint8):
     return np.array([levels], dtype=dtype)
 
 
-# ---- what a pixel means
-
-
 def test_trinary_is_the_default_and_has_map_servers_usual_levels(tmp_path):
     # 0, 205 and 254 are what map_saver writes; 89 and 90 lie on both sides of occupancy 0.65.
     path = written(tmp_path, row(0, 89, 90, 205, 206, 254, 255))
@@ -123,9 +120,6 @@ def test_every_grey_level_agrees_with_the_rule_written_out(tmp_path):
         assert verdicts(path) == expected
 
 
-# ---- where the map lies
-
-
 def test_the_frame_is_the_files(tmp_path):
     grid = load_map(written(tmp_path, np.zeros((4, 6), np.uint8), origin="[-1, 2.5, 0.3]"))
     assert (grid.frame.origin, grid.frame.yaw, grid.frame.resolution) == ((-1.0, 2.5), 0.3, 0.05)
@@ -153,9 +147,6 @@ def test_the_files_of_a_map_are_its_own_and_its_image(tmp_path):
     path = written(tmp_path, None, image="pictures/office.pgm")
     assert map_files(path) == (path, tmp_path / "pictures" / "office.pgm")
     assert map_files(tmp_path / "maze.png") == (tmp_path / "maze.png",)
-
-
-# ---- files that are refused
 
 
 def refusal(path, kind):
@@ -226,9 +217,6 @@ def test_a_file_that_is_no_yaml_mapping_with_keys_of_text_is_refused(tmp_path, c
 def test_a_missing_yaml_file_or_image_is_named(tmp_path):
     assert "nowhere.yaml" in refusal(tmp_path / "nowhere.yaml", BrokenFile)
     assert "gone.png: No such file" in refusal(written(tmp_path, row(0), image="gone.png"), BrokenFile)
-
-
-# ---- maps that ship
 
 
 def test_shipped_maps_are_found_by_name_and_a_file_of_that_name_goes_before_them(tmp_path, monkeypatch):

@@ -143,11 +143,9 @@ def test_boxes_that_are_none_are_refused():
     refused(InvalidValue, "shell", shell, FLAT_ELL[0])
 
 
-@pytest.mark.parametrize(
-    "space",
-    [BoxSpace([0], [1]), JointSpace([0, 0], [1, 1]), Product([Circle(), BoxSpace([0, 0], [1, 1])]), SO3()],
-    ids=["1-D", "joints", "heading first", "rotations"],
-)
+@pytest.mark.parametrize("space", [
+    BoxSpace([0], [1]), JointSpace([0, 0], [1, 1]), Product([Circle(), BoxSpace([0, 0], [1, 1])]), SO3(),
+], ids=["1-D", "joints", "heading first", "rotations"])  # fmt: skip
 def test_spaces_that_no_body_moves_in_are_refused(space):
     refused(InvalidValue, "space must be", SolidWorld, space, ELL, [], 0.1)
 
