@@ -4,6 +4,6 @@ import pytest
 
 
 def refused(error, says, call, *arguments, **keywords):
-    """See that a call raises the error, whose text matches."""
-    with pytest.raises(error, match=says):
+    """See that a call raises the error, and that its text matches where one is given."""
+    with pytest.raises(error, match=says or None):
         call(*arguments, **keywords)

@@ -2,34 +2,22 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
-from tools import run_pages
+from tools import run_examples, run_pages
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
+EXAMPLES = {path.name: path for path in run_examples.EXAMPLES}
 
 
-def _run(name, folder):
-    done = subprocess.run([sys.executable, EXAMPLES / name], cwd=folder, capture_output=True, text=True)
+@pytest.mark.parametrize(("name", "package"), [("09_with_ompl.py", "ompl"), ("10_with_klampt.py", "klampt")])
+def test_an_example_prints_what_its_page_shows_and_leaves_nothing(tmp_path, name, package):
+    pytest.importorskip(package)
+    done = subprocess.run([sys.executable, EXAMPLES[name]], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-def test_with_ompl(tmp_path):
-    pytest.importorskip("ompl")
-    said = _run("09_with_ompl.py", tmp_path)
-    assert "RRT-Connect: no path" not in said
-    prm = next(line for line in said.splitlines() if line.startswith("OMPL's PRM")).split(":")
-    assert prm[1].split(";")[0].strip() == prm[2].strip(), "the same roadmap, so the same length"
-    assert "proof: resolution" in said
-
-
-def test_with_klampt(tmp_path):
-    pytest.importorskip("klampt")
-    said = _run("10_with_klampt.py", tmp_path)
-    assert "even points: no path" not in said
-    assert "a RobotTrajectory of" in said
+    assert run_examples.words(done.stdout) == run_examples.shown(EXAMPLES[name]), run_examples.ANEW
+    assert ": no path" not in done.stdout
+    assert "proof: resolution" in done.stdout
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_page_runs(tmp_path, monkeypatch):

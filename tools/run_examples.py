@@ -22,6 +22,7 @@ SHOWN = ROOT / "docs" / "examples"
 START = {"start_map": ("map.md", "hall-plan.png"), "start_arm": ("arm.md", "desk.png")}
 """Picture -> the page below docs/start that draws it, and under which name."""
 WIDTH = 1000
+ANEW = "python tools/run_examples.py keeps it anew"
 COLOURS = 64
 
 
@@ -39,6 +40,16 @@ def keep(picture: Path, name: str) -> None:
 def missing(script: Path) -> list[str]:
     """Return the packages of extras that an example needs and that are not installed."""
     return [name for name in re.findall(r"extra `(\w+)`", script.read_text()) if find_spec(name) is None]
+
+
+def words(text: str) -> set[str]:
+    """Return the words of what was printed, without the figures, which other processors round otherwise."""
+    return set(re.findall(r"[a-z]{3,}", text))
+
+
+def shown(script: Path) -> set[str]:
+    """Return the words of what is kept of an example."""
+    return words((SHOWN / f"{script.stem}.txt").read_text())
 
 
 def run_example(script: Path) -> None:
