@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from tools import run_examples, run_pages
+from tools.run_examples import EXAMPLES
 from tools.run_pages import INSTEAD, ROOT
 
 PAGES = run_pages.pages()
@@ -120,9 +121,7 @@ LEAVES = {
 
 
 # Those that need an extra, whose C++ prints past Python, run in tests_peers/test_adapter_examples.py.
-@pytest.mark.parametrize(
-    "path", [path for path in run_examples.EXAMPLES if "; extra `" not in path.read_text()], ids=_named
-)
+@pytest.mark.parametrize("path", [each for each in EXAMPLES if "; extra `" not in each.read_text()], ids=_named)
 def test_the_example_runs_and_prints_what_its_page_shows(path, capsys):
     runpy.run_path(str(path), run_name="__main__")
     left = {str(each) for each in Path().rglob("*") if each.is_file()}
