@@ -14,32 +14,32 @@ from evenroad.roadmap import Budget
 from evenroad.roadmap.query import as_start_and_goals
 
 
-def solve(planner, world, start, goal, *, rng=0, shorten=True, budget=None):
+def solve(planner, world, start, goal, *, rng=0, smooth=True, budget=None):
     """Let a planner find a path."""
     first, goals = as_start_and_goals(start, goal, world.space)
     budget = Budget(seconds=planner.seconds) if budget is None else budget
-    how = dict(budget=budget, smooth=shorten, rng=rng, connector=connector_of(world))
+    how = dict(budget=budget, smooth=smooth, rng=rng, connector=connector_of(world))
     return planner.solve(Problem(world, first, goals, **how))
 
 
-def plan_on(world, start, goal, points, *, by=PRM, shorten=True, budget=None, **options):
+def plan_on(world, start, goal, points, *, by=PRM, smooth=True, budget=None, **options):
     """Plan with all edges checked, unless told otherwise."""
     if by is PRM:
         options = {"search": "full"} | options
-    return solve(by(points, **options), world, start, goal, shorten=shorten, budget=budget)
+    return solve(by(points, **options), world, start, goal, smooth=smooth, budget=budget)
 
 
 fmt_on = partial(plan_on, by=FMT)
 
 
-def plan_growing(world, start, goal, sampler=None, *, rng=0, shorten=True, budget=None, **options):
+def plan_growing(world, start, goal, sampler=None, *, rng=0, smooth=True, budget=None, **options):
     """Plan with more and more points."""
-    return solve(GrowingPRM(sampler, **options), world, start, goal, rng=rng, shorten=shorten, budget=budget)
+    return solve(GrowingPRM(sampler, **options), world, start, goal, rng=rng, smooth=smooth, budget=budget)
 
 
-def find_path(world, start, goal, *, budget=None, shorten=True):
+def find_path(world, start, goal, *, budget=None, smooth=True):
     """Plan without a number of points."""
-    return solve(default_planner(world), world, start, goal, shorten=shorten, budget=budget)
+    return solve(default_planner(world), world, start, goal, smooth=smooth, budget=budget)
 
 
 def may_connect(world, a, b):

@@ -122,7 +122,7 @@ def claims(d: int, number: int, kind: str, rules: dict[str, list[Rule]]) -> Iter
         exists = world.leads(start, goal, beta)
         optima = [(s * beta, world.optimum(start, goal, s * beta)) for s in SHARES]
         for rule in rules[sampler]:
-            options: dict[str, Any] = dict(rule=rule, shorten=False, certify=True, budget=Budget(seconds=None))
+            options: dict[str, Any] = dict(rule=rule, smooth=False, certify=True, budget=Budget(seconds=None))
             result = plan(world, start, goal, PRM(points, search="lazy"), **options)
             certificate = result.certificate
             assert certificate is not None

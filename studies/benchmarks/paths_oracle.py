@@ -111,7 +111,7 @@ def compare(kind: str, wanted: int, most_seconds: float) -> list[list[object]]:
             for planner in planners_of(world):
                 row = rows.setdefault(planner, Row())
                 row.queries += 1
-                result = PLANNERS[planner](world, start, goal, shorten=True)
+                result = PLANNERS[planner](world, start, goal, smooth=True)
                 if not result.solved or len(result.milestone_path) < 3:
                     # None, or straight at once.
                     continue

@@ -26,11 +26,11 @@ def test_each_stage_finds_what_a_fresh_plan_with_its_points_finds(seed, free, ru
     world = ChanceWorld(seed, 0.8, free)
     grown = plan_growing(
         world, START, GOAL, sampler, first=8, until="budget", budget=Budget(samples=50), rng=seed, rule=rule,
-        shorten=False,
+        smooth=False,
     )  # fmt: skip
     assert [stage.points for stage in grown.stages] == [8, 16, 32, 50]
     fresh = [
-        plan_on(ChanceWorld(seed, 0.8, free), START, GOAL, sampler.draw(n, 2, rng=seed), rule=rule, shorten=False)
+        plan_on(ChanceWorld(seed, 0.8, free), START, GOAL, sampler.draw(n, 2, rng=seed), rule=rule, smooth=False)
         for n in (8, 16, 32, 50)
     ]
     for stage, result in zip(grown.stages, fresh, strict=True):
@@ -54,7 +54,7 @@ def test_no_motion_is_checked_twice_over_all_stages():
                 asked.add(key)
             return super().motion_valid(a, b)
 
-    result = plan_growing(Once(3, 0.8, 0.5), START, GOAL, until="budget", budget=Budget(samples=256), shorten=False)
+    result = plan_growing(Once(3, 0.8, 0.5), START, GOAL, until="budget", budget=Budget(samples=256), smooth=False)
     assert len(asked) == result.counts["edges_checked"]
 
 
@@ -69,7 +69,7 @@ def test_it_stops_with_the_first_path():
 
 def test_it_stops_when_the_path_has_settled():
     maze = load_maze(2)
-    result = plan_growing(maze.world(), maze.start, maze.goal, until="settled", shorten=False)
+    result = plan_growing(maze.world(), maze.start, maze.goal, until="settled", smooth=False)
     costs = [stage.cost for stage in result.stages if stage.cost is not None]
     assert result.cost == pytest.approx(min(costs))
     assert min(costs) >= 0.99 * min(costs[:-1])
@@ -99,9 +99,9 @@ def test_a_budget_is_kept_to_and_named(budget, points, asked):
 
 def test_a_path_that_was_found_before_the_budget_was_spent_is_the_answer():
     world = ChanceWorld(2, 0.8, 0.6)
-    early = plan_growing(world, START, GOAL, first=16, shorten=False)
+    early = plan_growing(world, START, GOAL, first=16, smooth=False)
     checks = early.counts["edges_checked"] + 1
-    late = plan_growing(world, START, GOAL, first=16, until="budget", budget=Budget(motions=checks), shorten=False)
+    late = plan_growing(world, START, GOAL, first=16, until="budget", budget=Budget(motions=checks), smooth=False)
     assert late.solved
     assert late.cost <= early.cost
     assert late.counts["edges_checked"] <= checks

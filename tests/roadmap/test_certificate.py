@@ -94,7 +94,7 @@ def test_the_printed_factor_would_make_paths_shorter_than_straight_lines():
     assert 1 / (alpha - 1) < 1
     points = draw("cover", 128, 2)
     beta = certify(points, Radius(1.0), SQUARE).dispersion
-    how = dict(rule=Radius(2 * alpha * beta), shorten=False, certify=True, links=None)
+    how = dict(rule=Radius(2 * alpha * beta), smooth=False, certify=True, links=None)
     result = plan_on(OPEN, [0.05, 0.5], [0.95, 0.5], points, **how)
     assert result.milestone_cost > 0.9 / (alpha - 1)
     longest = result.certificate.longest(0.9, 1.0)
@@ -126,7 +126,7 @@ def test_no_claim_is_false_in_random_worlds(d, n, k, sampler):
         promised = certify(points, rule, space)
         for _ in range(15):
             world, (start, goal) = random_discs(rng, d), rng.random((2, d))
-            result = plan_on(world, start, goal, points, rule=rule, search="lazy", shorten=False, certify=True)
+            result = plan_on(world, start, goal, points, rule=rule, search="lazy", smooth=False, certify=True)
             if result.certificate is None:
                 assert result.status in (Status.START_INVALID, Status.GOAL_INVALID)
                 continue
@@ -171,7 +171,7 @@ def test_a_rule_that_is_not_known_is_certified_by_its_graph():
     points = draw("cover", 150, 2)
     world = random_discs(np.random.default_rng(1), 2)
     refused(NotAvailable, "promises nothing before the world is known", certify, points, Fewer(12), SQUARE)
-    result = plan_on(world, [0.01, 0.02], [0.98, 0.97], points, rule=Fewer(12), shorten=False, certify=True)
+    result = plan_on(world, [0.01, 0.02], [0.98, 0.97], points, rule=Fewer(12), smooth=False, certify=True)
     q = points.points[world.valid(points.points)]
     gap = least_gap(q, Fewer(12).edges(q, SQUARE))
     # Start and goal are among the neighbours, too, and take places.

@@ -30,7 +30,7 @@ def test_trees_join_what_the_roadmap_does_not():
     roadmap = known(world)
     alone = roadmap.plan(START, GOAL)
     assert alone.status == "not_connected"
-    joined = roadmap.plan(START, GOAL, shorten=False, connector=CELLS)
+    joined = roadmap.plan(START, GOAL, smooth=False, connector=CELLS)
     assert joined.solved
     assert joined.planner == "prm lazy, then cells"
     assert world.motion_valid(joined.path[:-1], joined.path[1:]).all()

@@ -72,7 +72,7 @@ def test_the_tree_is_that_of_the_papers_algorithm(seed, n, share, steps):
 @given(seed=st.integers(0, 10**6), rule=st.sampled_from([Radius(0.2), Radius(0.3)]))
 def test_with_nothing_in_the_way_and_a_radius_the_tree_finds_the_shortest_path(seed, rule):
     world, points = ChanceWorld(seed, 0.8, 1.0), draw("uniform", 60, 2, rng=seed)
-    shortest, tree = (planner(world, START, GOAL, points, rule=rule, shorten=False) for planner in (plan_on, fmt_on))
+    shortest, tree = (planner(world, START, GOAL, points, rule=rule, smooth=False) for planner in (plan_on, fmt_on))
     assert tree.status is shortest.status
     if tree.solved:
         assert tree.cost == pytest.approx(shortest.cost)
@@ -82,7 +82,7 @@ def test_with_nothing_in_the_way_and_a_radius_the_tree_finds_the_shortest_path(s
 @given(seed=st.integers(0, 10**6), free=st.floats(0.2, 1.0))
 def test_a_path_of_the_tree_is_free_and_not_shorter_than_the_shortest(seed, free):
     world, points = ChanceWorld(seed, 0.9, free), draw("uniform", 60, 2, rng=seed)
-    shortest, tree = (planner(world, START, GOAL, points, shorten=False) for planner in (plan_on, fmt_on))
+    shortest, tree = (planner(world, START, GOAL, points, smooth=False) for planner in (plan_on, fmt_on))
     assert tree.counts["edges_checked"] <= shortest.counts["edges_checked"]
     if tree.solved:
         assert shortest.solved

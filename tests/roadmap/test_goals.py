@@ -23,9 +23,9 @@ def test_several_goals_are_reached_at_the_cost_of_the_cheapest_one(seed, free, l
     world, points = ChanceWorld(seed, 0.8, free), draw("uniform", 40, 2, rng=seed)
     known = roadmap_of_points(world.space, points, KNearest(6)).within(world, lazy_milestones=lazy_milestones)
     # On a kept roadmap a goal's links do not depend on the other goals, so that each can be asked alone.
-    alone = [known.plan(START, goal, shorten=False) for goal in GOALS]
+    alone = [known.plan(START, goal, smooth=False) for goal in GOALS]
     costs = [np.inf if result.cost is None else result.cost for result in alone]
-    together = known.plan(START, GOALS, shorten=False)
+    together = known.plan(START, GOALS, smooth=False)
     assert together.solved == np.isfinite(min(costs))
     np.testing.assert_array_equal(together.goals, GOALS)
     if together.solved:
@@ -40,13 +40,13 @@ def test_several_goals_are_reached_at_the_cost_of_the_cheapest_one(seed, free, l
 @given(seed=st.integers(0, 10**6), free=st.floats(0.2, 0.9))
 def test_all_planners_take_several_goals_and_lazy_is_full(seed, free):
     world, points = ChanceWorld(seed, 0.8, free), draw("sobol", 40, 2, rng=seed)
-    full = plan_on(world, START, GOALS, points, shorten=False)
-    lazy = plan_on(world, START, GOALS, points, search="lazy", shorten=False)
+    full = plan_on(world, START, GOALS, points, smooth=False)
+    lazy = plan_on(world, START, GOALS, points, search="lazy", smooth=False)
     assert (full.status, full.cost, full.goal_index) == (lazy.status, lazy.cost, lazy.goal_index)
     if full.solved:
         assert full.path.tobytes() == lazy.path.tobytes()
     grown = plan_growing(world, START, GOALS, budget=Budget(samples=128))
-    tree = fmt_on(world, START, GOALS, points, shorten=False)
+    tree = fmt_on(world, START, GOALS, points, smooth=False)
     for result in (full, grown, tree):
         if result.solved:
             assert world.motion_valid(result.path[:-1], result.path[1:]).all()
@@ -88,7 +88,7 @@ def test_goals_that_are_none_are_refused_by_name(bad):
 @pytest.mark.parametrize("n", [200, 1000])
 def test_start_and_goals_are_linked_to_the_nearest_hundred_or_to_all_of_a_few(n):
     world, points = ChanceWorld(1, 1.0, 1.0), draw("sobol", n, 2)
-    free, plain = (plan_on(world, START, GOALS[:2], points, links=links, shorten=False) for links in (100, None))
+    free, plain = (plan_on(world, START, GOALS[:2], points, links=links, smooth=False) for links in (100, None))
     assert (free.links, plain.links) == (100, None)
     assert free.rule == plain.rule
     edges = free.roadmap.edges

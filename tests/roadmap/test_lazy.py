@@ -37,7 +37,7 @@ def queries(draw_value):
     world = ChanceWorld(seed, draw_value(st.sampled_from([1.0, 0.8])), draw_value(st.sampled_from([0.3, 0.6, 0.9])))
     cost = draw_value(st.sampled_from([None, _steps, _detour]))
     links = draw_value(st.sampled_from([None, 3, 100]))
-    return world, PointSet(points), dict(rule=rule, edge_cost=cost, links=links, shorten=False)
+    return world, PointSet(points), dict(rule=rule, edge_cost=cost, links=links, smooth=False)
 
 
 @settings(max_examples=150, deadline=None)
@@ -125,7 +125,7 @@ def test_with_costs_below_the_lengths_by_as_much_as_rounding_may_the_path_still_
 
     line = PointSet(np.stack([np.arange(1, 16) / 16, np.zeros(15)], axis=1))
     for seed in range(30):
-        options = dict(rule=Radius(0.3), edge_cost=below, shorten=False)
+        options = dict(rule=Radius(0.3), edge_cost=below, smooth=False)
         full, lazy = (
             plan_on(ChanceWorld(seed, 1.0, 0.6), (0.0, 0.0), (1.0, 0.0), line, search=search, **options)
             for search in ("full", "lazy")

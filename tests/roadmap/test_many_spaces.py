@@ -51,19 +51,19 @@ CASES = {
 def test_every_planner_works_in_every_space_and_lazy_equals_full(case, rule):
     world, start, goal, d = CASES[case]
     points = draw("sobol", 150, d, rng=1)
-    full = plan_on(world, start, goal, points, rule=rule, shorten=False)
+    full = plan_on(world, start, goal, points, rule=rule, smooth=False)
     counting = Counting(world)
-    lazy = plan_on(counting, start, goal, points, rule=rule, search="lazy", shorten=False)
+    lazy = plan_on(counting, start, goal, points, rule=rule, search="lazy", smooth=False)
     assert lazy.status is full.status
     assert lazy.counts["edges_checked"] == counting.motions <= full.counts["edges_checked"]
     assert lazy.counts["configurations_checked"] == counting.configurations
     if full.solved:
         assert lazy.path.tobytes() == full.path.tobytes()
         assert full.cost >= world.space.distance(full.start[None], full.goal[None])[0] * (1 - 1e-12)
-    tree = fmt_on(world, start, goal, points, rule=rule, shorten=False)
+    tree = fmt_on(world, start, goal, points, rule=rule, smooth=False)
     assert full.solved or not tree.solved
     known = roadmap_of_points(world.space, points, rule).within(world)
-    once, twice = (known.plan(start, goal, shorten=False) for _ in range(2))
+    once, twice = (known.plan(start, goal, smooth=False) for _ in range(2))
     assert once.status is twice.status
     if once.solved:
         assert once.path.tobytes() == twice.path.tobytes()

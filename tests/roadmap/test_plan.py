@@ -122,7 +122,7 @@ def test_the_path_begins_at_the_start_and_ends_at_the_goal_and_every_motion_is_f
 
 
 def test_without_shortcut_the_path_is_the_milestone_path():
-    result = plan_on(GAP.world(1.0), (2, 2), (2, 18), draw("halton", 200, 2), shorten=False)
+    result = plan_on(GAP.world(1.0), (2, 2), (2, 18), draw("halton", 200, 2), smooth=False)
     np.testing.assert_array_equal(result.path, result.milestone_path)
     assert "shortcut" not in result.timings
 
@@ -148,7 +148,7 @@ def test_a_query_of_the_wrong_kind_is_refused_by_name(bad):
 def test_shortcutting_never_lengthens_and_only_uses_free_motions(seed):
     random = np.random.default_rng(seed)
     world = GridMap(random.random((20, 20)) < 0.12).world(0.4)
-    result = plan_on(world, (0.5, 0.5), (19.5, 19.5), draw("uniform", 150, 2, rng=seed), shorten=False)
+    result = plan_on(world, (0.5, 0.5), (19.5, 19.5), draw("uniform", 150, 2, rng=seed), smooth=False)
     if not result.solved:
         return
     path, motions = shortcut(world, result.path)

@@ -79,9 +79,9 @@ def test_a_shortcut_still_shortens_and_never_takes_what_fails():
 def test_a_kept_roadmap_remembers_which_motions_failed_and_which_passed():
     world = GappyWorld(SLALOM)
     known = roadmap_of_points(world.space, draw("sobol", 512, 2, rng=0), KNearest(10)).within(world)
-    first = known.plan(START, GOAL, links=None, shorten=False)
+    first = known.plan(START, GOAL, links=None, smooth=False)
     asked, rechecked = world.asked_motions, world.rechecked
-    again = known.plan(START, GOAL, links=None, shorten=False)
+    again = known.plan(START, GOAL, links=None, smooth=False)
     assert again.path.tobytes() == first.path.tobytes()
     # Only the links of start and goal are new: at most ten each, and the motion between the two.
     assert world.rechecked - rechecked <= world.asked_motions - asked <= 21

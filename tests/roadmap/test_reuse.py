@@ -61,7 +61,7 @@ def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, 
     roadmap, world, queries = reuse
     known = roadmap.within(world, lazy_milestones=lazy_milestones)
     for start, goal in queries:
-        result = known.plan(start, goal, links=links, shorten=False)
+        result = known.plan(start, goal, links=links, smooth=False)
         expected = _cheapest(roadmap, world, start, goal, lazy_milestones, links)
         assert result.solved == np.isfinite(expected)
         if result.solved:
@@ -76,9 +76,9 @@ def test_an_answer_does_not_depend_on_what_was_asked_before(reuse, lazy_mileston
     roadmap, world, queries = reuse
     known = roadmap.within(world, lazy_milestones=lazy_milestones)
     for start, goal in queries:
-        late = known.plan(start, goal, shorten=False)
+        late = known.plan(start, goal, smooth=False)
         again = roadmap.within(world, lazy_milestones=lazy_milestones)
-        fresh = again.plan(start, goal, search=search, shorten=False)
+        fresh = again.plan(start, goal, search=search, smooth=False)
         assert late.status is fresh.status
         assert late.counts["edges_checked"] <= fresh.counts["edges_checked"]
         if late.solved:
@@ -92,9 +92,9 @@ def test_no_edge_of_the_roadmap_is_asked_about_twice():
     known = roadmap.within(world)
     assert world.asked_configurations == 64
     for _ in range(2):
-        known.plan(CORNERS[0], CORNERS[3], search="full", shorten=False)
+        known.plan(CORNERS[0], CORNERS[3], search="full", smooth=False)
     asked = world.asked_motions
-    again = known.plan(CORNERS[0], CORNERS[3], shorten=False)
+    again = known.plan(CORNERS[0], CORNERS[3], smooth=False)
     assert world.asked_motions - asked == again.counts["edges_checked"] <= 13
     assert again.counts["configurations_checked"] == 2
     states = known.evaluated
@@ -216,7 +216,7 @@ def test_a_roadmap_measures_its_edges_once_and_only_when_asked():
     known = [roadmap.within(world) for world in worlds]
     assert Ruled.measured == 0
     for one in known:
-        one.plan(*CORNERS[::3], shorten=False)
+        one.plan(*CORNERS[::3], smooth=False)
     # The edges once, and what each query measures of all milestones.
     assert len(roadmap.edges) <= Ruled.measured < 2 * len(roadmap.edges) + 3 * 3 * 300
     assert np.array_equal(roadmap.lengths, space.distance(*roadmap.milestones[roadmap.edges.T]))

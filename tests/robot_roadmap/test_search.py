@@ -181,7 +181,7 @@ def test_joints_of_very_many_turns_are_followed_over_some_of_them():
     known = arm_roadmap(world, 32, recipe=Recipe(0.0, 100)).within(world)
     start = np.array([-60.0, -1.5])
     for turned in (-20.0, 39.0, 70.0):
-        result = known.plan(start, [turned, -1.5], shorten=False)
+        result = known.plan(start, [turned, -1.5], smooth=False)
         assert result.solved
         assert known.world.validate(result.path).all()
         assert np.abs(np.diff(result.path[:, 0])).sum() >= turned - start[0] - 1e-9
@@ -232,16 +232,16 @@ def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_kept(ro
     monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.TRIED_MOTIONS", 1)
     known = within(roadmap)
     start, goal = far_apart(known)
-    first = known.plan(start, goal[0], shorten=False)
+    first = known.plan(start, goal[0], smooth=False)
     assert first.planner == "roadmap, then trees"
     assert known.world.validate(first.path).all()
     monkeypatch.undo()
     # Both are milestones now, and the way between them is proved; in another scene they are not.
-    second = known.plan(start, goal[0], shorten=False)
+    second = known.plan(start, goal[0], smooth=False)
     assert second.planner == "roadmap"
     assert second.counts["edges_checked"] < 10
     assert known.world.validate(second.path).all()
-    other = within(roadmap).plan(start, goal[0], shorten=False, trees=False)
+    other = within(roadmap).plan(start, goal[0], smooth=False, trees=False)
     assert not other.solved or other.counts["edges_checked"] > second.counts["edges_checked"]
 
 
@@ -260,7 +260,7 @@ def test_there_is_room_for_more_milestones_than_the_roadmap_has(roadmap, monkeyp
     monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.TRIED_MOTIONS", 1)
     known = within(roadmap)
     some = list(itertools.islice(hard(known), 6))
-    found = [known.plan(start, goal[0], shorten=False) for start, goal in some]
+    found = [known.plan(start, goal[0], smooth=False) for start, goal in some]
     assert all(result.solved for result in found)
     for (start, goal), result in zip(some, found, strict=True):
         again = known.connect(start, goal, greed=1.0)

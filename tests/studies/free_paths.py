@@ -44,7 +44,7 @@ def _several(world, start, goal, **options):
 
 
 def _arm(world, start, goal, **options):
-    return er.plan(world.scene, start, goal, robot=world.robot, smooth=options.pop("shorten", True), **options)
+    return er.plan(world.scene, start, goal, robot=world.robot, smooth=options.pop("smooth", True), **options)
 
 
 PLANNERS = {

@@ -30,7 +30,7 @@ def test_no_planner_hands_out_a_path_that_touches(name):
     seen = set()
     for start, goal in queries(world, 8):
         for planner in solved:
-            result = PLANNERS[planner](world, start, goal, shorten=True)
+            result = PLANNERS[planner](world, start, goal, smooth=True)
             if not result.solved:
                 continue
             solved[planner] += 1

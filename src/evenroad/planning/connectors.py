@@ -23,6 +23,9 @@ BEFORE_PROOF = 200_000
 BEFORE_QUICK_PROOF = 4_000
 """Number of motions after which a world with a quick proof tries it: most queries need fewer."""
 
+TIGHT = 500
+"""Number of batches of sixteen checks after which no waypoint of an arm's path slides any more."""
+
 _SPREADS = (32, 96)
 """Numbers of points along a disk's path that straightening may join, in coarse and in fine rounds."""
 
@@ -55,9 +58,10 @@ class ArmTrees:
         limits = dict(most_motions=most_motions, seconds=seconds)
         return arm_trees.connect(self.inside or world, start, goals, sequence=sequence, **limits)  # type: ignore[arg-type]
 
-    def smooth(self, world: ArmWorld, path: Floats) -> tuple[Floats, int]:
-        """See :func:`evenroad.planning.arm_trees.shorten`."""
-        return arm_trees.shorten(self.inside or world, path)
+    def smooth(self, world: ArmWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
+        """See :func:`evenroad.planning.arm_trees.smooth`; quickly by its :func:`shorten`."""
+        inside = self.inside or world
+        return arm_trees.shorten(inside, path) if quick else arm_trees.smooth(inside, path, batches=TIGHT)
 
 
 @dataclass(frozen=True)
@@ -89,7 +93,7 @@ class Cells:
         path, goal, nodes, motions = world.disk.find_path(first, last, most_motions)
         return Connection(path, goal, nodes, 0, motions)
 
-    def smooth(self, world: DiskWorld, path: Floats) -> tuple[Floats, int]:
+    def smooth(self, world: DiskWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and the number of checks."""
         points = as_batch("path", path, 2)
         return world.disk.straighten(points, _SPREADS) if len(points) > 1 else (points.copy(), 0)
@@ -109,7 +113,7 @@ class PlainTrees:
         """See :func:`evenroad.planning.plain_trees.grow_trees`."""
         return grow_trees(world, start, goals, variant=variant, most_motions=most_motions, seconds=seconds)
 
-    def smooth(self, world: World, path: Floats) -> tuple[Floats, int]:
+    def smooth(self, world: World, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """See :func:`evenroad.roadmap.shortcut.shortcut`."""
         return shortcut(world, path)
 

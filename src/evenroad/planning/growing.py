@@ -77,7 +77,7 @@ class GrowingPRM:
         query = Query(
             problem.start,
             problem.goals,
-            shorten=problem.smooth,
+            smooth=problem.smooth,
             edge_cost=self.edge_cost,
             links=self.links,
             budget=budget,

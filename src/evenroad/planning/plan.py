@@ -22,6 +22,7 @@ from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import require_certified
 from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.connector import Smooth
 from evenroad.roadmap.point_roadmap import Roadmap, WorldRoadmap
 from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.result import PlanResult, Status
@@ -38,7 +39,7 @@ class Options:
     """The options of a path that hold for every planner; see :func:`plan`."""
 
     budget: Budget = field(default_factory=lambda: Budget(seconds=RRTConnect.seconds))
-    smooth: bool = True
+    smooth: Smooth = True
     rng: RngLike = 0
     certified: bool = False
     straight: CartesianLine | None = None
@@ -53,7 +54,7 @@ def plan(
     *,
     seconds: float | None = None,
     limits: Budget | Mapping[str, int] | None = None,
-    smooth: bool = True,
+    smooth: Smooth = True,
     rng: RngLike = 0,
     certified: bool = False,
     straight: CartesianLine | None = None,
@@ -86,8 +87,9 @@ def plan(
     limits : mapping or Budget, optional
         Other limits: ``motions``, ``samples``, ``rounds``; integers >= 1.  With these the same call gives the same
         answer on every machine, unless the time runs out first.  A :class:`evenroad.roadmap.Budget` says the time, too.
-    smooth : bool
-        Whether the path is made shorter once it is found.
+    smooth : bool or "quick"
+        Whether the path is made shorter once it is found.  Waypoints of an arm slide along what they touch;
+        "quick": the path is cut short by straight motions alone, in less time.
     rng : int, SeedSequence or Generator
         Seed of what the planner draws; the same seed gives the same path.
     certified : bool
@@ -164,7 +166,7 @@ def solve(request: Request, planner: Planner | None, options: Options) -> PlanRe
         return replace(refused(request, status, given.unreached), timings={"goals": given.seconds})
     apart = None if given is None else given.apart(request.world, straight=straight is not None)
 
-    def plan_once(world: World, start: Floats, goals: Floats, smooth: bool) -> PlanResult:
+    def plan_once(world: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
         budget, connector = options.budget, connector_of(world)
         how = dict(budget=budget, smooth=smooth, rng=options.rng, apart=apart, connector=connector)
         problem = Problem(world, start, goals, **how)  # type: ignore[arg-type]

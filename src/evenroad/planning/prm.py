@@ -186,7 +186,7 @@ def _query(planner: _OnPoints, problem: Problem, **more: object) -> Query:
     return Query(
         problem.start,
         problem.goals,
-        shorten=problem.smooth,
+        smooth=problem.smooth,
         budget=problem.budget,
         apart=problem.apart,
         connector=connector_of(problem.world),

@@ -10,6 +10,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult, Status
+from evenroad.roadmap.connector import Smooth
 from evenroad.roadmap.result import make_result, require_start_and_goal
 from evenroad.robot import ArmWorld
 from evenroad.robot.cartesian_line import CartesianLine, Line, line_from
@@ -21,7 +22,7 @@ from evenroad.world import World
 LINES = 16
 """Largest number of goals, the nearest to which a straight line leads."""
 
-PlanOnce = Callable[[World, Floats, Floats, bool], PlanResult]
+PlanOnce = Callable[[World, Floats, Floats, Smooth], PlanResult]
 """A function that plans in a world from a start, (dim,), to goals, (g, dim), and shortens the path or not."""
 
 
@@ -42,7 +43,7 @@ def plan_tip_motion(
     upright: OrientationConstraint | None,
     plan: PlanOnce,
     *,
-    shorten: bool = True,
+    shorten: Smooth = True,
 ) -> PlanResult:
     """Plan with `plan` under the constraints of the tip, if there are any.
 
@@ -55,7 +56,7 @@ def plan_tip_motion(
     if (tilted := _tilted(request, world)) is not None:
         return tilted
 
-    def plan_with_orientation(_: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
+    def plan_with_orientation(_: World, start: Floats, goals: Floats, shorten: Smooth) -> PlanResult:
         return _through(world, plan(world, start, goals, False), shorten)
 
     return _between_lines(request, straight, plan_with_orientation, world, shorten)
@@ -73,11 +74,11 @@ def _tilted(request: Request, world: OrientationWorld) -> PlanResult | None:
     return None
 
 
-def _through(world: OrientationWorld, result: PlanResult, shorten: bool) -> PlanResult:
+def _through(world: OrientationWorld, result: PlanResult, shorten: Smooth) -> PlanResult:
     """Return a plan along upright milestones with all states of its path, and its largest tilt."""
     if result.path is None:
         return result
-    path, tilt = world.path_through(result.path, shorten=shorten)
+    path, tilt = world.path_through(result.path, shorten=bool(shorten))
     if tilt > world.tolerance:
         message = f"on the path that was found {world.tilted(tilt)}"
         return replace(result, status=Status.NOT_CONNECTED, message=message, path=None, cost=None, proof=None)
@@ -86,7 +87,7 @@ def _through(world: OrientationWorld, result: PlanResult, shorten: bool) -> Plan
 
 
 def _between_lines(
-    request: Request, straight: CartesianLine | None, plan: PlanOnce, within: World, shorten: bool
+    request: Request, straight: CartesianLine | None, plan: PlanOnce, within: World, shorten: Smooth
 ) -> PlanResult:
     """Plan between the lines that leave the start and lead to goals."""
     if straight is None:

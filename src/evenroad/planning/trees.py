@@ -106,7 +106,7 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
     query = Query(
         problem.start,
         problem.goals,
-        shorten=problem.smooth,
+        smooth=problem.smooth,
         budget=problem.budget,
         apart=problem.apart,
         connector=connector,
@@ -183,7 +183,7 @@ def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage:
         if connection.goal < 0:
             continue
         result = connected(attempt, connection)
-        if attempt.query.shorten:
+        if attempt.query.smooth:
             counts["shortcut_motions"] += result.counts["shortcut_motions"]
         if _cost(result) < _cost(best):
             best = result
@@ -225,4 +225,4 @@ def _cost(result: PlanResult) -> float:
 def _rest(attempt: Attempt, left: Budget) -> Problem:
     """Return the problem of an attempt with what is left of its budget."""
     query = attempt.query
-    return Problem(attempt.world, query.start, query.goals, budget=left, smooth=query.shorten)
+    return Problem(attempt.world, query.start, query.goals, budget=left, smooth=query.smooth)

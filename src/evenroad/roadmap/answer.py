@@ -134,10 +134,10 @@ def _with_path(
     """Return the result with a path, smoothed if wanted: by the connector where there is one and costs are lengths."""
     world, query = attempt.world, attempt.query
     path, length, cost = raw, raw_cost, query.edge_cost
-    if query.shorten:
+    if query.smooth:
         with attempt.watch("shortcut"):
             if by_connector and query.connector is not None:
-                path, counts["shortcut_motions"] = query.connector.smooth(world, raw)
+                path, counts["shortcut_motions"] = query.connector.smooth(world, raw, quick=query.smooth == "quick")
             else:
                 path, counts["shortcut_motions"] = shortcut(world, raw, cost, attempt.deadline)
             measure = world.space.distance if cost is None else cost

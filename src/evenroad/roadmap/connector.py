@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol, TypeAlias
 
 from evenroad._arrays import Floats
+
+Smooth: TypeAlias = bool | Literal["quick"]
+"""Whether a path is made shorter once it is found; "quick": by straight shortcuts alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,5 +47,5 @@ class Connector(Protocol):
     ) -> Connection:
         """Join the start, (dim,), to one of the goals, (g, dim), within the budget; the same variant, the same path."""
 
-    def smooth(self, world: Any, path: Floats) -> tuple[Floats, int]:
+    def smooth(self, world: Any, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """Return a path, (q, dim), that is not longer than `path`, (p, dim), and how many motions were checked."""

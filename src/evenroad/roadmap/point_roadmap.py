@@ -16,6 +16,7 @@ from evenroad._npz import Path
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.connector import Smooth
 from evenroad.roadmap.neighbours import Surroundings
 from evenroad.roadmap.points_of import as_points
 from evenroad.roadmap.problem import Problem
@@ -72,7 +73,7 @@ class WorldRoadmap(ABC):
     world: World
 
     @abstractmethod
-    def plan(self, start: Any, goal: Any, *, budget: Budget | None = None, shorten: bool = True) -> PlanResult:
+    def plan(self, start: Any, goal: Any, *, budget: Budget | None = None, smooth: Smooth = True) -> PlanResult:
         """Find a path from a start to a goal, or one of several; nothing is checked twice."""
 
     @abstractmethod

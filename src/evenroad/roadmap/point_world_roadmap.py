@@ -14,7 +14,7 @@ from evenroad._shared import OwnLock
 from evenroad.roadmap.answer import answer, connected, refusal, shown_apart
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.connector import Connector
+from evenroad.roadmap.connector import Connector, Smooth
 from evenroad.roadmap.neighbours import nearest_of
 from evenroad.roadmap.point_roadmap import EdgeWeights, PointRoadmap, WorldRoadmap
 from evenroad.roadmap.problem import Problem
@@ -71,7 +71,7 @@ class PointWorldRoadmap(WorldRoadmap):
         goal: npt.ArrayLike,
         *,
         budget: Budget | None = None,
-        shorten: bool = True,
+        smooth: Smooth = True,
         search: str = "lazy",
         links: int | None = LINKS,
         connector: Connector | None = None,
@@ -84,7 +84,7 @@ class PointWorldRoadmap(WorldRoadmap):
 
         Parameters
         ----------
-        start, goal, search, shorten, links, budget
+        start, goal, search, smooth, links, budget
             As in :func:`plan`, whose errors these are; by default lazily.
         connector : Connector, optional
             Smooths the path, and searches where the roadmap has no path; not with an `edge_cost`.
@@ -92,7 +92,7 @@ class PointWorldRoadmap(WorldRoadmap):
         query = Query(
             *as_start_and_goals(start, goal, self.world.space),
             search=search,
-            shorten=shorten,
+            smooth=smooth,
             edge_cost=self._edge_cost,
             links=links,
             budget=budget or Budget(),
@@ -115,7 +115,7 @@ class PointWorldRoadmap(WorldRoadmap):
 
     def solve(self, problem: Problem) -> PlanResult:
         """Plan along the roadmap, in its world, as planners of :func:`evenroad.plan` do."""
-        start, goals, how = problem.start, problem.goals, dict(budget=problem.budget, shorten=problem.smooth)
+        start, goals, how = problem.start, problem.goals, dict(budget=problem.budget, smooth=problem.smooth)
         return self.plan(start, goals, connector=problem.connector, **how)  # type: ignore[arg-type]
 
     def _connect(self, attempt: Attempt, states: EdgeStates, connector: Connector) -> PlanResult | None:

@@ -8,7 +8,7 @@ from typing import Protocol, runtime_checkable
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.connector import Connector
+from evenroad.roadmap.connector import Connector, Smooth
 from evenroad.roadmap.query import ProvesApart
 from evenroad.roadmap.result import PlanResult
 from evenroad.world import World
@@ -26,8 +26,8 @@ class Problem:
         Configurations.
     budget : Budget
         Limits of the search.
-    smooth : bool
-        Whether the path is made shorter once it is found.
+    smooth : bool or "quick"
+        Whether the path is made shorter once it is found; "quick": by straight shortcuts alone.
     rng : int, SeedSequence or Generator
         Seed of what a planner draws.
     apart : callable, optional
@@ -42,7 +42,7 @@ class Problem:
     goals: Floats
     _: KW_ONLY
     budget: Budget
-    smooth: bool = True
+    smooth: Smooth = True
     rng: RngLike = 0
     apart: ProvesApart | None = None
     connector: Connector | None = None

@@ -12,9 +12,9 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints32
 from evenroad._checks import require_count, require_known
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, shown
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.connector import Connector
+from evenroad.roadmap.connector import Connector, Smooth
 from evenroad.roadmap.search import FINDERS, Finder, find_any
 from evenroad.space import Space
 from evenroad.world import Apart
@@ -53,7 +53,7 @@ class Query:
     _: KW_ONLY
     search: str = "full"
     success_only: bool = False
-    shorten: bool = True
+    smooth: Smooth = True
     edge_cost: EdgeCost | None = None
     links: int | None = None
     budget: Budget = field(default_factory=Budget)
@@ -62,6 +62,8 @@ class Query:
 
     def __post_init__(self) -> None:
         require_known("search", self.search, FINDERS)
+        if self.smooth not in (True, False, "quick"):
+            raise InvalidValue(f'smooth must be True, False or "quick", got {shown(self.smooth)}')
         if self.links is not None:
             require_count("links", self.links)
         for array in (self.start, self.goals):

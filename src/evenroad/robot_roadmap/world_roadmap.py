@@ -12,13 +12,13 @@ from evenroad._arrays import Floats
 from evenroad._checks import counted, require_count
 from evenroad._clock import now
 from evenroad._shared import OwnLock, one_at_a_time
-from evenroad.planning.arm_trees import smooth
+from evenroad.planning import arm_trees
 from evenroad.planning.connectors import ArmTrees
 from evenroad.planning.trees import RRTConnect
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import NO_LIMIT, Attempt
-from evenroad.roadmap.connector import Connection
+from evenroad.roadmap.connector import Connection, Smooth
 from evenroad.roadmap.point_roadmap import WorldRoadmap
 from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.query import Query as PlanQuery
@@ -98,7 +98,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         first = int(np.argmax(world.valid(milestones[:_SOME])))
         here = milestones[first : first + 1]
         found = search(self._graph, self._worlds, Query(here[0], here, 1), 0, math.inf)
-        smooth(world, np.repeat(here, 2, axis=0), batches=0)
+        arm_trees.smooth(world, np.repeat(here, 2, axis=0), batches=0)
         if found.ended != "not free":
             _ready.add(world.backend)
 
@@ -138,7 +138,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         goal: Goal | Sequence[Goal],
         *,
         budget: Budget | None = None,
-        shorten: bool = True,
+        smooth: Smooth = True,
         trees: bool = True,
     ) -> PlanResult:
         """Plan from a start to one of the goals: along the roadmap, and with trees if it does not find a path soon.
@@ -150,8 +150,8 @@ class ArmWorldRoadmap(WorldRoadmap):
             A goal may be a Pose or PoseGoal, too: then all postures that are found for it are goals.
         budget : Budget, optional
             Default: 5 s.  Half of the time is for the roadmap, the rest for trees.
-        shorten : bool
-            Whether the path is made shorter.
+        smooth : bool or "quick"
+            Whether the path is made shorter; "quick": by straight shortcuts alone.
         trees : bool
             Whether trees are tried, after 90 motions along the roadmap; else more of its links and all motions are.
 
@@ -169,12 +169,12 @@ class ArmWorldRoadmap(WorldRoadmap):
         if isinstance(read, PlanResult):
             return read
         first, goals, budget = read[0], read[1].configurations, budget or Budget(seconds=SECONDS)
-        query = PlanQuery(first, goals, shorten=shorten, budget=budget, connector=ArmTrees(self.world))
+        query = PlanQuery(first, goals, smooth=smooth, budget=budget, connector=ArmTrees(self.world))
         return self._planned(Attempt(self.world, query, NO_POINTS, "none", PLANNER), trees)
 
     def solve(self, problem: Problem) -> PlanResult:
         """Plan along the roadmap, in its world, as planners of :func:`evenroad.plan` do."""
-        return self.plan(problem.start, problem.goals, budget=problem.budget, shorten=problem.smooth)
+        return self.plan(problem.start, problem.goals, budget=problem.budget, smooth=problem.smooth)
 
     def _planned(self, attempt: Attempt, trees: bool) -> PlanResult:
         """Return the result of a query."""
@@ -224,9 +224,12 @@ class ArmWorldRoadmap(WorldRoadmap):
             configurations_checked=1 + len(goals) + found.configurations,
             edges_checked=attempt.motions_checked,
         )
-        if attempt.query.shorten:
+        if attempt.query.smooth == "quick":
+            path, counts["shortcut_motions"] = arm_trees.shorten(world, path)
+        elif attempt.query.smooth:
             work = max(LEAST_WORK, (WORK if world.surfaces is None else AMONG_SURFACES) - found.batches)
-            path, counts["shortcut_motions"] = smooth(world, path, batches=work)
+            path, counts["shortcut_motions"] = arm_trees.smooth(world, path, batches=work)
+        if attempt.query.smooth:
             length, attempt.watch.seconds["shortcut"] = self._length(path), now() - began
         to = f" to goal {found.goal}" if len(goals) > 1 else ""
         return make_result(

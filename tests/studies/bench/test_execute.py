@@ -45,7 +45,7 @@ def test_a_task_gives_what_plan_gives_for_its_set():
     of_set, _ = np.random.SeedSequence(TASK.seed, spawn_key=(TASK.run,)).spawn(2)
     points, _ = draw_set(TASK.sampler, TASK.n, 2, TASK.run, np.random.default_rng(of_set))
     result = plan_on(
-        problem.world, problem.start, problem.goal, points, rule=rule_named(TASK.rule), links=None, shorten=False
+        problem.world, problem.start, problem.goal, points, rule=rule_named(TASK.rule), links=None, smooth=False
     )
     assert outcome.status == str(result.status) == "solved"
     assert outcome.valid == result.counts["valid"]

@@ -83,7 +83,7 @@ def test_the_plate_of_twistycool_is_between_start_and_goal():
 def test_a_path_through_the_window_is_found():
     problem = source_named("twistycool").make(0)
     points = draw("uniform", 1024, 6, rng=0)
-    result = plan_on(problem.world, problem.start, problem.goal, points, rule=KEarlier(10), links=None, shorten=False)
+    result = plan_on(problem.world, problem.start, problem.goal, points, rule=KEarlier(10), links=None, smooth=False)
     assert result.solved
     assert problem.world.motion_valid(result.path[:-1], result.path[1:]).all()
     assert result.path[0, 2] > -293.0 > -305.0 > result.path[-1, 2]
@@ -101,7 +101,7 @@ def test_the_goal_of_cubicles_has_no_way_in_but_from_below():
     points = draw("halton", 3000, 6, rng=0)
     ways = [
         plan_on(
-            scene, problem.start, problem.goal, points, rule=KNearest(10), links=None, success_only=True, shorten=False
+            scene, problem.start, problem.goal, points, rule=KNearest(10), links=None, success_only=True, smooth=False
         ).solved
         for scene in (world, closed)
     ]
