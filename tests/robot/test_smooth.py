@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+import evenroad as er
 from evenroad._native.planning import CLEARANCES
 from evenroad.errors import InvalidValue
 from evenroad.planning.arm_trees import connect, shorten, smooth
@@ -45,6 +46,18 @@ def test_tightened_paths_are_free_proved_shorter_than_shortcuts_and_keep_their_e
         straight, lengths = straight + length(world, path[[0, -1]]), lengths + both
     # Among so little that most ways are straight there is hardly anything to gain.
     assert lengths[0] <= (0.985 if lengths[1] > 1.05 * straight else 1.001) * lengths[1]
+
+
+def test_a_plan_is_drawn_tight_unless_quick_shortcuts_or_no_smoothing_are_wanted(paths):
+    world, found = paths
+    path = max(found, key=len)
+    plans = {how: er.plan(world, path[0], path[-1], smooth=how) for how in (True, "quick", False)}
+    raw = plans[False].path
+    np.testing.assert_array_equal(plans["quick"].path, shorten(world, raw)[0])
+    assert plans[True].cost < plans["quick"].cost < plans[False].cost
+    assert all(proved(world, each.path) for each in plans.values())
+    with pytest.raises(InvalidValue, match="smooth must be True, False or \"quick\", got 'fast'"):
+        er.plan(world, path[0], path[-1], smooth="fast")
 
 
 def test_few_batches_give_a_free_path_and_more_a_shorter_one(paths):
