@@ -23,7 +23,7 @@ BEFORE_PROOF = 200_000
 BEFORE_QUICK_PROOF = 4_000
 """Number of motions after which a world with a quick proof tries it: most queries need fewer."""
 
-TIGHT = 500
+SMOOTHING = 500
 """Number of batches of sixteen checks after which no waypoint of an arm's path slides any more."""
 
 _SPREADS = (32, 96)
@@ -61,7 +61,7 @@ class ArmTrees:
     def smooth(self, world: ArmWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """See :func:`evenroad.planning.arm_trees.smooth`; quickly by its :func:`shorten`."""
         inside = self.inside or world
-        return arm_trees.shorten(inside, path) if quick else arm_trees.smooth(inside, path, batches=TIGHT)
+        return arm_trees.shorten(inside, path) if quick else arm_trees.smooth(inside, path, batches=SMOOTHING)
 
 
 @dataclass(frozen=True)
