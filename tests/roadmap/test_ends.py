@@ -111,7 +111,7 @@ def test_what_lies_between_straight_lines_is_looked_at():
     start, goal = [0.0, -1.5, 1.2, -1.0, -1.5, 0.0], [0.8, -1.4, 1.3, -1.2, -1.5, 0.3]
 
     def plan(world, first, goals, shorten):
-        found = er.plan(world, first, goals, smooth=smooth)
+        found = er.plan(world, first, goals, smooth=shorten)
         return PlanResult(**{**vars(found), "path": found.path[::-1] if astray else found.path})
 
     asked = Request(world, np.array(start), np.array([goal]))
