@@ -63,15 +63,6 @@ def test_an_edit_elsewhere_does_not(package):
     assert digest(package) == before
 
 
-def test_kernels_depend_on_the_layout_of_their_tables():
-    from evenroad.robot.kernel import layout, scalar
-
-    _sources.digest_of(scalar.__file__)
-    assert layout.__file__ in {
-        file for path in [scalar.__file__, *_sources._read(scalar.__file__)[1]] for file in _sources._read(path)[1]
-    }
-
-
 @pytest.fixture
 def program(tmp_path, monkeypatch):
     """The folder of a module with one program, and a function that loads it as a new process would."""

@@ -86,10 +86,6 @@ def an_arm():
     return verdicts(world, ends()) + own + [lambda: ARM_TREES.smooth(world, np.array([a, b]))]
 
 
-def an_arm_without_lanes():
-    return verdicts(er.ArmWorld(robot(), box_scene(), backend="scalar"), ends())
-
-
 def an_arm_among_clouds_and_meshes():
     corners = [(0, 0, 0), (0.3, 0, 0), (0, 0.3, 0), (0, 0, 0.5)]
     wedge = TriangleMesh(corners, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)], "wedge")
@@ -206,7 +202,6 @@ def files(folder):
 
 VALUES = [
     an_arm,
-    an_arm_without_lanes,
     an_arm_among_clouds_and_meshes,
     an_upright_arm,
     trees,

@@ -99,7 +99,7 @@ def measure_certified(world: ArmWorld) -> None:
 def main() -> None:
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
     wide, narrow = ur5_world("box-reach"), ur5_world("box-reach-narrow")
-    print(f"{wide.backend}, {wide.spheres} spheres that exceed their capsules by {1e3 * wide.excess:.1f} mm at most")
+    print(f"{wide.spheres} spheres that exceed their capsules by {1e3 * wide.excess:.1f} mm at most")
     measure("UR5, scene c", wide)
     measure("UR5, scene a", narrow)
     seven = load_robot("arm7")

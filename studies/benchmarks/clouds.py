@@ -25,7 +25,7 @@ from evenroad.geometry import Mesh, PointCloud, TriangleMesh
 from evenroad.geometry.mesh import merged
 from evenroad.planning import plan
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kernel.scene_surfaces import surface_of
+from evenroad.robot.kernel.native_surfaces import surface_of
 from evenroad.robot.load import load_robot
 from evenroad.robot.scene import Obstacle, Scene
 

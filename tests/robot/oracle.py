@@ -133,3 +133,39 @@ def clearance(robot, scene, q, samples=None):
                             apart = segment_distance(a[near], b[near], c[near], d[near]) - radii
                             least[near] = np.minimum(least[near], apart)
     return least
+
+
+def motions_proved(robot, scene, a, way, deepest=26):
+    """Whether bodies stay apart all along motions that begin at `a` and go `way`, two (n, dim); by halving.
+
+    Within half an interval nothing moves by more than half of what the whole moves it at most: by as much a body may
+    come nearer to an obstacle, and by twice as much two bodies may come nearer to each other.
+    """
+    values, ends = joint_values(robot, a), joint_values(robot, a + way)
+    slides = {name: np.abs([values[name], ends[name]]).max() for name in values}
+    moved = np.zeros(len(a))
+    for joint in robot.joints:
+        lever = 1.0 if joint.kind == "prismatic" else farthest_from(robot, joint.child, slides)
+        moved += np.abs(ends[joint.name] - values[joint.name]) * lever
+    motion, middle, half = np.arange(len(a)), np.full(len(a), 0.5), 0.5
+    proved = np.ones(len(a), dtype=bool)
+    for _ in range(deepest):
+        apart = clearance(robot, scene, a[motion] + middle[:, None] * way[motion])
+        proved[motion[apart <= 0.0]] = False
+        left = proved[motion] & (apart <= 2.0 * half * moved[motion])
+        half *= 0.5
+        motion, middle = np.repeat(motion[left], 2), np.repeat(middle[left], 2)
+        middle[::2] -= half
+        middle[1::2] += half
+    proved[motion] = False
+    return proved
+
+
+def farthest_from(robot, link, slides):
+    """How far from a link's origin what it carries can be at most, joint for joint."""
+    far = [np.linalg.norm(end) for capsule in robot.capsules if capsule.link == link for end in (capsule.a, capsule.b)]
+    for joint in robot.joints:
+        if joint.parent == link:
+            slide = slides[joint.name] if joint.kind == "prismatic" else 0.0
+            far.append(np.linalg.norm(joint.xyz) + slide + farthest_from(robot, joint.child, slides))
+    return max(far, default=0.0)

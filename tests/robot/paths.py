@@ -1,6 +1,5 @@
 """Queries of arms, what trees find for them, and what is looked at along their paths."""
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -9,6 +8,7 @@ from evenroad.planning.arm_trees import connect
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.robot import with_limits
 from tests.robot.kernel_arms import box_scene, random_scene, random_tree, seven_joint_arm, ur5
+from tests.robot.oracle import motions_proved
 
 START = np.array([0.0, -np.pi / 2, 0.0, -np.pi / 2, 0.0])
 GOAL = np.array([-0.1216, -0.6993, 1.2160, -2.1070, 2.3023])
@@ -22,12 +22,12 @@ ARMS = {
 }
 
 
-def box_world(backend="auto", inner=0.36):
+def box_world(inner=0.36):
     pi = np.pi
     bounds = [(-pi, pi), (-1.3 * pi, 0.3 * pi), (-pi, pi), (-pi, pi), (-pi, pi)]
     robot = ur5(joints=5)
     robot = with_limits(robot, dict(zip(robot.group, bounds, strict=True)))
-    return ArmWorld(robot, box_scene(inner), backend=backend)
+    return ArmWorld(robot, box_scene(inner))
 
 
 def length(world, path):
@@ -49,9 +49,12 @@ def searched(world, count, least):
     return found
 
 
-def proved(world, path):
-    """Whether double precision proves every motion of a path."""
-    return replace(world, backend="scalar").motion_certified(path[:-1], path[1:], 1e-6).all()
+def proved(world, *paths):
+    """Whether the oracle proves every motion of paths."""
+    starts, ways = (np.concatenate(each) for each in zip(*((p[:-1], np.diff(p, axis=0)) for p in paths), strict=True))
+    wraps = np.isfinite(world.bounds[2])
+    ways[:, wraps] -= np.rint(ways[:, wraps] / world.bounds[2][wraps]) * world.bounds[2][wraps]
+    return motions_proved(world.robot, world.scene, starts, ways).all()
 
 
 def dense_states(world, path, share=20):

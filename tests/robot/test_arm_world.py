@@ -23,13 +23,8 @@ HOME = np.array([0.0, -math.pi / 2, 0.0, -math.pi / 2, 0.0])
 INSIDE = np.array([-0.1216, -0.6993, 1.2160, -2.1070, 2.3023])
 
 
-class TestLanes(WorldContract):
-    world = ArmWorld(ur5(), box_scene(), backend="lanes")
-    free_between = False
-
-
-class TestScalar(WorldContract):
-    world = ArmWorld(ur5(), box_scene(), backend="scalar")
+class TestContract(WorldContract):
+    world = ArmWorld(ur5(), box_scene())
     free_between = False
 
 
@@ -54,11 +49,10 @@ def test_home_and_a_place_inside_the_box_are_free():
     assert five_joints().valid(np.stack([HOME, INSIDE])).all()
 
 
-@pytest.mark.parametrize("backend", ["lanes", "scalar"])
 @pytest.mark.parametrize("resolution", [0.05, 0.31, 2.0])
-def test_a_motion_is_free_where_all_its_states_are(backend, resolution):
+def test_a_motion_is_free_where_all_its_states_are(resolution):
     """The states of FunctionWorld, k / n of the way, whatever the order and the number of lanes."""
-    world = five_joints(backend=backend, resolution=resolution)
+    world = five_joints(resolution=resolution)
     q = world.space.from_cube(np.random.default_rng(5).random((4_000, 5)))
     q = q[world.valid(q)]
     a, b = q[:500], q[500:1000]
@@ -81,13 +75,6 @@ def test_every_state_of_a_motion_is_looked_at(segments):
         world = ArmWorld(robot, Scene([post]), resolution=length / segments * (1.0 + 1e-9))
         # Every second post is between two states.
         assert world.motion_valid([[0.0]], [[length]])[0] == (number % 2 == 1), number
-
-
-def test_the_two_backends_give_the_same_motions():
-    q = five_joints().space.from_cube(np.random.default_rng(7).random((4_000, 5)))
-    a, b = q[:2_000], q[2_000:]
-    verdicts = [five_joints(backend=backend).motion_valid(a, b) for backend in ("lanes", "scalar")]
-    np.testing.assert_array_equal(*verdicts)
 
 
 def test_explain_names_the_two_links_that_touch():
@@ -119,7 +106,7 @@ def test_explain_has_a_reason_for_what_only_rounding_brings_into_contact():
     """The corner of a turned floor of 2 km: single precision knows its surface to a fraction of a millimetre."""
     tilt = (0.8, 0.0, 0.6, 0.0, 1.0, 0.0, -0.6, 0.0, 0.8)
     floor = Obstacle.of("floor", "box", (2000.0, 2000.0, 1.0), (-0.7, 0.0, -0.9), tilt)
-    world = ArmWorld(ur5(math.pi, joints=5), Scene((floor,), name="hill"), backend="lanes")
+    world = ArmWorld(ur5(math.pi, joints=5), Scene((floor,), name="hill"))
     q = world.space.from_cube(np.random.default_rng(12).random((500, 5)))
     _, blocked = edge(world, q)
     assert all("touches" in world.explain(row) for row in blocked)
@@ -167,9 +154,8 @@ def test_a_robot_that_no_joint_moves_about_obstacles_only_has_limits():
     turn = Joint("turn", "revolute", "base", "wheel", (0.0, 0.0, 0.0), STRAIGHT, Z, 0.0, 2.0)
     post = Capsule((0, 0, 0), (0, 0, 1), 0.1, link="base")
     robot = Robot("wheel", ("base", "wheel"), (turn,), (post,), (), ("turn",))
-    for backend in ("lanes", "scalar"):
-        world = ArmWorld(robot, Scene((), name="empty"), backend=backend)
-        np.testing.assert_array_equal(world.valid([[-0.1], [0.0], [2.0], [2.1]]), [False, True, True, False])
+    world = ArmWorld(robot, Scene((), name="empty"))
+    np.testing.assert_array_equal(world.valid([[-0.1], [0.0], [2.0], [2.1]]), [False, True, True, False])
 
 
 @pytest.mark.parametrize(("held", "value"), [({"wrist_3_joint": 0.7}, 0.7), ({}, 0.4)])
@@ -204,7 +190,6 @@ def test_a_world_can_be_sent_to_another_process():
 @pytest.mark.parametrize(("changes", "error", "words"), [
     ({"resolution": 0.0}, InvalidValue, "resolution"),
     ({"resolution": 1e-12}, InvalidValue, "resolution must be larger"),
-    ({"backend": "gpu"}, UnknownName, "auto, lanes, scalar"),
 ])  # fmt: skip
 def test_an_argument_out_of_range_is_named(changes, error, words):
     refused(error, words, five_joints, **changes)

@@ -97,14 +97,6 @@ def test_what_the_states_say_is_blocked_is_not_proved_and_little_else(motions):
     assert proved.sum() > 0.97 * sampled.sum()
 
 
-def test_lanes_and_double_precision_prove_the_same_but_for_micrometres(motions):
-    world, a, b, proved = motions
-    scalar = replace(world, backend="scalar")
-    wide, near = (scalar.motion_certified(a[-200:], b[-200:], tolerance) for tolerance in (1e-4, 1e-7))
-    assert not (proved[-200:] & ~near).any()
-    assert not (wide & ~proved[-200:]).any()
-
-
 def needle(gap, half_width=1e-3):
     """A wheel's rim, a ball of 1 mm, and a post of 1 mm in its way or `gap` beside it."""
     turn = Joint("turn", "revolute", "base", "wheel", (0.0, 0.0, 0.0), STRAIGHT, Z, 0.0, 2.0)
@@ -134,9 +126,8 @@ GAUGES = {
 """Joints, and how far ahead on the last link a ball is, which the first joint moves by a known length and no less."""
 
 
-@pytest.mark.parametrize("backend", ["lanes", "scalar"])
 @pytest.mark.parametrize("kind", GAUGES)
-def test_a_post_of_a_millimetre_is_not_missed_wherever_it_is_in_a_motion(kind, backend):
+def test_a_post_of_a_millimetre_is_not_missed_wherever_it_is_in_a_motion(kind):
     """Bodies must be made larger by all that a joint moves them: a tenth less, and some motions would be proved."""
     joints, far = GAUGES[kind]
     half = 0.02 if kind == "its own rod" else 0.0
@@ -148,7 +139,7 @@ def test_a_post_of_a_millimetre_is_not_missed_wherever_it_is_in_a_motion(kind, b
     if "own" in kind:
         own = Capsule((1.0, 0.0, -half), (1.0, 0.0, half), 1e-3, link="base")
         robot, scene = replace(robot, capsules=(*balls, own), pairs=(("base", "wheel"),)), NOTHING
-    world, rng = ArmWorld(robot, scene, resolution=0.5, backend=backend), np.random.default_rng(1)
+    world, rng = ArmWorld(robot, scene, resolution=0.5), np.random.default_rng(1)
     a = np.full((2000, world.space.dim), 0.9)
     b, share, length = a.copy(), rng.random(2000), rng.uniform(0.1, 1.9, 2000)
     a[:, 0], b[:, 0] = -share * length, (1.0 - share) * length
@@ -226,9 +217,8 @@ def test_one_verdict_a_motion():
     refused(InvalidValue, "path must have shape", IN_BOX.validate, path[0])
 
 
-@pytest.mark.parametrize("backend", ["lanes", "scalar"])
-def test_what_states_call_blocked_is_not_passed(backend):
-    world = replace(IN_BOX, backend=backend)
+def test_what_states_call_blocked_is_not_passed():
+    world = IN_BOX
     path = world.space.from_cube(np.random.default_rng(3).random((200, 5)))
     assert not (world.validate(path) & ~world.motion_valid(path[:-1], path[1:])).any()
 

@@ -100,10 +100,9 @@ def arm(request):
     return world, q, solid, apart_from(world, solid, q[:150])
 
 
-@pytest.mark.parametrize("backend", ["lanes", "scalar"])
-def test_verdicts_are_those_of_every_point_and_triangle(arm, backend):
+def test_verdicts_are_those_of_every_point_and_triangle(arm):
     world, q, _, apart = arm
-    free = ArmWorld(world.robot, world.scene, backend=backend).valid(q[:150])
+    free = world.valid(q[:150])
     clear = np.abs(apart) > BAND
     assert 0.02 < free.mean() < 0.98
     np.testing.assert_array_equal(free[clear], apart[clear] > 0.0)
@@ -134,18 +133,17 @@ def test_motions_are_free_where_their_states_are(arm):
     np.testing.assert_array_equal(verdicts, expected)
 
 
-@pytest.mark.parametrize("backend", ["lanes", "scalar"])
-def test_what_is_proved_is_free_everywhere_and_nothing_that_touches_is(arm, backend):
+def test_what_is_proved_is_free_everywhere_and_nothing_that_touches_is(arm):
     world, q, solid, _ = arm
-    proving, rng = ArmWorld(world.robot, world.scene, backend=backend), np.random.default_rng(2)
+    rng = np.random.default_rng(2)
     a, b = motions_of(world, q, 30)
-    proved = proving.motion_certified(a, b, 1e-4)
+    proved = world.motion_certified(a, b, 1e-4)
     assert proved.any()
     states = states_along(world, a[proved], b[proved], rng, 6)
     assert apart_from(world, solid, states).min() > 0.0
     a, b = through_contact(world, lambda x: apart_from(world, solid, x), rng, 60, 100)
     assert len(a) > 10
-    assert not proving.motion_certified(a, b, 0.01).any()
+    assert not world.motion_certified(a, b, 0.01).any()
 
 
 @pytest.mark.parametrize("name", ["many closed ones", "many of which some may be touched"])
@@ -200,7 +198,7 @@ def test_surfaces_beyond_reach_change_nothing():
 
 def test_it_is_told_which_link_touches_which_cloud():
     scene = box_scene().with_(Obstacle("wall", PointCloud([[0.3, 0.0, 0.8]], 0.1)))
-    world = ArmWorld(UR5, scene, backend="lanes")
+    world = ArmWorld(UR5, scene)
     q = world.space.from_cube(np.random.default_rng(5).random((4000, 6)))
     said = {world.explain(row) for row in q[~world.valid(q)]}
     assert any(text.endswith("touches 'wall'") for text in said)

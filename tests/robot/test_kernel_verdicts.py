@@ -62,18 +62,17 @@ def arm(request):
     return robot, scene, q, clearance(robot, scene, q)
 
 
-@pytest.mark.parametrize("backend", ["lanes", "scalar"])
-def test_verdicts_are_the_oracles(arm, backend):
+def test_verdicts_are_the_oracles(arm):
     robot, scene, q, apart = arm
-    free = ArmWorld(robot, scene, backend=backend).valid(q)
+    free = ArmWorld(robot, scene).valid(q)
     clear = np.abs(apart) > BAND
     assert 0.02 < free.mean() < 0.98, "both verdicts must come up for the test to mean anything"
     np.testing.assert_array_equal(free[clear], apart[clear] > 0.0)
 
 
 def free_edge(robot, scene, q):
-    """Configurations that the lanes call free, each next to one that they call blocked."""
-    return edge(ArmWorld(robot, scene, backend="lanes"), q)[0]
+    """Configurations that the kernel calls free, each next to one that it calls blocked."""
+    return edge(ArmWorld(robot, scene), q)[0]
 
 
 def test_single_precision_is_never_optimistic(arm):
@@ -142,8 +141,7 @@ def test_what_is_free_touches_nothing_as_true_capsules(arm):
 
 
 @pytest.mark.parametrize("noise", [0.0, 1e-7, 1e-5, 1e-3])
-@pytest.mark.parametrize("backend", ["lanes", "scalar"])
-def test_parallel_and_nearly_parallel_capsules_get_the_oracles_verdict(noise, backend):
+def test_parallel_and_nearly_parallel_capsules_get_the_oracles_verdict(noise):
     """At right angles the UR5's capsules lie along and across each other."""
     robot, scene = ur5(), box_scene()
     rng = np.random.default_rng(2)
@@ -151,7 +149,7 @@ def test_parallel_and_nearly_parallel_capsules_get_the_oracles_verdict(noise, ba
     q = np.clip(q, -6.28, 6.28)
     q[:, 2] = np.clip(q[:, 2], -math.pi, math.pi)
     apart = clearance(robot, scene, q)
-    free = ArmWorld(robot, scene, backend=backend).valid(q)
+    free = ArmWorld(robot, scene).valid(q)
     clear = np.abs(apart) > BAND
     assert 0.02 < free.mean() < 0.98
     np.testing.assert_array_equal(free[clear], apart[clear] > 0.0)
@@ -166,6 +164,5 @@ def test_one_joint_brings_two_parallel_capsules_together_within_the_padding():
     )
     robot = Robot("slider", ("base", "hand"), (slide,), capsules, (("base", "hand"),), ("slide",))
     q = np.array([[0.2], [0.2499], [0.25001], [0.3], [0.9]])
-    for backend in ("lanes", "scalar"):
-        free = ArmWorld(robot, Scene((), name="empty"), backend=backend).valid(q)
-        np.testing.assert_array_equal(free, [False, False, True, True, True])
+    free = ArmWorld(robot, Scene((), name="empty")).valid(q)
+    np.testing.assert_array_equal(free, [False, False, True, True, True])

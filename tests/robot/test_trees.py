@@ -11,7 +11,6 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Box
-from evenroad.planning import plan
 from evenroad.planning.arm_trees import connect, grown_trees, shorten
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.joint import Joint
@@ -115,15 +114,6 @@ def test_ends_that_are_not_free_give_no_path(world):
     for start, goal in ((blocked, GOAL), (START, blocked), (beyond, GOAL), (START, beyond)):
         none = connect(world, start, [goal])
         assert (none.goal, len(none.path), none.motions) == (-1, 0, 0)
-
-
-def test_without_lanes_no_trees_grow_and_points_find_the_way():
-    world = box_world("scalar")
-    assert connect(world, START, [GOAL]).goal == -1
-    near = START + np.array([0.6, 0.3, 0.0, 0.0, 0.0])
-    result = plan(world, START, near, seconds=60)
-    assert result.solved
-    assert world.validate(result.path).all()
 
 
 def test_start_and_goal_may_be_one(world):
@@ -295,9 +285,6 @@ def test_threads_do_not_disturb_each_other(world, found):
 def test_trees_that_are_shown_are_free_and_begin_at_the_ends():
     world = box_world()
     nodes, links = grown_trees(world, START, GOAL[np.newaxis])
-    if world.backend == "scalar":
-        assert len(nodes) == len(links) == 0
-        return
     assert len(nodes) == connect(world, START, GOAL[np.newaxis]).nodes
     assert len(links) == len(nodes) - 2
     assert world.motion_valid(nodes[links[:, 0]], nodes[links[:, 1]]).all()

@@ -288,11 +288,6 @@ def test_what_touches_the_base_leaves_no_configuration_free(roadmap, body):
     assert known.connect(roadmap.milestones[0], roadmap.milestones[1:2]).goal == -1
 
 
-def test_where_trees_do_not_grow_the_roadmap_is_asked_at_once(roadmap):
-    result = within(roadmap, box_scene(), backend="scalar").plan([0.0, -1.5, 0.0], [2.0, -1.0, 1.0])
-    assert (result.solved, result.planner) == (True, "roadmap")
-
-
 def test_a_spent_budget_is_not_a_roadmap_that_leads_nowhere(roadmap):
     known = within(roadmap, Scene((Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),), name="today"))
     statuses = []

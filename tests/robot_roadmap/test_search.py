@@ -222,12 +222,6 @@ def test_checks_run_out_and_come_back(roadmap):
     np.testing.assert_array_equal(again.path, fresh.path)
 
 
-def test_a_world_without_lanes_finds_the_same_path(roadmap):
-    known, slow = within(roadmap), within(roadmap, backend="scalar")
-    start, goal = far_apart(known)
-    np.testing.assert_array_equal(known.connect(start, goal).path, slow.connect(start, goal, seconds=1e3).path)
-
-
 def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_kept(roadmap, monkeypatch):
     monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.TRIED_MOTIONS", 1)
     known = within(roadmap)

@@ -73,7 +73,6 @@ def plan_arm(plan: PlanArm) -> int:
     record = plan_record(result, _asked(plan, request, result) | common_query(plan)) | {
         "no_body": [] if request.model is None else list(request.model.bodiless),
         "drawn_only": [] if request.model is None else list(request.model.drawn_only),
-        "checked_with": world.checked_with,
         "trajectory": trajectory,
         "meshes": None if meshes is None else asdict(meshes),
     }
@@ -119,7 +118,7 @@ def _rows(request: Request) -> list[tuple[str, str]]:
         postures = f"{reached.branches} postures, {reached.blocked} in collision ({reached.solver})"
         rows.append(("goal pose", f"{goal}: {postures}"))
     rows += [] if request.model is None else bodiless_rows(request.model)
-    return [*rows, ("checked by", request.world.checked_with)]
+    return rows
 
 
 def _goals(plan: PlanArm) -> list[Goal]:

@@ -174,7 +174,7 @@ def _speed(world: ArmWorld, measured: dict[str, Any]) -> str:
     text = "{configurations_per_second:,.0f} random configurations/s ({free_percent:.0f} % free)"
     if measured["motions_per_second"] is not None:
         text += ", {motions_per_second:,.0f} motions/s between free ones ({free_motions_percent:.0f} % free)"
-    return f"{text.format(**measured)}, one core, with {world.checked_with}, in {world.scene.name}"
+    return f"{text.format(**measured)}, one core, in {world.scene.name}"
 
 
 def _record(model: RobotModel, world: ArmWorld) -> dict[str, Any]:
@@ -184,7 +184,7 @@ def _record(model: RobotModel, world: ArmWorld) -> dict[str, Any]:
     record["robot"]["hulls"] = dict(Counter(hull.link for hull in model.robot.hulls))
     for joint in record["robot"]["joints"]:
         joint |= {key: None for key in ("lower", "upper", "velocity") if math.isinf(joint[key])}
-    checks = {"scene": world.scene.name, "with": world.checked_with, **_measured(world)}
+    checks = {"scene": world.scene.name, **_measured(world)}
     return record | {"no_body": list(model.bodiless), "checks": checks}
 
 

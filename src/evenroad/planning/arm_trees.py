@@ -17,20 +17,12 @@ from evenroad.roadmap.connector import Connection
 from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
-from evenroad.space.path import configuration_at, motion_lengths
 
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
-
-
-_TOLERANCE = 1e-4
-"""Tolerance of proofs where the lanes do not work [m]."""
-
-_WORTH_WHILE = 3e-3
-"""Smallest share by which a motion must shorten a path to be checked without lanes."""
 
 
 class PlansWithTrees(Protocol):
@@ -43,12 +35,7 @@ class PlansWithTrees(Protocol):
     def checker(self) -> Checker: ...  # noqa: D102
 
     @property
-    def backend(self) -> str: ...  # noqa: D102
-
-    @property
     def fixed_contact(self) -> tuple[str, str] | None: ...  # noqa: D102
-
-    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> npt.NDArray[np.bool_]: ...  # noqa: D102
 
 
 def connect(
@@ -67,15 +54,15 @@ def connect(
     a `sequence` of points of the unit cube, (n, dim), by default 2048 points of Halton's sequence; after the last point
     it repeats, shifted.
 
-    The path is empty if the budget is spent, if start or goals are not free, or if the world's backend is not the
-    lanes. InvalidValue if an argument is no such array or number.
+    The path is empty if the budget is spent, or if start or goals are not free.  InvalidValue if an argument is no such
+    array or number.
     """
     dim = world.space.dim
     limit = require_positive("seconds", seconds)
     most = require_count("most_motions", most_motions)
     first, others = _start_and_goals(start, goals, dim)
     samples = cube_points(dim) if sequence is None else _as_sequence(sequence, dim)
-    if world.fixed_contact is not None or world.backend == "scalar":
+    if world.fixed_contact is not None:
         return Connection(np.empty((0, dim)), -1, 0, 0, 0)
     return _grown(world, first, others, samples, most, limit)[0]
 
@@ -85,12 +72,12 @@ def grown_trees(
 ) -> tuple[Floats, Ints]:
     """Return the nodes, (n, dim), of the two trees of `connect` and their links, (m, 2), for viewers.
 
-    Raises as :func:`connect`; without lanes both are empty.
+    Raises as :func:`connect`.
     """
     dim = world.space.dim
     limit = require_positive("seconds", seconds)
     first, others = _start_and_goals(start, goals, dim)
-    if world.fixed_contact is not None or world.backend == "scalar":
+    if world.fixed_contact is not None:
         return np.empty((0, dim)), np.empty((0, 2), dtype=np.int64)
     _, trees = _grown(world, first, others, cube_points(dim), MOST_MOTIONS, limit)
     vertices, edges, before = [], [], 0
@@ -114,12 +101,9 @@ def shorten(
 
     A new motion enters only where it is proved free throughout.  Motions of the given path stay where nothing shorter
     was found, proved or not: :meth:`CertifiedWorld.motion_valid` says which.  At most `pairs` motions between points
-    along the path are tried, and with lanes at most `shortcuts` corners.  InvalidValue if `path` is no such array.
+    along the path are tried, and at most `shortcuts` corners.  InvalidValue if `path` is no such array.
     """
-    path = _as_path(world, path)
-    if world.backend == "scalar":
-        return _shortened(world, path)
-    return planning.shorten(checks_of(world), path, share_pairs()[:pairs], shortcuts)
+    return planning.shorten(checks_of(world), _as_path(world, path), share_pairs()[:pairs], shortcuts)
 
 
 def smooth(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: bool = True) -> tuple[Floats, int]:
@@ -127,19 +111,15 @@ def smooth(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: 
     checks.
 
     Waypoints slide along what they touch.  Every motion is proved free, and one or two are bent a little where they are
-    not.  Where that fails, the given path is shortened by straight motions alone, as in `shorten`; so it is without
-    lanes. After `batches` of sixteen checks, some of which are kept for the proof, no waypoint slides any more;
-    shortcuts of corners and the proof follow.
+    not.  Where that fails, the given path is shortened by straight motions alone, as in `shorten`.  After `batches` of
+    sixteen checks, some of which are kept for the proof, no waypoint slides any more; shortcuts of corners and the
+    proof follow.
 
-    `proved` says whether the given path is; a single motion has to be, and all of them without lanes.  Where neither
-    the given, nor the shortened, nor the smoothed path is proved, there are no waypoints: (0, dim).  InvalidValue if
-    `path` is no such array.
+    `proved` says whether the given path is; a single motion has to be.  Where neither the given, nor the shortened, nor
+    the smoothed path is proved, there are no waypoints: (0, dim).  InvalidValue if `path` is no such array.
     """
-    path = _as_path(world, path)
-    if world.backend == "scalar":
-        return shorten(world, path)
     guides = share_pairs(), sphere_points(world.space.dim)
-    smoothed, motions = planning.smooth(checks_of(world), path, guides, batches, proved)
+    smoothed, motions = planning.smooth(checks_of(world), _as_path(world, path), guides, batches, proved)
     return np.empty((0, world.space.dim)) if smoothed is None else smoothed, motions
 
 
@@ -154,35 +134,6 @@ def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:
     if len(points) < 2:
         raise InvalidValue(f"a path must have 2 waypoints or more, got {len(points)}")
     return points
-
-
-def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
-    """Shorten a path without lanes, one motion at a time; return it and the number of motions checked."""
-    space = world.space
-    path = space.interpolate(path, path, 0.0)
-    motions = 0
-
-    def is_shortcut(a: Floats, b: Floats) -> bool:
-        nonlocal motions
-        motions += 1
-        return bool(world.motion_certified(a[np.newaxis], b[np.newaxis], _TOLERANCE)[0])
-
-    i = 0
-    while i < len(path) - 2:
-        for j in range(len(path) - 1, i + 1, -1):
-            if is_shortcut(path[i], path[j]):
-                path = np.concatenate([path[: i + 1], path[j:]])
-                break
-        i += 1
-    for low, high in np.sort(share_pairs(), axis=1):
-        along = np.concatenate([[0.0], np.cumsum(motion_lengths(path, space))])
-        shares = np.array([low, high]) * along[-1]
-        first, last = np.clip(np.searchsorted(along, shares, side="right") - 1, 0, len(path) - 2)
-        endpoints = configuration_at(path, space, [low, high])
-        gain = shares[1] - shares[0] - space.distance(endpoints[:1], endpoints[1:])[0]
-        if first < last and gain >= _WORTH_WHILE * along[-1] and is_shortcut(*endpoints):
-            path = np.concatenate([path[: first + 1], endpoints, path[last + 1 :]])
-    return path, motions
 
 
 def _grown(

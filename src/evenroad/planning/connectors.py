@@ -32,7 +32,7 @@ _SPREADS = (32, 96)
 
 @dataclass(frozen=True)
 class ArmTrees:
-    """Two trees in compiled code, every motion proved free; for arms whose sixteen lanes work.
+    """Two trees in compiled code, every motion proved free; for arms.
 
     They grow in the arm's world `inside` where another world is queried, such as one of the robot's meshes.
     """
@@ -129,5 +129,5 @@ def connector_of(world: Any) -> Connector | None:
 
 
 def trees_for(world: Any) -> Connector:
-    """Return the trees for this kind of world: compiled ones for an arm whose lanes work, else plain ones."""
-    return ARM_TREES if isinstance(world, ArmWorld) and world.backend == "lanes" else PLAIN_TREES
+    """Return the trees for this kind of world: compiled ones for an arm, else plain ones."""
+    return ARM_TREES if isinstance(world, ArmWorld) else PLAIN_TREES

@@ -10,23 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats, Ints, set_fields
+from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
-from evenroad._checks import require_known, require_positive
+from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad._native.robot import Checker
+from evenroad._native.robot import Scene as NativeScene
 from evenroad._shared import once_property
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import PointCloud
 from evenroad.robot.given import as_robot, as_scene
-from evenroad.robot.kernel import scalar
-from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.native_scene import native_scene
-from evenroad.robot.kernel.obstacles import obstacle_rows, refuse, tested_contacts
-from evenroad.robot.kernel.robot_tables import RobotTables, enlarged
-from evenroad.robot.kernel.scene_surfaces import SceneSurfaces, scene_surfaces
-from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
-from evenroad.robot.kernel.surface_scalar import scalar_check_address
+from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
 from evenroad.robot.planes import with_planes
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot, within_scene
@@ -40,8 +35,6 @@ from evenroad.world.bisection import require_few_segments
 from evenroad.world.clearance import largest_kept
 from evenroad.world.one_or_many import OneOrMany, one_or_many
 from evenroad.world.protocol import Apart
-
-_BACKENDS = ("auto", "lanes", "scalar")
 
 MOST_CLEARANCE = 1.0
 """Largest clearance that a world can have [m]."""
@@ -74,23 +67,20 @@ class ArmWorld(OneOrMany):
         Largest Euclidean distance between neighbouring states of a motion, > 0 [rad].
     clearance : float
         Least distance from obstacles, >= 0 [m]: bodies are larger by it against obstacles, not against each other.
-    backend : {"auto", "lanes", "scalar"}
-        Sixteen checks at once in single precision, with radii enlarged by some micrometres to be safe, or one after the
-        other in double precision; "auto" is the lanes.
 
     Attributes
     ----------
     bounds : float64 ndarray, shape (3, dim)
         Low, high and period of each joint; a period of inf where it does not wrap.
-    robot_tables, tables, surfaces : RobotTables, ArmTables, SceneSurfaces or None
-        Tables for compiled code: of the robot alone, and of the robot in this scene.
+    robot_tables : RobotTables
+        What checks know of the robot, the same in every scene.
 
     Raises
     ------
     InvalidValue
         If a number is invalid, a joint of the group has no finite range, or robot or scene is inconsistent.
     UnknownName
-        If the robot or the scene names something that does not exist, or there is no such backend.
+        If the robot or the scene names something that does not exist.
 
     Examples
     --------
@@ -102,19 +92,15 @@ class ArmWorld(OneOrMany):
     robot: Robot
     scene: Scene = field(default_factory=Scene)
     resolution: float = 0.05
-    backend: str = "auto"
     clearance: float = 0.0
     _space: JointSpace = field(init=False, repr=False)
     bounds: Floats = field(init=False, repr=False)
     robot_tables: RobotTables = field(init=False, repr=False)
-    tables: ArmTables = field(init=False, repr=False)
-    surfaces: SceneSurfaces | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         scene = as_scene(self.scene)
         apart = require_positive("clearance", self.clearance, or_zero=True, at_most=MOST_CLEARANCE)
         resolution = require_positive("resolution", self.resolution)
-        require_known("backend", self.backend, _BACKENDS)
         robot = within_scene(as_robot(self.robot), scene)
         set_fields(self, robot=robot, scene=scene, resolution=resolution, clearance=apart)
         for held in self.scene.attached:
@@ -129,37 +115,15 @@ class ArmWorld(OneOrMany):
                 f"scene {self.scene.name!r} allows contacts near start and goals, which a world does not know:"
                 " plan does, or give it allowed_near_ends(robot, scene, start_and_goals)"
             )
-        space, longest, of_robot, bounds, _ = prepared(self.robot)
-        require_few_segments(self.resolution, longest / self.resolution)
-        if self.clearance:
-            of_robot = enlarged(of_robot, self.clearance)
-        tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
-        rows, surfaces = obstacle_rows(self.scene), None
-        if len(rows) < len(self.scene.obstacles):
-            surfaces = scene_surfaces(self.scene, of_robot, tested)
-            solid = [bool(obstacle.row) for obstacle in self.scene.obstacles]
-            tested = np.ascontiguousarray(tested[:, solid])
-        tables, _, too_far = arm_tables(of_robot, rows, tested)
-        if too_far >= 0:
-            refuse([obstacle for obstacle in self.scene.obstacles if obstacle.row][too_far])
-        self.__dict__.update(
-            _space=space,
-            bounds=bounds,
-            robot_tables=of_robot,
-            tables=tables,
-            surfaces=surfaces,
-            backend="lanes" if self.backend == "auto" else self.backend,
-        )
+        made = prepared(self.robot)
+        require_few_segments(self.resolution, made.longest / self.resolution)
+        self.__dict__.update(_space=made.space, bounds=made.bounds, robot_tables=made.tables)
+        _ = self.native_scene  # at once: it refuses obstacles that are too far
 
     @property
     def space(self) -> JointSpace:
         """The ranges of the group's joints; continuous ones wrap."""
         return self._space
-
-    @property
-    def checked_with(self) -> str:
-        """The backend."""
-        return self.backend
 
     @property
     def excess(self) -> float:
@@ -178,16 +142,21 @@ class ArmWorld(OneOrMany):
         return f"ArmWorld({self.robot!r}, {self.scene!r})"
 
     @once_property
+    def native_scene(self) -> NativeScene:
+        """The obstacles as native checks read them."""
+        made = prepared(self.robot)
+        return native_scene(made.native, made.tables, self.robot.links, self.scene, self.clearance)
+
+    @once_property
     def checker(self) -> Checker:
         """The native checks of this world."""
-        made = prepared(self.robot)
-        scene = native_scene(made.native, made.tables, self.robot.links, self.scene, self.clearance)
         touches_itself = self.robot_tables.fixed_contact is not None
-        return Checker(made.native, scene, self.resolution, self.clearance, touches_itself)
+        robot = prepared(self.robot).native
+        return Checker(robot, self.native_scene, self.resolution, self.clearance, touches_itself)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy is made of: it makes checks of its own."""
-        return {name: value for name, value in self.__dict__.items() if name != "checker"}
+        return {name: value for name, value in self.__dict__.items() if name not in ("native_scene", "checker")}
 
     def valid(self, q: Any) -> Any:
         """Return which configurations, (n, dim), are within the limits, up to 1e-5, and touch nothing: (n,).
@@ -196,8 +165,6 @@ class ArmWorld(OneOrMany):
 
         Raises InvalidValue if `q` has another shape or an entry that is not finite.
         """
-        if self.backend == "scalar":
-            return self._slowly_valid(q)
         free = self.checker.valid(q)
         return self._read_and_valid(q) if free is None else free
 
@@ -206,34 +173,17 @@ class ArmWorld(OneOrMany):
         """Return the same of what is no array of floats, or not such a one as it should be."""
         return self.checker.valid(as_batch("q", q, self._space.dim))
 
-    @one_or_many
-    def _slowly_valid(self, q: Floats) -> Bools:
-        configurations = as_batch("q", q, self._space.dim)
-        if self.fixed_contact is not None:
-            return np.zeros(len(configurations), dtype=np.bool_)
-        return scalar.configurations_free(configurations, self.bounds, self._ints, self.tables.floats)
-
     def motion_valid(self, a: Any, b: Any) -> Any:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
 
         Raises InvalidValue as `valid`, or if the two differ in length.
         """
-        free = None if self.backend == "scalar" else self.checker.motion_valid(a, b)
+        free = self.checker.motion_valid(a, b)
         return self._read_and_motion_valid(a, b) if free is None else free
 
     @one_or_many
     def _read_and_motion_valid(self, a: Floats, b: Floats) -> Bools:
-        return self._motions_free(a, b, 0.0)
-
-    def _motions_free(self, a: Floats, b: Floats, tolerance: float) -> Bools:
-        """Return which motions are free at their states and, by the lanes, proved where `tolerance` is > 0."""
-        first, second = as_batch_pair(a, b, self._space.dim)
-        if self.backend == "lanes":
-            return self.checker.motion_valid(first, second, tolerance)
-        if self.fixed_contact is not None:
-            return np.zeros(len(first), dtype=np.bool_)
-        tables = self.tables
-        return scalar.motions_free(first, second, self.resolution, self.bounds, self._ints, tables.floats)
+        return self.checker.motion_valid(*as_batch_pair(a, b, self._space.dim))
 
     @property
     def proof(self) -> str:
@@ -254,24 +204,8 @@ class ArmWorld(OneOrMany):
 
         Motions nearer than about `tolerance` to contact are not proved, > 0 [m].  Raises as `motion_valid`.
         """
-        tolerance = require_positive("tolerance", tolerance)
-        if self.backend == "lanes":
-            return self._motions_free(a, b, tolerance)
         first, second = as_batch_pair(a, b, self._space.dim)
-        # Testing states finds most of the blocked ones fast.
-        proved = self.motion_valid(first, second)
-        rows, tables = np.flatnonzero(proved), self.tables
-        proved[rows] = motions_certified(
-            as_batch("a", first[rows], self._space.dim),
-            as_batch("b", second[rows], self._space.dim),
-            tolerance,
-            self.bounds,
-            self._ints,
-            tables.floats,
-            self.robot_tables.speeds,
-            self.robot_tables.pair_speeds,
-        )
-        return proved
+        return self.checker.motion_valid(first, second, require_positive("tolerance", tolerance))
 
     def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
         """Return a proof that no path leads from the start, (dim,), to any goal, (g, dim), or None.
@@ -294,8 +228,11 @@ class ArmWorld(OneOrMany):
     def margin(self) -> float:
         """Largest distance at which bodies may touch in single precision [m]."""
         clouds = [each.body.radius for each in self.scene.obstacles if isinstance(each.body, PointCloud)]
-        pairs = float(self.robot_tables.pair_margins.max(initial=0.0))
-        return max(self.tables.margin, pairs, 1e-6 * max(clouds, default=0.0))
+        reach = self.robot_tables.reach
+        # Once for what is added, once more for what rounding may add to that; a pair has two bodies that are larger.
+        pairs = 4.0 * PADDING * max(1.0, reach) if self.robot_tables.capsule_pairs else 0.0
+        obstacles = 2.0 * (PADDING * max(1.0, reach + self.clearance) + self.native_scene.added)
+        return max(obstacles, pairs, 1e-6 * max(clouds, default=0.0))
 
     def with_bodies(self, robot: Robot) -> Callable[[Floats], Bools]:
         """Return a function that checks configurations, (n, dim), of a robot with other bodies or another group."""
@@ -343,34 +280,20 @@ class ArmWorld(OneOrMany):
     @cached_property
     def fixed_contact(self) -> tuple[str, str] | None:
         """Two bodies that touch at all values of the joints, or None."""
-        surfaces, of_capsules = self.surfaces, self.robot_tables.capsules
-        if self.tables.fixed_contact is not None:
-            capsule, obstacle = self.tables.fixed_contact
-            return of_capsules[capsule].link, self._solid(obstacle)
-        if surfaces is not None:
-            kind, capsule, number = self.checker.fixed_contact
-            if kind == "surface":
-                return of_capsules[capsule].link, self.scene.obstacles[number].name
-        return self.robot_tables.fixed_contact
-
-    def _solid(self, number: int) -> str:
-        """Return the name of an obstacle by its number among those that are neither clouds nor meshes."""
-        return [obstacle.name for obstacle in self.scene.obstacles if obstacle.row][number]
-
-    @property
-    def _ints(self) -> Ints:
-        """The integers of the tables, with the addresses of clouds and meshes, if any."""
-        surfaces, ints = self.surfaces, self.tables.ints
-        return ints if surfaces is None else surfaces.added_to(ints, scalar_check_address())
+        kind, capsule, other = self.checker.fixed_contact
+        return self.robot_tables.fixed_contact if kind == "nothing" else self._names(kind, capsule, other)
 
     def _touching(self, q: Floats) -> tuple[str, str] | None:
         """Return two bodies that touch at a configuration within the limits."""
-        capsules = self.robot_tables.capsules
         kind, capsule, other = self.checker.find_contact(q)
-        if kind == "nothing":
-            return None
+        return None if kind == "nothing" else self._names(kind, capsule, other)
+
+    def _names(self, kind: str, capsule: int, other: int) -> tuple[str, str]:
+        """Return the names of two bodies that touch, as native checks number them."""
+        capsules, obstacles = self.robot_tables.capsules, self.scene.obstacles
         if kind == "itself":
             first, second = self.robot_tables.capsule_pairs[other]
             return capsules[first].link, capsules[second].link
-        name = self._solid(other) if kind == "obstacle" else self.scene.obstacles[other].name
-        return capsules[capsule].link, name
+        if kind == "obstacle":
+            obstacles = tuple(obstacle for obstacle in obstacles if obstacle.row)
+        return capsules[capsule].link, obstacles[other].name

@@ -11,9 +11,8 @@ If at share t every capsule is farther than ``h D_c`` from every obstacle, and e
 then nothing touches between the shares t - h and t + h.  So the motion's middle is tested with those margins, h one
 half; where that fails the motion is halved, and so on, into 2^15 pieces at most (F. Schwarzer, M. Saha and J.-C.
 Latombe, Adaptive Dynamic Collision Checking, 2005).  Distances are those of the model: exact between capsules, and
-hulls, and to obstacles from spheres that cover them.  The lanes prove sixteen pieces at once in single precision, with
-bodies larger by what that may lose; the backend "scalar" works in double precision.  "No" means blocked, or that
-somewhere the clearance is too small for a proof.
+hulls, and to obstacles from spheres that cover them.  Sixteen pieces are proved at once in single precision, with
+bodies larger by what that may lose.  "No" means blocked, or that somewhere the clearance is too small for a proof.
 """
 
 from __future__ import annotations

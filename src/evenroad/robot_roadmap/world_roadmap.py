@@ -49,12 +49,6 @@ and triangles, where checks take longer; and the least number for smoothing."""
 _LONG = 1e8
 """Number of seconds that stands for no limit."""
 
-_SOME = 64
-"""Number of milestones among which a free one is searched, to compile with."""
-
-_ready: set[str] = set()
-"""Backends whose programs are compiled."""
-
 
 def links_of(n: int) -> int:
     """Return the number of n milestones that start and goal are linked to: of up to 256 all, of 1024 half."""
@@ -88,19 +82,6 @@ class ArmWorldRoadmap(WorldRoadmap):
         self._wraps = bool(np.any(world.space.wrapping))
         self._graph = roadmap.graph.within(np.array(world.space.low), np.array(world.space.high))
         self._lock = OwnLock()
-        self._make_ready()
-
-    def _make_ready(self) -> None:
-        """Compile, or load, what a query needs before a clock runs; only start and goal are checked."""
-        world, milestones = self.world, self.roadmap.milestones
-        if world.backend in _ready:
-            return
-        first = int(np.argmax(world.valid(milestones[:_SOME])))
-        here = milestones[first : first + 1]
-        found = search(self._graph, self._worlds, Query(here[0], here, 1), 0, math.inf)
-        arm_trees.smooth(world, np.repeat(here, 2, axis=0), batches=0)
-        if found.ended != "not free":
-            _ready.add(world.backend)
 
     @property
     def _size(self) -> int:
@@ -227,7 +208,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         if attempt.query.smooth == "quick":
             path, counts["shortcut_motions"] = arm_trees.shorten(world, path)
         elif attempt.query.smooth:
-            work = max(LEAST_WORK, (WORK if world.surfaces is None else AMONG_SURFACES) - found.batches)
+            work = max(LEAST_WORK, (WORK if world.native_scene.surfaces == 0 else AMONG_SURFACES) - found.batches)
             path, counts["shortcut_motions"] = arm_trees.smooth(world, path, batches=work)
         if attempt.query.smooth:
             length, attempt.watch.seconds["shortcut"] = self._length(path), now() - began

@@ -1,4 +1,4 @@
-"""Addresses: of functions, to call them from compiled code, and of arrays."""
+"""Arrays at addresses, for compiled code that makes none."""
 
 from __future__ import annotations
 
@@ -6,35 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
-
-
-def address(array: npt.NDArray[Any]) -> int:
-    """Return where an array, C-contiguous and of the kind that the caller takes it for, begins in memory."""
-    return int(array.__array_interface__["data"][0])
-
-
-@intrinsic
-def call_at(typing_context: Any, address: Any, arguments: Any) -> Any:
-    """Return the integer that the function at an address gives for a tuple of arguments; of arrays it takes pointers.
-
-    Nothing checks that the arguments are those of the function: integers are of 64 bits, floats double.
-    """
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        values = [
-            context.make_array(kind)(context, builder, value).data if isinstance(kind, types.Array) else value
-            for kind, value in zip(sig.args[1], cgutils.unpack_tuple(builder, args[1]), strict=True)
-        ]
-        kind = ir.FunctionType(ir.IntType(64), [value.type for value in values])
-        return builder.call(builder.inttoptr(args[0], kind.as_pointer()), values)
-
-    return types.int64(types.int64, arguments), lower
 
 
 @intrinsic
@@ -79,10 +55,4 @@ def _array(number: types.Type, dimensions: int) -> Callable[..., Any]:
     return array
 
 
-ANY_LENGTH = 1 << 40
-"""For arrays whose lengths are not passed on: nothing reads beyond what the tables say."""
-
-doubles_at, matrix_at = (_array(types.float64, dimensions) for dimensions in (1, 2))
-singles_at, integers_at, bytes_at = (_array(kind, 1) for kind in (types.float32, types.int64, types.uint8))
-byte_table_at, small_table_at = (_array(kind, 2) for kind in (types.uint8, types.int32))
-table_at = _array(types.int64, 2)
+doubles_at, integers_at = (_array(kind, 1) for kind in (types.float64, types.int64))

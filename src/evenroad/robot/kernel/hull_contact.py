@@ -28,31 +28,6 @@ _SAME = 1e-9
 
 
 @quick
-def bodies_meet(poses: Any, lane: int, lanes: int, margin: float, pair: int, ints: Ints, table: Any) -> bool:
-    """Return whether hulls of a pair of bodies come within a margin where a lane, of so many, of frames has them."""
-    row = ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * pair
-    a = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row]
-    b = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row + 1]
-    pose = doubles_at(stack_memory(12), (12,))
-    write_relative(poses, 12 * lanes * ints[a] + lane, 12 * lanes * ints[b] + lane, lanes, pose)
-    return hulls_meet(ints[a + 3], ints[b + 3], pose, margin, ints, table) != APART
-
-
-@quick
-def write_relative(poses: Any, a: int, b: int, step: int, pose: Floats) -> None:
-    """Write the pose of one frame in another, whose numbers begin at `a` and `b`, a step apart."""
-    for i in range(3):
-        pose[9 + i] = 0.0
-        for k in range(3):
-            pose[3 * i + k] = 0.0
-        for axis in range(3):
-            turned = np.float64(poses[a + (3 * axis + i) * step])
-            pose[9 + i] += turned * (poses[b + (9 + axis) * step] - poses[a + (9 + axis) * step])
-            for k in range(3):
-                pose[3 * i + k] += turned * poses[b + (3 * axis + k) * step]
-
-
-@quick
 def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints, table: Any) -> int:
     """Return two hulls of two bodies that come nearer than `margin`, as ``node << 32 | node``, or APART.
 

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Sequence
 
 import numpy as np
 
+from evenroad._arrays import Bools, Floats
 from evenroad._native import robot as native
+from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.shapes import Mesh, PointCloud
-from evenroad.robot.kernel.obstacles import obstacle_rows, tested_contacts
+from evenroad.robot.kernel.native_surfaces import MANY, surface_of, surfaces_around
+from evenroad.robot.kernel.placed_capsules import FARTHEST, PlacedCapsule
 from evenroad.robot.kernel.robot_tables import RobotTables
-from evenroad.robot.kernel.scene_surfaces import MANY, reached_parts
 from evenroad.robot.scene import Scene
 
 
 def native_scene(
     robot: native.Robot, tables: RobotTables, links: tuple[str, ...], scene: Scene, clearance: float
 ) -> native.Scene:
-    """Return a scene as a robot of these links is checked in it, all its bodies larger by a clearance [m]."""
+    """Return a scene as a robot of these links is checked in it, all its bodies larger by a clearance [m].
+
+    Raises UnknownName if an allowed contact names a link or an obstacle that is not there; InvalidValue if an obstacle
+    is so far, or so large, that too few digits are left.
+    """
     tested = tested_contacts(tables.capsules, links, scene)
     solid = np.array([bool(obstacle.row) for obstacle in scene.obstacles], dtype=np.bool_)
     reach = tables.reach + clearance
@@ -26,33 +32,45 @@ def native_scene(
         body = obstacle.body
         if not isinstance(body, PointCloud | Mesh) or not tested[:, number].any():
             continue
-        if (surface := _surface(body, reach)) is not None:
+        if (surface := surface_of(body, reach)) is not None:
             surfaces.append((surface, number, np.ascontiguousarray(tested[:, number])))
             bodies.append(body)
-    around = _around(tuple(bodies), reach) if len(bodies) >= MANY else None
-    return native.Scene(
+    around = surfaces_around(tuple(bodies), reach) if len(bodies) >= MANY else None
+    made = native.Scene(
         robot, obstacle_rows(scene), np.ascontiguousarray(tested[:, solid]), surfaces, around, clearance
     )
+    if made.too_far >= 0:
+        # Boxes along the axes are never too far: they are cut off where the robot never comes.
+        far = [obstacle for obstacle in scene.obstacles if obstacle.row][made.too_far]
+        raise InvalidValue(f"obstacle {far.name!r} must be within {FARTHEST:g} m, got size {far.size!r} at {far.xyz!r}")
+    return made
 
 
-@lru_cache(maxsize=64)
-def _surface(body: PointCloud | Mesh, reach: float) -> native.Surface | None:
-    """Return what a robot of this reach can touch of a body; kept, since the next scene often has it, too."""
-    reached = reached_parts(body, reach)
-    if reached is None:
-        return None
-    corners, radius, grid = reached
-    given: dict[str, object] = {
-        "low": np.ascontiguousarray(grid.low),
-        "cell": np.array([grid.cell, grid.excess]),
-        "distances": grid.distances,
-    }
-    if grid.windings is not None:
-        given |= {"windings": grid.windings, "turned": grid.turned}
-    return native.Surface(np.ascontiguousarray(corners), radius, given)
+def obstacle_rows(scene: Scene) -> Floats:
+    """Return the obstacles of a scene but clouds and meshes, (n, 16): kind; full extents of a box, or radius and length
+    without caps, and zeros [m]; rotation to the root link's frame, row by row; centre in that frame [m].
+    """
+    return np.frombuffer(b"".join([obstacle.row for obstacle in scene.obstacles])).reshape(-1, 16)
 
 
-@lru_cache(maxsize=4)
-def _around(bodies: tuple[PointCloud | Mesh, ...], reach: float) -> native.Surface:
-    """Return the grid around several bodies that can be reached; kept, as they are."""
-    return native.Surface.around([_surface(body, reach) for body in bodies])
+def tested_contacts(capsules: Sequence[PlacedCapsule], links: Sequence[str], scene: Scene) -> Bools:
+    """Return which capsules of a robot of these links are tested against which obstacles: (capsules, obstacles).
+
+    Raises UnknownName if an allowed contact names a link or an obstacle that is not there.
+    """
+    # Bytes, of which each is soon set.
+    count = len(scene.obstacles)
+    tested = bytearray(b"\1") * (len(capsules) * count)
+    if scene.allowed:
+        bodied = [each.link for each in capsules]
+        for link, name in scene.allowed:
+            if link not in links:
+                raise UnknownName.among("link", link, links)
+            index = next((k for k, each in enumerate(scene.obstacles) if each.name == name), -1)
+            if index < 0:
+                raise UnknownName.among("obstacle", name, [each.name for each in scene.obstacles])
+            for other in bodied:
+                if other == link:
+                    tested[index] = 0
+                index += count
+    return np.frombuffer(tested, dtype=np.bool_).reshape(len(capsules), count)

@@ -231,7 +231,8 @@ void add_robot(nb::module_& module) {
       .def("__init__", &make_scene, nb::arg("robot"), nb::arg("obstacles"), nb::arg("tested"), nb::arg("surfaces"),
            nb::arg("around").none(), nb::arg("clearance"))
       .def_ro("added", &Scene::added)
-      .def_ro("too_far", &Scene::too_far);
+      .def_ro("too_far", &Scene::too_far)
+      .def_prop_ro("surfaces", [](const Scene& scene) { return scene.surfaces.size(); });
   nb::class_<Checker>(part, "Checker")
       .def("__init__", &make_checker)
       .def("valid", &valid, nb::arg("q").none())

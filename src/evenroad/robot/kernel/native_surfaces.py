@@ -1,0 +1,87 @@
+"""The native kernel's surfaces: clouds and meshes, as far as a robot can reach them."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad._native import robot as native
+from evenroad.geometry.mesh import closed_parts
+from evenroad.geometry.shapes import Mesh, PointCloud
+from evenroad.robot.kernel.surface_grid import Grid, grid_of_points, grid_of_triangles
+
+MANY = 8
+"""From so many surfaces on there is a grid around all of them: motions among fewer are no quicker for it."""
+
+PADDING = 2.5e-7
+"""Single precision makes a surface uncertain by less than this share of its farthest point's distance from the
+origin."""
+
+PIECE = 0.1
+"""Triangles are cut until no side is longer than this share of the robot's reach: a box around a large one says
+little."""
+
+
+@lru_cache(maxsize=64)
+def surface_of(body: PointCloud | Mesh, reach: float) -> native.Surface | None:
+    """Return what a robot of this reach can touch of a body; kept, since the next scene often has it, too."""
+    reached = _reached_parts(body, reach)
+    if reached is None:
+        return None
+    corners, radius, grid = reached
+    given: dict[str, object] = {
+        "low": np.ascontiguousarray(grid.low),
+        "cell": np.array([grid.cell, grid.excess]),
+        "distances": grid.distances,
+    }
+    if grid.windings is not None:
+        given |= {"windings": grid.windings, "turned": grid.turned}
+    return native.Surface(np.ascontiguousarray(corners), radius, given)
+
+
+@lru_cache(maxsize=4)
+def surfaces_around(bodies: tuple[PointCloud | Mesh, ...], reach: float) -> native.Surface:
+    """Return the grid around several bodies that can be reached; kept, as they are."""
+    return native.Surface.around([surface_of(body, reach) for body in bodies])
+
+
+def _reached_parts(body: PointCloud | Mesh, reach: float) -> tuple[Floats, float, Grid] | None:
+    """Return what a robot of this reach can touch of a body, None where that is nothing.
+
+    These are points, (n, 1, 3), or triangles, (n, 3, 3), the radius by which they are widened, and the grid around.
+    """
+    if isinstance(body, PointCloud):
+        points = body.pose.apply(body.points)
+        points = points[np.linalg.norm(points, axis=1) <= reach + body.radius]
+        if len(points) == 0:
+            return None
+        padding = PADDING * (float(np.linalg.norm(points, axis=1).max()) + body.radius)
+        return points[:, np.newaxis], body.radius + padding, grid_of_points(points)
+    mesh = body.triangles
+    corners = body.pose.apply(mesh.vertices)[mesh.triangles]
+    near = _within_reach(corners, reach)
+    solid, turned = closed_parts(mesh)
+    if len(near) == 0:
+        return None
+    padding = PADDING * float(np.linalg.norm(near, axis=2).max())
+    return near, padding, grid_of_triangles(near, corners[solid], turned, reach)
+
+
+def _within_reach(corners: Floats, reach: float) -> Floats:
+    """Return the pieces of triangles, (n, 3, 3), that come within reach along each axis, see `PIECE`."""
+    pieces = []
+    while len(corners):
+        touched = (np.abs(corners).min(axis=1) <= reach) | (corners.min(axis=1) * corners.max(axis=1) <= 0.0)
+        corners = corners[touched.all(axis=1)]
+        lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+        large = lengths.max(axis=1, initial=0.0) > reach * PIECE
+        pieces.append(corners[~large])
+        longest = lengths[large].argmax(axis=1)
+        # Longest sides first.
+        turn = (longest[:, np.newaxis] + np.arange(3)) % 3
+        a, b, c = np.take_along_axis(corners[large], turn[:, :, np.newaxis], axis=1).transpose(1, 0, 2)
+        middle = 0.5 * (a + b)
+        corners = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return np.concatenate(pieces) if pieces else np.empty((0, 3, 3))
