@@ -20,7 +20,6 @@ class Surface:
 class Scene:
     added: float
     too_far: int
-    surfaces: int
     def __init__(
         self,
         robot: Robot,

@@ -1,4 +1,4 @@
-"""A query of a roadmap in a scene: by native code alone, or check by check where the lanes do not work."""
+"""A query of a roadmap in a scene."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._clock import now
-from evenroad._native.robot_roadmap import ProvedSearch, SceneGraph, Search
+from evenroad._native.robot_roadmap import ProvedSearch, SceneGraph
 from evenroad.planning.arm_trees import checks_of
 from evenroad.robot import ArmWorld
-from evenroad.robot.arm_world import VALIDATION_TOLERANCE
 
 GREED = 3.0
 """Factor of the bound of the search: it needs a third of the checks of a shortest path, and after shortening its paths
@@ -36,8 +35,8 @@ class Query(NamedTuple):
 
 
 class SearchResult(NamedTuple):
-    """How a search ended, e.g. ``found``: a path, (p, dim), and its goal or -1; numbers of configurations, motions and,
-    where known, batches of sixteen checks.
+    """How a search ended, e.g. ``found``: a path, (p, dim), and its goal or -1; numbers of configurations, motions and
+    batches of sixteen checks.
     """
 
     ended: str
@@ -57,49 +56,11 @@ def search(
     """
     if worlds[0].fixed_contact is not None:
         # Native checks get no capsules that no joint moves.
-        return _not_free(query)
-    if all(world.backend == "lanes" for world in worlds):
-        return _by_lanes(graph, worlds, query, most_motions, deadline)
-    return _by_calls(graph, worlds, query, most_motions, deadline)
-
-
-def _not_free(query: Query) -> SearchResult:
-    return SearchResult("not free", np.empty((0, len(query.start))), -1, 0, 0)
-
-
-def _start_and_goals(query: Query) -> Floats:
-    return np.concatenate([query.start[np.newaxis], query.goals])
-
-
-def _by_lanes(
-    graph: SceneGraph, worlds: tuple[ArmWorld, ArmWorld], query: Query, most_motions: int, deadline: float
-) -> SearchResult:
+        return SearchResult("not free", np.empty((0, len(query.start))), -1, 0, 0)
     everything, moved = map(checks_of, worlds)
-    finder = ProvedSearch(graph, _start_and_goals(query), query.rules, everything, moved)
+    terminals = np.concatenate([query.start[np.newaxis], query.goals])
+    finder = ProvedSearch(graph, terminals, query.rules, everything, moved)
     ended: str = finder.go_on(most_motions, _SLICE)
     while ended == "paused":
         ended = finder.go_on(most_motions, _SLICE) if now() < deadline else "spent"
-    return SearchResult(ended, finder.path, finder.goal, *finder.counts)
-
-
-def _by_calls(
-    graph: SceneGraph, worlds: tuple[ArmWorld, ArmWorld], query: Query, most_motions: int, deadline: float
-) -> SearchResult:
-    """Evaluate motion by motion."""
-    (world, dynamic), terminals = worlds, _start_and_goals(query)
-    if not world.valid(terminals).all():
-        return _not_free(query)
-    finder = Search(graph, world.space.interpolate(terminals, terminals, 0.0), query.rules)
-    ended = ""
-    while not ended:
-        check = finder.next_check()
-        if check is None:
-            ended = "found" if finder.goal >= 0 else "no path"
-        elif finder.counts[1] >= most_motions or now() >= deadline:
-            ended = "spent"
-        else:
-            kind, is_old, a, b = check
-            judge = dynamic if is_old else world
-            free = judge.valid(a) if kind == "milestone" else judge.motion_certified(a, b, VALIDATION_TOLERANCE)
-            finder.record(bool(free[0]))
     return SearchResult(ended, finder.path, finder.goal, *finder.counts)

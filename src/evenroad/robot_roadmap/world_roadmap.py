@@ -208,7 +208,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         if attempt.query.smooth == "quick":
             path, counts["shortcut_motions"] = arm_trees.shorten(world, path)
         elif attempt.query.smooth:
-            work = max(LEAST_WORK, (WORK if world.native_scene.surfaces == 0 else AMONG_SURFACES) - found.batches)
+            work = max(LEAST_WORK, (AMONG_SURFACES if world.among_surfaces else WORK) - found.batches)
             path, counts["shortcut_motions"] = arm_trees.smooth(world, path, batches=work)
         if attempt.query.smooth:
             length, attempt.watch.seconds["shortcut"] = self._length(path), now() - began

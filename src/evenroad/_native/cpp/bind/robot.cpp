@@ -231,8 +231,7 @@ void add_robot(nb::module_& module) {
       .def("__init__", &make_scene, nb::arg("robot"), nb::arg("obstacles"), nb::arg("tested"), nb::arg("surfaces"),
            nb::arg("around").none(), nb::arg("clearance"))
       .def_ro("added", &Scene::added)
-      .def_ro("too_far", &Scene::too_far)
-      .def_prop_ro("surfaces", [](const Scene& scene) { return scene.surfaces.size(); });
+      .def_ro("too_far", &Scene::too_far);
   nb::class_<Checker>(part, "Checker")
       .def("__init__", &make_checker)
       .def("valid", &valid, nb::arg("q").none())
