@@ -2,7 +2,7 @@
 
 import evenroad as er
 from evenroad.io import plan_record, save_json
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 
 maze = load_maze(3)
 world = maze.world()

@@ -1,7 +1,7 @@
 """How often does each sampler solve the level-1 maze with 128 points?  (The real table: docs/results.md.)"""
 
 import evenroad as er
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 
 maze = load_maze(1)
 world = maze.world()

@@ -4,7 +4,7 @@ import numpy as np
 
 import evenroad as er
 from evenroad.geometry import PointCloud
-from evenroad.planning.arm_request import arm_request
+from evenroad.planning.read_request import arm_request
 from evenroad.robot import Obstacle, Scene, Seen, capsule_endpoints, load_robot
 
 robot, home = load_robot("ur5"), "0,-1.57,0,-1.57,0,0"

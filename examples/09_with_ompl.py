@@ -12,7 +12,7 @@ from evenroad.adapters.ompl import (
     space_information,
 )
 from evenroad.roadmap import KNearest
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 
 
 def theirs_on_ours() -> None:

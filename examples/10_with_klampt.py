@@ -9,7 +9,7 @@ import klampt
 import evenroad as er
 from evenroad.adapters.klampt import KlamptWorld, klampt_motion, plan_on_points
 from evenroad.trajectory import Limits, make_trajectory
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 
 # Theirs on ours: what Klamp't calls free is what our map does, exactly, places and motions.
 maze = load_maze(2)

@@ -24,7 +24,7 @@ from evenroad.robot_roadmap.build import arm_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.space.path import subdivide
 from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 from tests.robot.kernel_arms import TABLE, box_scene, ur5
 from tests.robot.oracle import clearance
 from tests.threads import together

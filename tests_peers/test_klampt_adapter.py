@@ -10,7 +10,7 @@ from evenroad.space import SE2
 from evenroad.testing import WorldContract
 from evenroad.trajectory import Limits, make_trajectory
 from evenroad.world import FunctionWorld
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 from tests_peers.engines.urdf_text import as_urdf
 
 klampt = pytest.importorskip("klampt")

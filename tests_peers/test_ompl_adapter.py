@@ -11,7 +11,7 @@ from evenroad.robot import load_robot, load_scene
 from evenroad.space import SE2, SE3, SO3, BoxSpace, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 from evenroad_studies.rules import KEarlier
 from evenroad_studies.worlds import Corridor
 

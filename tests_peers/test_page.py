@@ -6,8 +6,8 @@ import time
 import numpy as np
 import pytest
 
-from evenroad.planning.arm_request import arm_request
 from evenroad.planning.plan import plan as find_path
+from evenroad.planning.read_request import arm_request
 from evenroad.robot.kinematics import link_poses
 
 viser = pytest.importorskip("viser")

@@ -40,7 +40,7 @@ REFERENCE = {
         (
             "evenroad.points",
             "evenroad.points.samplers",
-            "evenroad.points.samplers.poses",
+            "evenroad.points.samplers.even",
             "evenroad.points.randomise",
             "evenroad.points.measures",
         ),
@@ -60,7 +60,7 @@ REFERENCE = {
     ),
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
     "pictures": ("Pictures", ("evenroad.viz.show", "evenroad.viz.plan", "evenroad.viz.arm")),
-    "mazes": ("Mazes", ("evenroad.world.gridmap.shipped",)),
+    "mazes": ("Mazes", ("evenroad.world.gridmap.load",)),
     "adapters": ("Adapters", ("evenroad.adapters.ompl", "evenroad.adapters.klampt")),
     "errors": ("Errors", ("evenroad.errors",)),
 }

@@ -19,7 +19,7 @@ import evenroad as er
 from evenroad.points.measures import dispersion_bounds
 from evenroad.roadmap import KNearest
 from evenroad.viz import style
-from evenroad.world.gridmap.shipped import Maze, load_maze
+from evenroad.world.gridmap.load import Maze, load_maze
 from evenroad_studies.statistics.rates import wilson
 
 OUT = Path(__file__).parents[1] / "docs" / "concepts"

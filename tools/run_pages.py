@@ -22,7 +22,7 @@ MAPS = """
 import numpy as np, shutil
 from pathlib import Path
 from PIL import Image
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 shutil.copy(load_maze(3).path, "maze.png")
 Image.fromarray(np.full((200, 200), 254, dtype=np.uint8)).save("office.pgm")
 Path("office.yaml").write_text(

@@ -11,7 +11,7 @@ from typing import Any
 from messages import Make, planning_scene, standing
 
 import evenroad as er
-from evenroad.planning.arm_request import arm_request
+from evenroad.planning.read_request import arm_request
 from evenroad.robot import Robot
 from evenroad.trajectory import arm_trajectory
 from evenroad.trajectory.files import joint_trajectory

@@ -1,8 +1,4 @@
-"""Functions above the values whose methods call them, loaded when a method is called.
-
-A method such as ``robot.ik(pose)`` stands where one looks for it, on the value.  The function that does the work needs
-much more than the value does, and imports it.  So the method knows it by name alone, and loads it when it is called.
-"""
+"""Functions that methods of values call by name: they import much more than the value, and are loaded on first use."""
 
 from __future__ import annotations
 
@@ -21,7 +17,7 @@ FUNCTIONS = {
     "PlanResult.plot": "evenroad.viz.result:plot_result",
     "plan.planner": "evenroad.robot_roadmap.file:load_roadmap",
     "PlanResult.save": "evenroad.io:save_result",
-    "PlanResult.trajectory": "evenroad.trajectory.of_plan:trajectory_of",
+    "PlanResult.trajectory": "evenroad.trajectory.arm:trajectory_of",
     "PointSet.discrepancy": "scipy.stats.qmc:discrepancy",
     "PointSet.save": "evenroad.points.npz:write_points",
     "Robot.configuration": "evenroad.robot.states:as_configuration",
@@ -30,10 +26,10 @@ FUNCTIONS = {
     "Robot.ik": "evenroad.robot.robot_queries:configurations_at",
     "Robot.random": "evenroad.robot.robot_queries:random_configurations",
 }
-"""Method -> the function that it is, ``module:name``; it is given the value, or what one is made of."""
+"""Method -> its function, ``module:name``."""
 
 
 def above(method: str) -> Any:
-    """Return the function that does what a method says."""
+    """Return the function of a method."""
     module, _, name = FUNCTIONS[method].partition(":")
     return getattr(import_module(module), name)

@@ -1,4 +1,4 @@
-"""Calls with arguments that a function does not take: errors of ours that say what it takes."""
+"""Errors for wrong calls that say which arguments a function takes."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ Called = TypeVar("Called", bound=Callable[..., Any])
 
 
 def explains_calls(called: Called) -> Called:
-    """Return a function, or a class with its methods, that answers a wrong call with UnknownName or InvalidValue.
+    """Return a function, or a class with its methods, that raises UnknownName or InvalidValue for a wrong call.
 
-    Python's own TypeError names a wrong keyword, but not those that there are.
+    Python's own TypeError names the wrong keyword, but not the known ones.
     """
     if isinstance(called, type):
         for name, each in vars(called).copy().items():
@@ -30,7 +30,7 @@ def explains_calls(called: Called) -> Called:
         try:
             return called(*given, **named)
         except TypeError as error:
-            # One that was raised within the function has a frame of its own.
+            # An error from within the function has a frame of its own.
             if error.__traceback__ is None or error.__traceback__.tb_next is not None:
                 raise
             raise _explained(called, named, str(error)) from None
@@ -39,7 +39,7 @@ def explains_calls(called: Called) -> Called:
 
 
 def _explained(function: Callable[..., Any], named: dict[str, Any], text: str) -> EvenroadError:
-    """Return what is wrong with a call, of which Python says `text`."""
+    """Return the error of a call; `text` is Python's message."""
     name = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
     taken = {key: each for key, each in signature(function).parameters.items() if key != "self"}
     keywords = [key for key, each in taken.items() if each.kind is not Parameter.POSITIONAL_ONLY]

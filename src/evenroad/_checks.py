@@ -1,4 +1,4 @@
-"""Checks of plain arguments and of installed packages; the errors name what is wrong."""
+"""Checks of arguments and of installed packages."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName, shown
 
 LARGEST_COUNT = 2**31 - 1
-"""Nodes of a roadmap are numbered by int32: nothing that is counted here can sensibly be larger."""
+"""Largest count: nodes of a roadmap are numbered by int32."""
 
-# Made once: a union is as dear as the rest of a check.
+# Made once: a union takes as long as the rest of a check.
 _WHOLE, _REAL = (int, np.integer), (int, float, np.integer, np.floating)
 
 FARTHEST = 1e9
-"""Lengths and places of bodies [m]: their squares and cubes then are numbers, in single precision, too."""
+"""Largest length and coordinate of bodies [m]: squares and cubes stay finite in single precision."""
 
 
 def counted(number: int, thing: str) -> str:
-    """Return so many of a thing in words."""
+    """Return a number of things in words."""
     return f"{number} {thing}{'' if number == 1 else 's'}"
 
 
@@ -79,7 +79,7 @@ def as_row(
 
 
 def as_file(what: str, path: object, instead: str = "") -> Path:
-    """Return the name of a file as a Path, or raise InvalidValue; `instead` says what else is made otherwise."""
+    """Return the name of a file as a Path, or raise InvalidValue; `instead` says what to do with other values."""
     if not isinstance(path, str | os.PathLike):
         hint = f"; {instead}" if instead else ""
         raise InvalidValue(f"{what} must be the name of a file, a text or a Path, got {shown(path)}{hint}")
@@ -96,10 +96,7 @@ def require_extra(module: str, extra: str, what: str) -> Any:
 
 
 def as_batch(name: str, values: object, dim: int) -> Floats:
-    """Return `values` as a read-only C-contiguous float64 array, (n, dim), of finite entries, or raise InvalidValue.
-
-    Read-only whatever `values` is: compiled code is compiled anew for each mix of read-only and other arrays.
-    """
+    """Return `values` as a read-only C-contiguous float64 array, (n, dim), of finite entries, or raise InvalidValue."""
     try:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError) as error:

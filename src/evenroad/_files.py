@@ -1,4 +1,4 @@
-"""Atomic writes, so that a reader sees the old content or the whole new one; and recognition of file types."""
+"""Atomic writes, by which a reader sees the old content or the whole new one; and recognition of file types."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ except ImportError:  # Windows
 
 _umask_lock = threading.Lock()
 _PREFIX, _SUFFIX = ".evenroad-", ".part"
-"""Of the names of temporary files."""
+"""Beginning and end of the names of temporary files."""
 _BEGINNINGS = {
     b"\x93NUMPY": "a .npy array",
     b"PK": "a .npz or other archive",
@@ -34,7 +34,7 @@ _BEGINNINGS = {
     b"%PDF": "a PDF",
     b"<": "XML",
 }
-"""How a file begins -> what it is."""
+"""First bytes of a file -> its type."""
 
 
 @contextmanager
@@ -71,8 +71,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
 def remove_abandoned_parts(folder: str | os.PathLike[str]) -> None:
     """Remove the temporary files of :func:`atomic_write` whose processes were killed.
 
-    Every writer holds a lock on its file, which goes with the process: what can be locked is nobody's.  Where the
-    platform or the file system has no ``flock`` everything stays.
+    Every writer holds a lock on its file, which ends with the process.  Without ``flock`` all files stay.
     """
     if fcntl is None:
         return
@@ -94,12 +93,12 @@ def _new_part(folder: Path) -> tuple[int, int | None, str]:
         if os.fstat(handle).st_nlink:
             # The lock is shared by both handles, and outlives the first, which is closed before the file is moved.
             return handle, os.dup(handle), name
-        # Between the two steps somebody took it for an abandoned one.
+        # Between the two steps another process removed it as abandoned.
         os.close(handle)
 
 
 def not_a(wanted: str, path: str | os.PathLike[str], why: str = "") -> BrokenFile:
-    """Return the error of a file that was read as `wanted`: what it is instead or, of a text, why it is none."""
+    """Return the error of a file that was read as `wanted`: its type or, for a text, the reason."""
     found = looks_like(path)
     if found == "text" and why:
         return BrokenFile(f"{path} is not {wanted}: {why}")
@@ -107,7 +106,7 @@ def not_a(wanted: str, path: str | os.PathLike[str], why: str = "") -> BrokenFil
 
 
 def looks_like(path: str | os.PathLike[str]) -> str:
-    """Return what a file that can be read seems to be by its content, whatever its name says."""
+    """Return the type of a readable file by its content."""
     with open(path, "rb") as file:
         begin = file.read(4096).lstrip()
     if not begin:
@@ -121,7 +120,7 @@ def looks_like(path: str | os.PathLike[str]) -> str:
 
 
 def read_json_file(path: str | os.PathLike[str], what: str) -> Any:
-    """Return what a JSON file, of the kind `what`, holds; BrokenFile if it cannot be read or is none."""
+    """Return the content of a JSON file of the kind `what`; BrokenFile if it cannot be read."""
     try:
         return json.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
@@ -133,12 +132,12 @@ def read_json_file(path: str | os.PathLike[str], what: str) -> Any:
 
 
 def cache_folder() -> Path:
-    """Return where what is made on demand is kept: ``$EVENROAD_CACHE``, or the platform's cache folder."""
+    """Return the folder of cached files: ``$EVENROAD_CACHE``, or the platform's cache folder."""
     return Path(os.environ.get("EVENROAD_CACHE") or user_cache("evenroad"))
 
 
 def require_writable_folder(path: str | os.PathLike[str]) -> None:
-    """Raise BrokenFile unless a file at `path` could be created now: early, before any long work."""
+    """Raise BrokenFile unless a file at `path` could be created now."""
     target = Path(path)
     folder = target.parent
     if not folder.is_dir():
@@ -151,7 +150,7 @@ def require_writable_folder(path: str | os.PathLike[str]) -> None:
         raise _cannot_write(target, error) from error
     if stat.S_ISDIR(mode):
         raise BrokenFile(f"cannot write {target}: it is a folder")
-    # A file that is moved onto a device takes its place, for everybody, where one may write there.
+    # A file moved onto a device would replace it for everybody.
     if not stat.S_ISREG(mode):
         raise BrokenFile(f"cannot write {target}: it is a device or a pipe, not a file")
     try:
@@ -165,7 +164,7 @@ def _cannot_write(target: Path, error: OSError) -> BrokenFile:
 
 
 def _umask() -> int:
-    # Of two threads at once the second would read what the first has set, and set that for good.
+    # Of two threads at once the second would read, and then keep, the mask of the first.
     with _umask_lock:
         mask = os.umask(0)
         os.umask(mask)

@@ -15,27 +15,26 @@ from evenroad.errors import NotAvailable
 
 @runtime_checkable
 class Fingerprinted(Protocol):
-    """A value that can say which it is."""
+    """A value with a fingerprint of its own."""
 
     def fingerprint(self) -> str:
-        """Return a text that two values share only if they mean the same: two worlds, the same verdicts.
+        """Return a text that two values share only if they are equal: two worlds with the same results.
 
-        Raises NotAvailable if the value cannot know, such as a world made from a function without a name.
+        Raises NotAvailable if that is unknown, as for a world of a function without a name.
         """
 
 
 def fingerprint_of(*values: object) -> str:
-    """Return the SHA-256 (hex) of values: equal for equal values, in any process and on any machine.
+    """Return the SHA-256 (hex) of values, equal for equal values on any machine.
 
-    Values are numbers, texts, None, enumerations, arrays, sequences, sets and mappings of such, what has a
-    ``fingerprint()`` of its own, and dataclasses, by the fields that take part in comparisons.  Raises NotAvailable
-    for any other, such as a function.
+    Values are numbers, texts, None, enumerations, arrays, sequences, sets and mappings, values with ``fingerprint()``,
+    and dataclasses by their compared fields.  Raises NotAvailable for any other, such as a function.
     """
     return hashlib.sha256(b"".join(map(_canonical, values))).hexdigest()
 
 
 def _canonical(value: Any) -> bytes:
-    """Return a text in which no two different values look the same."""
+    """Return an unambiguous text of a value."""
     if isinstance(value, enum.Enum):
         return _tagged("enum", type(value).__name__.encode(), value.name.encode())
     if value is None or isinstance(value, bool | int | float | str | bytes | np.bool_ | np.number):

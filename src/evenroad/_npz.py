@@ -21,7 +21,7 @@ from evenroad.errors import BrokenFile, shown
 Path = str | os.PathLike[str]
 Arrays = dict[str, npt.NDArray[Any]]
 _ALWAYS_ALLOWED, _MOST_TIMES = 1 << 22, 50
-"""Most bytes that an archive may unpack to: so many, or so many times its own; of ours it is 1 to 10 times."""
+"""Largest unpacked size of an archive: a number of bytes, or a multiple of its own size; ours have 1 to 10 times."""
 
 
 def write_npz(path: Path, arrays: Mapping[str, npt.ArrayLike], *, compressed: bool = False) -> None:
@@ -33,9 +33,9 @@ def write_npz(path: Path, arrays: Mapping[str, npt.ArrayLike], *, compressed: bo
 
 @contextmanager
 def reading(path: Path, kind: str, begins: bytes = b"") -> Iterator[None]:
-    """Turn whatever goes wrong in the block into a BrokenFile that names the file and the `kind` that it is not.
+    """Turn every error in the block into a BrokenFile that names the file and its `kind`.
 
-    What every such file `begins` with, where that is given, tells a damaged one from one of another kind.
+    The bytes with which every such file `begins` distinguish a damaged one from one of another kind.
     """
     try:
         yield
@@ -46,9 +46,8 @@ def reading(path: Path, kind: str, begins: bytes = b"") -> Iterator[None]:
     except IsADirectoryError:
         raise BrokenFile(f"{path} is a folder, not a {kind}") from None
     except Exception as error:
-        # No list is complete: damaged headers alone give errors of the tokenizer, of memory and of overflow, and
-        # zipfile has its own for every compression, encryption and version that it does not know.
-        # What cannot even be opened says why by itself; a place before the beginning is what a damaged archive tells.
+        # No list is complete: damaged headers alone give errors of the tokenizer, of memory and of overflow.
+        # A file that cannot be opened has a message of its own; EINVAL comes from a damaged archive.
         if not begins or (isinstance(error, OSError) and error.errno not in (None, EINVAL)):
             raise BrokenFile(f"{path} is not a readable {kind}: {shown(error)}") from error
         with open(path, "rb") as file:
@@ -60,10 +59,7 @@ def reading(path: Path, kind: str, begins: bytes = b"") -> Iterator[None]:
 
 
 def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
-    """Return the arrays of a file that `write_npz` wrote, whose names have to be those of one of the `layouts`.
-
-    Raises BrokenFile if the file is missing, is no such npz, or was damaged; the text says what a `what` holds.
-    """
+    """Return the arrays of a file of `write_npz` whose names are those of one of the `layouts`, else BrokenFile."""
     arrays = {}
     # Opened here, not by NumPy, which leaves the handle open when the archive is broken.
     with reading(path, f".npz {what}", b"PK"), open(path, "rb") as file:
@@ -84,10 +80,7 @@ def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
 
 
 def read_array(file: IO[bytes], size: int) -> npt.NDArray[Any]:
-    """Return the array of an open .npy file of `size` bytes, or raise ValueError if it announces another.
-
-    Before it is made: a header of a hundred bytes can announce any number of them.
-    """
+    """Return the array of an open .npy file of `size` bytes, or raise ValueError if its header announces others."""
     version = np.lib.format.read_magic(file)
     if version not in _HEADERS:
         raise ValueError(f"a .npy file of version {version}")
@@ -104,7 +97,7 @@ _HEADERS = {
     (2, 0): np.lib.format.read_array_header_2_0,
     (3, 0): np.lib.format.read_array_header_2_0,
 }
-"""Of 3.0, names of fields are in UTF-8, which changes no size."""
+"""Readers of headers by version; 3.0 has names of fields in UTF-8, which changes no size."""
 
 
 def require_unpackable(path: Path, archive: zipfile.ZipFile) -> None:

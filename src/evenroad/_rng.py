@@ -12,10 +12,9 @@ RngLike: TypeAlias = int | np.integer | np.random.SeedSequence | np.random.Gener
 
 
 def generator(rng: RngLike) -> np.random.Generator:
-    """Return the generator that `rng` stands for, or raise InvalidValue.
+    """Return the generator of `rng`, or raise InvalidValue.
 
-    An int (>= 0) or SeedSequence seeds a fresh PCG64, so the same value gives the same bits.  A Generator is spawned,
-    as ``scipy.stats.qmc`` does, so the caller's own stream is not consumed.
+    An int (>= 0) or SeedSequence seeds a new PCG64.  A Generator is spawned, as in ``scipy.stats.qmc``.
     """
     if isinstance(rng, np.random.Generator):
         return rng.spawn(1)[0]
@@ -30,5 +29,5 @@ def generator(rng: RngLike) -> np.random.Generator:
 
 
 def seed_of(rng: RngLike) -> int | None:
-    """Return the int seed of `rng` when it is one, else None: what an origin can honestly record."""
+    """Return the seed of `rng` if it is an int, else None."""
     return int(rng) if isinstance(rng, int | np.integer) else None

@@ -1,4 +1,4 @@
-"""State that threads share: values made once, and locks for what one thread uses at a time."""
+"""State that threads share: values made once, and locks."""
 
 from __future__ import annotations
 
@@ -12,27 +12,26 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def once(function: Callable[..., Made]) -> Callable[..., Made]:
-    """Return a function that makes one value for each arguments, kept for good and the same in all threads.
+    """Return a function that caches one value per arguments, the same in all threads.
 
-    With ``functools.cache`` two threads that ask at once may get two values, of which it keeps one: the address of the
-    other would soon point nowhere.
+    With ``functools.cache`` two threads at once may get two values, of which it keeps one.
     """
     kept: dict[tuple[Any, ...], Made] = {}
     making = threading.RLock()
 
     @wraps(function)
-    def asked(*arguments: Any) -> Made:
+    def cached(*arguments: Any) -> Made:
         if arguments not in kept:
             with making:
                 if arguments not in kept:
                     kept[arguments] = function(*arguments)
         return kept[arguments]
 
-    return asked
+    return cached
 
 
 class once_property(cached_property[Made]):
-    """A cached property that is the same in all threads: what the first made is what the others get, too."""
+    """A cached property with the same value in all threads."""
 
     def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
         """Return the value of an instance, or the property itself of a class."""
@@ -43,7 +42,7 @@ class once_property(cached_property[Made]):
 
 
 class OwnLock:
-    """A lock of one value's own, which is not copied with it: copies, here or in another process, have their own."""
+    """A lock of one value; its copies, also in another process, have their own."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -59,7 +58,7 @@ class OwnLock:
 
 
 def one_at_a_time(method: Function) -> Function:
-    """Return a method that threads call one after the other, with others marked so; its value has a `_lock`."""
+    """Return a method under the `_lock` of its value."""
 
     @wraps(method)
     def called(self: Any, *given: Any, **named: Any) -> Any:

@@ -9,11 +9,11 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 
 WIDTH = 100
-"""Columns that a table may take."""
+"""Largest width of a table [columns]."""
 
 
 def table_width() -> int:
-    """Return how many columns a table may take here."""
+    """Return the width of tables in this terminal [columns]."""
     return min(WIDTH, shutil.get_terminal_size().columns)
 
 
@@ -26,9 +26,9 @@ def print_table(
     first: str = "bold",
     gap: int = 2,
 ) -> None:
-    """Print rows of texts as they are, those of the columns `right` at the right; the widest columns wrap to fit.
+    """Print rows of texts; columns of `right` are right-aligned, and the widest columns wrap.
 
-    Headings are bold; without any the first column is, and the first row's name is shown in the style `first`.
+    Headings are bold; without any the first column is, with the first row's name in the style `first`.
     """
     from rich.console import Console
     from rich.table import Table
@@ -52,15 +52,12 @@ def print_table(
 
 
 def leave_output() -> None:
-    """Send the rest of the output nowhere: its reader has gone, as `head` does, and the work goes on."""
+    """Discard the rest of the output, whose reader has gone, as `head` does."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 class LineProgress:
-    """A ``callback(step, steps[, best])`` that hands a line to `report` now and then, at the pace since it was made.
-
-    What compiling took is not counted.
-    """
+    """A ``callback(step, steps[, best])`` that reports progress in lines, `every` so many seconds."""
 
     def __init__(self, title: str, report: Callable[[str], object], every: float = 10.0) -> None:
         self.title, self.report, self.every = title, report, every
@@ -72,10 +69,10 @@ class LineProgress:
         self.first_step: int | None = None
 
     def __call__(self, step: int, steps: int, best: float | None = None) -> None:
-        """Take note of `step` of `steps`, counted over all sets."""
+        """Report `step` of `steps`, over all sets."""
         now = self.now()
         if self.first_step is None:
-            # Work that was resumed has steps behind it which say nothing about today's pace.
+            # Steps before a resumption do not count for the pace.
             self.first_step = step
         if now - self.last < self.every or step <= self.first_step:
             return
@@ -87,7 +84,7 @@ class LineProgress:
 
 @contextmanager
 def progress_shown(title: str) -> Iterator[Callable[..., None]]:
-    """Yield a ``callback(step, steps[, best])`` that moves a bar on standard error; in a log, writes lines."""
+    """Yield a ``callback(step, steps[, best])`` that shows a bar on standard error, or lines in a log."""
     if not sys.stderr.isatty():
         yield LineProgress(title, lambda line: print(line, file=sys.stderr, flush=True))
         return

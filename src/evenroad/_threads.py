@@ -11,16 +11,13 @@ from typing import Any, TypeVar
 from evenroad._compiled import processors
 
 AHEAD = 32
-"""Tasks that are drawn before the first of them is done."""
+"""Number of tasks that are drawn before the first of them is done."""
 
 Result = TypeVar("Result")
 
 
 def in_order(function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
-    """Yield what a function returns for each task, its arguments, in their order, however many processors there are.
-
-    Tasks are drawn in this thread, and worked on by others as far as there are processors.
-    """
+    """Yield the results of a function for tasks, its arguments, in their order, with one thread per processor."""
     threads = processors()
     if threads < 2:
         yield from starmap(function, tasks)

@@ -1,4 +1,4 @@
-"""Reading YAML files. Keys must differ, and errors name what is wrong, and where."""
+"""Reading YAML files with unique keys; errors name what is wrong, and where."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from evenroad.errors import BrokenFile, InvalidValue, shown
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _DEEPEST = 100
 _LARGEST, _LARGEST_SHARE = 1_000_000, 10
-"""Most characters and entries of a file with its aliases written out: so many, and so many a character of it."""
+"""Largest number of characters and entries with all aliases expanded: a number, and one per character of the file."""
 _MERGE, _INTEGER = "tag:yaml.org,2002:merge", "tag:yaml.org,2002:int"
 _MOST_DIGITS = 1000
 
 
 def read_mapping(path: Path, what: str) -> dict[str, Any]:
-    """Return the mapping that a YAML file, of the kind `what`, consists of, its keys as text.
+    """Return the mapping of a YAML file of the kind `what`, its keys as text.
 
-    Raises BrokenFile if the file is missing, not YAML, or not a mapping, or any mapping in it has two values for one
-    key (``1`` and ``'1'`` are the same).
+    Raises BrokenFile if the file is missing, no YAML or no mapping, or any mapping in it has a key twice (``1`` and
+    ``'1'`` are the same).
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -46,7 +46,7 @@ def read_mapping(path: Path, what: str) -> dict[str, Any]:
 
 
 def _why(error: Exception) -> str:
-    """Return what a reader of YAML complains of, and where, in one line."""
+    """Return the message of a YAML error, with its position, in one line."""
     mark = getattr(error, "problem_mark", None)
     if mark is None:
         return " ".join(str(error).split())
@@ -54,14 +54,10 @@ def _why(error: Exception) -> str:
 
 
 def _require_bounded(text: str, path: Path) -> None:
-    """Refuse what is deeper, or with its aliases written out larger, than anybody writes.
-
-    Of the depth libyaml would overflow the stack, and the process die of it; nine lists of nine aliases each, one of
-    the other, are a file of 300 characters and a text of gigabytes.
-    """
+    """Refuse deep files, on which libyaml overflows the stack, and aliases that expand to gigabytes."""
     allowed = _LARGEST + _LARGEST_SHARE * len(text)
     known: dict[str, tuple[int, int]] = {}
-    # Of the collections that are open: anchor, size and depth of what is inside so far.
+    # Anchor, size and depth of each open collection so far.
     waiting: list[tuple[str | None, int, int]] = [(None, 0, 0)]
     for event in yaml.parse(text, Loader=_Loader):
         if isinstance(event, yaml.CollectionStartEvent):
@@ -77,7 +73,7 @@ def _require_bounded(text: str, path: Path) -> None:
         elif isinstance(event, yaml.AliasEvent):
             if any(event.anchor == each[0] for each in waiting):
                 raise BrokenFile(f"{path} has an alias *{event.anchor} inside of what it stands for")
-            # The reader says where one stands for nothing.
+            # The reader refuses an unknown alias.
             size, depth = known.get(str(event.anchor), (1, 0))
         else:
             continue
@@ -95,8 +91,7 @@ def _document(text: str, path: Path) -> object:
         root = loader.get_single_node()
         if root is None:
             return None
-        # Before anything is made of the nodes: PyYAML keeps the last of equal keys in silence, and merging (<<)
-        # makes equal ones that are meant.
+        # Before construction: PyYAML keeps the last of equal keys silently, and merging (<<) makes intended ones.
         _require_sound(loader, root, path)
         return loader.construct_document(root)
     finally:
@@ -111,7 +106,7 @@ def _require_sound(loader: Any, root: yaml.Node, path: Path) -> None:
             continue
         seen.add(id(node))
         if node.tag == _INTEGER and len(node.value) > _MOST_DIGITS:
-            # Python neither writes it, in an error, nor makes it in a time in proportion.
+            # Python takes quadratic time to read it, and refuses to print it.
             raise BrokenFile(f"{path} has a number of {len(node.value)} digits in line {node.start_mark.line + 1}")
         if isinstance(node, yaml.SequenceNode):
             pending.extend(node.value)

@@ -1,25 +1,23 @@
-"""The one error tree of evenroad.
+"""The errors of evenroad.
 
-Every error we raise on purpose is an :class:`EvenroadError` and also the builtin that fits it, so that
-``except ValueError`` and ``except EvenroadError`` both work.  The text names the bad value and says what is
-allowed.  "No path" is not here: it is an answer (see ``evenroad.roadmap.PlanResult.status``).
+Each is an :class:`EvenroadError` and the builtin that fits, so ``except ValueError`` works, too.  Its text names the
+bad value and says what is allowed.  "No path" is a result, not an error: see ``evenroad.PlanResult.status``.
 """
 
 import reprlib
 
 SHOWN = 80
-"""Characters of a value that an error's text repeats."""
+"""Largest number of characters of a value in an error's text."""
 LONGEST = 600
-"""Most characters of an error's text: input that was pasted by mistake is not shown in full."""
+"""Largest number of characters of an error's text."""
 _MOST_PARTS = 1000
-"""Of a value that is written out as a whole, before its middle is left out."""
+"""Largest number of parts of a value that is formatted as a whole."""
 
 
 def shown(value: object) -> str:
-    """Return ``repr(value)`` for an error's text, its middle left out where it has more than 80 characters.
+    """Return ``repr(value)`` for an error's text, without its middle if it has more than 80 characters.
 
-    Of lists in lists of more than 1000 parts only the beginnings are written: one that names another again and again
-    can be exponentially long.
+    Nested lists of more than 1000 parts are abbreviated: shared ones can be exponentially long.
     """
     try:
         text = repr(value) if _has_few_parts(value) else _BRIEF.repr(value)
@@ -34,7 +32,7 @@ def shown(value: object) -> str:
 
 
 def in_one_line(text: str) -> str:
-    """Return a text in one line, without its middle where it is too long: what is wrong, and what is allowed, stay."""
+    """Return a text in one line, without its middle if it is too long."""
     line = text if text.isprintable() else " ".join(text.split())
     if len(line) <= LONGEST:
         return line
@@ -48,7 +46,7 @@ _BRIEF.maxlevel, _BRIEF.maxstring, _BRIEF.maxother = 2, SHOWN, SHOWN
 
 
 def _has_few_parts(value: object) -> bool:
-    """Return whether lists, tuples, sets and mappings in each other have few parts in all, however often each."""
+    """Return whether nested lists, tuples, sets and mappings have few parts in all, repetitions included."""
     waiting, parts = [value], 0
     while waiting:
         each = waiting.pop()
@@ -73,11 +71,11 @@ class InvalidValue(EvenroadError, ValueError):
 
 
 class UnknownName(EvenroadError, ValueError):
-    """A name (sampler, family, rule, file key) that is not one of the known ones, which the text lists."""
+    """A name (sampler, family, rule, file key) is unknown; the text lists the known ones."""
 
     @classmethod
     def among(cls, what: str, name: object, known: object) -> "UnknownName":
-        """Build the usual sentence: ``unknown sampler 'evn'; known: even, halton; did you mean 'even'?``."""
+        """Return the error ``unknown sampler 'evn'; known: even, halton; did you mean 'even'?``."""
         from difflib import get_close_matches
 
         names = [str(each) for each in sorted(known)]  # type: ignore[call-overload]
@@ -87,7 +85,7 @@ class UnknownName(EvenroadError, ValueError):
 
 
 class NotAvailable(EvenroadError, LookupError):
-    """Something that exists in general but not for what was asked: a set of this n, a stored cell."""
+    """Something exists in general, but not in this case: a set of this n, an optional package."""
 
 
 class BrokenFile(EvenroadError, OSError):

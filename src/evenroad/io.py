@@ -1,4 +1,4 @@
-"""A plan on disk: JSON of what was asked, what came out and what made it; and its path as CSV."""
+"""Plans on disk: JSON of query, result and versions; and paths as CSV."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
     ----------
     result : PlanResult
     query : dict
-        What was asked (map, radius, seed, ...), stored under ``query`` together with start and goals.
+        Options of the query (map, radius, seed, ...), stored under ``query`` with start and goals.
 
     Returns
     -------
@@ -47,7 +47,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
     """
     terminals = {name: getattr(result, name).tolist() for name in ("start", "goal", "goals")}
     paths = {name: getattr(result, name) for name in ("path", "milestone_path")}
-    same = (
+    same = [
         "cost",
         "length",
         "milestone_cost",
@@ -59,7 +59,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
         "links",
         "counts",
         "deviation",
-    )
+    ]
     return {
         "status": str(result.status),
         "message": result.message,
@@ -75,7 +75,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
 
 
 def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
-    """Do what :meth:`PlanResult.save` does.
+    """See :meth:`PlanResult.save`.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
     UnknownName
         For another suffix.
     InvalidValue
-        If waypoints are asked for where there is no path.
+        For a ``.csv`` without a path.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
 
 
 def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]:
-    """Return a plan from its file, without its origin and the graph that was searched, and what was asked.
+    """Return a plan from its file, without its origin and searched graph, and the options of its query.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
             planner=str(record["planner"]),
             timings={str(phase): float(value) for phase, value in record["timings"].items()},
         )
-        # A file has no world to ask.
+        # A file has no world that could measure them.
         set_fields(result, clearance=record.get("clearance"), length=record.get("length"))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         why = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
@@ -182,13 +182,13 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
 
 
 def versions() -> dict[str, str]:
-    """Return the versions that a number can depend on: evenroad, Python and the numerical libraries."""
+    """Return the versions of evenroad, Python and the numerical libraries."""
     libraries = {name: metadata.version(name) for name in ("numpy", "numba", "scipy")}
     return {"evenroad": __version__, "python": platform.python_version(), **libraries}
 
 
 def save_json(path: str | os.PathLike[str], record: dict[str, Any]) -> None:
-    """Write a record as indented UTF-8 JSON, atomically; NaN and infinity are refused, they are not JSON.
+    """Write a record as indented UTF-8 JSON, atomically; NaN and infinity are refused.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Our samplers as engines of ``scipy.stats.qmc``: sequences that go on, and finite sets handed out point by point.
+"""Our samplers as engines of ``scipy.stats.qmc``: sequences, and finite sets point by point.
 
 >>> from evenroad.qmc import Growing, Korobov
 >>> Growing(d=3, rng=1).random(10).shape
@@ -6,10 +6,8 @@
 >>> Korobov(d=3, n=64, rng=1).random(10).shape
 (10, 3)
 
-SciPy's own engines, measures and `scale` are handed on as they are: ``evenroad.qmc`` takes the place of
-``scipy.stats.qmc``.
-
-Threads may share an engine: each point is handed out once, in its order, to whoever asks first.
+``evenroad.qmc`` can replace ``scipy.stats.qmc``: it has SciPy's engines, measures and `scale`, too.  Threads may share
+an engine: it returns each point once, in order.
 """
 
 from __future__ import annotations
@@ -39,7 +37,7 @@ from evenroad.points.samplers.growing import LONGEST
 
 
 def _started(given: RngLike | None, old: RngLike | None) -> np.random.Generator:
-    """Return the generator of an engine; `old` is what its old name, `seed`, says."""
+    """Return the generator of an engine; `old` is `seed`, SciPy's old keyword."""
     if given is not None and old is not None:
         raise InvalidValue("give rng or seed, its old name, but not both")
     rng = given if given is not None else old
@@ -47,7 +45,7 @@ def _started(given: RngLike | None, old: RngLike | None) -> np.random.Generator:
 
 
 class _SharedEngine(QMCEngine):
-    """An engine that hands out each point once, whichever thread asks."""
+    """An engine that returns each point once, in any thread."""
 
     _lock: OwnLock
 
@@ -60,9 +58,9 @@ class _SharedEngine(QMCEngine):
         Parameters
         ----------
         n : int
-            How many, >= 0.
+            Number of points, >= 0.
         workers : int
-            SciPy's; nothing is drawn in parallel.
+            SciPy's; not used.
 
         Returns
         -------
@@ -93,12 +91,11 @@ class _SharedEngine(QMCEngine):
         Parameters
         ----------
         n : int
-            How many, >= 0.
+            Number of points, >= 0.
 
         Returns
         -------
         QMCEngine
-            The engine itself.
 
         Raises
         ------
@@ -116,7 +113,7 @@ class _SharedEngine(QMCEngine):
             return self
 
     def _count(self, n: object) -> int:
-        """Return how many points are asked for, or raise Exhausted where fewer are left."""
+        """Return the number of points, or raise Exhausted if fewer are left."""
         raise NotImplementedError
 
 
@@ -124,24 +121,23 @@ class _SharedEngine(QMCEngine):
 class SequenceEngine(_SharedEngine):
     """An engine over a sequence; a subclass names the ``family``, a sampler that takes ``start``.
 
-    Points are those of ``draw(family, n, d, rng=rng, start=num_generated)``, so two calls give what one of as many
-    points gives.  A sequence ends after 2**30 points.
+    Points are those of ``draw(family, n, d, rng=rng, start=num_generated)``, up to 2**30.
 
     Parameters
     ----------
     d : int
         Dimension, >= 1.
     optimization : {"random-cd", "lloyd"}, optional
-        SciPy's, of what ``random`` returns.
+        SciPy's optimisation of the points that ``random`` returns.
     rng : int, SeedSequence or Generator, optional
-        None takes fresh entropy, as everywhere in SciPy; a Generator is spawned.
+        None: fresh entropy, as in SciPy; a Generator is spawned.
     seed
         SciPy's old name of `rng`.
 
     Raises
     ------
     InvalidValue
-        If `d` or `rng` is none.
+        If `d` or `rng` is of another kind.
 
     Examples
     --------
@@ -166,7 +162,7 @@ class SequenceEngine(_SharedEngine):
         self._lock = OwnLock()
         super().__init__(d=d, optimization=optimization, rng=random)
         self._init_quad = {"d": d, "optimization": optimization}
-        # What `draw` takes is the same for every call; an int goes through, so that the points are those of `draw`.
+        # The same for every call; an int stays, so that the points are those of `draw`.
         is_seed = given is not None and not isinstance(given, np.random.Generator)
         self._drawn_with: RngLike = given if is_seed else int(self.rng.integers(2**62))  # type: ignore[assignment]
 
@@ -190,24 +186,24 @@ class SequenceEngine(_SharedEngine):
 class FamilyEngine(_SharedEngine):
     """An engine over one set of points; a subclass names the ``family``, any sampler.
 
-    The set, ``points``, is drawn and then randomised by every move that keeps its quality.  It is even as a whole, but
-    its first points alone are not: choose as `n` what you will use, or a :class:`Growing` sequence.
+    The set, ``points``, is drawn and randomised.  It is even as a whole, but its first points alone are not: choose the
+    `n` that you will use, or a :class:`Growing` sequence.
 
     Parameters
     ----------
     d, n : int
         Dimension and size of the set, >= 1.
     optimization, rng, seed
-        As of :class:`SequenceEngine`; `optimization` does not keep what the set was made for.
+        As of :class:`SequenceEngine`; `optimization` changes the set.
     **options
-        The sampler's own, e.g. ``train=True`` of a trained family.
+        Options of the sampler.
 
     Raises
     ------
     NotAvailable
         If the family has no such set.
     InvalidValue, UnknownName
-        If a value or an option is none.
+        For a wrong value, or an unknown option.
 
     Examples
     --------
@@ -232,7 +228,7 @@ class FamilyEngine(_SharedEngine):
         random = _started(rng, seed)
         self._lock = OwnLock()
         super().__init__(d=d, optimization=optimization, rng=random)
-        # What qmc_quad builds its further engines from.
+        # Arguments of further engines of qmc_quad.
         self._init_quad = {"d": d, "n": n, "optimization": optimization, **options}
         sampler = make_sampler(self.family, **options)
         drawn = sampler.draw(self.n, d, rng=self.rng)
@@ -251,13 +247,13 @@ class FamilyEngine(_SharedEngine):
 
 
 class Growing(SequenceEngine):
-    """The lattice that grows: every beginning is well spread.  Any d, 2**30 points."""
+    """An extensible lattice: every beginning is well spread.  Any d, 2**30 points."""
 
     family = "growing"
 
 
 class Even(FamilyEngine):
-    """Sets of the default family: the Korobov lattices, by the name that follows the default."""
+    """Sets of the default sampler, Korobov lattices up to nine dimensions."""
 
     family = "even"
 

@@ -34,7 +34,7 @@ from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot_roadmap.build import build_roadmap
 from evenroad.world import World
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 from evenroad_studies.bench.execute import run_task
 from evenroad_studies.bench.task import Task
 from evenroad_studies.problems import source_named

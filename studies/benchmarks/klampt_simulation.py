@@ -24,7 +24,7 @@ from tests_peers.engines.surface import link_surfaces
 
 from evenroad._files import atomic_write
 from evenroad.planning import plan
-from evenroad.planning.arm_request import arm_request
+from evenroad.planning.read_request import arm_request
 from evenroad.robot import Scene
 from evenroad.robot.kinematics import joint_values
 from evenroad.trajectory import Trajectory, limits_of, make_trajectory

@@ -21,8 +21,8 @@ from studies.benchmarks.arm_problems import REPORTING, Pool, arm_named, problems
 
 from evenroad.errors import NotAvailable
 from evenroad.planning import plan
-from evenroad.planning.arm_request import arm_request
 from evenroad.planning.arm_trees import shorten
+from evenroad.planning.read_request import arm_request
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.trajectory import Limits, arm_trajectory, limits_of
 from evenroad.trajectory.blends import rounded

@@ -7,7 +7,7 @@ import pytest
 
 import evenroad as er
 from evenroad.cli import main
-from evenroad.planning.arm_request import arm_request
+from evenroad.planning.read_request import arm_request
 from evenroad.roadmap import Budget
 from evenroad.robot import Obstacle, link_poses
 from evenroad.robot.reference.validate import MeshCheck
@@ -60,7 +60,7 @@ def test_meshes_have_the_last_word(tmp_path, monkeypatch):
         "obstacles: {}\nstates:\n  home: {turn: 0, bend: 0, slide: 0}\n  away: {turn: 0.5, bend: 0.2, slide: 0.1}\n"
     )
     monkeypatch.setattr(
-        "evenroad.planning.arm_request.validate", lambda *_: MeshCheck("in collision", 7, "at (0, 0, 0)")
+        "evenroad.planning.read_request.validate", lambda *_: MeshCheck("in collision", 7, "at (0, 0, 0)")
     )
     result = er.plan(tmp_path / "desk.yaml", "home", "away", er.PRM(64), robot=tmp_path / "arm.urdf")
     assert result.status == "mesh_collision"

@@ -12,7 +12,7 @@ from evenroad.cli.sampler import SamplerOptions, draw_points
 from evenroad.cli.verbs import ABOUT
 from evenroad.points import draw
 from evenroad.roadmap import KNearest
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 
 MAZE = load_maze(1)
 
@@ -318,5 +318,5 @@ def test_a_plan_on_points_says_what_they_guarantee_where_it_is_asked(answer, ref
     assert record["certificate"]["complete"]
     assert record["certificate"]["dispersion"] == certificate.dispersion
     assert record["certificate"]["clearance_for_factor"]["2"] == certificate.clearance_for(2.0)
-    said = "--guarantees speaks of a roadmap: say of how many points with -n"
+    said = "--guarantees goes with a roadmap of points: give their number with -n"
     assert said in refuse(*line, "--guarantees")

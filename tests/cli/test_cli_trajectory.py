@@ -4,7 +4,7 @@ import re
 import numpy as np
 import pytest
 
-from evenroad.planning.arm_request import arm_request
+from evenroad.planning.read_request import arm_request
 from evenroad.robot.reference.validate import MeshCheck
 from evenroad.trajectory import limits_of, load_trajectory
 

@@ -7,8 +7,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from evenroad.geometry.fit import MOST_CAPSULES, capsules_around_mesh, fit_capsules, smallest_around_prism
-from evenroad.geometry.fit_points import capsule_around, union_volume, volume
+from evenroad.geometry.fit import (
+    MOST_CAPSULES,
+    capsule_around,
+    capsules_around_mesh,
+    fit_capsules,
+    smallest_around_prism,
+    union_volume,
+    volume,
+)
 from evenroad.geometry.mesh import load_mesh
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.rotation import rotation_from_rpy

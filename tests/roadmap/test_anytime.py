@@ -7,7 +7,7 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.lattice import Lattice
 from evenroad.roadmap import Budget, KNearest, Radius, Status
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 from tests.plan_on import plan_growing, plan_on
 from tests.refused import refused
 from tests.roadmap.worlds import ChanceWorld

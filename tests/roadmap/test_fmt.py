@@ -7,7 +7,7 @@ from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import Radius, Status
 from evenroad.roadmap.search import EdgeStates, SearchProblem, graph_of, march
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 from tests.plan_on import fmt_on, plan_on
 from tests.roadmap.worlds import ChanceWorld
 

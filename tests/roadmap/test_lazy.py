@@ -7,7 +7,7 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import Complete, KNearest, Radius, Status
 from evenroad.roadmap.rules import ascending
-from evenroad.world.gridmap.shipped import load_maze
+from evenroad.world.gridmap.load import load_maze
 from tests.plan_on import plan_on
 from tests.refused import refused
 from tests.roadmap.worlds import ChanceWorld, costs_from

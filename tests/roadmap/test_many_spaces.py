@@ -5,8 +5,7 @@ import pytest
 
 from evenroad.points import draw
 from evenroad.points.samplers import Sobol
-from evenroad.points.samplers.even import contracted
-from evenroad.points.samplers.poses import Sliced
+from evenroad.points.samplers.even import Sliced, contracted
 from evenroad.roadmap import KNearest, Radius
 from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.roadmap.points_of import even_points

@@ -9,7 +9,7 @@ import evenroad as er
 from evenroad.cli import main
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.geometry import Box, Mesh, PointCloud, Pose, TriangleMesh
-from evenroad.planning.arm_request import arm_request
+from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Reading
 from evenroad.robot import (
     ArmWorld,

@@ -12,8 +12,7 @@ from evenroad.robot_roadmap import narrow_passages
 from evenroad.robot_roadmap.build import arm_roadmap
 from evenroad.robot_roadmap.free_probability import Surroundings, free_probability
 from evenroad.robot_roadmap.narrow_passages import hard_queries
-from evenroad.robot_roadmap.recipe import Recipe
-from evenroad.robot_roadmap.spread import spread_order
+from evenroad.robot_roadmap.recipe import Recipe, spread_order
 from tests.robot.kernel_arms import ur5
 
 NOTHING = Scene(name="nothing")

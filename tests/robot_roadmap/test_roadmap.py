@@ -13,8 +13,7 @@ from evenroad.roadmap import Budget, KNearest, Radius, Status
 from evenroad.robot import ArmWorld, Joint, Mimic, Obstacle, Scene, link_poses, with_group, with_limits
 from evenroad.robot_roadmap import free_probability
 from evenroad.robot_roadmap.build import arm_roadmap, build_roadmap
-from evenroad.robot_roadmap.recipe import Recipe
-from evenroad.robot_roadmap.spread import displacement_weights, spread_order
+from evenroad.robot_roadmap.recipe import Recipe, displacement_weights, spread_order
 from evenroad.robot_roadmap.static_scene import joined_scenes
 from evenroad.robot_roadmap.turns import whole_turns
 from tests.refused import refused

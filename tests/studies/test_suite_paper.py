@@ -6,7 +6,7 @@ import pytest
 
 from evenroad.errors import UnknownName
 from evenroad.points import draw
-from evenroad.world.gridmap.shipped import LEVELS, load_maze
+from evenroad.world.gridmap.load import LEVELS, load_maze
 from evenroad_studies.bench.samplers import SAMPLERS, why_not
 from evenroad_studies.bench.searches import search_named
 from evenroad_studies.problems import PROBLEMS

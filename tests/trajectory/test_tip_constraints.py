@@ -3,7 +3,7 @@ import pytest
 
 import evenroad as er
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.planning.arm_request import arm_request
+from evenroad.planning.read_request import arm_request
 from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.robot.scene import Scene

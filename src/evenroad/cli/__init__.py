@@ -14,46 +14,45 @@ from types import TracebackType
 INTERRUPTED = 130
 """Exit code after Ctrl-C."""
 INTERNAL_ERROR = 70
-"""Exit code after an error of evenroad itself; Python's own would be 1, which is an answer here."""
+"""Exit code after an internal error; Python's own, 1, stands for a result without a path."""
 SOON = 0.05
 """Time after which a dropped interrupt is sent again [s]."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run ``evenroad`` and return its exit code: 0 solved, 1 any other answer, 2 bad input, 130 interrupted.
+    """Run ``evenroad`` and return its exit code: 0 solved, 1 any other result, 2 bad input, 130 interrupted.
 
-    Called without arguments, as by the command, it returns 70 after an error that is evenroad's own fault, and prints
-    its traceback; else that is raised.
+    Without arguments, as in the command, it prints the traceback of an internal error and returns 70.
     """
     if arguments is not None:
         try:
             return _run(arguments)
         except KeyboardInterrupt:
             return _interrupted()
-    # A process of our own: imports make very many objects and no garbage, and looking for some takes time.
+    # Imports make many objects and no garbage, and looking for some takes time.
     gc.set_threshold(100_000, 50, 50)
     warnings.formatwarning = lambda message, *where: f"evenroad: warning: {message}\n"
     hook = _Unraisable()
     sys.unraisablehook = hook
-    # Cython prints what it drops by this one first.
+    # Cython prints exceptions that it drops by this one first.
     sys.excepthook = _print_unless_interrupted
     try:
         return _run(sys.argv[1:])
     except (KeyboardInterrupt, Exception) as error:
-        # A compiler that was interrupted in a callback goes on without what the callback was to do.
+        # A compiler that is interrupted in a callback goes on without it, and may fail.
         if not isinstance(error, KeyboardInterrupt) and not hook.interrupted:
             return _internal_error(error)
-        # This process is leaving: one more Ctrl-C could only break that, with a traceback.
+        # The process ends: one more Ctrl-C would only print a traceback.
         try:
             signal.signal(signal.SIGINT, signal.SIG_IGN)
         except KeyboardInterrupt:
-            # It had come while files were closed, and is only seen here.
+            # It came while files were closed.
             signal.signal(signal.SIGINT, signal.SIG_IGN)
         return _interrupted()
 
 
 def _run(arguments: Sequence[str]) -> int:
-    # Here, since Ctrl-C may well come while this loads.
+    # Imported late, since Ctrl-C may come while this loads.
     from evenroad.cli.verbs import run
 
     return run(arguments)
@@ -76,7 +75,7 @@ def _print_unless_interrupted(kind: type[BaseException], error: BaseException, w
 
 
 class _Unraisable:
-    """Brings back a Ctrl-C that came in a callback of compiled code, such as the compiler's, which drops exceptions."""
+    """Sends a Ctrl-C again that came in a callback of compiled code, which drops exceptions."""
 
     def __init__(self) -> None:
         self.interrupted = False

@@ -12,9 +12,10 @@ import tyro
 
 from evenroad._checks import as_row, require_count, require_positive
 from evenroad._terminal import print_table
+from evenroad.cli.sampler import chosen_rule
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.npz import load_points
-from evenroad.roadmap import Certificate, KNearest, Radius, Rule, certify, default_rule
+from evenroad.roadmap import Certificate, certify, default_rule
 from evenroad.space import BoxSpace
 
 FACTORS = (3.0, 2.0, 1.5, 1.2)
@@ -23,10 +24,10 @@ FACTORS = (3.0, 2.0, 1.5, 1.2)
 
 @dataclass(frozen=True, kw_only=True)
 class Certify:
-    """Say what shortest paths along a roadmap guarantee in every world: from the largest hole between its points.
+    """Print what shortest paths along a roadmap guarantee in every world, from the largest hole between its points.
 
-    A path has clearance C if every place nearer to it than C is free.  A point set stands for a roadmap in a box.
-    Exit code 1 where nothing is guaranteed for the clearance asked for.
+    A path has clearance C if all points nearer to it than C are free.  A point set stands for a roadmap in a box.
+    Exit code 1 if nothing is guaranteed for the given clearance.
     """
 
     set: tyro.conf.Positional[Path]
@@ -38,11 +39,11 @@ class Certify:
     sides: str | None = None
     """Sides of the box, d numbers with commas between them.  Default: 1 each."""
     goals: int = 1
-    """How many goals a query has at most."""
+    """Largest number of goals of a query."""
     clearance: float | None = None
-    """Of the paths that are spoken of, > 0, in units of the box."""
+    """Clearance of paths, > 0, in units of the box."""
     length: float | None = None
-    """And how long they are, > 0."""
+    """Length of paths, > 0."""
     json: bool = False
     """Print JSON instead of a table."""
 
@@ -56,18 +57,12 @@ class Certify:
             raise InvalidValue("--length goes with --clearance")
         points, file = load_points(self.set), self.set
         sides = (1.0,) * points.d if self.sides is None else _sides(self.sides, points.d)
-        rule = self._rule(points.d)
-        certificate = certify(points, rule, BoxSpace([0.0] * points.d, sides), goals=self.goals)
+        space = BoxSpace([0.0] * points.d, sides)
+        rule = chosen_rule(self) or default_rule(space)
+        certificate = certify(points, rule, space, goals=self.goals)
         record = {"file": str(file), "n": points.n, "d": points.d, "hash": points.hash, "rule": str(rule)}
         title = f"{file}: n={points.n}, d={points.d}, {points.origin}, {rule}"
         return self._show(title, record | {"sides": list(sides)}, certificate)
-
-    def _rule(self, d: int) -> Rule:
-        if self.connect_radius is None:
-            return default_rule(BoxSpace([0.0] * d, [1.0] * d)) if self.k is None else KNearest(self.k)
-        if self.k is not None:
-            raise InvalidValue("give -k or --connect-radius, not both")
-        return Radius(self.connect_radius)
 
     def _show(self, title: str, record: dict[str, Any], certificate: Certificate) -> int:
         record |= guarantees(certificate)

@@ -56,7 +56,7 @@ class Measure:
 
 
 def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
-    """Return (name, value, note) of every measure; a value is None where it cannot be had, and the note says why."""
+    """Return (name, value, note) of every measure; where a value is None the note says why."""
     rows: list[tuple[str, float | None, str]] = []
 
     def add(name: str, note: str, compute: Callable[[], float]) -> None:
@@ -85,7 +85,7 @@ def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
 
 
 def _finite(name: str, value: float | None, note: str) -> tuple[str, float | None, str]:
-    """Leave out a value that a float cannot hold: infinity is neither JSON nor a measure."""
+    """Return a row without a value that is not finite, which JSON cannot have."""
     if value is None or math.isfinite(value):
         return name, None if value is None else float(value), note
     return name, None, f"{note}: beyond the range of a float"

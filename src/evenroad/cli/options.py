@@ -1,6 +1,6 @@
-"""A verb's options, read by tyro from a command line; its complaints become one line.
+"""Options of a verb, read by tyro from a command line; its errors become one line.
 
-A verb is a frozen dataclass.  Its fields are its options, and the text below a field is that option's help.
+A verb is a frozen dataclass: its fields are the options, and the text below a field is its help.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ NUMBERS = {int: "a whole number", float: "a number"}
 RULES = ConstructorRegistry()
 AXES = ("-x", "-y", "-z")
 EARLIER = {"--family": "--sampler", "--certify": "--guarantees"}
-"""Earlier name of an option -> its name; the earlier one is taken where a verb has none of that name."""
+"""Earlier name of an option -> its name; verbs without an option of the earlier name take it."""
 _INSIDE: list[StructTypeInfo] = []
 """The verb whose options tyro lists now."""
 UNSAID = (None, False, "", ())
@@ -43,30 +43,29 @@ UNSAID = (None, False, "", ())
 
 
 def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
-    """Return a verb with the options that its words give; of an option given twice the last one counts.
+    """Return a verb with the options of a command line; the last of repeated ones counts.
 
-    Raises InvalidValue or UnknownName for what the verb lacks or needs, and for a value that is none of its kind;
-    SystemExit after its help, where the words ask for that.
+    Raises InvalidValue or UnknownName for wrong or missing options, and SystemExit after printing help.
     """
     known, program = option_names(kind), f"evenroad {verb}"
     words = [current_option(word, known) for word in words]
     for name in sorted(given_options(words) - known - HELP):
         raise UnknownName.among(f"option of {program}:", name, known)
     texts = [" ".join(text.split()) for text in (kind.__doc__ or "").split("\n\n")]
-    # Tyro wraps no text about a verb, and would join lines that begin with a letter.
+    # Tyro does not wrap the text about a verb, and joins lines that begin with a letter.
     about = "\n\n".join(fill(text, table_width(), subsequent_indent="  ") for text in texts)
     options, unknown = _parsed(kind, program, _with_axes(words), about)
     if unknown:
         raise InvalidValue(f"{program} has no use for the word {shown(unknown[0])}")
     for field in fields(kind):
-        # Tyro asks for none of what may be given more than once.
+        # Tyro does not require repeatable options.
         if field.default is MISSING and getattr(options, field.name) == ():
             raise InvalidValue(f"missing from {program}: --{field.name}; all options: {program} --help")
     return options
 
 
 def print_completion(kinds: Mapping[str, type], words: Sequence[str]) -> None:
-    """Print, as tyro does, what a shell needs to complete the options of these verbs; ends with SystemExit."""
+    """Print tyro's completion script of these verbs for a shell; ends with SystemExit."""
     require_known("shell", "".join(words[1:2]), ("bash", "zsh", "fish"))
     verbs = [Annotated[kind, conf.subcommand(verb, prefix_name=False)] for verb, kind in kinds.items()]
     _parsed(Union[tuple(verbs)], "evenroad", words)  # noqa: UP007
@@ -83,14 +82,14 @@ def given_options(words: Sequence[str]) -> set[str]:
 
 
 def current_option(word: str, known: set[str]) -> str:
-    """Return a word with the name that an option has today, if it once had another."""
+    """Return a word with the current name of its option."""
     name, equals, value = word.partition("=")
     new = EARLIER.get(name, name)
     return new + equals + value if new in known and name not in known else word
 
 
 def _with_axes(words: Sequence[str]) -> list[str]:
-    """Return words in which an axis, as in ``--away -z``, is no option: the two become ``--away=-z``."""
+    """Return words with axes joined to their options: ``--away -z`` becomes ``--away=-z``."""
     joined: list[str] = []
     for word in words:
         if word in AXES and joined and joined[-1].startswith("--") and "=" not in joined[-1]:
@@ -101,7 +100,7 @@ def _with_axes(words: Sequence[str]) -> list[str]:
 
 
 def _parsed(kind: Any, prog: str, words: Sequence[str], about: str = "") -> Any:
-    """Return what tyro makes of the words, and those that it has no use for."""
+    """Return the options that tyro reads from the words, and the unknown words."""
     said = StringIO()
     try:
         with redirect_stderr(said), RULES:
@@ -114,7 +113,7 @@ def _parsed(kind: Any, prog: str, words: Sequence[str], about: str = "") -> Any:
 
 @RULES.struct_rule
 def _verb(info: StructTypeInfo) -> StructConstructorSpec | None:
-    """Tell tyro to list a verb's own options before those that it shares, and what to say of their defaults."""
+    """Make tyro list a verb's own options before shared ones, with our text for defaults."""
     if _INSIDE or not is_dataclass(info.type):
         return None
     _INSIDE.append(info)
@@ -130,7 +129,7 @@ def _verb(info: StructTypeInfo) -> StructConstructorSpec | None:
 
 
 def _worded(field: StructFieldSpec) -> StructFieldSpec:
-    """Return an option with its text in one piece, and without a default that only says that there is none."""
+    """Return an option with its text in one piece, and without an empty default."""
     hint = None
     if "AppendAction" in str(field.type):
         hint = "(repeatable)" if field.default == () else "(required, repeatable)"
@@ -141,13 +140,13 @@ def _worded(field: StructFieldSpec) -> StructFieldSpec:
 
 
 def _text(help: str | Callable[[], str | None] | None) -> str:
-    """Return the help of an option in one piece: tyro would keep some ends of lines."""
+    """Return the help of an option in one line."""
     return " ".join(((help() if callable(help) else help) or "").split())
 
 
 @RULES.primitive_rule
 def _number(info: PrimitiveTypeInfo) -> PrimitiveConstructorSpec[Any] | None:
-    """Tell tyro how to read a number, and what to say of a word that is none."""
+    """Make tyro read numbers, with our errors."""
     kind = next((each for each in NUMBERS if info.type in (each, each | None)), None)
     if kind is None:
         return None
@@ -162,7 +161,7 @@ def _number(info: PrimitiveTypeInfo) -> PrimitiveConstructorSpec[Any] | None:
 
 
 def _in_words(box: str) -> str:
-    """Return what tyro says in a box: without title, frame, colours, and the help below a rule or far to the right."""
+    """Return the message in a box of tyro, without title, frame, colours and help."""
     rule = re.compile("[─-]+").fullmatch
     lines = [line[2:].rstrip("│ ") for line in re.sub(r"\x1b\[[\d;]*m", "", box).splitlines()[1:]]
     above = takewhile(lambda line: not rule(line), dropwhile(rule, lines))

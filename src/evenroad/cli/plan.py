@@ -21,7 +21,7 @@ class PlanOptions(SamplerOptions):
     """The options of every plan."""
 
     planner: ClassVar[str]
-    """The function that plans, loaded when it is called."""
+    """Function that plans, ``module:name``, loaded on call."""
 
     world: tyro.conf.Positional[Path]
     """The file of the world."""
@@ -110,7 +110,7 @@ class RobotOptions:
     """NAME=VALUE: an argument of a xacro; you can give several."""
 
     def options(self) -> dict[str, Any]:
-        """Return what `load_model` takes; the bodies that are fitted are said on standard error."""
+        """Return the arguments of `load_model`; fitting reports on standard error."""
         return {
             "srdf": self.srdf,
             "group": ",".join(self.group) if self.group else None,
@@ -123,7 +123,7 @@ class RobotOptions:
 
 
 def say_fitting(step: int, steps: int, what: str) -> None:
-    """Say on standard error which body capsules are being fitted to: each one to a person, every tenth in a log."""
+    """Report on standard error the body that capsules are fitted to: every one on a terminal, every tenth in a log."""
     line = f"evenroad: fitting capsules, once: {step + 1}/{steps} {what}"
     if sys.stderr.isatty():
         print(f"\r\x1b[K{line}", end="\n" if step + 1 == steps else "", file=sys.stderr, flush=True)
@@ -217,7 +217,7 @@ class Demo:
 
     def run(self) -> int:
         """Run ``evenroad plan`` on the maze with its own start and goal."""
-        from evenroad.world.gridmap.shipped import load_maze
+        from evenroad.world.gridmap.load import load_maze
 
         maze = load_maze(self.level)
         return PlanDisk(
@@ -231,7 +231,7 @@ class Demo:
 
 
 def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
-    """Return which of the two a command line asks for, by its robot; InvalidValue if its options do not go together."""
+    """Return the class of a command line by its robot; InvalidValue if its options do not go together."""
     given = given_options(words)
     for_arm = not given.isdisjoint({"--robot", "--roadmap"})
     chosen: type[PlanDisk] | type[PlanArm] = PlanArm if for_arm else PlanDisk

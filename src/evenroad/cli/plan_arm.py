@@ -23,8 +23,8 @@ from evenroad.cli.robot import bodiless_rows
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
-from evenroad.planning.arm_request import arm_request
 from evenroad.planning.plan import Options, finished, solve
+from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Goal, Reading, Request
 from evenroad.roadmap import PlanResult
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
@@ -35,12 +35,9 @@ from evenroad.robot_roadmap.static_scene import joined_scenes
 
 
 def plan_arm(plan: PlanArm) -> int:
-    """Plan, write, report; return 0 when solved, else 1.
-
-    Links without a body are named, with a warning where the URDF draws them: their collisions go unseen.
-    """
-    # All that can be refused at once is, before anything is compiled.
-    budget, asked_goals, scene = chosen_budget(plan), _goals(plan), load_scene(plan.world)
+    """Plan, write, report with links without collision geometry; return 0 when solved, else 1."""
+    # Wrong input is refused before any work.
+    budget, goals, scene = chosen_budget(plan), _goals(plan), load_scene(plan.world)
     constraints = _constraints(plan)
     of_robot = () if plan.robot is None else find_robot(plan.robot)
     inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
@@ -54,7 +51,7 @@ def plan_arm(plan: PlanArm) -> int:
         robot,
         scene if kept is None else joined_scenes(kept.scene, scene),
         " ".join(plan.start),
-        asked_goals,
+        goals,
         Reading(plan.deg, plan.tip, plan.frame),
         resolution=plan.resolution,
         clearance=plan.clearance,
@@ -66,11 +63,11 @@ def plan_arm(plan: PlanArm) -> int:
 
     straight, upright = constraints
     options = Options(budget, not plan.raw, plan.seed, plan.certified, straight, upright)
-    # Where the tip is told its way, worlds of other kinds are planned in: each has its own planner.
+    # An orientation constraint has a world of its own kind, with its own planner.
     by = None if not wants_points(plan) and kept is None and upright is not None else planner
     result, meshes = finished(request, solve(request, by, options), certified=plan.certified)
     more_rows, trajectory = trajectory_rows(plan, request, result, constraints)
-    record = plan_record(result, _asked(plan, request, result) | common_query(plan)) | {
+    record = plan_record(result, _options(plan, request, result) | common_query(plan)) | {
         "no_body": [] if request.model is None else list(request.model.bodiless),
         "drawn_only": [] if request.model is None else list(request.model.drawn_only),
         "trajectory": trajectory,
@@ -86,8 +83,8 @@ def plan_arm(plan: PlanArm) -> int:
     return finish(files, result, record, world.robot.group, draw, rows)
 
 
-def _asked(plan: PlanArm, request: Request, result: PlanResult) -> dict[str, Any]:
-    """Return what was asked for, as the record keeps it."""
+def _options(plan: PlanArm, request: Request, result: PlanResult) -> dict[str, Any]:
+    """Return the options for the record."""
     world, robot, made = request.world, request.world.robot, plan.options()
     assert request.given is not None
     return {
@@ -108,7 +105,7 @@ def _asked(plan: PlanArm, request: Request, result: PlanResult) -> dict[str, Any
 
 
 def _rows(request: Request) -> list[tuple[str, str]]:
-    """Return rows for the table: the joints, what is held, goal poses, links without a body, and who checked."""
+    """Return rows for the table: joints, held joints, goal poses, links without a body, and the checker."""
     robot, given = request.world.robot, request.given
     assert given is not None
     held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
@@ -122,7 +119,7 @@ def _rows(request: Request) -> list[tuple[str, str]]:
 
 
 def _goals(plan: PlanArm) -> list[Goal]:
-    """Return the goals that were asked for, configurations first."""
+    """Return the goals, configurations first."""
     if not (plan.goal or plan.goal_pose):
         raise InvalidValue("missing from evenroad plan: --goal, or --goal-pose; all options: evenroad plan --help")
     for option in ("frame", "free_axis", "tolerance"):
@@ -144,7 +141,7 @@ def _goals(plan: PlanArm) -> list[Goal]:
 
 
 def _constraints(plan: PlanArm) -> tuple[CartesianLine | None, OrientationConstraint | None]:
-    """Return what is said of the tip's way."""
+    """Return the constraints of the tip."""
     straight, upright = None, None
     if plan.straight is not None:
         approach, retreat, *_ = (*as_numbers("--straight", plan.straight, (1, 2)), 0.0)

@@ -13,13 +13,13 @@ from evenroad.cli.plan import PlanDisk
 from evenroad.cli.plan_parts import (
     chosen_budget,
     chosen_planner,
-    chosen_rule,
     common_query,
     finish,
     load_compiled_code,
     output_files,
     wants_points,
 )
+from evenroad.cli.sampler import chosen_rule
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.planning.plan import Options, finished, solve
@@ -34,11 +34,11 @@ def plan_disk(plan: PlanDisk) -> int:
     chosen_rule(plan)
     budget = chosen_budget(plan)
     if plan.guarantees and not wants_points(plan):
-        raise InvalidValue("--guarantees speaks of a roadmap: say of how many points with -n")
+        raise InvalidValue("--guarantees goes with a roadmap of points: give their number with -n")
     start = _position("start", plan.start)
     goals = [_position("goal", goal) for goal in plan.goal]
     if plan.world.suffix in (".yaml", ".yml"):
-        # Here, so that whoever plans on an image does not wait for robots to load.
+        # Imported late: plans on images do not need robots.
         from evenroad.robot.scene_file import is_scene
 
         if is_scene(plan.world):
@@ -50,7 +50,7 @@ def plan_disk(plan: PlanDisk) -> int:
         _require_on_map(gridmap, name, value)
     say_if_compiling("evenroad.world.gridmap.search", "find_path", 15)
     if wants_points(plan) and gridmap.unknown.any():
-        # Points are drawn over the rectangle: most of one that is mostly unknown is not worth any.
+        # Points are drawn over the rectangle, most of which may be unknown.
         gridmap = gridmap.cropped()
     world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
     request = read_request(world, start, goals, Reading())

@@ -1,4 +1,4 @@
-"""What planning for disks and for arms has in common: rule, points, time, files, and the table at the end."""
+"""Parts that plans of disks and arms share: points, time, files, and the table of results."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
 from evenroad.cli.plan import PlanOptions
-from evenroad.cli.sampler import chosen_sampler, draw_points, require_seed, speaks_of_points
+from evenroad.cli.sampler import chosen_rule, chosen_sampler, draw_points, require_seed, speaks_of_points
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
 from evenroad.planning.connectors import connector_of
@@ -21,7 +21,7 @@ from evenroad.planning.prm import PRM, rule_of
 from evenroad.planning.request import Request
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points import PointSet
-from evenroad.roadmap import Budget, KNearest, PlanResult, Radius, Rule
+from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.problem import Planner
 from evenroad.world import ValidatesPaths
 
@@ -37,17 +37,8 @@ _FEW = 16
 """Number of points of a plan that only loads compiled code."""
 
 
-def chosen_rule(plan: PlanOptions) -> Rule | None:
-    """Return the connection rule that was asked for, or None."""
-    if plan.connect_radius is None:
-        return None if plan.k is None else KNearest(plan.k)
-    if plan.k is not None:
-        raise InvalidValue("give -k or --connect-radius, not both")
-    return Radius(plan.connect_radius)
-
-
 def chosen_planner(plan: PlanOptions, request: Request, **of_prm: Any) -> Planner:
-    """Return the planner that was asked for: a roadmap of points, else what plans in this kind of world."""
+    """Return the planner of the options: a roadmap of points, else the default of the world."""
     if not wants_points(plan):
         return default_planner(request.world, improve=plan.improve)
     points = draw_points(plan, _n(plan), request.world.space.cube_dim)
@@ -55,18 +46,18 @@ def chosen_planner(plan: PlanOptions, request: Request, **of_prm: Any) -> Planne
 
 
 def wants_points(plan: PlanOptions) -> bool:
-    """Return whether an option was given that speaks of points or of how they are joined."""
+    """Return whether an option names points or a connection rule."""
     given = (plan.n, plan.k, plan.connect_radius)
     return any(value is not None for value in given) or speaks_of_points(plan)
 
 
 def chosen_budget(plan: PlanOptions) -> Budget:
-    """Return how long to plan, and refuse what does not go with the points that were asked for, or with none."""
+    """Return the budget; InvalidValue for options that do not go with the points, or without any."""
     if wants_points(plan):
         chosen_sampler(plan, _n(plan))
     require_seed(plan.seed)
     if plan.improve and wants_points(plan):
-        raise InvalidValue("--improve goes without points: a roadmap of exactly so many has one best path")
+        raise InvalidValue("--improve goes without points: a roadmap of a given number has one best path")
     if plan.time is not None:
         return Budget(seconds=require_positive("time", plan.time))
     return Budget(seconds=PRM.seconds if wants_points(plan) else RRTConnect.seconds)
@@ -77,7 +68,7 @@ def _n(plan: PlanOptions) -> int:
 
 
 def load_compiled_code(request: Request, planner: Planner) -> None:
-    """Plan once for nothing, with a few of the points: else the times would be those of loading compiled code."""
+    """Plan once with a few of the points, so that times do not include loading of compiled code."""
     world = request.world
     if not isinstance(planner, PRM):
         stay = Request(world, request.start, request.start[np.newaxis])
@@ -94,7 +85,7 @@ def load_compiled_code(request: Request, planner: Planner) -> None:
 
 
 def output_files(plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[str], what: str) -> dict[str, Path]:
-    """Return where results go, suffix -> file, refusing what cannot be written or would overwrite an input."""
+    """Return the files of results, suffix -> file; InvalidValue for one that would overwrite an input."""
     if plan.out is not None and not plan.out.name:
         raise InvalidValue(f"--out must end with a file name, got {str(plan.out)!r}")
     suffixes = [*suffixes, *(() if plan.no_picture else ("png",))]
@@ -105,7 +96,7 @@ def output_files(plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[s
 
     stem = plan.out if plan.out is not None else Path(plan.world.stem)
     if plan.out is not None and stem.suffix[1:] in (*suffixes, "png"):
-        # Who names one of the files means all of them.
+        # The name of one of the files stands for all.
         stem = stem.with_suffix("")
     if plan.out is None and any(path.resolve() in taken for path in named(stem).values()):
         stem = Path(f"{plan.world.stem}-plan")
@@ -134,7 +125,7 @@ def finish(
     """Write record and path, print, draw the picture; return 0 when solved, else 1."""
     save_json(files["json"], record)
     if "csv" in files:
-        # An earlier run's path must not pass for this one's, nor one in collision for a free one.
+        # The path of an earlier run, or one in collision, must not pass for this one.
         files["csv"].unlink(missing_ok=True)
         if result.path is None or not result.solved:
             del files["csv"]
@@ -142,13 +133,13 @@ def finish(
             save_path_csv(files["csv"], result.path, columns)
     print_plan(result, files.values(), more)
     if "png" in files:
-        # Last, and what it needs is loaded only now: nobody waits for the picture.
+        # Last, since it loads and takes longest.
         draw(files["png"])
     return 0 if result.solved else 1
 
 
 def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[str, str]] = ()) -> None:
-    """Print a plan as a table of two columns; `more` are rows of its own."""
+    """Print a plan as a table of two columns, with `more` rows."""
     rows = [("status", f"{result.status}: {result.message}")]
     counts = result.counts
     if result.rule != "none":
@@ -174,7 +165,7 @@ def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[s
         rows.append(("proved", PROOFS[result.proof]))
     if result.clearance is not None:
         rows.append(("clearance", f"{result.clearance:.6g} at least"))
-    # Without digits that say nothing, so that all phases fit into one line.
+    # Few digits, so that all phases fit into one line.
     times = {phase: 1e3 * seconds for phase, seconds in result.timings.items()}
     if times:
         spent = ", ".join(f"{phase} {ms:.{int(ms < 10)}f}" for phase, ms in times.items())

@@ -1,4 +1,4 @@
-"""``evenroad roadmap``: a roadmap for one arm in its cell; and reading it where ``evenroad plan`` is given one."""
+"""``evenroad roadmap``: a roadmap for one arm in its cell, which ``evenroad plan --roadmap`` reads."""
 
 from __future__ import annotations
 
@@ -34,23 +34,23 @@ class MakeRoadmap(RobotOptions):
     robot: tyro.conf.Positional[str]
     """A URDF, xacro or MJCF file, or the name of a shipped robot (ur5, arm7)."""
     cell: Path | None = None
-    """A scene (.yaml) of what never moves: mount, fence, walls; and the ranges to plan in.  Default: nothing."""
+    """A scene (.yaml) of all that never moves: mount, fence, walls; and the ranges to plan in.  Default: nothing."""
     n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024
-    """How many milestones."""
+    """Number of milestones."""
     k: Annotated[int, tyro.conf.arg(aliases=["-k"])] = 16
-    """Each is joined to so many of the nearest ones that it can reach freely."""
+    """Number of nearest milestones that each is joined to by free motions."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
     clearance: float = 0.0
-    """How far the arm keeps from the cell, in metres; plans along it may ask for as much of other obstacles."""
+    """Distance that the arm keeps from the cell, in metres; plans may keep it from other obstacles, too."""
     seed: int = 0
     """Seed of everything random; the same command gives the same roadmap."""
     out: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
-    """Where it goes.  Default: the robot's name in the current folder, with .roadmap."""
+    """The file to write.  Default: the robot's name in the current folder, with .roadmap."""
 
     def run(self) -> int:
         """Load, make, write, report; return 0."""
-        # All that can be refused at once is, before anything is read or compiled.
+        # Wrong input is refused before any work.
         require_seed(self.seed)
         require_size(self.n, self.k)
         require_positive("resolution", self.resolution)
@@ -91,11 +91,11 @@ _UNTIL = {
     "narrow passages": 0.9,
     "choosing and joining milestones": 1.0,
 }
-"""Stage -> share of the time that is over when it ends, about; in order."""
+"""Stage, in order -> share of the time at its end, about."""
 
 
 def _progress(shown: Callable[..., None]) -> Callable[[str, float], None]:
-    """Return what turns the share of what is being done into that of all."""
+    """Return a callback that turns the share of a stage into that of all."""
     since = dict(zip(_UNTIL, (0.0, *_UNTIL.values()), strict=False))
 
     def progress(what: str, share: float) -> None:
@@ -113,7 +113,7 @@ def load_arm_roadmap(file: Path | str) -> ArmRoadmap:
 
 
 def kept_roadmap(plan: PlanArm) -> ArmRoadmap:
-    """Return the roadmap that a plan is told to use, refusing options that do not go with one."""
+    """Return the roadmap of a plan's options; InvalidValue for options that do not go with one."""
     assert plan.roadmap is not None
     if wants_points(plan) or plan.improve:
         raise InvalidValue("--roadmap goes without points and without --improve: it has milestones of its own")

@@ -1,4 +1,4 @@
-"""``evenroad robot``: what an arm is made of, how conservative its model is, and how fast it is checked."""
+"""``evenroad robot``: the parts of an arm, how conservative its model is, and how fast it is checked."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Robot(RobotOptions):
     write_srdf: Path | None = None
     """Write an SRDF to start from: groups, named states, and the pairs of links that are not tested, with reasons."""
     json: bool = False
-    """Print all that is known as JSON in place of tables."""
+    """Print JSON instead of tables."""
 
     def run(self) -> int:
         """Load, measure, print; return 0."""
@@ -48,7 +48,7 @@ class Robot(RobotOptions):
             require_writable_folder(self.write_srdf)
         model = load_model(self.robot, **self.options())
         scene = Scene((), name="empty space") if self.scene is None else load_scene(self.scene)
-        # No path, no ends: contacts that are allowed near them are none here.
+        # Without a path, contacts near start and goal are not allowed.
         scene = replace(scene, near_ends=frozenset())
         world = ArmWorld(in_scene(model.robot, scene), scene)
         if self.write_srdf is not None:
@@ -66,7 +66,7 @@ class Robot(RobotOptions):
 
 
 def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
-    """Return rows, name and text: what was read otherwise, links that nothing touches, pairs that always touch."""
+    """Return rows, name and text: notes of the loader, links without a body, pairs that always touch."""
     rows = [("note", note) for note in model.notes]
     if model.bodiless:
         rows.append(("no body", f"{', '.join(model.bodiless)} (without a shape: nothing is found to touch)"))
@@ -148,7 +148,7 @@ def _conservatism(model: RobotModel, world: ArmWorld) -> str:
 
 
 def _measured(world: ArmWorld) -> dict[str, Any]:
-    """Return how fast random configurations and motions are checked, how many are free, and what blocks all."""
+    """Return the speed of checks of random configurations and motions, the free share, and what blocks all."""
     q = world.space.from_cube(generator(0).random((_CONFIGURATIONS, world.space.cube_dim)))
     free = q[world.valid(q)]
     found: dict[str, Any] = {
@@ -178,7 +178,7 @@ def _speed(world: ArmWorld, measured: dict[str, Any]) -> str:
 
 
 def _record(model: RobotModel, world: ArmWorld) -> dict[str, Any]:
-    """Return all that is known of a robot as what JSON has; limits of joints that have none are null."""
+    """Return a robot as plain JSON values; missing limits of joints are null."""
     record = asdict(model) | {"file": None if model.file is None else str(model.file.path)}
     record["held"] = held_values(world.robot)
     record["robot"]["hulls"] = dict(Counter(hull.link for hull in model.robot.hulls))
@@ -189,7 +189,7 @@ def _record(model: RobotModel, world: ArmWorld) -> dict[str, Any]:
 
 
 def _per_second(call: Callable[[], object], count: int) -> float:
-    """Return how many are done a second; the median of repeats, after one that loads compiled code."""
+    """Return the number of checks per second, the median of repeats after a first one."""
     call()
     times: list[float] = []
     start = time.perf_counter()

@@ -1,4 +1,4 @@
-"""The options that name a point set, for every verb that draws one, and the drawing."""
+"""Options of a point set and of its connection rule, for all verbs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from evenroad.errors import InvalidValue, shown
 
 if TYPE_CHECKING:
     from evenroad.points import PointSet
+    from evenroad.roadmap import Rule
 
 DEFAULT = "even"
 TAKES = {"plain": ("halton", "sobol"), "skip": ("halton", "sobol"), "allow_fewer": ("sukharev",)}
@@ -33,17 +34,17 @@ class SamplerOptions:
 
 
 def speaks_of_points(options: SamplerOptions) -> bool:
-    """Return whether an option was given that says which points to draw."""
+    """Return whether an option names the points to draw."""
     return options.sampler not in (None, "auto") or any(getattr(options, option) for option in TAKES)
 
 
 def chosen_sampler(options: SamplerOptions, n: int) -> str:
-    """Return the name of the sampler; refuse, before anything takes time, a bad n and what the sampler would ignore."""
-    # Here, since help does not wait for NumPy.
+    """Return the name of the sampler; InvalidValue for a bad n, or an option that the sampler does not take."""
+    # Imported late: help does not need NumPy.
     from evenroad._checks import require_count, require_known
     from evenroad.points import SAMPLERS
 
-    # Plans have said "auto" of the default.
+    # Earlier plans name the default "auto".
     name = DEFAULT if options.sampler in (None, "auto") else str(options.sampler)
     require_known("sampler", name, SAMPLERS)
     require_count("n", n)
@@ -58,7 +59,7 @@ def chosen_sampler(options: SamplerOptions, n: int) -> str:
 
 
 def draw_points(options: SamplerOptions, n: int, d: int) -> PointSet:
-    """Draw the set of n points in d dimensions that was asked for."""
+    """Draw the set of n points in d dimensions of the options."""
     from evenroad.points import make_sampler
 
     name = chosen_sampler(options, n)
@@ -70,7 +71,18 @@ def draw_points(options: SamplerOptions, n: int, d: int) -> PointSet:
     return make_sampler(name, **how).draw(n, d, rng=options.seed)
 
 
+def chosen_rule(options: Any) -> Rule | None:
+    """Return the connection rule of the options `k` and `connect_radius`, or None."""
+    from evenroad.roadmap import KNearest, Radius
+
+    if options.connect_radius is None:
+        return None if options.k is None else KNearest(options.k)
+    if options.k is not None:
+        raise InvalidValue("give -k or --connect-radius, not both")
+    return Radius(options.connect_radius)
+
+
 def require_seed(seed: int) -> None:
-    """Raise InvalidValue for a seed that is none."""
+    """Raise InvalidValue for a negative seed."""
     if seed < 0:
         raise InvalidValue(f"--seed must be an integer >= 0, got {shown(seed)}")

@@ -21,7 +21,7 @@ class Send:
     """
 
     trajectory: tyro.conf.Positional[Path]
-    """What evenroad plan --trajectory wrote as .json."""
+    """A .json of evenroad plan --trajectory."""
     host: str
     """Address of the controller."""
     model: str
@@ -49,10 +49,7 @@ class Send:
             )
         done = f"{sent.states} states sent, {sent.largest_error:.4f} rad off at most"
         rows = [
-            (
-                "trajectory",
-                f"{trajectory.duration:.3f} s, {len(trajectory.times)} states, {trajectory.proof}",
-            ),
+            ("trajectory", f"{trajectory.duration:.3f} s, {len(trajectory.times)} states, {trajectory.proof}"),
             ("arm", f"{self.model} at {self.host}, ready and at the start"),
             ("done", done if self.go else "nothing: a dry run; --go moves the arm"),
         ]

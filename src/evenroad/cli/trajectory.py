@@ -1,4 +1,4 @@
-"""What ``evenroad plan --trajectory`` adds to the plan of an arm: its path with times, in files for controllers."""
+"""``evenroad plan --trajectory``: the path of an arm with times, in files for controllers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
 from evenroad.cli.plan import PlanArm
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.planning.arm_request import mesh_check
+from evenroad.planning.read_request import mesh_check
 from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult
 from evenroad.robot.cartesian_line import CartesianLine
@@ -23,13 +23,13 @@ _MOVEJ = ".movej.script"
 
 
 def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
-    """Refuse, before anything is planned, what would fail, or overwrite an input or another result, afterwards."""
+    """Raise InvalidValue for options that would fail after planning, or overwrite an input or another result."""
     if not plan.trajectory:
         for option in ("speed", "limits", "deviation", "step", "controller_joints"):
             if getattr(plan, option) != type(plan).__dataclass_fields__[option].default:
                 raise InvalidValue(f"--{option.replace('_', '-')} goes with --trajectory only")
         return
-    # Only now: a plan without times does not wait for SciPy's linear algebra.
+    # Imported late: plans without times do not need SciPy's linear algebra.
     from evenroad.trajectory import format_of
 
     require_positive("speed", plan.speed, at_most=1.0)
@@ -48,7 +48,7 @@ def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path], outputs: I
 
 
 def _remove_earlier(plan: PlanArm) -> None:
-    """Remove the trajectories of an earlier run, which must not pass for this one's."""
+    """Remove the trajectories of an earlier run."""
     for file in plan.trajectory:
         file.unlink(missing_ok=True)
 
@@ -59,7 +59,7 @@ def trajectory_rows(
     result: PlanResult,
     constraints: tuple[CartesianLine | None, OrientationConstraint | None],
 ) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:
-    """Write the trajectory of a solved plan; return rows for the table, and what the record says of it."""
+    """Write the trajectory of a solved plan; return rows for the table, and its record."""
     if not plan.trajectory:
         return [], None
     stays = result.path is not None and bool(np.all(result.path == result.path[0]))

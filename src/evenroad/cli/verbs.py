@@ -17,25 +17,16 @@ BAD_INPUT = 2
 
 VERBS = {
     "plan": ("evenroad.cli.plan:PlanDisk", "a path for a disk on a map, or for an arm in a scene (--robot)"),
-    "roadmap": (
-        "evenroad.cli.roadmap:MakeRoadmap",
-        "a roadmap for one arm in its cell, good for every scene",
-    ),
+    "roadmap": ("evenroad.cli.roadmap:MakeRoadmap", "a roadmap for one arm in its cell, good for every scene"),
     "view": ("evenroad.cli.view:View", "an arm, its scene and its path in the browser, or as a GIF"),
     "send": ("evenroad.cli.send:Send", "a trajectory to a UR arm; a dry run unless told otherwise"),
-    "points": (
-        "evenroad.cli.points:Points",
-        "write a point set: shipped or constructed",
-    ),
+    "points": ("evenroad.cli.points:Points", "write a point set: shipped or constructed"),
     "measure": ("evenroad.cli.measure:Measure", "print every measure of a point set"),
-    "certify": (
-        "evenroad.cli.certify:Certify",
-        "what a roadmap guarantees in every world, in every dimension",
-    ),
+    "certify": ("evenroad.cli.certify:Certify", "what a roadmap guarantees in every world, in every dimension"),
     "robot": ("evenroad.cli.robot:Robot", "what an arm is made of, and how fast it is checked"),
     "demo": ("evenroad.cli.plan:Demo", "plan through a maze that ships with evenroad"),
 }
-"""Name of a verb -> where it is, loaded when it is asked for, and what it does."""
+"""Name of a verb -> its class, loaded on use, and its description."""
 
 OF_STUDIES = {
     "train": "train point sets for any objective",
@@ -43,12 +34,12 @@ OF_STUDIES = {
     "report": "page, figures and tables of a store",
     "export": "a store for OMPL's Planner Arena",
 }
-"""Name of a verb that the package evenroad-studies brings -> what it does."""
+"""Name of a verb of the package evenroad-studies -> its description."""
 ENTRY_POINTS = "evenroad.verbs"
-"""Group of entry points by which another package brings verbs."""
+"""Group of entry points of verbs of another package."""
 
 ABOUT = {name: about for name, (_, about) in VERBS.items()} | OF_STUDIES
-"""Name of every verb -> what it does."""
+"""Name of every verb -> its description."""
 
 DESCRIPTION = f"""usage: evenroad [-h] [--version [-v]] [--tyro-print-completion {{bash,zsh,fish}}] VERB ...
 
@@ -61,7 +52,7 @@ verbs (evenroad VERB --help tells of its options):
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run the verb that the arguments ask for and return the exit code."""
+    """Run the verb of the arguments and return the exit code."""
     try:
         code = _run(list(arguments))
         sys.stdout.flush()
@@ -89,7 +80,7 @@ def _run(arguments: list[str]) -> int:
         for name, about in ABOUT.items():
             print(fill(f"  {name:8} {about}", table_width(), subsequent_indent=" " * 11))
         return DONE
-    # Here, since neither version nor help wait for numpy and tyro.
+    # Imported late: version and help need neither numpy nor tyro.
     from evenroad._checks import require_known
     from evenroad.cli.options import print_completion, read_options
 
@@ -97,15 +88,15 @@ def _run(arguments: list[str]) -> int:
         if verb.startswith("--tyro-"):
             print_completion({name: _kind(name, ["--help"]) for name in _installed()}, arguments)
         require_known("verb", verb, ABOUT)
-        asked = read_options(verb, _kind(verb, words), words)
+        options = read_options(verb, _kind(verb, words), words)
     except SystemExit:
         return DONE
-    code: int = asked.run()
+    code: int = options.run()
     return code
 
 
 def _print_surroundings() -> None:
-    """Print what this runs on, and where it keeps what it can make again."""
+    """Print versions, processor and cache folders."""
     from evenroad._files import cache_folder
     from evenroad._njit import surroundings
 
@@ -115,7 +106,7 @@ def _print_surroundings() -> None:
 
 
 def _installed() -> list[str]:
-    """Return the verbs that are there: those of the studies where the package is installed."""
+    """Return the installed verbs, with those of the studies if they are."""
     there = entry_points(group=ENTRY_POINTS).names
     return [name for name in ABOUT if name in VERBS or name in there]
 
@@ -135,6 +126,6 @@ def _kind(verb: str, words: Sequence[str]) -> type:
         return _kind_of_studies(verb)
     module, _, name = VERBS[verb][0].partition(":")
     home = import_module(module)
-    # Of `plan` there are two: one for each kind of robot.
+    # `plan` has a class for each kind of robot.
     kind: type = home.plan_type(words) if verb == "plan" else getattr(home, name)
     return kind

@@ -1,4 +1,4 @@
-"""``evenroad view``: an arm in its scene and its path, on a page of this computer or as a GIF."""
+"""``evenroad view``: an arm in its scene and its path, on a page in the browser or as a GIF."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from evenroad.cli.roadmap import load_arm_roadmap
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import load_plan
 from evenroad.planning import PRM
-from evenroad.planning.arm_request import arm_request
 from evenroad.planning.plan import Options, solve
+from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Reading, Request
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.robot import find_robot, load_scene
@@ -39,25 +39,25 @@ SECONDS = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class View(RobotOptions):
-    """Show an arm in its scene with the path under a slider, on a page that this computer serves to itself.
+    """Show an arm in its scene with its path and a slider, on a page that this computer serves.
 
-    Start and goal are moved by hand; the path is planned again as they move.  Ctrl-C ends it.
+    You can drag start and goal; the path is planned again as they move.  Ctrl-C ends it.
     """
 
     world: tyro.conf.Positional[Path]
-    """What evenroad plan --robot wrote (.json); or a scene (.yaml), with --robot."""
+    """A plan of evenroad plan --robot (.json); or a scene (.yaml), with --robot."""
     robot: str | None = None
     """A URDF, xacro or MJCF file, or the name of a shipped robot (ur5, arm7).  Default: that of the plan."""
     start: str = "home"
-    """Of a scene: one number a joint with commas between them, name=value,..., or a named state."""
+    """With a scene: one number per joint, separated by commas, name=value,..., or a named state."""
     goal: str | None = None
     """As start.  Default: the start."""
     n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
-    """Plan again on so many points, whose roadmap can be shown; default: with trees."""
+    """Plan again on this number of points, whose roadmap can be shown; default: with trees."""
     port: int = 8080
-    """Where the page is; 0 takes any that is free."""
+    """Port of the page; 0 takes any free one."""
     gif: Path | None = None
-    """Write a moving picture there in place of a page."""
+    """Write an animation to this file instead of serving a page."""
 
     def run(self) -> int:
         """Show until Ctrl-C, or write the picture; return 0."""
@@ -92,7 +92,7 @@ class View(RobotOptions):
         return 0
 
     def request(self) -> tuple[Request, PlanResult]:
-        """Return what is shown: the request of the plan, or of a scene, and the plan."""
+        """Return the request of the plan, or of a scene, and the plan."""
         options = self.options()
         if self.world.suffix.lower() != ".json":
             if self.robot is None:
@@ -125,7 +125,7 @@ class View(RobotOptions):
 
 
 def _require_sound(file: Path, asked: dict[str, Any]) -> None:
-    """Raise BrokenFile where a plan does not say what robot it is of as `evenroad plan` does."""
+    """Raise BrokenFile where a plan does not describe its robot as `evenroad plan` does."""
     kinds = {"joints": list, "held": dict, **FILES}
     sound = all(isinstance(asked.get(name), kind) for name, kind in kinds.items())
     if sound:

@@ -3,7 +3,7 @@
 from evenroad.geometry.cloud_file import load_cloud as load_cloud
 from evenroad.geometry.distance import segment_distance as segment_distance
 from evenroad.geometry.fit import fit_capsules as fit_capsules
-from evenroad.geometry.fit_points import union_volume as union_volume
+from evenroad.geometry.fit import union_volume as union_volume
 from evenroad.geometry.mesh import TriangleMesh as TriangleMesh
 from evenroad.geometry.mesh import height_map as height_map
 from evenroad.geometry.mesh import load_mesh as load_mesh

@@ -11,8 +11,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, set_fields
 from evenroad.errors import InvalidValue
-from evenroad.geometry.fit import best_cut, divided
-from evenroad.geometry.fit_points import extreme
+from evenroad.geometry.fit import best_cut, divided, extreme
 from evenroad.geometry.mesh import TriangleMesh, closed_parts
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 

@@ -8,8 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
-from evenroad.geometry.fit import divided
-from evenroad.geometry.fit_points import Fitted
+from evenroad.geometry.fit import Fitted, divided
 from evenroad.geometry.hulls import distances, winding_number
 from evenroad.geometry.mesh import closed_parts
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere

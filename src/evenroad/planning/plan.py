@@ -11,11 +11,10 @@ from evenroad._above import above
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
-from evenroad.planning.arm_request import mesh_check
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.enclosed import with_reasons
 from evenroad.planning.prm import PRM
-from evenroad.planning.read_request import read_request
+from evenroad.planning.read_request import mesh_check, read_request
 from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request
 from evenroad.planning.tip_motion import plan_tip_motion, refused
 from evenroad.planning.trees import RRTConnect, default_planner

@@ -21,15 +21,12 @@ _ORIGIN_TYPES = {name: get_args(kind) or (kind,) for name, kind in get_type_hint
 
 
 def save_points(path: Path, points: PointSet) -> None:
-    """Write a point set as ``.npz`` (arrays `points`, `origin`, `hash`), atomically.
-
-    Raises BrokenFile if the file cannot be written; whatever was at `path` is then untouched.
-    """
+    """Write a point set as ``.npz`` (arrays `points`, `origin`, `hash`), atomically; BrokenFile if that fails."""
     write_npz(path, dict(points=points.points, origin=json.dumps(asdict(points.origin)), hash=points.hash))
 
 
 def write_points(points: PointSet, path: str | os.PathLike[str]) -> None:
-    """Do what :meth:`PointSet.save` does."""
+    """See :meth:`PointSet.save`."""
     file = as_file("what points are saved to", path)
     suffix = file.suffix.lower()
     require_known(f"kind of file for points, {os.fspath(path)!r}: suffix", suffix, (".npz", ".npy", ".csv"))
@@ -51,7 +48,7 @@ def load_points(path: str | os.PathLike[str]) -> PointSet:
     Parameters
     ----------
     path : str or path-like
-        ``.npz``, with an origin, whose names, types, shape, range and hash are checked; or ``.npy`` or ``.csv``.
+        ``.npz`` with an origin, all of which is checked; or ``.npy`` or ``.csv``.
 
     Returns
     -------
@@ -60,7 +57,7 @@ def load_points(path: str | os.PathLike[str]) -> PointSet:
     Raises
     ------
     BrokenFile
-        If the file is missing, is no such file, or a check fails; the text says which.
+        If the file is missing or damaged.
     InvalidValue
         If a plain array is no point set.
 

@@ -26,12 +26,12 @@ BELOW_ONE = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
 
 @dataclass(frozen=True, kw_only=True)
 class Origin:
-    """Where a point set came from: enough to make it, or find it, again.
+    """Origin of a point set: enough to reproduce it.
 
-    `family` is the sampler or family (``halton``, ``hickernell``), `method` how it was made (``plain``, ``annealed``,
-    ``given``), `objective` the expression that was minimised, or "" for constructions.  `seed` is None when a Generator
-    was passed, or nothing was drawn; `replica` and `steps` are the index of the set in its pool, and the steps of the
-    optimiser (trained families), `start` the index of the first point (sequences, else 0), `version` evenroad's.
+    `family` is the sampler or family (``halton``, ``hickernell``), `method` the construction (``plain``, ``annealed``,
+    ``given``), `objective` the minimised expression, or "".  `seed` is None for a Generator, or if nothing was drawn.
+    `replica` is the index of a trained set in its pool, `steps` the optimiser's; `start` the index of a sequence's
+    first point, `version` evenroad's.
     """
 
     family: str
@@ -44,7 +44,7 @@ class Origin:
     version: str = __version__
 
     def __str__(self) -> str:
-        # Of points that were given, the one word is enough.
+        # One word is enough for given points.
         parts = [*dict.fromkeys((self.family, self.method))]
         if self.replica is not None:
             parts.append(f"set {self.replica}")
@@ -63,7 +63,7 @@ class PointSet:
     points : array_like, shape (n, d)
         Real numbers in [0, 1), d >= 1; copied to a read-only float64 array.
     origin : Origin
-        Where they came from; default: they were given.
+        Default: the points were given.
 
     Raises
     ------
@@ -101,7 +101,7 @@ class PointSet:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """The number of points and the dimension, as of the array."""
+        """Number of points and dimension."""
         return self.n, self.d
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -110,7 +110,7 @@ class PointSet:
         Parameters
         ----------
         path : str or path-like
-            ``.npz``, with their origin; ``.npy`` or ``.csv``, the bare array.
+            ``.npz`` with their origin, or ``.npy`` or ``.csv`` without.
 
         Raises
         ------
@@ -136,12 +136,12 @@ class PointSet:
         Parameters
         ----------
         method : {"CD", "WD", "MD", "L2-star"}
-            As :func:`scipy.stats.qmc.discrepancy` calls it: centered (Hickernell's), wrap-around, mixture, or star.
+            Centered (Hickernell's), wrap-around, mixture or star, as of :func:`scipy.stats.qmc.discrepancy`.
 
         Returns
         -------
         float
-            The number that SciPy gives, >= 0.
+            SciPy's number, >= 0.
 
         Raises
         ------
@@ -209,10 +209,7 @@ class PointSet:
 
 
 def as_unit_points(points: object) -> Floats:
-    """Return `points` as a C-contiguous float64 array of shape (n, d), checked to lie in [0, 1).
-
-    Raises InvalidValue naming what is no real number, the shape, or the first bad coordinate and its place.
-    """
+    """Return `points` as a C-contiguous float64 array of shape (n, d) in [0, 1); InvalidValue names what is wrong."""
     if isinstance(points, str | os.PathLike):
         raise InvalidValue(f"points must be an (n, d) array, got {shown(points)}; a file is read by load_points")
     try:

@@ -26,12 +26,10 @@ LARGEST_COORDINATE = float(np.nextafter(1.0, 0.0))
 
 
 def randomise(points: PointSet, symmetries: Collection[Symmetry], *, rng: RngLike = 0) -> PointSet:
-    """Return the points under random moves of these kinds: permuted, then reflected, then shifted.
+    """Return the points after random transformations of these kinds: permuted, then reflected, then shifted.
 
-    The method of the origin says what was done, with all digits: ``annealed, permuted 2 0 1, reflected 0``.  A
-    coordinate that would be reflected to 1 becomes the largest float below 1: the cube is half open.
-    ``make_sampler(name).symmetries`` are those that keep the quality of its sets; the studies' ``symmetries_of`` tells
-    those of sets made for an objective.  A Generator that is passed as `rng` is spawned.
+    The method of the origin records them with all digits: ``annealed, permuted 2 0 1, reflected 0``.  A coordinate
+    reflected to 1 becomes the largest float below.  ``make_sampler(name).symmetries`` keep the quality of its sets.
     """
     random = generator(rng)
     if Symmetry.PERMUTATION in symmetries:

@@ -9,8 +9,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
-from evenroad.points.samplers.even import CONTRACTED_FROM, contracted
-from evenroad.points.samplers.poses import Sliced
+from evenroad.points.samplers.even import CONTRACTED_FROM, Sliced, contracted
 from evenroad.roadmap.rules import Rule
 from evenroad.space import SO3, BoxSpace, Product, Space
 

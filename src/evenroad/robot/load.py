@@ -13,8 +13,7 @@ from evenroad._call import explains_calls
 from evenroad._checks import as_file, require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
-from evenroad.geometry.fit import fit_capsules
-from evenroad.geometry.fit_points import union_volume
+from evenroad.geometry.fit import fit_capsules, union_volume
 from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.inner import inner_of
 from evenroad.geometry.shapes import Capsule, Mesh, Shape

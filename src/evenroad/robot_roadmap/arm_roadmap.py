@@ -15,7 +15,6 @@ from evenroad._npz import Path
 from evenroad.roadmap.point_roadmap import Roadmap, WorldRoadmap
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.prepared_robots import prepared
-from evenroad.robot_roadmap.scene_graph import scene_graph
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
 
 
@@ -111,3 +110,17 @@ def read_only(roadmap: ArmRoadmap) -> ArmRoadmap:
     for array in (roadmap.milestones, roadmap.edges, roadmap.turns, roadmap.weights):
         np.asarray(array).setflags(write=False)
     return roadmap
+
+
+def scene_graph(milestones: Floats, edges: Ints32, turns: Ints, one: OneTurn) -> SceneGraph:
+    """Return a roadmap's milestones, (n, dim), and edges, (m, 2), that lead past their second ones by turns, (m, dim).
+
+    Nothing is known of them yet; `one` has the ranges of the joints.
+    """
+    joints = one.limits, 0.5 * (one.low + one.high), one.multi_turn, one.wraps & ~one.multi_turn
+    return SceneGraph(
+        np.ascontiguousarray(milestones, dtype=np.float64),
+        np.ascontiguousarray(edges, dtype=np.int32),
+        np.ascontiguousarray(turns, dtype=np.int8),
+        joints,
+    )

@@ -18,8 +18,7 @@ from evenroad.roadmap.points_of import as_points
 from evenroad.roadmap.rules import KNearest, Rule
 from evenroad.robot import ArmWorld, in_scene, scene_seen_by
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap, read_only
-from evenroad.robot_roadmap.recipe import MEASURED, Recipe, chosen, precomputed, recipe_for
-from evenroad.robot_roadmap.spread import displacement_weights
+from evenroad.robot_roadmap.recipe import MEASURED, Recipe, chosen, displacement_weights, precomputed, recipe_for
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, shifts, whole_turns, winding_motions_free
 from evenroad.space import JointSpace
 from evenroad.world import World

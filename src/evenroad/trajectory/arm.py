@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import os
+from inspect import signature
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad._checks import as_batch
-from evenroad.errors import InvalidValue
+from evenroad._checks import as_batch, require_known, require_positive
+from evenroad.errors import InvalidValue, shown
 from evenroad.robot import ArmWorld, Robot, held_values, tip_links
 from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.orientation_constraint import OrientationConstraint
-from evenroad.trajectory.limits import Limits, limits_of
+from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of
 from evenroad.trajectory.tip_constraints import constrained_world
 from evenroad.trajectory.trajectory import DEVIATION, STEP, Trajectory, make_trajectory
 from evenroad.trajectory.urscript import with_radii
+from evenroad.world import World
 
 
 def arm_trajectory(
@@ -110,3 +115,32 @@ def controller_joints(robot: Robot) -> tuple[str, ...]:
     return tuple(
         joint.name for joint in robot.joints if joint.child in links and joint.kind != "fixed" and joint.mimic is None
     )
+
+
+def trajectory_of(
+    world: World,
+    path: Floats,
+    limits: Limits | str | os.PathLike[str] | None,
+    *,
+    speed: float,
+    **options: Any,
+) -> Trajectory:
+    """See :meth:`PlanResult.trajectory`."""
+    known = {*signature(arm_trajectory).parameters} - {"world", "path"}
+    for key in options:
+        require_known("keyword of trajectory:", key, known)
+    if isinstance(world, ArmWorld):
+        if isinstance(limits, str | os.PathLike):
+            limits = limits_of(world.robot, limits)
+        return arm_trajectory(world, path, limits, speed=speed, **options)
+    if limits is None:
+        fastest = require_positive("speed", speed)
+        each = (fastest,) * path.shape[1]
+        at_speed = Limits(each, tuple(v / SECONDS_TO_FULL_SPEED for v in each), along_path=fastest)
+    elif isinstance(limits, Limits):
+        at_speed = limits.at_speed(speed)
+    else:
+        raise InvalidValue(
+            f"limits must be Limits(velocity=..., acceleration=...) where there is no robot, got {shown(limits)}"
+        )
+    return make_trajectory(path, at_speed, world=world, **options)

@@ -1,4 +1,4 @@
-"""A picture of an arm's plan in its scene: three views, with the arm at configurations along its path."""
+"""Pictures of an arm's plan in its scene: three views, with the arm along its path."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SIZE = (1920, 744)
 """Width and height of the picture [pixels]."""
 _AXES = "xyz"
 _TOWARDS = (1.0, -1.0, 1.0)
-"""Signs along x, y and z of what is nearer to the eye, where the other two axes point right and up."""
+"""Signs of the directions towards the viewer along x, y and z, if the other two axes point right and up."""
 _FRAMES, _FRAME, _PAUSE = 48, 60, 800
 """Number of frames of a moving picture, and milliseconds of each, and of the first and the last."""
 _BETWEEN = 7
@@ -45,11 +45,11 @@ def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: Ar
 
 
 def save_arm_gif(path: str | os.PathLike[str], result: PlanResult, world: ArmWorld) -> None:
-    """Save a moving picture of the arm on its path as GIF, atomically; without a path of start and goal in turn."""
+    """Save an animation of the arm on its path as GIF, atomically; without a path of start and goal."""
     if result.path is None:
         configurations = np.stack([result.start, result.goal])
     else:
-        # An arm that stays where it is looks alike in all.
+        # For an arm that does not move all frames are equal.
         times = np.linspace(0.0, 1.0, _FRAMES if result.cost else 2)
         configurations = configuration_at(result.path, world.space, times)
     frames = [draw_arm_plan(result, world, now=q).reduce(2).quantize(160) for q in configurations]
@@ -59,11 +59,10 @@ def save_arm_gif(path: str | os.PathLike[str], result: PlanResult, world: ArmWor
 
 
 def draw_arm_plan(result: PlanResult, world: ArmWorld, *, now: Floats | None = None) -> Image.Image:
-    """Return a picture of a plan of an arm: from above, from the side and from the front, on one scale.
+    """Return a picture of a plan of an arm: from above, from the side and from the front, to one scale.
 
-    The start is green, the goal blue, with the arm along the path between them, or where it is `now`, (dim,); the path
-    of each planned chain's tip is red.  Without a path start and goal are shown; a body in collision is red.  What is
-    nearer to the eye hides what is behind it.
+    The start is green, the goal blue, with the arm along the path between them, or at the configuration `now`, (dim,).
+    Paths of tips and bodies in collision are red.
     """
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
     sheet = Sheet(SIZE, len(VIEWS), title)
@@ -81,7 +80,7 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, *, now: Floats | None = N
 def draw_arm_view(
     view: View, result: PlanResult, world: ArmWorld, pair: tuple[int, int], *, now: Floats | None = None
 ) -> None:
-    """Draw what is seen in the plane of two of the axes x, y, z, from the far to the near."""
+    """Draw the projection to two of the axes x, y, z, from far to near."""
     shown = _shown(result, world)
     last = len(shown) - 1
     arms = [(i / last, endpoints) for i, endpoints in enumerate(capsule_endpoints(world.robot, shown))]
@@ -91,7 +90,7 @@ def draw_arm_view(
     axis, towards = next((k, _TOWARDS[k]) for k in range(3) if k not in pair)
     things: list[tuple[float, Floats, Colour, Colour, float]] = []
     for share, endpoints in [*between, arms[0], arms[-1]]:
-        # Of many places those in between are a hint; of a moving picture that one is what it is about.
+        # In a still picture configurations between start and goal are faint, in an animation start and goal.
         faint = (share in (0.0, 1.0)) == (now is not None)
         fill, edge = _tint(share, 0.25 if faint else 0.55), _tint(share, 0.45 if faint else 1.0)
         for body, outline in zip(endpoints, _bodies(world.robot, endpoints, pair), strict=True):
@@ -99,7 +98,7 @@ def draw_arm_view(
             things.append((depth, outline, fill, edge, 1.0 if faint else 1.5))
     for obstacle in world.scene.obstacles:
         colour = style.OUTSIDE if obstacle.cell else style.OBSTACLE
-        # A cloud or a mesh is all around: faint, before what is drawn from the far to the near.
+        # A cloud or a mesh may surround the arm: it is faint, and drawn first.
         if isinstance(obstacle.body, PointCloud):
             points = obstacle.body.pose.apply(obstacle.body.points)[:, list(pair)]
             view.balls(points, obstacle.body.radius, _faint(colour, 0.16), _faint(style.OBSTACLE, 0.4))
@@ -142,25 +141,25 @@ def _bodies(robot: Robot, endpoints: Floats, pair: tuple[int, int]) -> list[Floa
 
 
 def _tips(path: Floats, world: ArmWorld, step: float | None = None) -> list[Floats]:
-    """Return where each tip is, (n, 3), at configurations, (n, dim), or every `step` on the path through them."""
+    """Return the positions of each tip, (n, 3), at configurations, (n, dim), or every `step` on their path."""
     dense = path if step is None else resample(path, world.space, step)[0]
     poses = link_poses(world.robot, dense)
     return [poses[:, world.robot.links.index(tip), :3, 3] for tip in tip_links(world.robot)]
 
 
 def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> list[Floats]:
-    """Return the outlines of the bodies that the message names."""
+    """Return the outlines of the bodies named in the message."""
     end = result.start if result.status is Status.START_INVALID else result.goal
     reason = world.explain(end)
     bodies = _bodies(world.robot, capsule_endpoints(world.robot, end[np.newaxis])[0], pair)
     named = [body for body, own in zip(bodies, world.robot.capsules, strict=True) if repr(own.link) in reason]
-    # A cloud or a mesh is all around: the robot's own body says where.
+    # A cloud or a mesh may surround the arm: the robot's body shows the position.
     obstacles = [each for each in world.scene.obstacles if repr(each.name) in reason and each.row]
     return named + [obstacle_outline(each, pair) for each in obstacles]
 
 
 def _tint(share: float, strength: float) -> Colour:
-    """Return the colour between start and goal, paler for less strength."""
+    """Return a colour between start and goal; less strength is paler."""
     start, goal = (np.array(ImageColor.getrgb(colour)) for colour in (style.START, style.GOAL))
     colour = 255 - strength * (255 - (1.0 - share) * start - share * goal)
     red, green, blue = np.rint(colour).astype(int).tolist()
@@ -173,7 +172,7 @@ def _faint(colour: str, opacity: float) -> Faint:
 
 
 def _limits(world: ArmWorld, shown: Floats) -> tuple[Floats, Floats]:
-    """Return corners, (3,) each, of the box that is shown: the arm, and of the obstacles what is near it."""
+    """Return corners, (3,) each, of the box shown: the arm and obstacles near it."""
     endpoints = capsule_endpoints(world.robot, shown)
     radius = max(capsule.radius for capsule in world.robot.capsules)
     low, high = endpoints.min(axis=(0, 1, 2)) - radius, endpoints.max(axis=(0, 1, 2)) + radius
@@ -188,7 +187,7 @@ def _limits(world: ArmWorld, shown: Floats) -> tuple[Floats, Floats]:
 
 
 def _legend(result: PlanResult, world: ArmWorld) -> list[tuple[str, Colour, Colour | None]]:
-    """Return name, colour and colour of the edge of what is shown."""
+    """Return names, colours and edge colours of the legend."""
     entries: list[tuple[str, Colour, Colour | None]] = [
         ("start", _tint(0.0, 0.55), style.START),
         ("goal", _tint(1.0, 0.55), style.GOAL),

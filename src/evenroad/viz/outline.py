@@ -1,4 +1,4 @@
-"""Outlines of bodies seen along a coordinate axis."""
+"""Outlines of bodies along a coordinate axis."""
 
 from __future__ import annotations
 
@@ -48,11 +48,11 @@ def obstacle_bounds(obstacle: Obstacle) -> tuple[Floats, Floats]:
 
 
 def _sides(obstacle: Obstacle) -> Floats:
-    """Return segments, as columns (3, s), whose Minkowski sum a box or (nearly) a cylinder is, in the body's frame."""
+    """Return segments, as columns (3, s), whose Minkowski sum is a box or (nearly) a cylinder, in its frame."""
     if obstacle.shape == "box":
         return np.diag(obstacle.size)
     radius, length = obstacle.size
-    # The sides of half a polygon: the other half has the same ones.
+    # The sides of half a polygon; the other half has the same.
     angle = np.arange(_ROUND // 2 + 1) * (2.0 * math.pi / _ROUND)
     rim = np.diff(radius * np.stack([np.cos(angle), np.sin(angle), np.zeros(len(angle))]), axis=1)
     return np.column_stack([rim, [0.0, 0.0, length]])

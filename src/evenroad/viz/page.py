@@ -1,4 +1,4 @@
-"""A page in the browser: an arm in its scene, its path under a slider, handles for start and goal (viser)."""
+"""A page in the browser: an arm in its scene, its path with a slider, handles for start and goal (viser)."""
 
 from __future__ import annotations
 
@@ -31,27 +31,27 @@ _SECONDS = 4.0
 
 _ARM, _LINE = "#8fa3b8", 3.0
 _SOFTENED, _ROUNDS, _NEAR = 0.05, 12, 1e-3
-"""Damping and number of the steps by which an arm follows a handle, and the error that ends them [m, rad]."""
+"""Damping and number of steps by which an arm follows a handle, and the error that ends them [m, rad]."""
 
 Planner = Callable[[Floats, Floats], PlanResult]
 """Function that returns a plan from a start to a goal, (dim,) each."""
 
 
 class ArmPage:
-    """A page that is served until it is closed.
+    """A page, served until it is closed.
 
     Parameters
     ----------
     world : ArmWorld
         The arm in its scene.
     result : PlanResult
-        What is shown first.
+        The plan shown first.
     plan : callable
-        Plans again, start and goal -> PlanResult, where a hand has moved one of them.
+        Function that plans again after a handle was moved: start, goal -> PlanResult.
     file : RobotFile, optional
-        Where the robot was read: the page shows what is drawn there, else capsules.
+        File of the robot, whose visual geometry is shown; default: capsules.
     host, port
-        Where the page is served; port 0 takes any that is free.
+        Address of the page; port 0 takes any free one.
 
     Raises
     ------
@@ -96,7 +96,7 @@ class ArmPage:
         self._hands = {end: self._add_hand(end) for end in self._endpoints}
         self.hands.on_update(lambda _: self._show_hands())
         low, high = self._corners()
-        # Below everything: a table's top at its height would flicker.
+        # Below everything: a table top at its height would flicker.
         lowest = min([low[2], *(obstacle_bounds(each)[0][2] for each in world.scene.obstacles)]) - 0.01
         scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.25, plane="xy", position=(0.0, 0.0, lowest))
         reach = float(np.linalg.norm(high - low))
@@ -107,11 +107,11 @@ class ArmPage:
 
     @property
     def address(self) -> str:
-        """Where the page is, to be opened in a browser."""
+        """Address of the page, for a browser."""
         return f"http://{self._server.get_host()}:{self._server.get_port()}"
 
     def serve(self) -> None:
-        """Keep the page until Ctrl-C, and play the path when asked to."""
+        """Serve the page until Ctrl-C, and play the path on request."""
         while True:
             if self._playing.wait(0.1):
                 self._playing.clear()
@@ -123,8 +123,8 @@ class ArmPage:
         """Stop serving."""
         self._server.stop()
 
-    def move_end(self, end: str, position: Floats, wxyz: Floats) -> PlanResult:
-        """Let the tip of start or goal follow a hand, (3,) [m] and unit quaternion, as far as it can; plan again."""
+    def move_endpoint(self, end: str, position: Floats, wxyz: Floats) -> PlanResult:
+        """Move the tip of start or goal towards a handle, (3,) [m] and unit quaternion, and plan again."""
         with self._busy:
             self._endpoints[end] = follow(self.world, self._endpoints[end], self._tip, position, wxyz)
             self.result = self._plan(self._endpoints["start"], self._endpoints["goal"])
@@ -165,17 +165,17 @@ class ArmPage:
         hand = self._server.scene.add_transform_controls(f"/hand of {end}", scale=0.2)
 
         def moved(event: Any) -> None:
-            # While a plan is made a hand moves on: only where it is then counts.
+            # Handles move on while a plan is made: only their last pose counts.
             self._wanted[end] = np.array(event.target.position), np.array(event.target.wxyz)
             while self._wanted and not self._busy.locked():
                 which, pose = self._wanted.popitem()
-                self.move_end(which, *pose)
+                self.move_endpoint(which, *pose)
 
         hand.on_update(moved)
         return hand
 
     def _show(self) -> None:
-        """Show the result: both ends, the path of the tip, and what is known of it."""
+        """Show the result: start, goal, the path of the tip, and the status."""
         for end, q in self._endpoints.items():
             self._pose_arm(end, q)
             position, wxyz = _link_pose(self.world, q, self._tip)
@@ -241,7 +241,7 @@ class ArmPage:
 
 
 def follow(world: ArmWorld, q: Floats, link: str, position: Floats, wxyz: Floats) -> Floats:
-    """Return the configuration near `q`, (dim,), that brings a link nearest to a pose, by damped least squares."""
+    """Return the configuration near `q`, (dim,), that moves a link nearest to a pose, by damped least squares."""
     robot, number = world.robot, world.robot.links.index(link)
     low, high, _ = world.bounds
     target = _matrix(wxyz)

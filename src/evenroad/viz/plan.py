@@ -47,7 +47,7 @@ def plan_figure(result: PlanResult, world: DiskWorld) -> Figure:
 def draw_plan(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
     """Draw map, milestones, free edges, raw path, path, start and goal into matplotlib axes, in map units.
 
-    An end whose disk is in collision gets a cross, with a line to the obstacle that is nearest.
+    A start or goal in collision gets a cross, with a line to the nearest obstacle.
     """
     _draw_map(axes, world.grid, _cells_with_components(result, world))
     if result.roadmap is not None:
@@ -69,9 +69,9 @@ def draw_plan(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
 
 
 def _cells_with_components(result: PlanResult, world: DiskWorld) -> np.ndarray:
-    """Return which colour of `_MAP_COLOURS` each cell has.
+    """Return the index in `_MAP_COLOURS` of each cell.
 
-    Where it is proved that there is no path, the places that start and goal can reach have colours of their own.
+    Where it is proved that there is no path, the components of start and goal have colours of their own.
     """
     grid = world.grid
     kinds = np.where(grid.occupied, 1, 0)
@@ -97,7 +97,7 @@ def _draw_map(axes: Axes, gridmap: GridMap, kinds: np.ndarray) -> None:
 
 
 def _draw_swept_disks(axes: Axes, path: np.ndarray, radius: float) -> None:
-    """Show the robot itself at each waypoint, so that one sees how close it passes."""
+    """Draw the robot at each waypoint, to show how close it passes."""
     size = np.full(len(path), 2 * radius)
     look: dict[str, Any] = dict(facecolors="none", edgecolors=style.PATH, linewidths=0.8, zorder=5)
     options: dict[str, Any] = dict(units="xy", offsets=path, offset_transform=axes.transData)

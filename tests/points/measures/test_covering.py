@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
 from evenroad.points.measures import dispersion_bounds
-from evenroad.points.samplers.cover import covering_radius
+from evenroad.points.samplers.lattice import covering_radius
 from tests.points.measures.dispersion_oracle import dispersion_l2
 
 

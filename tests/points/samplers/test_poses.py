@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.points.samplers.poses import Sliced
+from evenroad.points.samplers.even import Sliced
 from evenroad.space import SO3
 from tests.refused import refused
 

@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 from evenroad.points import draw
 from evenroad.points.measures import riesz_rooted
 from evenroad.points.measures.rank_one import generating_vector, minima_ratio
-from evenroad.points.samplers import rank_one_search
-from evenroad.points.samplers.korobov import korobov_generator
-from evenroad.points.samplers.rank_one_search import rank_one_vector
+from evenroad.points.samplers import korobov
+from evenroad.points.samplers.korobov import korobov_generator, rank_one_vector
 
 POOR = ((96, 5), (240, 5), (120, 7), (960, 7), (504, 3), (72, 9))
 FINE = ((64, 2), (90, 2), (128, 3), (512, 5), (1024, 7), (1024, 9))
@@ -29,7 +28,7 @@ def energy(n, z):
 @pytest.mark.parametrize(("n", "d"), POOR)
 def test_where_powers_are_poor_another_vector_has_less_energy_and_less_unequal_minima(n, d):
     z = rank_one_vector(n, d)
-    assert minima_ratio(n, powers(n, d)) > max(rank_one_search.POOR, minima_ratio(n, z))
+    assert minima_ratio(n, powers(n, d)) > max(korobov.POOR, minima_ratio(n, z))
     assert energy(n, z) < 0.95 * energy(n, powers(n, d))
     assert z[0] == 1
     assert all(gcd(each, n) == 1 for each in z)
@@ -53,8 +52,8 @@ def test_no_vector_has_more_energy_than_that_of_the_best_multiplier(n, d):
 
 def test_few_tries_find_a_better_one_too(monkeypatch):
     n, d = 960, 7
-    monkeypatch.setattr(rank_one_search, "WORK", 1)
-    assert energy(n, rank_one_search._descended(n, powers(n, d))) < energy(n, powers(n, d))
+    monkeypatch.setattr(korobov, "WORK", 1)
+    assert energy(n, korobov._descended(n, powers(n, d))) < energy(n, powers(n, d))
 
 
 @pytest.mark.parametrize(("n", "d"), POOR)

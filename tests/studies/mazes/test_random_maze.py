@@ -7,7 +7,7 @@ import pytest
 from scipy import ndimage
 
 from evenroad.errors import InvalidValue
-from evenroad.world.gridmap.shipped import LEVELS, load_maze
+from evenroad.world.gridmap.load import LEVELS, load_maze
 from evenroad_studies.mazes import MazeDesign, draw_maze
 
 SMALL = MazeDesign(cols=5, rows=4, wall=8, door=30, loops=0.2, width=300, height=240)

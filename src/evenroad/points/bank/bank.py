@@ -1,18 +1,13 @@
-"""Reading the bank: one folder per family, one float32 array (sets, n, d) per cell, one index for all.
+"""The bank of trained sets: one folder per family, one float32 array (sets, n, d) per cell, one index.
 
-::
-
-    data/index.json                    {"hickernell": {"2": {"512": {cell record}}}}
-    data/hickernell/d02-n0512.npy
-
-The index alone says what is in the bank: a file without a record is a build that has not finished.  The wheel of
-evenroad has the files of up to 256 points; those of more, which studies draw, come with evenroad-studies.
+``data/hickernell/d02-n0512.npy`` is in the bank if ``data/index.json`` has its record: ``{"hickernell": {"2": {"512":
+{...}}}}``.  The wheel of evenroad has the files of up to 256 points; larger ones come with evenroad-studies.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -21,10 +16,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._checks import require_known
+from evenroad._checks import require_count, require_known
 from evenroad._npz import read_array
+from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import BrokenFile, NotAvailable, shown
-from evenroad.points.pointset import PointSet
+from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.randomise import Symmetry
 
 DATA = Path(__file__).parent / "data"
 INDEX = "index.json"
@@ -33,15 +30,12 @@ STUDIES, LARGE_SETS = "evenroad_studies", "sets"
 MOST_IN_THE_CORE = 256
 """Number of points of the largest sets in evenroad's own wheel."""
 SEED = 20261121
-"""Seed of the bank: set i of every cell is annealed with ``SeedSequence(SEED, spawn_key=(i,))``."""
+"""Seed of the bank: set i of every cell is of ``SeedSequence(SEED, spawn_key=(i,))``."""
 
 
 @dataclass(frozen=True)
 class Cell:
-    """The pool of one family at one n and d: how its sets were made, and by which version.
-
-    `hashes` are the ``PointSet.hash`` of the stored float32 values; `measures` has the values of every set.
-    """
+    """The pool of one family at one n and d, with `hashes` of the stored float32 values and `measures` of every set."""
 
     path: Path
     n: int
@@ -55,32 +49,29 @@ class Cell:
 
     @property
     def sets(self) -> int:
-        """How many sets the pool has."""
+        """Number of sets."""
         return len(self.hashes)
 
     def load(self) -> npt.NDArray[np.float32]:
-        """Return the sets, shape (sets, n, d), float32 in [0, 1).
-
-        Raises BrokenFile if the file is missing or damaged, or a set does not have the hash of the index.
-        """
+        """Return the sets, (sets, n, d), float32 in [0, 1); BrokenFile if the file is missing or damaged."""
         return _load_checked(self.path, (self.sets, self.n, self.d), self.hashes)
 
 
 @dataclass(frozen=True)
 class Bank:
-    """A folder of trained sets, by default the one that ships; see the module for its layout."""
+    """A folder of trained sets, by default the shipped one."""
 
     folder: Path = DATA
 
     def has(self, family: str, n: int, d: int) -> bool:
-        """Say whether the bank holds a pool of this family at this n and d."""
+        """Return whether the bank has a pool of this family at this n and d."""
         return str(n) in _index(self.folder).get(family, {}).get(str(d), {})
 
     def cell(self, family: str, n: int, d: int) -> Cell:
         """Return the pool of one family at one n and d.
 
-        UnknownName if the bank has no such family, NotAvailable, with what there is, if the family has no such pool or
-        its package is not installed; BrokenFile if the index is damaged.
+        UnknownName for an unknown family, NotAvailable if it has no such pool or its package is not installed,
+        BrokenFile if the index is damaged.
         """
         index = _index(self.folder)
         require_known("family in the bank:", family, index)
@@ -102,7 +93,7 @@ class Bank:
 
 
 def _file(folder: Path, family: str, n: int, d: int) -> Path:
-    """Return where the sets of a cell are: in the bank's folder, or for the one that ships in the studies."""
+    """Return the file of a cell, in the bank's folder or in the studies."""
     path = folder / family / cell_name(n, d)
     if folder != DATA or path.exists():
         return path
@@ -116,12 +107,12 @@ def _file(folder: Path, family: str, n: int, d: int) -> Path:
 
 
 def has_large_sets() -> bool:
-    """Return whether the sets of more than 256 points are here: those of the studies."""
+    """Return whether the sets of more than 256 points are installed, with the studies."""
     return bool(_large_folders())
 
 
 def _large_folders() -> list[Path]:
-    """Return where the studies, if they are installed, keep the large sets."""
+    """Return the folders of large sets of installed studies."""
     studies = find_spec(STUDIES)
     locations = [] if studies is None else studies.submodule_search_locations or []
     return [folder for location in locations if (folder := Path(location, LARGE_SETS)).is_dir()]
@@ -170,3 +161,48 @@ def _load_checked(path: Path, shape: tuple[int, ...], hashes: tuple[str, ...]) -
             raise BrokenFile(f"{path}: set {replica} does not match the hash in the index")
     sets.setflags(write=False)
     return sets
+
+
+TRAINED_FAMILIES: dict[str, str] = {
+    "hickernell": "sets annealed for the Hickernell L2 discrepancy",
+    "mpmc": "sets of the paper's message-passing network, for the same measure as hickernell",
+}
+"""Name -> one line about the family."""
+
+
+@dataclass(frozen=True)
+class Trained:
+    """Draws a set of a trained family, ``hickernell`` or ``mpmc``, from a bank, by default the shipped one."""
+
+    family: str
+    bank: Bank = field(default_factory=Bank)
+    any_n = False
+    symmetries = frozenset({Symmetry.PERMUTATION})
+
+    def __post_init__(self) -> None:
+        require_known("trained family", self.family, TRAINED_FAMILIES)
+
+    @property
+    def name(self) -> str:
+        """The family's name."""
+        return self.family
+
+    @property
+    def about(self) -> str:
+        """One line about the family."""
+        return TRAINED_FAMILIES[self.family]
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return one set of n points in d dimensions; NotAvailable if there is none of this n and d."""
+        n, d = require_count("n", n), require_count("d", d)
+        try:
+            cell = self.bank.cell(self.family, n, d)
+        except NotAvailable as error:
+            if self.family != "hickernell" or "pip install" in str(error):
+                raise
+            made = f"evenroad train -n {n} -d {d} --objective hickernell --sets 1 -o sets/"
+            raise NotAvailable(f"{error}; evenroad-studies makes one: {made}") from None
+        replica = int(generator(rng).integers(cell.sets))
+        made_by = {name: getattr(cell, name) for name in ("method", "objective", "steps", "version")}
+        origin = Origin(family=self.family, seed=seed_of(rng), replica=replica, **made_by)
+        return PointSet(cell.load()[replica], origin)

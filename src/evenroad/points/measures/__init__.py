@@ -7,6 +7,6 @@ from evenroad.points.measures.covering import DispersionBounds as DispersionBoun
 from evenroad.points.measures.covering import dispersion_bounds as dispersion_bounds
 from evenroad.points.measures.measure import MEASURES as MEASURES
 from evenroad.points.measures.measure import Measure as Measure
+from evenroad.points.measures.measure import star_discrepancy as star_discrepancy
 from evenroad.points.measures.separation import riesz_rooted as riesz_rooted
 from evenroad.points.measures.separation import separation as separation
-from evenroad.points.measures.star import star_discrepancy as star_discrepancy

@@ -1,8 +1,8 @@
-"""An upper bound of the dispersion, in any dimension, over any box, by branch and bound.
+"""Certified bounds of the dispersion, in any dimension, over any box, by branch and bound.
 
-A cell of the box, with centre c and half sides h, is within sqrt(sum_k (|c_k - x_k| + h_k)^2) of a point x, that of its
-corner farthest from x; the least of these over all x bounds the distance of every place of the cell from its nearest
-point.  Cells whose bound exceeds the largest distance that any centre has shown, by more than some share, are halved.
+A cell of the box, with centre c and half sides h, is within sqrt(sum_k (|c_k - x_k| + h_k)^2) of a point x, the
+distance of its farthest corner; the least of these over all x is an upper bound for the cell.  Cells whose bound
+exceeds the largest distance of any centre by more than some share are halved.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ ROUNDING = 1e-12
 
 
 class DispersionBounds(NamedTuple):
-    """The dispersion is at least `lower`, the distance of some place from all points, and at most `upper`."""
+    """The dispersion is at least `lower`, the distance of some position from all points, and at most `upper`."""
 
     lower: float
     upper: float
@@ -46,12 +46,12 @@ def dispersion_bounds(
     points : array_like or PointSet, shape (n, d)
         n >= 1.
     sides : array_like, shape (d,), optional
-        The cube is stretched to a box with these sides, > 0 and finite; default: 1.
+        Sides of the box to which the cube is scaled, > 0 and finite; default: 1.
     wrapping : array_like of bools, shape (d,), optional
-        Along which axes the two ends of the box are one place; default: none.
+        Axes that wrap; default: none.
     work : float
-        Coordinates that may be looked at, > 0.  The default takes some seconds at most; up to d = 7 and a thousand
-        points the bounds then agree to five digits in less than one, in d = 10 to about one per cent.
+        Limit on the coordinates examined, > 0.  By default some seconds: for a thousand points the bounds agree to five
+        digits up to d = 7, in d = 10 to about one per cent.
 
     Raises
     ------

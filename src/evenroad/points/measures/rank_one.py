@@ -1,7 +1,6 @@
-"""Figures of a rank-1 lattice for a roadmap: its successive minima, and what k neighbours span.
+"""Figures of a rank-1 lattice for a roadmap: its successive minima, and the span of k neighbours.
 
-Lengths are those of the unit cube, or of the box of which `scale` gives what a unit of each axis counts.  `n`, `vector`
-and `scale`, and what is refused, are those of :func:`~evenroad.points.measures.short_vectors.lattice_basis`.
+`n`, `vector`, `scale` and errors are those of :func:`~evenroad.points.measures.short_vectors.lattice_basis`.
 """
 
 from __future__ import annotations

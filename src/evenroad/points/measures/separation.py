@@ -14,11 +14,7 @@ from evenroad.points.pointset import as_unit_points
 
 
 def separation(points: object, periodic: bool = False) -> float:
-    """Return the smallest Euclidean distance between two of the points; large is spread out.
-
-    `points`, (n, d), have coordinates in [0, 1), n >= 2, else InvalidValue; `periodic` measures on the torus, each
-    coordinate wrapping modulo 1.
-    """
+    """Return the smallest Euclidean distance of two points, (n, d) in [0, 1), n >= 2; `periodic`: on the torus."""
     coordinates = _checked(points, "separation")
     n, d = coordinates.shape
     if np.unique(coordinates, axis=0).shape[0] < n:
@@ -34,9 +30,8 @@ def separation(points: object, periodic: bool = False) -> float:
 def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
     """Return the Riesz s-energy to the power 1/s: as s grows, the spacing n^(-1/d) over the smallest distance.
 
-    The energy is (1/n) sum over i and j != i of (spacing / distance_ij)^s, and so hardly depends on n.  The distance of
-    coincident points counts as 10^-100.  `points` and `periodic` are as for :func:`separation`; the exponent `s`, >= 1,
-    is 2d if not given, which makes close pairs count and far ones not.  Bad arguments are an InvalidValue.
+    The energy is (1/n) sum over i and j != i of (spacing / distance_ij)^s, with distances >= 10^-100.  `points` and
+    `periodic` are as for :func:`separation`; the exponent `s`, >= 1, is 2d by default.
     """
     coordinates = _checked(points, "an energy")
     exponent = 2 * coordinates.shape[1] if s is None else require_count("s", s)
@@ -45,11 +40,10 @@ def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) ->
 
 
 def log_riesz_of_columns(columns: Floats, s: int, periodic: bool, want_gradient: bool) -> tuple[float, Floats]:
-    """Return the log of the Riesz energy and its gradient, shape (d, n), at checked points of shape (d, n).
+    """Return the log of the Riesz energy and its gradient, (d, n), at checked points of shape (d, n).
 
-    Every power is taken relative to the largest of its row, and rows are joined in the log: nothing
-    overflows, whatever d.  The distance of coincident points counts as 10^-100, and they do not push each other:
-    there is no direction.
+    Powers are relative to the largest of a row, and rows are added in the log, so nothing overflows.  Coincident
+    points have the distance 10^-100 and no gradient.
     """
     d, n = columns.shape
     nearest, rows, pushes = riesz_rows(columns, s, periodic, want_gradient)

@@ -40,7 +40,7 @@ def lattice_basis(n: int, vector: Any, scale: Any = None) -> Ints:
     vector : sequence of int
         The generating vector z, (d,), d <= 16; one of its numbers has no common divisor with n.
     scale : sequence of float, optional
-        What a unit of each axis counts, (d,), > 0; default 1.
+        Weight of each axis, (d,), > 0; default 1.
 
     Raises InvalidValue if the arguments are not of that kind.
     """
@@ -52,10 +52,10 @@ def lattice_basis(n: int, vector: Any, scale: Any = None) -> Ints:
 
 
 def short_vectors(n: int, vector: Any, pairs: int = 0, scale: Any = None) -> tuple[Ints, Ints]:
-    """Return the shortest vectors, (m, d) in units of 1/n, and the ranks of their lengths, (m,), one for equal ones.
+    """Return the shortest vectors, (m, d) in units of 1/n, and the ranks of their lengths, (m,), equal for equal ones.
 
-    One of each opposite pair, all up to some length: at least `pairs`, and a basis among them.  `n`, `vector`, `scale`
-    and errors are those of :func:`lattice_basis`; NotAvailable if a ball that holds a basis holds above 10^6 vectors.
+    One of each opposite pair, at least `pairs`, and a basis among them.  `n`, `vector`, `scale` and errors are those of
+    :func:`lattice_basis`; NotAvailable if a ball that contains a basis contains above 10^6 vectors.
     """
     basis = lattice_basis(n, vector, scale)
     weights = np.ones(len(basis)) if scale is None else np.asarray(scale, dtype=np.float64)
@@ -106,7 +106,7 @@ def _generated(n: int, z: list[int]) -> list[list[int]]:
 
 
 class _Orthogonal:
-    """Gram-Schmidt: rows one after the other, their slopes on those before, and the squared lengths of what is left."""
+    """Gram-Schmidt: orthogonal rows, their coefficients and squared lengths."""
 
     def __init__(self, weights: list[float]) -> None:
         self.weights = weights
@@ -130,7 +130,7 @@ class _Orthogonal:
 
 
 def _reduce(basis: list[list[int]], weights: list[float]) -> None:
-    """Reduce the rows in place: whole multiples are taken off, and two rows change places while that shortens one."""
+    """Reduce the rows in place: subtract whole multiples, and swap two rows while that shortens one."""
     known, row = _Orthogonal(weights), 0
     while row < len(basis):
         changed = True

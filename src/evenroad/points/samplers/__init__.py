@@ -1,4 +1,4 @@
-"""Samplers behind one interface, by name: the one list from which all others come."""
+"""Samplers behind one interface, and the list of them by name."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from evenroad.errors import UnknownName
 from evenroad.points.bank import TRAINED_FAMILIES, Trained
 from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import Symmetry
-from evenroad.points.samplers.cover import Cover as Cover
 from evenroad.points.samplers.even import Even as Even
 from evenroad.points.samplers.growing import Growing as Growing
 from evenroad.points.samplers.korobov import Korobov as Korobov
+from evenroad.points.samplers.lattice import Cover as Cover
 from evenroad.points.samplers.lattice import Lattice as Lattice
 from evenroad.points.samplers.plain import Halton as Halton
 from evenroad.points.samplers.plain import Sobol as Sobol
@@ -30,46 +30,42 @@ class Sampler(Protocol):
 
     @property
     def name(self) -> str:
-        """The name under which users ask for it."""
+        """Name of the sampler."""
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return n >= 1 points of [0, 1)^d, d >= 1, with their origin; all that is random comes from `rng`.
+        """Return n >= 1 points of [0, 1)^d, d >= 1, with their origin; a Generator is spawned.
 
-        A passed Generator is spawned.  Raises InvalidValue if n, d or rng is not of that kind, or the sampler does not
-        go up to this n or d; NotAvailable if it has no set of this n and d.
+        Raises InvalidValue for another n, d or rng, or beyond the sampler's limits; NotAvailable if it has no such set.
         """
 
 
 class NamedSampler(Sampler, Protocol):
-    """A sampler of the registry says itself what lists and other verbs need to know of it."""
+    """A sampler of the list, which describes itself."""
 
     @property
     def about(self) -> str:
-        """What its sets are, in one line."""
+        """Description in one line."""
 
     @property
     def any_n(self) -> bool:
-        """Whether it has a set of every n, in every dimension that it takes."""
+        """Whether it has a set of every n."""
 
     @property
     def symmetries(self) -> frozenset[Symmetry]:
-        """Which transformations keep the quality of its sets."""
+        """Transformations that keep the quality of its sets."""
 
 
 SAMPLERS: dict[str, Callable[..., NamedSampler]] = {
     each.name: each for each in (Even, Growing, Korobov, Lattice, Cover, Halton, Sobol, Sukharev, Uniform)
 } | {family: partial(Trained, family) for family in TRAINED_FAMILIES}
-"""Name -> how to make the sampler from its options; without any it says what it is, and what keeps its sets even."""
+"""Name -> constructor of a sampler from its options."""
 
 ALIASES = {"random": "uniform"}
-"""Other names that people know samplers by."""
+"""Other names of samplers."""
 
 
 def make_sampler(name: str, **options: Any) -> NamedSampler:
-    """Return the sampler of this name, one of :data:`SAMPLERS`, with its own parameters as options.
-
-    Raises UnknownName, which lists what there is, if there is no sampler of this name, or it does not take an option.
-    """
+    """Return the sampler of this name, one of :data:`SAMPLERS`, with its options; UnknownName for an unknown one."""
     known = ALIASES.get(name, name) if isinstance(name, str) else None
     if known not in SAMPLERS:
         raise UnknownName.among("sampler", name, SAMPLERS)
@@ -92,7 +88,7 @@ def draw(name: str, n: int, d: int, *, rng: RngLike = 0, **options: Any) -> Poin
     rng : int, SeedSequence or Generator
         Equal numbers give equal points; a Generator is spawned.
     **options
-        The sampler's own, as ``scramble=False`` of ``sobol``.
+        Options of the sampler, such as ``scramble=False`` of ``sobol``.
 
     Returns
     -------
@@ -101,9 +97,9 @@ def draw(name: str, n: int, d: int, *, rng: RngLike = 0, **options: Any) -> Poin
     Raises
     ------
     UnknownName
-        If there is no such sampler, or it does not take an option.
+        For an unknown sampler or option.
     InvalidValue
-        If `n`, `d` or `rng` is none.
+        If `n`, `d` or `rng` is of another kind.
     NotAvailable
         If the sampler has no set of this size.
 

@@ -1,4 +1,4 @@
-"""A lattice that grows: a sequence whose every beginning is well spread, for any n and d, with nothing stored.
+"""An extensible lattice: a sequence whose every beginning is well spread, for any n and d.
 
 Point i is phi(i) z modulo 1, shifted, with phi van der Corput's radical inverse in base 2 and z whole numbers
 (Hickernell, Hong, L'Ecuyer and Lemieux 2000): the first 2^m points are a rank-1 lattice for every m, and each further
@@ -114,7 +114,7 @@ def _searched(d: int, digits: int) -> Ints:
 
 
 def _best(found: Ints, scores: Floats, digit: int, tried: int, kept: int) -> tuple[Ints, Floats]:
-    """Return the best ways, (m, d), to go on with vectors of one digit less, best first, and their scores, (m,)."""
+    """Return the best continuations, (m, d), of vectors of one digit less, best first, and their scores, (m,)."""
     d = found.shape[1]
     if 2 ** (d - 1) <= tried:
         bits = np.arange(2 ** (d - 1))[:, np.newaxis] >> np.arange(d - 1) & 1
@@ -157,9 +157,8 @@ def _scores(vectors: Ints, digit: int) -> Floats:
 
 @lru_cache(maxsize=2)
 def _differences(digit: int) -> tuple[Floats, Floats]:
-    """Return how often each difference 1 .. 2^(digit-1) occurs, a point, in each beginning, (parts, .), and its length.
-
-    Differences are those of phi, in units of 2^-digit and up to their sign.
+    """Return how often each difference of phi, 1 .. 2^(digit-1) in units of 2^-digit, occurs per point in each
+    beginning, (parts, .), and the lengths of the beginnings.
     """
     size = 2**digit
     positions = reversed_digits(0, size) >> DIGITS - digit

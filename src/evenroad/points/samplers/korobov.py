@@ -1,7 +1,7 @@
-"""The Korobov lattice with the smallest periodic Riesz energy, for any n and d: nothing trained, nothing stored.
+"""The Korobov lattice with the smallest periodic Riesz energy, for any n and d.
 
-A rank-1 lattice looks the same from each of its points, so its energy is a sum over the n - 1 others: O(n d) where
-a general set needs O(n^2 d).  That makes a search over all multipliers a matter of milliseconds.
+A rank-1 lattice looks the same from each of its points, so its energy is a sum over n - 1 points, in O(n d).  A search
+over all multipliers takes milliseconds.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
+from evenroad.points.measures.rank_one import minima_ratio
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import ALL_SYMMETRIES
 
@@ -70,7 +71,7 @@ class Korobov:
         return PointSet(points, Origin(family=self.name, method=method, objective="riesz", seed=seed_of(rng)))
 
     def _vector(self, n: int, d: int) -> tuple[Sequence[int], str]:
-        """Return the generating vector, and how it is told."""
+        """Return the generating vector, and its text in the origin."""
         multiplier = korobov_generator(n, d)
         return [pow(multiplier, axis, n) for axis in range(d)], f"a={multiplier}"
 
@@ -127,11 +128,10 @@ def _multipliers(n: int) -> Iterator[int]:
 
 
 def _least_energy(candidates: Ints, n: int, d: int) -> int:
-    """Return the smallest of the candidates whose energy is the least.
+    """Return the smallest of the candidates of least energy.
 
-    A race: all partial sums grow together, point by point, and a candidate is out as soon as its sum exceeds the
-    whole energy of one that looks good.  The first coordinate of point j is j / n, so the short distances, which
-    decide, come early.
+    All partial sums grow together, and a candidate is dropped when its sum exceeds the whole energy of a promising
+    one.  The first coordinate of point j is j / n, so the decisive short distances come early.
     """
     vectors, half = _powers(candidates, n, d), n // 2
     log_sums = np.full(len(candidates), -np.inf)
@@ -183,3 +183,62 @@ def _integer_power(base: Floats, exponent: int) -> Floats:
         base = base * base
         exponent //= 2
     return result
+
+
+POOR = 1.5
+"""Ratio of the last successive minimum to the first above which a Korobov lattice is not good enough."""
+
+STARTS, SWEEPS = 4, 20
+"""Number of descents, the first from the Korobov lattice, and the most sweeps over all axes in each."""
+
+
+@lru_cache(maxsize=1024)
+def rank_one_vector(n: int, d: int) -> tuple[int, ...]:
+    """Return the generating vector of the best Korobov lattice or, where that is poor, one of a smaller energy.
+
+    Descents of the periodic Riesz energy, s = 2d, in which axis after axis tries all numbers without common divisor
+    with n, or as many as the search for a multiplier may.  n is 1 .. 2**26 and d 1 .. 16, else InvalidValue.
+    """
+    multiplier = korobov_generator(n, d)
+    powers = tuple(pow(multiplier, i, n) for i in range(d))
+    # In the plane every vector that begins with 1 is one of powers.
+    return powers if d <= 2 or minima_ratio(n, powers) <= POOR else _descended(n, powers)
+
+
+def _descended(n: int, powers: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the vector of least energy of all descents."""
+    d, random = len(powers), np.random.default_rng([n, len(powers)])
+    half, most = n // 2, max(FEWEST_TRIED, WORK // (8 * n * d))
+    units = np.array([i for i in range(1, half + 1) if gcd(i, n) == 1])
+    tried = units if len(units) <= most else np.sort(random.choice(units, most, replace=False))
+    steps = np.arange(1, half + 1)
+    of_tried = _squared(tried[:, np.newaxis] * steps, n)
+    best, least = powers, np.inf
+    for start in range(STARTS):
+        z = np.array([1, *random.choice(units, d - 1)] if start else powers)
+        for _ in range(SWEEPS):
+            before, energy = z.copy(), np.inf
+            for axis in range(1, d):
+                others = sum(_squared(steps * z[i], n) for i in range(d) if i != axis)
+                energies = _logs_of_energies(others + of_tried, d)
+                energy = _logs_of_energies((others + _squared(steps * z[axis], n))[np.newaxis], d)[0]
+                if energies.min() < energy - TIE:
+                    z[axis] = tried[energies <= energies.min() + TIE][0]
+                    energy = energies.min()
+            if (z == before).all():
+                break
+        if energy < least - TIE:
+            best, least = tuple(z.tolist()), energy
+    return best
+
+
+def _squared(multiples: Ints, n: int) -> Floats:
+    """Return the squared distances from the nearest multiple of n."""
+    rest = multiples % n
+    return np.minimum(rest, n - rest).astype(np.float64) ** 2
+
+
+def _logs_of_energies(squared: Floats, d: int) -> Floats:
+    """Return the logs of the sums of squared distance^(-d) over the rows."""
+    shortest = squared.min(axis=1, keepdims=True)
+    return np.asarray(np.log(((shortest / squared) ** d).sum(axis=1)) - d * np.log(shortest[:, 0]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
+from evenroad.points.measures.covering import dispersion_bounds
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import Symmetry
 
@@ -28,8 +30,7 @@ class Lattice:
     name = "lattice"
     about = "A_d*, randomly rotated and shifted"
     any_n = True
-    # The cube's own give an equally likely set.  A shift would join two sides of the cut, where the lattice does not
-    # fit together.
+    # Those of the cube give an equally likely set; a shift would join two faces, where the lattice does not match.
     symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
@@ -41,7 +42,7 @@ class Lattice:
 
 
 def around_cube(n: int, d: int, random: np.random.Generator) -> tuple[Floats, float]:
-    """Return the n points of A_d*, one a unit of volume, in a cube around a random centre, (n, d), and its half side.
+    """Return n points of A_d*, one per unit of volume, in a cube around a random centre, (n, d), and its half side.
 
     Raises InvalidValue if d > 12.
     """
@@ -51,7 +52,7 @@ def around_cube(n: int, d: int, random: np.random.Generator) -> tuple[Floats, fl
     basis = _unit_density_basis(d)
     half = 0.5 * (n + 1) ** (1 / d)
     while True:
-        # A small margin: what the loop tries does not change the points, only how many it looks at.
+        # A small margin: it only changes how many candidates there are.
         half *= 1.03
         offsets = _points_in_ball(basis, shift, radius=half * np.sqrt(d)) @ rotation
         reach = np.abs(offsets).max(axis=1)
@@ -91,3 +92,51 @@ def _points_in_ball(basis: Floats, shift: Floats, radius: float) -> Floats:
         z = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + lowest[parent]
         partial = partial[parent] + (z + shift[k])[:, None] * basis[k]
     return partial
+
+
+MARGINS = (0.0, 0.2, 0.35, 0.5, 0.6, 0.7, 0.85, 1.0)
+"""Margins beyond the cube, on each side, within which the lattice is cut out: shares of its covering radius."""
+
+WORK = 2e8
+"""Limit on the coordinates examined to measure one margin: a fifth of a second at most."""
+
+
+@dataclass(frozen=True)
+class Cover:
+    """A_d* over the cube and a margin, with points outside projected to the cube.
+
+    A lattice cut out at the faces has its largest holes at corners, twice as wide as inside.  The projection makes no
+    distance to a position of the cube longer, since the cube is convex.  A margin of the covering radius keeps that of
+    the lattice: sqrt(d (d + 2) / (12 (d + 1))) (d + 1)^(1 / (2 d)) for one point per unit of volume (Conway and Sloane
+    1999, chapter 4.6.6).  In d >= 4 that costs too many points, so the margin with the smallest certified dispersion is
+    taken.
+    """
+
+    name = "cover"
+    about = "A_d* with the smallest dispersion, faces included"
+    any_n = True
+    # As for the lattice; a shift would also move points off the faces.
+    symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return n points, shape (n, d), d <= 12; see :class:`~evenroad.points.Sampler`."""
+        n, d = require_count("n", n), require_count("d", d)
+        offsets, half = around_cube(n, d, generator(rng))
+        covering = covering_radius(d)
+        best: tuple[float, float, Floats] | None = None
+        for margin in MARGINS:
+            inner = half - margin * covering
+            if inner <= 0.0:
+                break
+            points = np.clip(0.5 + 0.5 * offsets / inner, 0.0, np.nextafter(1.0, 0.0))
+            dispersion = dispersion_bounds(points, work=WORK).upper
+            if best is None or dispersion < best[0]:
+                best = dispersion, margin, points
+        assert best is not None
+        method = f"A_d* turned and shifted, margin {best[1]:g}"
+        return PointSet(best[2], Origin(family=self.name, method=method, seed=seed_of(rng)))
+
+
+def covering_radius(d: int) -> float:
+    """Return the covering radius of A_d* with one point per unit of volume."""
+    return sqrt(d * (d + 2) / (12 * (d + 1))) * (d + 1) ** (0.5 / d)

@@ -78,7 +78,7 @@ class _Sequence:
     start: int = 0
     name = ""
     any_n = True
-    # Known for their star discrepancy, which sees only the corner at the origin.
+    # Known for their star discrepancy, which depends on the corner at the origin.
     symmetries = frozenset({Symmetry.PERMUTATION})
 
     def __post_init__(self) -> None:
@@ -102,7 +102,7 @@ class Halton(_Sequence):
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`~evenroad.points.Sampler`."""
-        # Here, because it takes half a second to import: only those who ask for a sequence pay for it.
+        # Imported late: it takes half a second.
         from scipy.stats import qmc
 
         n, d = require_count("n", n), require_count("d", d)
@@ -138,5 +138,5 @@ class Sobol(_Sequence):
         if self.start:
             engine.fast_forward(self.start)
             return self._set(engine.random(n), rng)
-        # From index 0 SciPy warns unless n is a power of two; users of a roadmap choose n freely.
+        # From index 0 SciPy warns unless n is a power of two.
         return self._set(engine.random_base2((n - 1).bit_length())[:n], rng)

@@ -14,8 +14,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints32
 from evenroad._native import roadmap as native
 from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates, States
-from evenroad.roadmap.search.graph import graph_of
-from evenroad.roadmap.search.shortest import NOT_FOUND, FixedPoint, Found, SearchProblem, Terminals, best_path
+from evenroad.roadmap.search.shortest import NOT_FOUND, FixedPoint, Found, SearchProblem, Terminals, best_path, graph_of
 from evenroad.world import ValidatesPaths, World
 
 Finder: TypeAlias = Callable[[Any, EdgeStates], Found]

@@ -5,8 +5,10 @@ With the checks that a file from anywhere needs.
 
 from __future__ import annotations
 
+import json
 import os
 import warnings
+from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import IO, Any, NamedTuple
@@ -22,7 +24,7 @@ from evenroad._files import looks_like, not_a
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.world.gridmap.frame import MapFrame
-from evenroad.world.gridmap.gridmap import GridMap
+from evenroad.world.gridmap.gridmap import DiskWorld, GridMap
 
 MAPS = Path(__file__).parent / "maps"
 SHIPPED = ("maze1.png", "maze2.png", "maze3.png", "office.yaml")
@@ -291,3 +293,33 @@ def _reason(error: Exception) -> str:
     """Return the decoder's own words in brackets, on one line, unless they only repeat the file's name."""
     text = " ".join(str(error).split())
     return f" ({text})" if text and "cannot identify" not in text else ""
+
+
+LEVELS = (1, 2, 3)
+
+
+@dataclass(frozen=True)
+class Maze:
+    """A maze and its query, in pixels: x right, y down, origin in the top-left corner."""
+
+    level: int
+    path: Path
+    start: tuple[float, float]
+    goal: tuple[float, float]
+    robot_radius: float
+
+    def map(self) -> GridMap:
+        """Read the maze's picture."""
+        return load_map(self.path)
+
+    def world(self) -> DiskWorld:
+        """Return the world of the maze's own robot."""
+        return self.map().world(self.robot_radius)
+
+
+def load_maze(level: int) -> Maze:
+    """Return the maze of level 1, 2 or 3, harder and harder for uniform points; else an UnknownName."""
+    require_known("maze level", level, LEVELS)
+    record = json.loads((MAPS / "mazes.json").read_text(encoding="utf-8"))[str(level)]
+    start, goal = tuple(record["start"]), tuple(record["goal"])
+    return Maze(level, MAPS / record["image"], start, goal, record["robot_radius"])

@@ -11,7 +11,7 @@ from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.load import load_robot
 from evenroad.robot.robot import in_scene, with_group
 from evenroad.robot.scene_file import load_scene
-from evenroad.world.gridmap.shipped import LEVELS, load_maze
+from evenroad.world.gridmap.load import LEVELS, load_maze
 from evenroad_studies.bench.task import Problem, ProblemSource
 from evenroad_studies.worlds.chain import ChainWorld
 from evenroad_studies.worlds.corridor import Corridor
