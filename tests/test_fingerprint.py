@@ -71,6 +71,8 @@ def test_a_function_has_a_fingerprint_by_the_name_that_its_user_gives():
         FunctionWorld(space, _free, 0.2, name="cell 7"),
         FunctionWorld(SE2((0, 0), (1, 2)), _free, 0.1, name="cell 7"),
     ]
+    singly = FunctionWorld(space, lambda q: True, 0.1, vectorised=False, name="cell 7")
+    assert singly.fingerprint() == one.fingerprint()
     assert len({world.fingerprint() for world in (one, *others)}) == 4
     refused(NotAvailable, "only with a name", lambda: FunctionWorld(space, _free, 0.1).fingerprint())
 

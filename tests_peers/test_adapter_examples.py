@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 import pytest
-from tools import run_examples, run_pages
+from tools import run_examples
 
 EXAMPLES = {path.name: path for path in run_examples.EXAMPLES}
 
@@ -18,12 +18,3 @@ def test_an_example_prints_what_its_page_shows_and_leaves_nothing(tmp_path, name
     assert ": no path" not in done.stdout
     assert "proof: resolution" in done.stdout
     assert list(tmp_path.iterdir()) == []
-
-
-def test_the_page_runs(tmp_path, monkeypatch):
-    """Without these wheels ``tests/test_pages.py`` leaves it out."""
-    for module in run_pages.NEEDS["adapters.md"]:
-        pytest.importorskip(module)
-    monkeypatch.chdir(tmp_path)
-    ran = [text for block, text in run_pages.run_page(run_pages.ROOT / "docs" / "adapters.md")]
-    assert sum("import" in text for text in ran) == 3

@@ -58,16 +58,13 @@ def test_every_format_gives_the_points(tmp_path, name):
 
 
 @pytest.mark.parametrize("columns", [3, 6])
-def test_arrays_may_have_more_columns(tmp_path, columns):
+def test_arrays_may_have_more_columns_or_fields(tmp_path, columns):
     np.save(tmp_path / "scan.npy", np.pad(POINTS, ((0, 0), (0, columns - 3))).astype(np.float32))
     np.testing.assert_array_equal(load_cloud(tmp_path / "scan.npy"), POINTS)
-
-
-def test_arrays_may_have_fields(tmp_path):
     table = np.zeros(3, [("z", "f8"), ("x", "f4"), ("y", "f4")])
     table["x"], table["y"], table["z"] = POINTS.T
-    np.save(tmp_path / "scan.npy", table)
-    np.testing.assert_array_equal(load_cloud(tmp_path / "scan.npy"), POINTS)
+    np.save(tmp_path / "fields.npy", table)
+    np.testing.assert_array_equal(load_cloud(tmp_path / "fields.npy"), POINTS)
 
 
 @pytest.mark.parametrize(("name", "content", "says"), [
@@ -109,16 +106,10 @@ def test_a_broken_file_is_refused_in_one_line(tmp_path, name, content, says):
     assert "\n" not in str(caught.value)
 
 
-def test_a_missing_file_and_an_unknown_format_are_refused(tmp_path):
+def test_what_is_missing_or_of_another_kind_is_refused_and_no_pickle_opened(tmp_path):
     refused(BrokenFile, r"no such file: .*scan\.ply", load_cloud, tmp_path / "scan.ply")
     refused(UnknownName, r"'\.las'; known: \.npy, \.pcd, \.ply, \.xyz", load_cloud, tmp_path / "scan.las")
-
-
-def test_complex_numbers_are_no_points(tmp_path):
     np.save(tmp_path / "scan.npy", POINTS.astype(complex))
     refused(BrokenFile, "complex", load_cloud, tmp_path / "scan.npy")
-
-
-def test_no_pickle_is_opened(tmp_path):
     np.save(tmp_path / "scan.npy", np.array([{}], dtype=object), allow_pickle=True)
     refused(BrokenFile, "not a readable cloud", load_cloud, tmp_path / "scan.npy")

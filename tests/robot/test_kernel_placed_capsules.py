@@ -38,11 +38,8 @@ def test_one_sphere_fewer_would_not_do(half_length):
     assert gaps * math.sqrt(most**2 - radius**2) + (most - radius) < half_length
 
 
-def test_a_ball_is_covered_by_itself():
+def test_a_ball_is_covered_by_itself_and_what_is_nearly_one_by_one_sphere():
     cover = cover_capsule(0.0, 0.04)
     assert cover.positions == (0.0,)
     assert cover.radius == 0.04
-
-
-def test_a_capsule_that_is_nearly_a_ball_needs_one_sphere():
     assert len(cover_capsule(0.001, 0.04).positions) == 1

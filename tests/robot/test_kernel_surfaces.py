@@ -1,7 +1,5 @@
 """Clouds and meshes in the kernel against every point and triangle in double precision, and against solid angles."""
 
-import copy
-import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -217,13 +215,6 @@ def test_what_does_not_move_is_looked_at_once(robot, body):
     assert "'base' touches 'wall'" in world.explain(np.zeros(6))
     allowed = ArmWorld(robot, replace(scene, allowed=frozenset({("base", "wall")})))
     assert allowed.fixed_contact is None
-
-
-def test_copies_of_a_world_find_its_clouds_again():
-    world = ArmWorld(UR5, cloud_scene(15, 300))
-    q = world.space.from_cube(np.random.default_rng(6).random((500, 6)))
-    for sent in (pickle.loads(pickle.dumps(world)), copy.deepcopy(world)):
-        np.testing.assert_array_equal(sent.valid(q), world.valid(q))
 
 
 NAMED_APART = BALLS[0].vertices[BALLS[0].triangles].reshape(-1, 3), np.arange(240).reshape(-1, 3)

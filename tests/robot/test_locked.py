@@ -16,7 +16,7 @@ from evenroad.robot.locked import BEYOND, SLACK, Bodies, first_links, piece_of, 
 from evenroad.robot.scene import Obstacle
 from evenroad.robot.separated import apart
 from tests.plan_on import may_connect
-from tests.robot.kernel_arms import STRAIGHT, Z, random_scene, random_tree
+from tests.robot.kernel_arms import STRAIGHT, Z, edge, random_scene, random_tree
 
 
 def flat_arm(kind="revolute", joints=2, limit=3.0):
@@ -172,14 +172,7 @@ def test_no_cell_is_blocked_that_holds_a_free_place_next_to_contact(seed):
     posts_at = [(rng.uniform(-0.5, 0.5), 0.3) if kinds == "prismatic" else at(rng.uniform(-3, 3), 0.5)]
     world = ArmWorld(robot, posts(*posts_at))
     q = world.space.from_cube(rng.random((4_000, 1)))
-    ends = q[world.valid(q)], q[~world.valid(q)]
-    count = min(map(len, ends), default=0)
-    free, blocked = ends[0][:count], ends[1][:count]
-    for _ in range(40):
-        middle = 0.5 * (free + blocked)
-        valid = world.valid(middle)[:, np.newaxis]
-        free, blocked = np.where(valid, middle, free), np.where(valid, blocked, middle)
-    assert len(free) > 30
+    free, _ = edge(world, q, most=4_000, least=30)
     for most in (23, 40, 61, 90, 150):
         for start in free[:: len(free) // 30]:
             piece = piece_of(bodies(world), start, (np.inf,), most)

@@ -58,24 +58,6 @@ def test_random_configurations_lie_within_the_limits_and_are_those_of_their_seed
     assert np.abs(drawn.mean(axis=0) - ARM.limits.mean(axis=1)).max() < np.ptp(ARM.limits, axis=1).max() / 10
 
 
-@pytest.mark.parametrize(("call", "words"), [
-    (lambda: ARM.fk(np.zeros((3, 6)), "tool0"), "of 3 rows give one"),
-    (lambda: ARM.fk([0, 1], "tool0"), "q must be 6 finite numbers"),
-    (lambda: ARM.fk("hom", "tool0"), "unknown state 'hom'"),
-    (lambda: ARM.fk({"elbow": 1.0}, "tool0"), "elbow_joint"),
-    (lambda: ARM.fk({"elbow_joint": "bent"}, "tool0"), "elbow_joint"),
-    (lambda: ARM.fk("home", "tool"), "tool0"),
-    (lambda: ARM.ik("home"), "pose must be a Pose"),
-    (lambda: ARM.ik((0.4, 0.2, 0.3)), "er.Pose((x, y, z)"),
-    (lambda: ARM.random("0"), "rng must be"),
-    (lambda: ARM.random(0, 2.5), "n must be"),
-])  # fmt: skip
-def test_an_error_says_what_to_write_instead(call, words):
-    with pytest.raises(er.errors.EvenroadError) as error:
-        call()
-    assert words in str(error.value)
-
-
 def test_a_robot_shows_itself_in_one_line():
     assert repr(ARM) == "Robot('ur5', 6 joints, 8 links)"
 

@@ -286,34 +286,6 @@ def test_two_scenes_share_nothing_that_can_change():
     assert second.states == {}
 
 
-@pytest.mark.parametrize(("call", "words"), [
-    (lambda: Scene("table.yaml"), "is read from its file by load_scene"),
-    (lambda: Scene([TABLE], obstacle=1), "states; did you mean 'obstacles'"),
-    (lambda: Scene([TABLE], obstacles=[TABLE]), "Scene is called as Scene(obstacles, *, name, allowed"),
-    (lambda: Scene("cell", [TABLE]), "Scene is called as Scene(obstacles, *, name, allowed"),
-    (lambda: Scene(["table"]), "er.Box((x, y, z), xyz=...)"),
-    (lambda: Scene([np.zeros(3)]), "er.Box((x, y, z), xyz=...)"),
-    (lambda: Scene("table", name="cell"), "must be a list of shapes"),
-    (lambda: Scene(7), "must be a list of shapes"),
-    (lambda: Scene([TABLE], name=3), "must be a text"),
-    (lambda: Scene([TABLE, TABLE]), "names of their own"),
-    (lambda: Scene({"obstacle": {}}), "obstacles"),
-    (lambda: Scene({"obstacles": {"can": {"shape": "tin"}}}), "obstacle 'can' in scene"),
-    (lambda: Scene({"obstacles": MAPPING}, limits={"a": (0, 1)}), "put limits into it"),
-    (lambda: Box((1, 1, 1), position=(0, 0, 0)), "known: link, name, pose, rpy, xyz, xyzw"),
-    (lambda: Box((1, 1, 1), xyz=(0, 0, 0), pose=Pose()), "got both"),
-    (lambda: Box((1, 1, 1), pose=(0, 0, 0)), "must be a Pose"),
-    (lambda: Box((1, 1)), "size of a box"),
-    (lambda: Capsule(0.1), "Capsule(radius, length)"),
-    (lambda: Capsule(0.1, 0.2, 0.3, 0.4), "each once"),
-    (lambda: Mesh(7), "vertices (v, 3)"),
-])  # fmt: skip
-def test_a_scene_that_is_none_is_told_what_to_write(call, words):
-    with pytest.raises(EvenroadError) as error:
-        call()
-    assert words in str(error.value)
-
-
 def test_capsules_and_meshes_are_made_of_what_people_have():
     assert Capsule(0.1, 0.4) == Capsule(radius=0.1, length=0.4) == Capsule((0, 0, -0.2), (0, 0, 0.2), 0.1)
     vertices, triangles = np.eye(3), [[0, 1, 2]]

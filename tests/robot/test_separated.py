@@ -11,7 +11,7 @@ from evenroad.robot import ArmWorld, CartesianLine, HeldObject, Obstacle, PoseGo
 from evenroad.robot.chain import chain_of, default_tip
 from evenroad.robot.inverse_kinematics import task_of
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.locked import Bodies, Cells, Piece
+from evenroad.robot.locked import Cells, Piece
 from evenroad.robot.separated import apart, is_beyond
 from tests.plan_on import may_connect
 from tests.robot.kernel_arms import random_tree
@@ -45,10 +45,6 @@ def barred(arm7):
         for k, (away, along) in enumerate([(side, other), (-side, other), (other, side), (-other, side)])
     ]
     return ArmWorld(arm7, Scene(tuple(bars), name="bars"))
-
-
-def bodies(world):
-    return Bodies(world.robot, world.with_bodies, world.margin)
 
 
 def place_of(robot, q):

@@ -1,13 +1,17 @@
 """Shortened paths of arms: not longer, about as short as the batch shortcut's, and free at every state."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.planning.arm_trees import connect, shorten
+from evenroad.planning.arm_trees import connect, shorten, smooth
 from evenroad.roadmap.shortcut import shortcut
 from tests.robot.oracle import clearance
 from tests.robot.paths import GOAL, START, box_world, dense_states, length, proved
+
+TIGHTENED = partial(smooth, batches=400)
 
 
 def test_shortened_paths_are_free_proved_not_longer_and_keep_their_ends(paths):
@@ -38,7 +42,8 @@ def test_a_path_to_and_fro_becomes_as_short_as_it_is_one_way():
     assert length(world, shorter) <= length(world, path) * (1 + 1e-12)
     assert clearance(world.robot, world.scene, dense_states(world, shorter)).min() > 0.0
     for straight in (np.stack([START, START + 0.1]), np.stack([START, START])):
-        np.testing.assert_array_equal(shorten(world, straight)[0], straight)
+        for shortened in (shorten(world, straight), TIGHTENED(world, straight)):
+            np.testing.assert_array_equal(shortened[0], straight)
 
 
 def test_a_path_of_hundreds_of_waypoints_is_no_trouble():
@@ -53,7 +58,11 @@ def test_a_path_of_hundreds_of_waypoints_is_no_trouble():
     assert clearance(world.robot, world.scene, dense_states(world, shorter)).min() > 0.0
 
 
-@pytest.mark.parametrize("path", [[START], np.empty((0, 5)), START, np.full((2, 5), np.nan)])
-def test_what_is_no_path_is_refused(path):
+@pytest.mark.parametrize("shortened", [shorten, TIGHTENED])
+@pytest.mark.parametrize("path", [
+    [START], np.empty((0, 5)), START, np.full((3, 5), np.nan), np.stack([START, START + np.inf, START]),
+    np.zeros((3, 4)), np.zeros((3, 6)), [START, START + np.nan], [START, GOAL, ["x"] * 5],
+])  # fmt: skip
+def test_what_is_no_path_is_refused(path, shortened):
     with pytest.raises(InvalidValue):
-        shorten(box_world(), path)
+        shortened(box_world(), path)

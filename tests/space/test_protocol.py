@@ -32,15 +32,10 @@ def test_all_pairs_have_the_distances_of_pair_after_pair(space):
 
 
 @pytest.mark.parametrize("space", SPACES.values(), ids=SPACES)
-def test_no_rows_have_no_distances(space):
+def test_no_rows_have_no_distances_and_a_wrong_batch_is_refused(space):
     q = space.from_cube(np.random.default_rng(0).random((3, space.cube_dim)))
     assert all_distances(space, q[:0], q).shape == (0, 3)
     assert all_distances(space, q, q[:0]).shape == (3, 0)
-
-
-@pytest.mark.parametrize("space", SPACES.values(), ids=SPACES)
-def test_a_wrong_batch_is_refused(space):
-    q = space.from_cube(np.random.default_rng(0).random((3, space.cube_dim)))
     wrong = q.copy()
     wrong[1, 0] = np.nan
     refused(InvalidValue, "", all_distances, space, q, wrong)

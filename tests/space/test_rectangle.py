@@ -25,9 +25,10 @@ def test_only_the_rectangle_is_contained():
     assert inside.tolist() == [True, True, True, True, False, False, False]
 
 
-def test_the_corners_of_the_square_go_to_the_corners_of_the_rectangle():
+def test_corners_go_to_corners_and_distance_is_not_measured_along_the_edges():
     corners = TURNED.from_cube([[0, 0], [1, 0], [0, 1], [1, 1]])
     np.testing.assert_allclose(corners, [[-3, 2], [1, 5], [-4.2, 3.6], [-0.2, 6.6]], atol=1e-14)
+    np.testing.assert_allclose(TURNED.distance([[0.0, 0.0]], [[3.0, -4.0]]), [5.0])
 
 
 def test_equal_areas_of_the_square_go_to_equal_areas():
@@ -38,10 +39,6 @@ def test_equal_areas_of_the_square_go_to_equal_areas():
     areas = along_u[:, 0] * along_v[:, 1] - along_u[:, 1] * along_v[:, 0]
     np.testing.assert_allclose(areas, h * h * TURNED.area, rtol=1e-9)
     assert math.isclose(TURNED.area, 5.0 * 2.0)
-
-
-def test_distance_is_euclidean_and_not_measured_along_the_edges():
-    np.testing.assert_allclose(TURNED.distance([[0.0, 0.0]], [[3.0, -4.0]]), [5.0])
 
 
 def test_interpolation_hits_both_ends_to_the_last_bit():

@@ -102,16 +102,13 @@ def test_the_callback_sees_every_step_and_may_stop():
     refused(KeyboardInterrupt, "", anneal, 5, 2, steps=4, callback=stop)
 
 
-def test_the_rate_falls_along_a_half_cosine():
+def test_the_rate_falls_along_a_half_cosine_and_is_never_long_beside_the_spacing():
     rates = [learning_rate(step, 101, 0.02) for step in range(1, 102)]
     assert rates[0] == 0.02
     assert rates[50] == pytest.approx(0.010005)
     assert rates[100] == pytest.approx(1e-5)
     assert rates == sorted(rates, reverse=True)
     assert learning_rate(1, 1, 0.02) == 0.02
-
-
-def test_a_step_is_never_long_beside_the_spacing():
     assert first_rate(128, 10) == 0.02
     assert first_rate(1024, 2) == pytest.approx(1 / 32 / 5)
 

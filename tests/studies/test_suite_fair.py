@@ -23,15 +23,12 @@ def test_every_task_is_there_once():
     assert len({task.key for task in tasks}) == len(tasks)
 
 
-def test_three_runs_share_a_world_and_every_sampler_meets_the_same_ones():
+def test_three_runs_share_a_world_in_which_all_samplers_meet_and_the_one_grid_has_one_run():
     tasks = fair_suite(7, only=["fair-balls-5d-50"]).tasks
     assert all(task.instance == task.run // 3 for task in tasks)
     for sampler in ("uniform", "even", "lattice"):
         runs = {task.run for task in tasks if task.sampler == sampler}
         assert runs == set(range(7))
-
-
-def test_the_one_grid_has_one_run_a_world():
     tasks = fair_suite(7, only=["fair-balls-2d-50"]).tasks
     assert {task.run for task in tasks if task.sampler == "sukharev"} == {0, 3, 6}
 

@@ -40,13 +40,10 @@ def test_every_task_names_things_that_exist():
         search_named(task.search)
 
 
-def test_keys_are_different_and_fewer_runs_are_part_of_more():
+def test_keys_are_different_and_fewer_runs_and_the_quick_suite_are_part_of_more():
     keys = [task.key for task in paper_suite(runs=3).tasks]
     assert len(set(keys)) == len(keys)
     assert {task.key for task in paper_suite(runs=2).tasks} < set(keys)
-
-
-def test_the_quick_suite_is_small_and_part_of_the_whole_one():
     quick, whole = paper_suite(quick=True), paper_suite(runs=40)
     assert {task.key for task in quick.tasks} < {task.key for task in whole.tasks}
     assert max(task.n for task in quick.tasks) <= 256

@@ -166,17 +166,12 @@ def test_the_start_is_that_of_the_trajectory_not_its_goal(there):
     assert arm.places == []
 
 
-@pytest.mark.parametrize("safety", [0, *range(3, 14)])
-def test_nothing_moves_in_any_other_mode_of_safety(there, safety):
-    arm = there(safety=safety)
-    refused(InvalidValue, f"not ready to move: robot mode 7, safety mode {safety}", sent)
-    assert (arm.places, "control" in arm.calls) == ([], False)
-
-
-@pytest.mark.parametrize("mode", [-1, *range(7), 8])
-def test_nothing_moves_unless_the_robot_runs(there, mode):
-    arm = there(mode=mode)
-    refused(InvalidValue, f"not ready to move: robot mode {mode}", sent)
+@pytest.mark.parametrize(("mode", "safety"), [
+    *((RUNNING, safety) for safety in (0, *range(3, 14))), *((mode, NORMAL) for mode in (-1, *range(7), 8)),
+])  # fmt: skip
+def test_nothing_moves_in_any_other_mode_of_the_robot_or_of_its_safety(there, mode, safety):
+    arm = there(mode=mode, safety=safety)
+    refused(InvalidValue, f"not ready to move: robot mode {mode}, safety mode {safety}", sent)
     assert (arm.places, "control" in arm.calls) == ([], False)
 
 

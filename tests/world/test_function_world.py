@@ -1,7 +1,6 @@
 """FunctionWorld: the states it asks for, their order, how many calls, and answers that are none."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -225,29 +224,6 @@ def test_what_is_no_space_no_function_or_no_resolution_is_refused(space, functio
 def test_a_resolution_far_too_small_is_an_error_and_no_endless_wait():
     world = FunctionWorld(SQUARE, outside_a_disk, 1e-12)
     refused(InvalidValue, "resolution must be larger", world.motion_valid, [[0.0, 0.0]], [[0.0, 1.0]])
-
-
-def _ball(radius):
-    def outside_ball(q):
-        return np.hypot(q[:, 0] - 0.5, q[:, 1] - 0.5) > radius
-
-    return FunctionWorld(BoxSpace((0, 0), (1, 1)), outside_ball, 0.01, name=f"ball of {radius}")
-
-
-def test_equal_worlds_have_one_fingerprint_and_others_another():
-    first = _ball(0.2)
-    assert first.fingerprint() == _ball(0.2).fingerprint()
-    others = [
-        _ball(0.21),
-        replace(first, resolution=0.02),
-        replace(first, name="another cell"),
-        replace(first, space=BoxSpace((0, 0), (1, 2))),
-    ]
-    assert len({world.fingerprint() for world in (first, *others)}) == 5
-    # One configuration at a time or many makes no difference.
-    one = FunctionWorld(SQUARE, lambda q: bool(q[0] > 0.5), 0.1, vectorised=False, name="half")
-    many = FunctionWorld(SQUARE, lambda q: q[:, 0] > 0.5, 0.1, name="half")
-    assert one.fingerprint() == many.fingerprint()
 
 
 def test_the_strict_check_of_a_path_asks_for_states_twenty_times_as_dense():

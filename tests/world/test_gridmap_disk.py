@@ -106,22 +106,16 @@ def test_a_disk_that_just_touches_a_wall_is_free():
     assert not world.motion_valid([[24.0, 10.0]], [[np.nextafter(24.0, 25.0), 30.0]])[0]
 
 
-def test_a_disk_that_just_touches_the_border_is_free():
+def test_a_disk_that_just_touches_a_border_or_a_corner_is_free_and_so_is_a_slanted_way():
     world = GridMap(empty()).world(6.0)
     corners = np.array([[6.0, 6.0], [54.0, 6.0], [54.0, 34.0], [6.0, 34.0]])
     assert world.valid(corners).all()
     assert world.motion_valid(corners, np.roll(corners, 1, axis=0)).all()
     assert not world.valid(corners + 1e-12 * np.sign([30, 20] - corners) * -1).any()
-
-
-def test_a_disk_that_just_touches_a_corner_is_free():
     world = GridMap(with_cells(empty(), (20, 30))).world(5.0)
     touching = np.array([[27.0, 16.0], [34.0, 25.0], [26.0, 24.0]])  # 3-4-5 triangles
     assert world.valid(touching).all()
     assert not GridMap(world.grid.occupied).world(np.nextafter(5.0, 6.0)).valid(touching).any()
-
-
-def test_a_slanted_way_that_just_touches_a_corner_is_free():
     grid = GridMap(with_cells(empty(), (20, 30)))
     # The corner (30, 20) is 5 from the line through (27, 16) along (4, -3).
     a, b = [[27.0 - 8.0, 16.0 + 6.0]], [[27.0 + 8.0, 16.0 - 6.0]]
@@ -164,14 +158,11 @@ def test_a_disk_wider_than_the_map_fits_nowhere():
     assert grid.world(5.0).motion_valid([[5.0, 5.0]], [[995.0, 5.0]])[0]
 
 
-def test_a_map_longer_than_the_longest_run_is_no_problem():
+def test_maps_and_open_spaces_wider_than_the_longest_run_are_no_problem():
     tall = GridMap(np.zeros((70_000, 3), dtype=np.bool_)).world(1.5)
     assert tall.motion_valid([[1.5, 1.5]], [[1.5, 69_998.5]])[0]
     assert not tall.motion_valid([[1.5, 1.5]], [[1.5, 69_998.6]])[0]
     assert tall.distance([[1.0, 35_000.0]])[0] == -0.5
-
-
-def test_an_open_space_wider_than_the_largest_slack_is_free():
     world = GridMap(with_cells(empty(700, 700), (350, 600))).world(1.0)
     assert world.valid([[350.0, 350.0], [300.0, 300.0]]).all()
     assert world.motion_valid([[2.0, 340.0]], [[690.0, 347.0]])[0]

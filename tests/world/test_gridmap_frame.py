@@ -88,15 +88,12 @@ def test_an_upright_ros_map_is_its_image_upside_down():
     np.testing.assert_array_equal(ros.valid(np.column_stack([q[:, 0], 20.0 - q[:, 1]])), image.valid(q))
 
 
-def test_contains_takes_the_border_in_and_nothing_beyond():
+def test_the_border_is_inside_and_nothing_beyond_however_far():
     grid = GridMap(np.zeros((4, 6), dtype=np.bool_))
     np.testing.assert_array_equal(
         grid.contains([[0, 0], [6, 4], [3, 2], [-1e-9, 1], [6.001, 1], [1, 4.001], [1, -1]]),
         [True, True, True, False, False, False, False],
     )
-
-
-def test_a_point_absurdly_far_away_is_outside():
     frame = MapFrame(rows=4, cols=6, resolution=1e-3, yaw=YAW, y_up=True)
     grid = GridMap(np.zeros((4, 6), dtype=np.bool_), frame)
     far = np.array([[1e308, -1e308], [1e308, 1e308]])
@@ -130,5 +127,6 @@ def test_cells_that_are_no_boolean_image_are_refused(occupied):
     refused(InvalidValue, "boolean array", GridMap, occupied)
 
 
-def test_a_frame_of_another_size_is_refused():
+def test_a_frame_and_unknown_cells_of_another_size_are_refused():
+    refused(InvalidValue, "unknown has shape", GridMap, np.zeros((3, 4), bool), unknown=np.zeros((4, 3), bool))
     refused(InvalidValue, "6 rows and 4 columns", GridMap, np.zeros((6, 4), dtype=np.bool_), MapFrame(rows=4, cols=6))

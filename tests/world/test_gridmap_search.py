@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import CELLS
 from evenroad.world import GridMap, MapFrame
 
@@ -175,8 +174,3 @@ def test_a_cropped_map_is_the_same_world(frame):
     np.testing.assert_array_equal(whole.motion_valid(q[:-1], q[1:]), part.motion_valid(q[:-1], q[1:]))
     nothing = GridMap(np.ones((3, 3), dtype=bool))
     assert nothing.cropped() is nothing
-
-
-def test_unknown_cells_of_another_size_are_refused():
-    with pytest.raises(InvalidValue, match="unknown has shape"):
-        GridMap(np.zeros((3, 4), dtype=bool), unknown=np.zeros((4, 3), dtype=bool))

@@ -93,6 +93,7 @@ def test_rows_of_other_suites_are_passed_over(tmp_path):
     assert list(_outcomes(tmp_path / "a.db", [(maze, _answer(True)), (TASK, _answer(True))])) == [UNIFORM]
     assert _outcomes(tmp_path / "b.db", [(maze, _answer(True))]) == {}
     assert lines_of({}) == ()
+    refused(InvalidValue, "no runs", write_outcomes, tmp_path / "o.npz", {})
 
 
 def test_outcomes_come_back_as_they_were_written(tmp_path):
@@ -121,10 +122,6 @@ def test_the_two_streams_of_problems_are_kept_apart(tmp_path):
     outcomes = _outcomes(tmp_path / "a.db", [(TASK, _answer(True)), (tuning, _answer(False))])
     assert [way.robot for way in outcomes] == ["scara", "scara (tune)"]
     assert [each.solved.tolist() for each in outcomes.values()] == [[[True]], [[False]]]
-
-
-def test_no_runs_are_not_written(tmp_path):
-    refused(InvalidValue, "no runs", write_outcomes, tmp_path / "o.npz", {})
 
 
 def _written(tmp_path, **changed):

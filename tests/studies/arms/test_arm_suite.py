@@ -152,15 +152,12 @@ def test_samplers_that_no_n_has_for_all_robots_are_left_out_of_the_mean(tmp_path
     assert tables[0].notes[0].endswith("Not run for all robots: mpmc.")
 
 
-def test_robots_are_counted_and_not_their_rules(tmp_path):
+def test_robots_are_counted_and_not_their_rules_and_without_points_nothing_is_summed_up(tmp_path):
     outcomes = [
         (replace(_task("roadmap", 0, 0, n), problem=f"arm-{robot}-shelf", rule=f"k=10 ends={ends}"), True)
         for robot, n, ends in (("scara", 64, 64), ("scara", 64, 100), ("ur5", 128, 128), ("scara", 128, 128))
     ]
     lines = arm_lines(_rows(tmp_path / "a.db", outcomes))
     assert _table(summary_tables(lines), "arms-samplers") == [["10", "roadmap", "–", "100.0"]]
-
-
-def test_without_points_nothing_is_summed_up(tmp_path):
     trees = Task("arm-scara-shelf", 0, "trees", 0, "-", "trees", 0, 1)
-    assert summary_tables(arm_lines(_rows(tmp_path / "a.db", [(trees, True)]))) == ()
+    assert summary_tables(arm_lines(_rows(tmp_path / "b.db", [(trees, True)]))) == ()

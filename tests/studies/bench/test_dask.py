@@ -130,11 +130,6 @@ def test_an_unreachable_scheduler_is_said_within_seconds(monkeypatch):
     assert time.monotonic() - began < 20.0
 
 
-def test_without_the_package_the_extra_is_named(monkeypatch):
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    refused(NotAvailable, r"pip install 'evenroad\[dask\]'", dask_workers, "tcp://127.0.0.1:8786")
-
-
 @pytest.mark.parametrize("address", [
     "foo", "127.0.0.1:8786", "tcp://127.0.0.1", "tcp://:8786", "foo://host:8786", "tcp://host:8786/x",
     "tcp://a b:1", "",
@@ -148,5 +143,7 @@ def test_addresses_of_machines_are_of_that_form(address):
     assert schedulers.ADDRESS.fullmatch(address)
 
 
-def test_an_encrypted_connection_without_certificates_is_refused():
+def test_without_certificates_or_the_package_it_is_said_what_is_needed(monkeypatch):
     refused(NotAvailable, "needs certificates", dask_workers, "tls://127.0.0.1:8786")
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    refused(NotAvailable, r"pip install 'evenroad\[dask\]'", dask_workers, "tcp://127.0.0.1:8786")

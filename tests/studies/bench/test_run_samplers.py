@@ -43,13 +43,10 @@ def test_a_block_is_what_the_paper_takes_whatever_the_seed(name, family, run):
     assert set_id == ""
 
 
-def test_a_pool_set_is_named_by_its_number():
+def test_a_pool_set_is_named_by_its_number_and_many_runs_take_many():
     points, set_id = _draw("hickernell", 64, 3, seed=4)
     stored = Bank().cell("hickernell", 64, 3).load()
     np.testing.assert_array_equal(points.points, stored[int(set_id)])
-
-
-def test_many_runs_take_many_sets_of_the_pool():
     assert len({_draw("hickernell", 64, 2, seed=seed)[1] for seed in range(100)}) > 30
 
 
@@ -68,13 +65,10 @@ def test_the_grid_is_one_set_where_it_exists():
     assert "nearest are 27 and 64" in why_not("sukharev", 63, 3)
 
 
-def test_a_pool_that_is_not_in_the_bank_says_which_n_there_are():
+def test_a_size_that_a_pool_has_not_and_a_dimension_that_the_lattice_has_not_are_said():
     assert "it has n = 16, 32" in why_not("hickernell", 100, 2)
     with pytest.raises(NotAvailable, match="it has n = 16, 32"):
         _draw("hickernell", 100, 2)
-
-
-def test_the_lattice_ends_at_twelve_dimensions():
     assert why_not("lattice", 10, 12) == ""
     assert "12" in why_not("lattice", 10, 13)
 

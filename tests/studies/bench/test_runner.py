@@ -115,9 +115,6 @@ def test_a_task_that_fails_is_a_row_and_is_run_again_only_on_demand(path):
     assert (report.finished, report.failures) == (1, 1)
 
 
-# Dead workers.
-
-
 class _Mortal(ProcessPool):
     def submit(self, fn, /, *args, **kwargs):
         return super().submit(_run_unless_deadly, *args, **kwargs)
@@ -215,9 +212,6 @@ def test_workers_that_cannot_be_sent_anything_end_the_run_without_blaming_a_task
     assert len(read_rows(path)) == 0
 
 
-# Stores that cannot be written.
-
-
 class _Batch(SerialExecutor):
     """Serial; notes what was asked, and whether it was let go."""
 
@@ -306,9 +300,6 @@ def test_the_limit_reaches_the_worker_and_the_longest_is_no_failure(path):
     assert set(limits) == {12.5}
     assert report.failures == len(TASKS)
     assert _run(path, TASKS[:1], limit=LONGEST_LIMIT, retry=True).failures == 0
-
-
-# Chunks.
 
 
 def test_chunks_hold_all_tasks_in_order_each_of_one_problem_and_one_that_is_put_back_comes_next():

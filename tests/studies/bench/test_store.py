@@ -159,9 +159,6 @@ def test_rows_are_committed_when_the_last_time_is_long_enough_ago(path, monkeypa
         assert len(read_rows(path)) == 1
 
 
-# Interrupts.
-
-
 class _Interrupted:
     """A connection in whose way Ctrl-C comes, once, right after a statement."""
 

@@ -90,9 +90,6 @@ def test_a_key_that_is_not_its_tasks_is_refused_whatever_the_checksum_says(path,
     refused(BrokenFile, "has the fields of another task", read_rows, path)
 
 
-# Places where a store cannot be.
-
-
 @pytest.fixture
 def other_user():
     """Yield a folder that all may write, where this process is another user than the one who makes files there."""

@@ -22,19 +22,16 @@ def test_every_field_of_a_task_changes_its_key(field):
     assert replace(TASK, **{field: other}).key != TASK.key
 
 
-def test_another_protocol_changes_the_key(monkeypatch):
-    before = TASK.key
-    monkeypatch.setattr(task_module, "PROTOCOL", PROTOCOL + 1)
-    assert TASK.key != before
-
-
-def test_a_key_is_the_hash_of_the_fields_in_alphabetical_order():
+def test_a_key_is_the_hash_of_the_fields_in_alphabetical_order_and_of_the_protocol(monkeypatch):
     text = (
         '{"instance": 0, "n": 64, "problem": "maze-1", "protocol": '
         f"{PROTOCOL}"
         ', "rule": "k=10 symmetrised", "run": 3, "sampler": "uniform", "search": "connect", "seed": 1}'
     )
     assert TASK.key == hashlib.sha256(text.encode()).hexdigest()
+    before = TASK.key
+    monkeypatch.setattr(task_module, "PROTOCOL", PROTOCOL + 1)
+    assert TASK.key != before
 
 
 def test_sets_of_the_bank_do_not_change_without_another_protocol():

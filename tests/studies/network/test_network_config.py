@@ -17,10 +17,11 @@ def test_a_value_out_of_range_is_refused_by_name(name, value):
     refused(InvalidValue, f"{name} must be .*, got", NetworkConfig, **{"n": 16, "d": 2, name: value})
 
 
-def test_names_that_nobody_knows_are_refused():
+def test_names_that_nobody_knows_and_a_judge_out_of_the_plane_are_refused():
     refused(UnknownName, "column 4.*'nonsense'", NetworkConfig, 16, 2, objective="2 *nonsense")
     refused(UnknownName, "start.*'grid'.*sobol", NetworkConfig, 16, 2, start="grid")
     refused(UnknownName, "judge.*'me'.*star", NetworkConfig, 16, 2, judge="me")
+    refused(InvalidValue, "in d = 2 alone, not in d = 3", NetworkConfig, 16, 3, judge="star")
 
 
 def test_the_start_is_kronecker_in_the_plane_but_for_prefixes_unless_it_is_asked_for():
@@ -30,15 +31,8 @@ def test_the_start_is_kronecker_in_the_plane_but_for_prefixes_unless_it_is_asked
     assert {NetworkConfig(16, 3, "star").start, NetworkConfig(16, 1).start} == {"sobol"}
 
 
-def test_the_exact_star_discrepancy_judges_in_the_plane_alone():
-    refused(InvalidValue, "in d = 2 alone, not in d = 3", NetworkConfig, 16, 3, judge="star")
-
-
-def test_two_spellings_of_an_objective_are_the_same_config():
+def test_a_config_survives_json_and_another_spelling_of_its_objective():
     assert NetworkConfig(16, 2, "hickernell+10*riesz") == NetworkConfig(16, 2, "log(hickernell) + 10*log(riesz)")
-
-
-def test_a_config_survives_json_and_keeps_plain_numbers():
     config = NetworkConfig(np.int64(16), np.int32(2), "star", rate=np.float32(0.5), noise=1)
     assert NetworkConfig(**json.loads(json.dumps(asdict(config)))) == config
 

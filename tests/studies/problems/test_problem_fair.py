@@ -52,13 +52,10 @@ def test_both_ends_are_free_and_the_straight_motion_is_not(name):
         assert not problem.world.motion_valid(ends[:1], ends[1:])[0]
 
 
-def test_tuning_and_reporting_share_no_instance():
+def test_tuning_and_reporting_share_no_instance_and_every_part_of_an_address_counts():
     drawn = {stream: {instance_rng(stream, Family.BALLS, 5, 50, i).random() for i in range(200)} for stream in Stream}
     assert all(len(numbers) == 200 for numbers in drawn.values())
     assert len(set.union(*drawn.values())) == 3 * 200
-
-
-def test_every_part_of_an_instance_s_address_counts():
     addresses = [
         (Family.BALLS, 5, 50, 1), (Family.BOXES, 5, 50, 1), (Family.BALLS, 7, 50, 1),
         (Family.BALLS, 5, 25, 1), (Family.BALLS, 5, 50, 2),
@@ -124,13 +121,10 @@ def test_starts_and_goals_do_not_gather_at_the_faces():
     assert abs(away.mean() - 0.25) < 4 * away.std() / np.sqrt(len(away))
 
 
-def test_far_on_the_torus_goes_by_the_short_way_round():
+def test_far_is_by_the_short_way_round_a_torus_and_half_the_width_of_a_map():
     a = np.array([[0.05, 0.5], [0.25, 0.5], [0.0, 0.0]])
     b = np.array([[0.95, 0.5], [0.75, 0.5], [0.3, 0.3]])
     assert far_on_torus(a, b).tolist() == [False, True, True]
-
-
-def test_far_in_a_map_is_half_its_width_in_pixels():
     a, b = np.array([[0.1, 0.5], [0.1, 0.1]]), np.array([[0.59, 0.5], [0.1, 0.8]])
     assert far_in_map(a, b).tolist() == [False, True]
 

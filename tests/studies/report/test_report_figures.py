@@ -55,15 +55,9 @@ def test_gains_in_random_worlds_are_drawn_with_their_intervals_and_dimensions_wi
     assert "uniform" not in [text.get_text() for text in legend.get_texts()]
 
 
-def test_one_maze_alone_has_no_picture_of_all(tmp_path):
+def test_scenes_are_shown_once_and_what_nobody_draws_has_none(tmp_path):
     assert maze_settings(runs_from(tmp_path / "a.db", made_up("maze-1", runs=2)).settings) == ()
-
-
-def test_another_protocol_in_the_same_scene_shows_the_same_scene():
     assert scenes_among(["twistycool-6d", "maze-2", "corridor-2d-0.1", "twistycool"]) == ("maze-2", "twistycool")
-
-
-def test_a_world_that_nobody_draws_is_said_to_have_no_picture():
     with pytest.raises(NotAvailable, match="hypercube-legacy6"):
         draw_scene("hypercube-legacy6")
 

@@ -21,9 +21,6 @@ def test_html_escapes_what_it_must_and_marks_by_class():
     assert text.count("&lt;i&gt;") == 3
     assert "<td class='better'>52.8 [50, 56]</td>" in text
     assert "<td class='label'>uniform</td>" in text
-
-
-def test_html_sets_the_headings_of_labels_as_the_labels():
     text = as_html(_table(header=("sampler", "rule", "N"), rows=((Entry("a"), Entry("b"), Entry("1")),), labels=2))
     assert "<tr><th class='label'>sampler</th><th class='label'>rule</th><th>N</th></tr>" in text
     assert "<td class='label'>a</td><td class='label'>b</td><td>1</td>" in text

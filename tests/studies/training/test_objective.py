@@ -113,12 +113,9 @@ def test_a_term_checks_its_name_and_weight():
         refused(InvalidValue, "weight must be a finite number > 0", Term, "star", bad)
 
 
-def test_something_else_than_text_is_refused():
+def test_something_else_than_text_and_an_energy_of_one_point_are_refused():
     with pytest.raises(InvalidValue, match="an objective is text such as"):
         parse_objective(3)  # type: ignore[arg-type]
-
-
-def test_an_energy_of_one_point_is_refused():
     with pytest.raises(InvalidValue, match=r"'log\(star\) \+ log\(riesz\)' needs at least 2 points, got 1"):
         parse_objective("star+riesz").value([[0.5]])
     assert parse_objective("star").value([[0.5]]) > 0

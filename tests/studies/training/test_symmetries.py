@@ -62,12 +62,9 @@ def test_a_sum_keeps_what_all_its_terms_keep(objective, legal):
             assert {verb(points, rng=seed).hash for seed in range(5)} != {points.hash}
 
 
-def test_a_set_of_which_nothing_is_known_comes_back_as_it_is():
+def test_a_set_of_which_nothing_is_known_comes_back_as_it_is_and_an_unknown_objective_is_refused():
     points = PointSet([[0.1, 0.2], [0.3, 0.9]])
     assert randomise(points, rng=3) == points
-
-
-def test_an_objective_of_the_origin_that_is_not_known_is_refused():
     with pytest.raises(UnknownName, match="prettiness"):
         randomise(annealed(5, 2, "prettiness"))
 

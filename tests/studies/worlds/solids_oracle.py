@@ -98,14 +98,6 @@ SHIFTED_IN_THE_PLANE = SolidWorld(BoxSpace([0, 0], [10, 10]), FLAT_ELL, some_box
 WORLDS = [IN_SPACE, IN_THE_PLANE, SHIFTED, SHIFTED_IN_THE_PLANE]
 
 
-def pose_of(q, dim):
-    """Translation and matrix of a configuration."""
-    if len(q) == dim:
-        return q, np.eye(dim)
-    turn = rotation_from_heading(q[2]) if dim == 2 else rotation_from_quaternion(xyzw=np.roll(q[3:], -1))
-    return q[:dim], np.array(turn).reshape(dim, dim)
-
-
 def penetration(centre, matrix, half, obstacle):
     """By how much both boxes can shrink on all sides and still have a point in common; < 0 if they are apart."""
     rows, limits = [], []
@@ -124,7 +116,7 @@ def penetration(centre, matrix, half, obstacle):
 def deepest(world, q):
     """The largest penetration; boxes whose balls are apart are apart."""
     dim = len(world.body[0].centre)
-    position, matrix = pose_of(q, dim)
+    (matrix,), (position,) = placed(np.asarray(q, dtype=float)[np.newaxis], dim)
     found = [-1.0]
     for part, obstacle in product(world.body, world.obstacles):
         centre = position + matrix @ np.array(part.centre)

@@ -38,10 +38,14 @@ def test_the_distance_is_how_far_all_joints_are_apart(links):
     np.testing.assert_allclose(space.distance(a, b), apart, rtol=1e-12)
 
 
-def test_the_distance_knows_no_full_turns():
+def test_every_joint_turns_the_short_way_and_the_distance_knows_no_full_turns():
     space = ChainSpace(4)
     a, b = space.from_cube(np.random.default_rng(0).random((40, 4))).reshape(2, 20, 4)
     np.testing.assert_allclose(space.distance(a + 2 * math.pi, b), space.distance(a, b), rtol=1e-9)
+    space = ChainSpace(2)
+    middle = space.interpolate([[3.0, 1.0]], [[-3.0, 0.0]], 0.5)
+    np.testing.assert_allclose(space.distance(middle, [[math.pi, 0.5]]), 0.0, atol=1e-12)
+    assert space.wrapped([[4.0, -4.0]])[0] == pytest.approx([4.0 - 2 * math.pi, 2 * math.pi - 4.0])
 
 
 def test_the_first_joint_counts_more_than_the_last():
@@ -50,13 +54,6 @@ def test_the_first_joint_counts_more_than_the_last():
     assert (np.diff(away) < 0).all()
     # The last joint moves the end alone, along a chord of a circle of radius 1 / 10.
     assert away[-1] == pytest.approx(0.1 * 2 * math.sin(0.15))
-
-
-def test_every_joint_turns_the_short_way():
-    space = ChainSpace(2)
-    middle = space.interpolate([[3.0, 1.0]], [[-3.0, 0.0]], 0.5)
-    np.testing.assert_allclose(space.distance(middle, [[math.pi, 0.5]]), 0.0, atol=1e-12)
-    assert space.wrapped([[4.0, -4.0]])[0] == pytest.approx([4.0 - 2 * math.pi, 2 * math.pi - 4.0])
 
 
 def test_a_chain_without_links_is_refused():

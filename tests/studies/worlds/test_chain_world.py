@@ -94,15 +94,12 @@ def test_start_and_goal_are_free_and_not_joined_by_one_motion():
     assert not TEN.motion_valid(ends[:1], ends[1:]).any()
 
 
-def test_a_stretched_and_a_folded_chain_touch_themselves_and_do_not_cross():
+def test_a_chain_that_touches_itself_is_free_and_one_that_winds_up_crosses_itself():
     stretched, folded = np.zeros((1, 4)), np.array([[math.pi / 2, math.pi, 0.0, 0.0]])
     closed = np.array([[math.pi / 2, math.pi / 2, math.pi / 2, math.pi / 2]])
     world = ChainWorld(4)
     for q in (stretched, folded, closed):
         assert world.valid(q + np.array([math.pi, 0, 0, 0])).all()
-
-
-def test_a_chain_that_winds_up_crosses_itself():
     spiral = np.array([math.pi / 2, 2.0, 2.0, 2.0, 2.0])
     assert not ChainWorld(5).valid(spiral[np.newaxis])[0]
     assert "two links" in ChainWorld(5).explain(spiral)

@@ -92,21 +92,15 @@ def test_a_motion_is_free_iff_it_misses_every_copy_of_every_box(d, n, m, half):
     np.testing.assert_array_equal(world.valid(a), ends < 0)
 
 
-def test_a_ball_at_a_corner_blocks_all_corners():
+def test_a_ball_at_a_face_is_met_at_its_copies_and_motions_do_not_wrap():
     world = PeriodicBalls([[0.0, 1.0]], 0.1)
     corners = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]])
     assert not world.valid(corners).any()
     assert world.valid(np.array([[0.5, 0.5], [0.5, 0.0]])).all()
-
-
-def test_a_motion_across_the_whole_cube_meets_both_copies_of_a_ball():
     world = PeriodicBalls([[0.0, 0.5]], 0.1)
     assert world.motion_valid([[0.0, 0.3]], [[1.0, 0.3]])[0]
     assert not world.motion_valid([[0.0, 0.3]], [[1.0, 0.45]])[0]
     assert not world.motion_valid([[1.0, 0.3]], [[0.0, 0.45]])[0]
-
-
-def test_motions_do_not_wrap():
     world = PeriodicBalls([[0.5, 0.5]], 0.2)
     assert not world.motion_valid([[0.05, 0.5]], [[0.95, 0.5]])[0]
 
@@ -125,14 +119,11 @@ def test_a_box_leaves_its_other_coordinates_free():
     np.testing.assert_array_equal(world.valid(q), np.abs(q[:, 2] - 0.5) >= 0.1)
 
 
-def test_outside_of_the_cube_nothing_is_free():
+def test_outside_of_the_cube_nothing_is_free_and_without_balls_all_of_it():
     outside = np.array([[1.01, 0.5], [0.5, -0.01]])
     for world in (PeriodicBalls(np.empty((0, 2)), 0.1), some_boxes(2, 1, 2, 0.01)):
         assert not world.valid(outside).any()
         assert not world.motion_valid(outside, outside).any()
-
-
-def test_without_balls_all_motions_in_the_cube_are_free():
     assert PeriodicBalls(np.empty((0, 3)), 0.1).motion_valid(np.zeros((1, 3)), np.ones((1, 3)))[0]
 
 

@@ -1,28 +1,16 @@
 """The strict check of rigid bodies' paths: proofs with no gap, beside an oracle that looks at states close together."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.planning import PRM, plan
 from evenroad.space import SE2, SE3, BoxSpace
-from evenroad.space.path import subdivide
-from evenroad.world import FunctionWorld
 from evenroad.world.protocol import ValidatesPaths
 from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld
+from tests.studies.free_paths import nearest
 from tests.studies.worlds.solids_oracle import WORLDS, deepest, gap
-
-FINER = 20
-
-
-def nearest(world, a, b):
-    """By how much the body stays apart at worst at states a twentieth of the resolution apart; negative: it meets."""
-    weak = FunctionWorld(world.space, world.valid, world.resolution)
-    segments = FINER * int(weak._segments(a[None], b[None])[0])
-    return gap(world, subdivide(np.stack([a, b]), world.space, np.array([max(1, segments)]))[0]).min()
 
 
 def motions(world, count):
@@ -47,23 +35,8 @@ def test_a_proved_motion_is_free_at_a_twentieth_of_the_resolution_and_a_refused_
     refused = np.flatnonzero(weak & ~strict)
     assert len(refused), "sampled verdicts have gaps that the proof finds"
     # Half of the distance between two states that are looked at.
-    assert all(nearest(world, a[i], b[i]) < 0.0025 for i in refused[:20])
-    assert all(nearest(world, a[i], b[i]) > 0.0 for i in np.flatnonzero(strict)[:12])
-
-
-@pytest.mark.parametrize("world", WORLDS, ids=["SE3", "SE2", "3-D", "2-D"])
-def test_paths_that_are_handed_out_are_free_between_states_shortened_or_not(world):
-    q = world.space.from_cube(np.random.default_rng(9).random((80, world.space.cube_dim)))
-    q = q[world.valid(q)]
-    solved = 0
-    for start, goal in zip(q[0:8:2], q[1:8:2], strict=True):
-        result = plan(world, start, goal, PRM(128))
-        if result.solved:
-            solved += 1
-            assert result.proof == "certified"
-            for path in (result.path, result.milestone_path):
-                assert min(nearest(world, a, b) for a, b in pairwise(path)) > 0.0
-    assert solved >= 2
+    assert all(nearest(world, np.stack([a[i], b[i]])) < 0.0025 for i in refused[:20])
+    assert all(nearest(world, np.stack([a[i], b[i]])) > 0.0 for i in np.flatnonzero(strict)[:12])
 
 
 @pytest.mark.parametrize(

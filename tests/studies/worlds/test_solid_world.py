@@ -131,7 +131,7 @@ def test_the_explanation_names_the_obstacle():
     assert "bounds" in world.explain([-1.0, 0, 0, 1, 0, 0, 0])
 
 
-def test_boxes_that_are_none_are_refused():
+def test_boxes_and_parameters_that_make_no_world_are_refused():
     for wrong in ([0.0], [0.0] * 4, [np.nan, 0, 0], "ab"):
         refused(InvalidValue, "centre", OrientedBox, wrong, [1, 1, 1])
     refused(InvalidValue, "half_extents", OrientedBox, [0, 0], [1, -1])
@@ -141,16 +141,6 @@ def test_boxes_that_are_none_are_refused():
     refused(InvalidValue, "low must not exceed high", OrientedBox.spanning, (0, 0), (1, -1))
     refused(InvalidValue, "norm", rotation_from_quaternion, xyzw=[0, 0, 0, 0])
     refused(InvalidValue, "shell", shell, FLAT_ELL[0])
-
-
-@pytest.mark.parametrize("space", [
-    BoxSpace([0], [1]), JointSpace([0, 0], [1, 1]), Product([Circle(), BoxSpace([0, 0], [1, 1])]), SO3(),
-], ids=["1-D", "joints", "heading first", "rotations"])  # fmt: skip
-def test_spaces_that_no_body_moves_in_are_refused(space):
-    refused(InvalidValue, "space must be", SolidWorld, space, ELL, [], 0.1)
-
-
-def test_parameters_that_make_no_world_are_refused():
     space = SE3([0, 0, 0], [10, 10, 10])
     refused(InvalidValue, "body must be one box or more", SolidWorld, space, [], [], (0.1, 0.1))
     refused(InvalidValue, "body must be OrientedBox values of 3", SolidWorld, space, FLAT_ELL, [], (0.1, 0.1))
@@ -158,6 +148,13 @@ def test_parameters_that_make_no_world_are_refused():
     for wrong in (0.1, (0.1,), (0.1, 0.0), (0.1, np.inf), (1e-12, 0.1)):
         refused(InvalidValue, "resolution", SolidWorld, space, ELL, [], wrong)
     refused(InvalidValue, "resolution", SolidWorld, BoxSpace([0, 0], [1, 1]), FLAT_ELL, [], (0.1, 0.1))
+
+
+@pytest.mark.parametrize("space", [
+    BoxSpace([0], [1]), JointSpace([0, 0], [1, 1]), Product([Circle(), BoxSpace([0, 0], [1, 1])]), SO3(),
+], ids=["1-D", "joints", "heading first", "rotations"])  # fmt: skip
+def test_spaces_that_no_body_moves_in_are_refused(space):
+    refused(InvalidValue, "space must be", SolidWorld, space, ELL, [], 0.1)
 
 
 def test_a_box_of_geometry_is_the_same_box_with_its_pose():

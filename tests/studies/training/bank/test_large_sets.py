@@ -39,15 +39,11 @@ def test_a_small_set_is_there(as_installed):
     assert as_installed.cell("hickernell", 64, 2).load().shape == (64, 64, 2)
 
 
-def test_a_large_set_names_the_package_that_has_it(as_installed, monkeypatch):
+def test_a_large_set_names_the_package_that_has_it_and_it_is_known_whether_it_is_there(as_installed, monkeypatch):
     monkeypatch.setattr(bank, "find_spec", lambda name: None)
     assert as_installed.has("hickernell", 512, 2)
     with pytest.raises(NotAvailable, match="n=512 in d=2 are in the package evenroad-studies.*pip install"):
         as_installed.cell("hickernell", 512, 2)
-
-
-def test_it_is_known_whether_there_are_large_sets(as_installed, monkeypatch):
-    monkeypatch.setattr(bank, "find_spec", lambda name: None)
     assert not bank.has_large_sets()
     monkeypatch.undo()
     assert bank.has_large_sets()
