@@ -16,6 +16,7 @@ from evenroad.errors import InvalidValue
 from evenroad.planning.arm_trees import connect, shorten, smooth
 from evenroad.robot import Obstacle, Scene, load_robot
 from evenroad.robot.arm_world import ArmWorld
+from tests.refused import refused
 from tests.robot.kernel_arms import random_scene, random_tree, ur5
 from tests.robot.mesh_arms import rod_touches
 from tests.robot.oracle import clearance, link_poses
@@ -58,8 +59,8 @@ def test_a_plan_is_drawn_tight_unless_quick_shortcuts_or_no_smoothing_are_wanted
     np.testing.assert_array_equal(plans["quick"].path, shorten(world, raw)[0])
     assert plans[True].cost < plans["quick"].cost < plans[False].cost
     assert all(proved(world, each.path) for each in plans.values())
-    with pytest.raises(InvalidValue, match="smooth must be True, False or \"quick\", got 'fast'"):
-        er.plan(world, path[0], path[-1], smooth="fast")
+    said = "smooth must be True, False or \"quick\", got 'fast'"
+    refused(er.errors.InvalidValue, said, er.plan, world, path[0], path[-1], smooth="fast")
 
 
 def test_few_batches_give_a_free_path_and_more_a_shorter_one(paths):
