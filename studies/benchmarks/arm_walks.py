@@ -12,8 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 from studies.benchmarks.rows import parser_of
-from tests.robot.kernel_arms import random_scene, random_tree
-from tests.robot.test_locked import walk
+from tests.robot.kernel_arms import random_scene, random_tree, walk
 
 from evenroad._arrays import Floats
 from evenroad.robot.arm_world import ArmWorld

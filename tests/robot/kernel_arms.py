@@ -241,3 +241,19 @@ def through_contact(world, apart, rng, edges=150, count=500):
     free = space.contains(a) & space.contains(b)
     free[free] = world.valid(a[free]) & world.valid(b[free])
     return a[free][:count], b[free][:count]
+
+
+def walk(world, rng, start, steps):
+    """Ends of motions that are proved free, one after the other, and places between them."""
+    here, seen = start, [start]
+    for _ in range(steps):
+        there = world.space.from_cube(rng.random((8, world.space.dim)))
+        far = rng.uniform(0.05, 1.0, (8, 1))
+        there = world.space.interpolate(np.broadcast_to(here, there.shape), there, far[:, 0])
+        free = world.motion_certified(np.broadcast_to(here, there.shape), there, 1e-6)
+        if free.any():
+            end = there[free][0]
+            shares = np.linspace(0.0, 1.0, 8)
+            seen += list(world.space.interpolate(*np.broadcast_arrays(here, np.tile(end, (8, 1))), shares))
+            here = end
+    return np.array(seen)

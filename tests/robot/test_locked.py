@@ -16,7 +16,7 @@ from evenroad.robot.locked import BEYOND, SLACK, Bodies, first_links, piece_of, 
 from evenroad.robot.scene import Obstacle
 from evenroad.robot.separated import apart
 from tests.plan_on import may_connect
-from tests.robot.kernel_arms import STRAIGHT, Z, edge, random_scene, random_tree
+from tests.robot.kernel_arms import STRAIGHT, Z, edge, random_scene, random_tree, walk
 
 
 def flat_arm(kind="revolute", joints=2, limit=3.0):
@@ -120,22 +120,6 @@ def balls_alone(robot):
     """The robot with a ball for each capsule, of which verdicts are what they are; without contacts of links."""
     balls = tuple(replace(capsule, b=capsule.a, radius=0.06) for capsule in robot.capsules)
     return replace(robot, capsules=balls, pairs=())
-
-
-def walk(world, rng, start, steps):
-    """Ends of motions that are proved free, one after the other, and places between them."""
-    here, seen = start, [start]
-    for _ in range(steps):
-        there = world.space.from_cube(rng.random((8, world.space.dim)))
-        far = rng.uniform(0.05, 1.0, (8, 1))
-        there = world.space.interpolate(np.broadcast_to(here, there.shape), there, far[:, 0])
-        free = world.motion_certified(np.broadcast_to(here, there.shape), there, 1e-6)
-        if free.any():
-            end = there[free][0]
-            shares = np.linspace(0.0, 1.0, 8)
-            seen += list(world.space.interpolate(*np.broadcast_arrays(here, np.tile(end, (8, 1))), shares))
-            here = end
-    return np.array(seen)
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -43,7 +43,7 @@ def test_lazy_runs_are_counted_among_the_rules_only(tmp_path):
 def test_a_store_with_lazy_runs_only_is_pooled_by_rule_only_and_one_without_compares_nothing(tmp_path):
     rows = [row for row in _rows(lazy=True) if row[0].search == "lazy"]
     assert set(pooled(runs_from(tmp_path / "a.db", rows))) == {"rule"}
-    assert lazy_checks(runs_from(tmp_path / "a.db", _rows(lazy=False))) == ()
+    assert lazy_checks(runs_from(tmp_path / "b.db", _rows(lazy=False))) == ()
 
 
 def test_checks_of_lazy_runs_are_held_against_those_of_the_same_roadmaps(tmp_path):
