@@ -3,7 +3,6 @@
 import itertools
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from itertools import pairwise
 
@@ -12,7 +11,6 @@ import pytest
 
 import evenroad as er
 from evenroad._native.planning import CLEARANCES
-from evenroad.errors import InvalidValue
 from evenroad.planning.arm_trees import connect, shorten, smooth
 from evenroad.robot import Obstacle, Scene, load_robot
 from evenroad.robot.arm_world import ArmWorld
@@ -114,16 +112,6 @@ def test_the_same_path_is_tightened_to_the_same_bits(paths):
         np.testing.assert_array_equal(first, smooth(world, path, batches=BATCHES, proved=False)[0])
 
 
-def test_threads_do_not_disturb_each_others_tightening(detour):
-    world, path = detour
-    alone, _ = smooth(world, path, batches=BATCHES)
-    # Of a world that nobody has asked for larger bodies.
-    fresh = box_world()
-    with ThreadPoolExecutor(4) as threads:
-        for tight in threads.map(lambda _: smooth(fresh, path, batches=BATCHES)[0], range(20)):
-            np.testing.assert_array_equal(tight, alone)
-
-
 def test_another_process_tightens_to_the_same_bits(detour):
     world, path = detour
     tight, motions = smooth(world, path, batches=BATCHES)
@@ -137,12 +125,6 @@ def test_another_process_tightens_to_the_same_bits(detour):
         [sys.executable, "-c", code], input=path.tobytes().hex(), capture_output=True, text=True, check=True
     )
     assert answer.stdout.split() == [str(motions), tight.tobytes().hex()]
-
-
-def test_a_path_of_two_waypoints_stays_as_it_is():
-    world = box_world()
-    for path in (np.stack([START, START + 0.1]), np.stack([START, START])):
-        np.testing.assert_array_equal(smooth(world, path, batches=BATCHES)[0], path)
 
 
 def test_a_path_that_cannot_be_proved_is_shortened(detour):
@@ -203,21 +185,6 @@ def test_of_a_path_that_nobody_proved_nothing_is_returned_that_is_not_proved():
             assert world.validate(tight).all()
             np.testing.assert_array_equal(tight[[0, -1]], given[[0, -1]])
     assert min(empty, left) >= 5
-
-
-@pytest.mark.parametrize("path", [
-    np.full((3, 5), np.nan),
-    np.stack([START, START + np.inf, START]),
-    np.zeros((3, 4)),
-    np.zeros((3, 6)),
-    np.zeros(5),
-    [START],
-    [START, START + np.nan],
-    [START, GOAL, ["x"] * 5],
-])  # fmt: skip
-def test_what_is_no_path_is_not_tightened_but_refused(path):
-    with pytest.raises(InvalidValue):
-        smooth(box_world(), path, batches=BATCHES)
 
 
 def ball_beside(robot, q, away, towards, name):
