@@ -29,7 +29,7 @@ shelf = Scene(
 
 # A gripper that points into the shelf, and stops before the box; it may be turned about its own axis.
 grasp = er.PoseGoal(Pose.from_rpy((0.62, 0.1, 0.30), (0.0, math.pi / 2, 0.0)), free_axis="z")
-into = er.plan(shelf, HOME, grasp, robot=ROBOT, straight=CartesianLine(approach=0.15))
+into = er.plan(shelf, HOME, grasp, robot=ROBOT, constraints=CartesianLine(approach=0.15))
 print("into the shelf:", into.message)
 
 # From now on the box is in the hand, as it stands there; it may touch what holds it, and the board that it stands on.
@@ -40,6 +40,6 @@ carrying = Scene(shelf.obstacles, name="shelf", allowed=frozenset({("box", "lowe
 
 # The goal is where the box is to be, not the flange: upright on the table, turned about its own z axis as it may.
 place = er.PoseGoal(Pose((0.0, -0.6, 0.18)), tip="box", free_axis="z")
-out = er.plan(carrying, into.path[-1], place, robot=ROBOT, straight=CartesianLine(retreat=0.2, away="-x"))
+out = er.plan(carrying, into.path[-1], place, robot=ROBOT, constraints=CartesianLine(retreat=0.2, away="-x"))
 print("out of the shelf, box in hand:", out.message)
 out.plot("pick.png")

@@ -86,8 +86,8 @@ def rows(name: str, count: int, seed: int, largest: float, seconds: float) -> It
     """Yield the rows of one robot."""
     robot, tip = load_robot(name), TIPS[name]
     ways = {
-        "upright": dict(upright=OrientationConstraint(largest)),
-        "straight": dict(straight=CartesianLine(LINE, away="up")),
+        "upright": dict(constraints=OrientationConstraint(largest)),
+        "straight": dict(constraints=CartesianLine(LINE, away="up")),
     }
     taken: dict[str, list[tuple[bool, float, float, float]]] = {row: [] for row in ("all", "nearest", *ways)}
     for scene, start, goal in problems(robot, tip, count, seed):

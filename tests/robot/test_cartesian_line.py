@@ -88,7 +88,7 @@ def test_a_line_that_is_missed_by_more_than_its_tolerance_is_refused():
 def test_a_plan_goes_straight_from_its_start_and_to_its_goal():
     pose = Pose.from_rpy((0.62, 0.0, 0.2), (0.0, math.pi / 2, 0.0))
     start = START
-    result = er.plan("box-reach", start, pose, robot="ur5", straight=CartesianLine(0.1, 0.05))
+    result = er.plan("box-reach", start, pose, robot="ur5", constraints=CartesianLine(0.1, 0.05))
     assert result.solved
     assert result.path[0].tolist() == start
     assert result.cost == pytest.approx(np.linalg.norm(np.diff(result.path, axis=0), axis=1).sum())
@@ -107,17 +107,17 @@ def test_a_plan_goes_straight_from_its_start_and_to_its_goal():
 
 def test_points_plan_between_lines_too():
     pose = Pose.from_rpy((0.62, 0.0, 0.2), (0.0, math.pi / 2, 0.0))
-    result = er.plan("box-reach", START, pose, er.PRM(1024), robot="ur5", seconds=60, straight=CartesianLine(0.05))
+    result = er.plan("box-reach", START, pose, er.PRM(1024), robot="ur5", seconds=60, constraints=CartesianLine(0.05))
     assert result.solved
     assert result.planner == "prm lazy"
     assert "line_m" in result.deviation
 
 
 def test_where_there_is_no_straight_way_the_answer_says_so():
-    stretched = er.plan("box-reach", "home", "inside", robot="ur5", straight=CartesianLine(retreat=0.2, away="up"))
+    stretched = er.plan("box-reach", "home", "inside", robot="ur5", constraints=CartesianLine(retreat=0.2, away="up"))
     assert stretched.status is er.Status.NOT_CONNECTED
     assert "no straight line from the start: after" in stretched.message
-    sideways = er.plan("box-reach", "home", "inside", robot="ur5", straight=CartesianLine(0.3, away="x"))
+    sideways = er.plan("box-reach", "home", "inside", robot="ur5", constraints=CartesianLine(0.3, away="x"))
     assert sideways.status is er.Status.NOT_CONNECTED
     assert "no straight line to the goal: after" in sideways.message
 

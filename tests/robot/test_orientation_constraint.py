@@ -45,7 +45,7 @@ def test_a_path_keeps_the_axis_upright_where_one_that_is_not_told_to_does_not(to
     plain = []
     for seed in (1, 2, 5, 6):
         scene, start, goal = problem(seed)
-        result = er.plan(scene, start, goal, robot=ARM7, upright=OrientationConstraint(tolerance))
+        result = er.plan(scene, start, goal, robot=ARM7, constraints=OrientationConstraint(tolerance))
         assert result.solved
         tilt = tilt_along(ARM7, result.path, "flange")
         assert tilt <= tolerance
@@ -96,10 +96,10 @@ def test_a_start_or_goals_that_are_tilted_are_refused():
     _, start, _ = problem(1)
     tilted = start.copy()
     tilted[5] += 0.4
-    result = er.plan(Scene(name="empty"), tilted, start, robot=ARM7, upright=OrientationConstraint(0.1, axis="z"))
+    result = er.plan(Scene(name="empty"), tilted, start, robot=ARM7, constraints=OrientationConstraint(0.1, axis="z"))
     assert result.status is er.Status.START_INVALID
     assert "at the start axis z of 'flange' is tilted by" in result.message
-    result = er.plan(Scene(name="empty"), start, tilted, robot=ARM7, upright=OrientationConstraint(0.1))
+    result = er.plan(Scene(name="empty"), start, tilted, robot=ARM7, constraints=OrientationConstraint(0.1))
     assert result.status is er.Status.GOAL_INVALID
     assert "more than 0.1" in result.message
 
@@ -107,7 +107,7 @@ def test_a_start_or_goals_that_are_tilted_are_refused():
 def test_straight_and_upright_go_together():
     scene, start, goal = problem(6)
     result = er.plan(
-        scene, start, goal, robot=ARM7, upright=OrientationConstraint(0.1), straight=CartesianLine(0.05, away="up")
+        scene, start, goal, robot=ARM7, constraints=OrientationConstraint(0.1) & CartesianLine(0.05, away="up")
     )
     assert result.solved
     assert set(result.deviation) == {"tilt_rad", "line_m", "line_rad"}
@@ -124,7 +124,7 @@ def test_lines_keep_another_link_upright_too():
     def plan(tolerance):
         line = CartesianLine(retreat=0.4, away=(1.6, -1.3, -0.6), tip="tool0")
         upright = OrientationConstraint(tolerance, axis, tip="forearm_link")
-        return er.plan(Scene(name="empty"), start, goal, robot=robot, straight=line, upright=upright)
+        return er.plan(Scene(name="empty"), start, goal, robot=robot, constraints=line & upright)
 
     refused = plan(0.1)
     assert "from the start: along it axis (" in refused.message
@@ -148,7 +148,7 @@ def test_a_path_that_is_tilted_by_too_much_on_the_finer_grid_is_not_handed_out(m
     through = OrientationWorld.path_through
     monkeypatch.setattr(OrientationWorld, "path_through", lambda *a, **options: (through(*a, **options)[0], 0.11))
     scene, start, goal = problem(6)
-    result = er.plan(scene, start, goal, robot=ARM7, upright=OrientationConstraint(0.1))
+    result = er.plan(scene, start, goal, robot=ARM7, constraints=OrientationConstraint(0.1))
     assert result.status is er.Status.NOT_CONNECTED
     assert "tilted by 0.11 rad, more than 0.1" in result.message
     assert result.path is None

@@ -85,7 +85,7 @@ def test_a_place_beyond_what_the_bars_leave_is_proved_for_all_postures(barred):
 
 def test_straight_ways_are_planned_to_some_postures_alone(barred):
     goal = PoseGoal(Pose((-0.75, 0.0, 0.5)), position_only=True)
-    result = er.plan(barred.scene, START, goal, robot=barred.robot, seconds=3.0, straight=CartesianLine(0.02))
+    result = er.plan(barred.scene, START, goal, robot=barred.robot, seconds=3.0, constraints=CartesianLine(0.02))
     assert not result.solved
     assert "proved" not in result.message
 

@@ -34,39 +34,39 @@ def test_what_is_driven_keeps_upright_as_the_path_was_asked_to(tilt, kept):
     world, goal = free_world(), DOWN + np.array([0.5, 0.0, 0.0, tilt, 0.0, 0.0])
     assert arm_trajectory(world, [DOWN, goal]).duration > 0.0
     if kept:
-        assert arm_trajectory(world, [DOWN, goal], constraints=(None, OrientationConstraint(0.05))).proof == "certified"
+        assert arm_trajectory(world, [DOWN, goal], constraints=OrientationConstraint(0.05)).proof == "certified"
         return
     with pytest.raises(NotAvailable, match="not proved"):
-        arm_trajectory(world, [DOWN, goal], constraints=(None, OrientationConstraint(0.05)))
+        arm_trajectory(world, [DOWN, goal], constraints=OrientationConstraint(0.05))
 
 
 @pytest.fixture(scope="module")
 def straight_path():
-    result = er.plan("box-reach", "home", "inside", robot="ur5", straight=STRAIGHT)
+    result = er.plan("box-reach", "home", "inside", robot="ur5", constraints=STRAIGHT)
     assert result.solved
     return arm_request("ur5", "box-reach", "home", "inside").world, result.path
 
 
 def test_what_is_driven_comes_straight(straight_path):
     world, path = straight_path
-    assert arm_trajectory(world, path, constraints=(STRAIGHT, None), rounded_by_controller=True).stops == 0
+    assert arm_trajectory(world, path, constraints=STRAIGHT, rounded_by_controller=True).stops == 0
 
 
 def test_a_way_that_is_not_straight_is_told(straight_path):
     world, path = straight_path
-    asked = constrained_world(world, path, STRAIGHT, None)
+    asked = constrained_world(world, path, STRAIGHT)
     assert asked.validate(path).all()
     bent = path.copy()
     bent[-5, 0] += 0.01
     np.testing.assert_array_equal(np.flatnonzero(~asked.validate(bent)), len(path) - 6 + np.arange(2))
     # Backwards the line leaves the start.
-    back = constrained_world(world, path[::-1], CartesianLine(0.0, 0.1), None)
+    back = constrained_world(world, path[::-1], CartesianLine(0.0, 0.1))
     np.testing.assert_array_equal(np.flatnonzero(~back.validate(bent[::-1])), [3, 4])
 
 
 def test_a_path_without_places_is_named():
     with pytest.raises(InvalidValue, match="two different waypoints"):
-        arm_trajectory(free_world(), np.zeros((0, 6)), constraints=(None, OrientationConstraint(0.1)))
+        arm_trajectory(free_world(), np.zeros((0, 6)), constraints=OrientationConstraint(0.1))
 
 
 @pytest.mark.parametrize("blocked", [False, True])

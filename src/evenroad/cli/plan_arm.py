@@ -29,6 +29,7 @@ from evenroad.planning.request import Goal, Reading, Request
 from evenroad.roadmap import PlanResult
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.cartesian_line import CartesianLine
+from evenroad.robot.constraint import Constraint
 from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.robot_roadmap.static_scene import joined_scenes
@@ -61,10 +62,9 @@ def plan_arm(plan: PlanArm) -> int:
     planner = chosen_planner(plan, request) if kept is None else kept.within(world)
     load_compiled_code(request, planner)
 
-    straight, upright = constraints
-    options = Options(budget, not plan.raw, plan.seed, plan.certified, straight, upright)
+    options = Options(budget, not plan.raw, plan.seed, plan.certified, constraints)
     # An orientation constraint has a world of its own kind, with its own planner.
-    by = None if not wants_points(plan) and kept is None and upright is not None else planner
+    by = None if not wants_points(plan) and kept is None and plan.upright is not None else planner
     result, meshes = finished(request, solve(request, by, options), certified=plan.certified)
     more_rows, trajectory = trajectory_rows(plan, request, result, constraints)
     record = plan_record(result, _options(plan, request, result) | common_query(plan)) | {
@@ -140,7 +140,7 @@ def _goals(plan: PlanArm) -> list[Goal]:
     return goals
 
 
-def _constraints(plan: PlanArm) -> tuple[CartesianLine | None, OrientationConstraint | None]:
+def _constraints(plan: PlanArm) -> Constraint | None:
     """Return the constraints of the tip."""
     straight, upright = None, None
     if plan.straight is not None:
@@ -156,7 +156,7 @@ def _constraints(plan: PlanArm) -> tuple[CartesianLine | None, OrientationConstr
         )
     elif plan.upright_axis is not None:
         raise InvalidValue("--upright-axis goes with --upright")
-    return straight, upright
+    return straight & upright if straight and upright else straight or upright
 
 
 def _say_if_compiling(plan: PlanArm) -> None:

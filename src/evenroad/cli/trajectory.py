@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +15,7 @@ from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.planning.read_request import mesh_check
 from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult
-from evenroad.robot.cartesian_line import CartesianLine
-from evenroad.robot.orientation_constraint import OrientationConstraint
+from evenroad.robot.constraint import Constraint, with_tip
 
 _MOVEJ = ".movej.script"
 
@@ -57,7 +55,7 @@ def trajectory_rows(
     plan: PlanArm,
     request: Request,
     result: PlanResult,
-    constraints: tuple[CartesianLine | None, OrientationConstraint | None],
+    constraints: Constraint | None,
 ) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:
     """Write the trajectory of a solved plan; return rows for the table, and its record."""
     if not plan.trajectory:
@@ -69,8 +67,7 @@ def trajectory_rows(
     from evenroad.trajectory import arm_trajectory, limits_of
     from evenroad.trajectory.files import save_trajectories
 
-    world, tip = request.world, request.tip
-    straight, upright = (None if each is None else replace(each, tip=each.tip or tip) for each in constraints)
+    world = request.world
     joints = plan.controller_joints
     order = None if joints is None else [*map(str.strip, joints.split(","))]
     limits = limits_of(world.robot, plan.limits)
@@ -83,7 +80,7 @@ def trajectory_rows(
             deviation=plan.deviation,
             step=plan.step,
             rounded_by_controller=any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory),
-            constraints=(straight, upright),  # type: ignore[arg-type]
+            constraints=with_tip(constraints, request.tip),
         )
         meshes = mesh_check(request, trajectory.positions)
         if meshes is not None and meshes.verdict == "in collision":

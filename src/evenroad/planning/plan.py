@@ -16,7 +16,7 @@ from evenroad.planning.enclosed import with_reasons
 from evenroad.planning.prm import PRM
 from evenroad.planning.read_request import mesh_check, read_request
 from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request
-from evenroad.planning.tip_motion import plan_tip_motion, refused
+from evenroad.planning.tip_motion import TipMotion, refused
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import require_certified
@@ -26,8 +26,7 @@ from evenroad.roadmap.point_roadmap import Roadmap, WorldRoadmap
 from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.result import PlanResult, Status
 from evenroad.robot import ArmWorld
-from evenroad.robot.cartesian_line import CartesianLine
-from evenroad.robot.orientation_constraint import OrientationConstraint
+from evenroad.robot.constraint import Constraint
 from evenroad.robot.reference.validate import MeshCheck
 from evenroad.robot.scan import allowed_everywhere
 from evenroad.world import ShowsApart, World
@@ -41,8 +40,7 @@ class Options:
     smooth: Smooth = True
     rng: RngLike = 0
     certified: bool = False
-    straight: CartesianLine | None = None
-    upright: OrientationConstraint | None = None
+    constraints: Constraint | None = None
 
 
 def plan(
@@ -56,8 +54,7 @@ def plan(
     smooth: Smooth = True,
     rng: RngLike = 0,
     certified: bool = False,
-    straight: CartesianLine | None = None,
-    upright: OrientationConstraint | None = None,
+    constraints: Constraint | None = None,
     degrees: bool = False,
     tip: str = "",
     frame: str = "",
@@ -94,10 +91,8 @@ def plan(
     certified : bool
         Check once more that every motion is proved free throughout.  Where one is not, the status is
         ``not_certified``, and the message says which.
-    straight : CartesianLine, optional
-        How far an arm's tip moves in straight lines from its start and to its goal.
-    upright : OrientationConstraint, optional
-        Which axis of an arm's tip is to be upright along the whole path.
+    constraints : CartesianLine, OrientationConstraint, or both, optional
+        Constraints of an arm's tip; ``line & orientation`` holds both.
     degrees : bool
         Angles in texts are degrees.
     tip, frame : str
@@ -139,7 +134,7 @@ def plan(
     elif isinstance(planner, WorldRoadmap) and planner.world is not request.world:
         raise InvalidValue(f"a roadmap plans in its own world: give er.plan its .world, got {request.world!r}")
     budget = budget_of(planner, seconds, limits)
-    options = Options(budget, smooth, rng, certified, straight, upright)
+    options = Options(budget, smooth, rng, certified, constraints)
     return finished(request, solve(request, planner, options), certified=certified)[0]
 
 
@@ -159,11 +154,11 @@ def budget_of(planner: Planner | None, seconds: float | None, limits: Budget | M
 
 def solve(request: Request, planner: Planner | None, options: Options) -> PlanResult:
     """Plan a request; the path is free in its world."""
-    straight, upright, given = options.straight, options.upright, request.given
+    motion, given = TipMotion.of(options.constraints), request.given
     if given is not None and given.unreached:
         status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
         return replace(refused(request, status, given.unreached), timings={"goals": given.seconds})
-    apart = None if given is None else given.apart(request.world, straight=straight is not None)
+    apart = None if given is None else given.apart(request.world, straight=motion.line is not None)
 
     def plan_once(world: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
         budget, connector = options.budget, connector_of(world)
@@ -171,11 +166,9 @@ def solve(request: Request, planner: Planner | None, options: Options) -> PlanRe
         problem = Problem(world, start, goals, **how)  # type: ignore[arg-type]
         return with_reasons(world, (default_planner(world) if planner is None else planner).solve(problem))
 
-    if straight is None and upright is None:
+    if options.constraints is None:
         return plan_once(request.world, request.start, request.goals, options.smooth)
-    if not isinstance(request.world, ArmWorld):
-        raise InvalidValue(f"straight and upright speak of an arm's tip, got {request.world!r}")
-    return plan_tip_motion(request, straight, upright, plan_once, shorten=options.smooth)
+    return motion.plan(request, plan_once, options.smooth)
 
 
 def finished(request: Request, result: PlanResult, *, certified: bool = False) -> tuple[PlanResult, MeshCheck | None]:

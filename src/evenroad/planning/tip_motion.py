@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue
 from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult, Status
 from evenroad.roadmap.connector import Smooth
@@ -15,6 +16,7 @@ from evenroad.roadmap.result import make_result, require_start_and_goal
 from evenroad.robot import ArmWorld
 from evenroad.robot.cartesian_line import CartesianLine, Line, line_from
 from evenroad.robot.chain import Chain, chain_of, default_tip
+from evenroad.robot.constraint import Constraint, part_of
 from evenroad.robot.orientation_constraint import OrientationConstraint, OrientationWorld, orientation_world
 from evenroad.space.path import path_length
 from evenroad.world import World
@@ -37,29 +39,37 @@ def _chain(request: Request, tip: str) -> Chain:
     return chain_of(robot, tip or request.tip or default_tip(robot))
 
 
-def plan_tip_motion(
-    request: Request,
-    straight: CartesianLine | None,
-    upright: OrientationConstraint | None,
-    plan: PlanOnce,
-    *,
-    shorten: Smooth = True,
-) -> PlanResult:
-    """Plan with `plan` under the constraints of the tip, if there are any.
+@dataclass(frozen=True)
+class TipMotion:
+    """How an arm moves under constraints of its tip: along Cartesian lines, with an orientation, or both."""
 
-    Lines come first: the plan leads from the end of the line that leaves the start to the beginnings of those that lead
-    to goals.  The result holds the largest deviations, measured on fine grids.
-    """
-    if upright is None:
-        return _between_lines(request, straight, plan, request.world, shorten)
-    world = orientation_world(request.world, _chain(request, upright.tip), upright, request.start)
-    if (tilted := _tilted(request, world)) is not None:
-        return tilted
+    line: CartesianLine | None = None
+    orientation: OrientationConstraint | None = None
 
-    def plan_with_orientation(_: World, start: Floats, goals: Floats, shorten: Smooth) -> PlanResult:
-        return _through(world, plan(world, start, goals, False), shorten)
+    @classmethod
+    def of(cls, constraints: Constraint | None) -> TipMotion:
+        """Return the motion under these constraints; InvalidValue for what is no constraint."""
+        return cls(part_of(constraints, CartesianLine), part_of(constraints, OrientationConstraint))
 
-    return _between_lines(request, straight, plan_with_orientation, world, shorten)
+    def plan(self, request: Request, plan_once: PlanOnce, smooth: Smooth) -> PlanResult:
+        """Plan with `plan_once` under the constraints.
+
+        Lines come first: the plan leads from the end of the line at the start to the beginnings of the lines to goals.
+        The result has the largest deviations, measured on fine grids.
+        """
+        world = request.world
+        if not isinstance(world, ArmWorld):
+            raise InvalidValue(f"constraints are those of an arm's tip, got {world!r}")
+        if self.orientation is None:
+            return _between_lines(request, self.line, plan_once, world, smooth)
+        oriented = orientation_world(world, _chain(request, self.orientation.tip), self.orientation, request.start)
+        if (tilted := _tilted(request, oriented)) is not None:
+            return tilted
+
+        def plan_with_orientation(_: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
+            return _through(oriented, plan_once(oriented, start, goals, False), smooth)
+
+        return _between_lines(request, self.line, plan_with_orientation, oriented, smooth)
 
 
 def _tilted(request: Request, world: OrientationWorld) -> PlanResult | None:

@@ -13,6 +13,7 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose, Vector
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.chain import Chain
+from evenroad.robot.constraint import Constraint
 from evenroad.robot.inverse_kinematics import followed_from, task
 from evenroad.robot.pose_goal import as_axis
 
@@ -27,7 +28,7 @@ _LONGEST = 0.2
 
 
 @dataclass(frozen=True)
-class CartesianLine:
+class CartesianLine(Constraint):
     """Straight lines of a tip at constant rotation.
 
     Parameters

@@ -15,6 +15,7 @@ from evenroad.geometry.pose import Vector
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.cartesian_line import between, tilts
 from evenroad.robot.chain import Chain
+from evenroad.robot.constraint import Constraint
 from evenroad.robot.inverse_kinematics import solved_from
 from evenroad.robot.pose_goal import AXES, as_axis
 from evenroad.robot.tree_sequences import share_pairs
@@ -38,7 +39,7 @@ _TOGETHER = 64
 
 
 @dataclass(frozen=True)
-class OrientationConstraint:
+class OrientationConstraint(Constraint):
     """A constraint that keeps an axis of a link upright along the whole path.
 
     Parameters

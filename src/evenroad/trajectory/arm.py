@@ -13,9 +13,8 @@ from evenroad._arrays import Floats
 from evenroad._checks import as_batch, require_known, require_positive
 from evenroad.errors import InvalidValue, shown
 from evenroad.robot import ArmWorld, Robot, held_values, tip_links
-from evenroad.robot.cartesian_line import CartesianLine
+from evenroad.robot.constraint import Constraint
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of
 from evenroad.trajectory.tip_constraints import constrained_world
 from evenroad.trajectory.trajectory import DEVIATION, STEP, Trajectory, make_trajectory
@@ -32,7 +31,7 @@ def arm_trajectory(
     deviation: float = DEVIATION,
     step: float = STEP,
     rounded_by_controller: bool = False,
-    constraints: tuple[CartesianLine | None, OrientationConstraint | None] = (None, None),
+    constraints: Constraint | None = None,
 ) -> Trajectory:
     """Return the trajectory of an arm along a path, checked in its world as it is driven.
 
@@ -50,7 +49,7 @@ def arm_trajectory(
         As :func:`make_trajectory`.
     rounded_by_controller : bool
         Whether to compute the radii by which the controller may round corners, for ``.movej.script``.
-    constraints : pair of CartesianLine and OrientationConstraint, each may be None
+    constraints : CartesianLine, OrientationConstraint, or both, optional
         Those of the plan: the trajectory keeps them, too, within the same tolerances.
 
     Raises
@@ -65,7 +64,7 @@ def arm_trajectory(
     if len(waypoints) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
     waypoints = _turned_on(world, waypoints)
-    checked = constrained_world(world, waypoints, *constraints)
+    checked = constrained_world(world, waypoints, constraints)
     trajectory = make_trajectory(
         waypoints,
         within,

@@ -10,6 +10,7 @@ from evenroad._arrays import Bools, Floats
 from evenroad.robot import ArmWorld
 from evenroad.robot.cartesian_line import STEP, CartesianLine, between, line_at, misses
 from evenroad.robot.chain import Chain, chain_of, default_tip
+from evenroad.robot.constraint import Constraint, part_of
 from evenroad.robot.orientation_constraint import (
     FINE,
     OrientationConstraint,
@@ -75,14 +76,12 @@ class ConstrainedWorld:
         return np.asarray(missed.reshape(-1, FINE).any(axis=1))
 
 
-def constrained_world(
-    world: ArmWorld, path: Floats, straight: CartesianLine | None, upright: OrientationConstraint | None
-) -> ConstrainedWorld | ArmWorld:
+def constrained_world(world: ArmWorld, path: Floats, constraints: Constraint | None) -> ConstrainedWorld | ArmWorld:
     """Return the world in which a path, (p, dim), keeps its constraints, if any."""
-    if straight is None and upright is None:
+    if constraints is None:
         return world
-    within = None
+    within, upright = None, part_of(constraints, OrientationConstraint)
     if upright is not None:
         chain = chain_of(world.robot, upright.tip or default_tip(world.robot))
         within = orientation_world(world, chain, upright, path[0])
-    return ConstrainedWorld(world, path, straight, within)
+    return ConstrainedWorld(world, path, part_of(constraints, CartesianLine), within)
