@@ -75,6 +75,27 @@ def test_identifiers_speak_the_words_of_the_field(words):
         assert named == STILL_THERE.get(word, set()), f"the field says {FIELD[words]}"
 
 
+OUT = re.compile(
+    r"\b(?:asked|asks|told|verdicts?|whoever|so many|pockets?|dear(?:er|ly)?|today|questions?|hears?|sights?)\b"
+)
+"""Words that docstrings and comments say otherwise."""
+
+
+def notes(path):
+    """Yield each line of a module's docstrings and comments."""
+    with open(path, "rb") as source:
+        for token in tokenize.tokenize(source.readline):
+            if token.type == tokenize.COMMENT or (token.type == tokenize.STRING and token.string.startswith('"""')):
+                yield from token.string.splitlines()
+
+
+def test_docstrings_and_comments_speak_the_words_of_the_field():
+    # Their modules go with numba.
+    going = {"_clock.py", "_njit.py", "addresses.py", "reach.py"}
+    paths = [path for path in sorted(PACKAGE.rglob("*.py")) if path.name not in going]
+    assert [f"{path.name}: {line.strip()}" for path in paths for line in notes(path) if OUT.search(line)] == []
+
+
 def test_names_are_split_into_words():
     assert words_of("_ASK_GOALS") == ["ask", "goals"]
     assert words_of("KnownGraph2") == ["known", "graph"]

@@ -57,7 +57,7 @@ def leave_output() -> None:
 
 
 class LineProgress:
-    """A ``callback(step, steps[, best])`` that reports progress in lines, `every` so many seconds."""
+    """A ``callback(step, steps[, best])`` that reports progress in lines, `every` 10 seconds or so."""
 
     def __init__(self, title: str, report: Callable[[str], object], every: float = 10.0) -> None:
         self.title, self.report, self.every = title, report, every

@@ -93,7 +93,7 @@ class BrokenFile(EvenroadError, OSError):
 
 
 class Exhausted(EvenroadError, RuntimeError):
-    """A finite point set was asked for more points than it has."""
+    """A finite point set has fewer points left than requested."""
 
 
 class WorkerLost(EvenroadError, RuntimeError):

@@ -11,7 +11,7 @@ from evenroad.geometry.shapes import Capsule
 from evenroad.planning import Problem
 from evenroad.planning.connectors import PlainTrees
 from evenroad.planning.request import Request
-from evenroad.planning.tip_motion import plan_tip_motion
+from evenroad.planning.tip_motion import TipMotion
 from evenroad.planning.trees import solve_by
 from evenroad.roadmap import Budget
 from evenroad.roadmap.connector import Connection
@@ -43,7 +43,7 @@ def result(path, start=A, goals=(B,), index=0, status=Status.SOLVED, **more):
     (result([A, B], milestone_path=np.array([A, C])), "end"),
 ])  # fmt: skip
 def test_a_path_that_leads_elsewhere_is_a_fault_and_no_error_of_the_input(wrong, where):
-    with pytest.raises(AssertionError, match=f"does not {where} where it was asked to, but .* away") as raised:
+    with pytest.raises(AssertionError, match=f"does not {where} at its query, but .* away") as raised:
         require_start_and_goal(PLANE, wrong)
     assert not isinstance(raised.value, EvenroadError)
 
@@ -116,9 +116,9 @@ def test_what_lies_between_straight_lines_is_looked_at():
 
     asked = Request(world, np.array(start), np.array([goal]))
     astray = False
-    assert plan_tip_motion(asked, CartesianLine(approach=0.03), None, plan).solved
+    assert TipMotion(CartesianLine(approach=0.03)).plan(asked, plan, True).solved
     astray = True
-    refused(AssertionError, "does not start", plan_tip_motion, asked, CartesianLine(approach=0.03), None, plan)
+    refused(AssertionError, "does not start", TipMotion(CartesianLine(approach=0.03)).plan, asked, plan, True)
 
 
 def test_ends_of_joints_that_turn_for_ever_may_be_asked_for_after_any_turns():

@@ -105,5 +105,5 @@ def test_a_user_runs_both_contracts_from_a_file_of_their_own(tmp_path):
     run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert run.returncode == 1
     assert "1 failed" in run.stdout
-    assert "the contract needs both verdicts" in run.stdout
+    assert "the contract needs both results" in run.stdout
     assert "assert 400 < 400" in run.stdout

@@ -269,7 +269,7 @@ def test_a_function_of_one_configuration_needs_no_flag(name, d):
         assert np.array_equal(world.motion_valid(q, q[::-1]), told.motion_valid(q, q[::-1]))
         assert [world.valid(row) for row in q] == expected
     assert "one configuration at a time" in repr(world)
-    assert "once a batch" in world.explain(np.full(d, -0.01))
+    assert "once per batch" in world.explain(np.full(d, -0.01))
 
 
 def test_a_function_that_takes_both_is_asked_about_many():

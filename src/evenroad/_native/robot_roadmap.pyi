@@ -27,7 +27,7 @@ class SceneGraph:
     def insert(self, path: Floats) -> None: ...
 
 class Search:
-    """A search that asks for each check; `rules` are links of each terminal, greed, and the cost of a check."""
+    """A search that requests each check; `rules` are links of each terminal, greed, and the cost of a check."""
 
     path: Floats
     goal: int

@@ -21,8 +21,8 @@ ob = require_extra("ompl.base", "ompl", "evenroad.adapters.ompl")
 def ompl_space(space: Space) -> Any:
     """Return OMPL's state space of one of ours.
 
-    ``SE2`` and ``SE3`` become OMPL's own; joints that wrap become circles, those between them real vectors, side by
-    side; a map's rectangle becomes the box around it, outside of which the map's world calls nothing free.
+    ``SE2`` and ``SE3`` become OMPL's own.  Joints that wrap become circles, other joints real vectors.  A map's
+    rectangle becomes the box around it.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ Numbers = Sequence[float]
 
 @dataclass(frozen=True)
 class StateFormat:
-    """How many numbers a state of one OMPL space has, and how they are read and written, in our order."""
+    """Dimension of a state of one OMPL space, and functions that read and write its numbers in our order."""
 
     dim: int
     read: Callable[[Any], list[float]]
@@ -25,7 +25,7 @@ class StateFormat:
 
 
 def format_of(space: Any) -> StateFormat:
-    """Return how states of an OMPL space are read and written, or raise InvalidValue where we know no such space."""
+    """Return the format of states of an OMPL space, or raise InvalidValue for an unknown one."""
     make = _FORMATS.get(type(space).__name__)
     if make is None:
         known = ", ".join(sorted(_FORMATS))
@@ -103,7 +103,7 @@ _FORMATS: dict[str, Callable[[Any], StateFormat]] = {
 
 
 def _turned(angle: float) -> float:
-    """Return an angle in [-pi, pi), as OMPL has it; what is there already is not rounded."""
+    """Return an angle in [-pi, pi), OMPL's range; angles in it are not rounded."""
     if -math.pi <= angle < math.pi:
         return angle
     turned = (angle + math.pi) % (2.0 * math.pi) - math.pi

@@ -1,6 +1,6 @@
 """Klamp't's robots for our planners, our worlds and points for Klamp't's, and motions both ways; extra ``klampt``.
 
-A robot's configuration in Klamp't has one number for each link, ours one for each joint that is planned for.
+A configuration in Klamp't has one number per link, ours one per planned joint.
 """
 
 from __future__ import annotations
@@ -32,21 +32,21 @@ _motions = require_extra("klampt.model.trajectory", "klampt", "evenroad.adapters
 
 @dataclass(frozen=True, eq=False)
 class KlamptWorld(TestedAtStates):
-    """A robot in a world of Klamp't's, as Klamp't checks it, for our planners.
+    """A robot in a world of Klamp't, with Klamp't's checks, for our planners.
 
-    Free is what touches neither itself, as far as Klamp't tests its pairs of links, nor terrains, rigid objects and
-    other robots where they are now.  Klamp't's bodies are surfaces: what is wholly inside of one does not touch it.
+    The robot is free if it touches neither itself, in the pairs of links that Klamp't tests, nor terrains, rigid
+    objects and other robots.  Klamp't's bodies are surfaces: a body wholly inside another does not touch it.
 
     Parameters
     ----------
     model : klampt.WorldModel
-        With the robot in it.  While it is asked the robot stands elsewhere; it is put back.
+        A world with the robot.  Checks move the robot, and put it back.
     robot : int or str
-        Its number or name.
+        Number or name of the robot.
     links : sequence of str, optional
-        Links whose joints are planned for; default: all with a driver of their own.  The others stay where they are.
+        Links whose joints are planned for; default: all with a driver of their own.  The others do not move.
     resolution : float
-        Of motions [rad or m]: states no farther apart are checked.
+        Largest distance between checked states of a motion [rad or m].
 
     Raises
     ------
@@ -100,7 +100,7 @@ class KlamptWorld(TestedAtStates):
 
     @property
     def proof(self) -> str:
-        """What a verdict on a motion shows: states close together."""
+        """Proof of a motion: states close together."""
         return self._states.proof
 
     def validate(self, path: Floats) -> Bools:
@@ -125,13 +125,13 @@ def plan_on_points(
     Parameters
     ----------
     world : World
-        Any; its verdicts on places and motions are what Klamp't is told.
+        The world that checks configurations and motions.
     start, goal : array_like, shape (dim,)
         Configurations.
     points : PointSet, or array_like, shape (n, dim)
         Points of the cube, or configurations.
     knn : int
-        Neighbours that Klamp't tries to join each milestone to, >= 1.
+        Number of neighbours that Klamp't tries to join each milestone to, >= 1.
     """
     if isinstance(points, PointSet):
         points = world.space.from_cube(points.points)
@@ -154,8 +154,8 @@ def plan_on_points(
 def cspace_of(world: World, points: PointSet | npt.ArrayLike) -> Any:
     """Return our world as a ``klampt.plan.cspace.CSpace``, for ``MotionPlan``; ``close()`` it afterwards.
 
-    Verdicts, metric and motions are ours; samples are the points in their order.  A planner that wants more of them
-    gets the error :class:`evenroad.errors.Exhausted`.
+    Checks, metric and motions are ours; samples are the points in order.  A planner that samples more of them raises
+    :class:`evenroad.errors.Exhausted`.
     """
     return _OurSpace(world, points)
 
@@ -166,12 +166,11 @@ def klampt_motion(robot: Any, motion: Trajectory | npt.ArrayLike, of: Robot | Se
     Parameters
     ----------
     robot : klampt.RobotModel
-        Whose links it moves; the others stay where they are now.
+        Robot whose links it moves; its other links do not move.
     motion : Trajectory, or array_like, shape (p, dim)
         A path's waypoints get the times 0, 1, 2, ...
     of : Robot, or sequence of str
-        Our robot, whose held joints and mimics are placed, too; or the link that each number moves, as
-        :attr:`KlamptWorld.links`.
+        Our robot, with held joints and mimics; or the link of each number, as :attr:`KlamptWorld.links`.
     """
     timed = isinstance(motion, Trajectory)
     q = as_batch("motion", motion.positions if timed else motion, len(_moved(of)))  # type: ignore[union-attr]
@@ -192,7 +191,7 @@ def motion_of(motion: Any, of: Robot | Sequence[str]) -> tuple[Floats, Floats]:
 
 
 class _OurSpace(_cspace.CSpace):  # type: ignore[name-defined]
-    """A world of ours as Klamp't asks it."""
+    """A CSpace of our world."""
 
     def __init__(self, world: World, points: PointSet | npt.ArrayLike) -> None:
         super().__init__()
@@ -219,7 +218,7 @@ class _OurSpace(_cspace.CSpace):  # type: ignore[name-defined]
     def sample(self) -> list[float]:
         for configuration in self._rest:
             return configuration
-        raise Exhausted("Klamp't's planner asks for more points than it was given")
+        raise Exhausted("Klamp't's planner samples more points than it was given")
 
 
 def _moved(of: Robot | Sequence[str]) -> Sequence[str]:

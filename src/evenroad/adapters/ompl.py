@@ -1,7 +1,7 @@
 """OMPL's planners on our worlds and points, and our planners on OMPL's spaces and checkers; extra ``ompl``.
 
 OMPL's metric of several parts is always a weighted sum, and its real vectors have no weights: neighbours may differ
-from ours, verdicts and motions do not.
+from ours, results of checks and motions do not.
 """
 
 from __future__ import annotations
@@ -32,28 +32,28 @@ og = require_extra("ompl.geometric", "ompl", "evenroad.adapters.ompl")
 
 
 def space_information(world: World) -> Any:
-    """Return OMPL's SpaceInformation of our world, set up: its verdicts on states and on motions are the world's.
+    """Return OMPL's SpaceInformation of our world, set up: the world checks its states and motions.
 
-    So a planner of OMPL's plans with whatever the world shows, for maps and arms without gaps between states.  OMPL
-    asks for one state at a time; points are asked about in one batch by :func:`plan_on_points` and `give_points`.
+    So motions of OMPL's planners have the world's proof, for maps and arms without gaps between states.  OMPL checks
+    one state at a time; :func:`plan_on_points` and :func:`give_points` check points in one batch.
     """
     return _Information(world)
 
 
 def give_points(information: Any, points: PointSet | npt.ArrayLike) -> GivenStates:
-    """Make OMPL's PRM, PRM* and whoever takes valid states take ours, one after the other, and return their sampler.
+    """Make OMPL's PRM, PRM* and other planners that sample valid states take ours in order, and return the sampler.
 
     Parameters
     ----------
     information : ompl.base.SpaceInformation
-        Of :func:`space_information`, or anyone's with a space that :func:`space_of` knows.
+        That of :func:`space_information`, or another with a space that :func:`space_of` knows.
     points : PointSet, or array_like, shape (n, dim)
-        Points of the cube, or configurations.  Those that are not free are left out, asked about in one batch.
+        Points of the cube, or configurations; those that are not free are left out.
 
     Notes
     -----
-    A set ends: then the sampler has nothing more, and ``used_up`` is True.  ``planner.solve(seconds)`` goes on until
-    its time is over, and PRM adds places of its own; :func:`plan_on_points` grows a PRM of the points alone.
+    After the last point ``used_up`` is True.  ``planner.solve(seconds)`` goes on until its time is over, and PRM adds
+    configurations of its own; :func:`plan_on_points` grows a PRM of the points alone.
     """
     world = information.world if isinstance(information, _Information) else OmplWorld(information)
     if isinstance(points, PointSet):
@@ -62,22 +62,22 @@ def give_points(information: Any, points: PointSet | npt.ArrayLike) -> GivenStat
         configurations = as_batch("points", points, world.space.dim)
     sampler = GivenStates(information, configurations[world.valid(configurations)])
     information.setValidStateSamplerAllocator(lambda _: sampler)
-    # OMPL takes that for unfinished.
+    # OMPL requires another setup.
     information.setup()
     return sampler
 
 
 def solve(planner: Any, start: npt.ArrayLike, goals: npt.ArrayLike, seconds: float = 10.0) -> Floats | None:
-    """Ask a planner of OMPL's for a path, (p, dim), from the start, (dim,), to a goal, (dim,) or (g, dim); or None.
+    """Return the path, (p, dim), of a planner of OMPL from the start, (dim,), to a goal, (dim,) or (g, dim); or None.
 
     Parameters
     ----------
     planner : ompl.base.Planner
-        As ``ompl.geometric.RRTConnect(space_information(world))``; its settings are kept.
+        Such as ``ompl.geometric.RRTConnect(space_information(world))``, with its settings.
     start, goals : array_like
         Configurations.
     seconds : float
-        As long as OMPL may take, > 0.  A path that ends elsewhere than at a goal is none.
+        Time limit of OMPL, > 0.
     """
     seconds = require_positive("seconds", seconds)
     information = planner.getSpaceInformation()
@@ -107,7 +107,7 @@ def plan_on_points(
 ) -> Floats | None:
     """Grow OMPL's PRM on start, goals and the points alone, and return its shortest path, (p, dim), or None.
 
-    OMPL joins each milestone to those before it, so the ends, which come first, are neighbours of many.
+    OMPL joins each milestone to those before it, so start and goals, which come first, are neighbours of many.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def plan_on_points(
     rest = own.from_cube(points.points) if isinstance(points, PointSet) else points
     sampler = give_points(information, np.vstack([terminals, as_batch("points", rest, space.dim)]))
     planner = og.PRM(information) if planner is None else planner
-    # OMPL's PRM wants a problem before it is set up, and asks nothing of it while it grows.
+    # OMPL's PRM needs a problem for its setup, and does not use it while it grows.
     planner.setProblemDefinition(ob.ProblemDefinition(information))
     planner.setup()
     planner.growRoadmapPtc(ob.PlannerTerminationCondition(lambda: sampler.used_up))
@@ -153,14 +153,14 @@ def path_of(information: Any, path: Any) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class OmplWorld:
-    """What an OMPL SpaceInformation calls free, as a world for our planners; its space is that of :func:`space_of`.
+    """The world of an OMPL SpaceInformation, for our planners; its space is that of :func:`space_of`.
 
-    A motion is free where OMPL's motion validator says so and both of its ends are; the validator of its own looks at
+    A motion is free if OMPL's motion validator says so and both endpoints are free.  OMPL's default validator checks
     states, ``setStateValidityCheckingResolution`` apart.
     """
 
     proof: ClassVar[str] = "resolution"
-    """Nothing more is known of a validator of others."""
+    """The proof of motions: nothing more is known of OMPL's validators."""
 
     information: Any
     space: Space = field(init=False)
@@ -188,7 +188,7 @@ class OmplWorld:
         free[free] = self.valid(second[free])
         one, other = self.information.allocState(), self.information.allocState()
         for i in np.flatnonzero(free):
-            # States are rounded: in a fixed order a motion and its reverse are judged alike.
+            # States are rounded: in a fixed order a motion and its reverse have one result.
             low, high = sorted((first[i].tolist(), second[i].tolist()))
             self._format.write(one, low)
             self._format.write(other, high)
@@ -197,7 +197,7 @@ class OmplWorld:
 
 
 class GivenStates(ob.ValidStateSampler):  # type: ignore[name-defined]
-    """Hands out free configurations, (n, dim), in their order, and then nothing; `used_up` says so."""
+    """Returns free configurations, (n, dim), in order, until they are `used_up`."""
 
     def __init__(self, information: Any, configurations: Floats) -> None:
         super().__init__(information)
@@ -206,11 +206,11 @@ class GivenStates(ob.ValidStateSampler):  # type: ignore[name-defined]
 
     @property
     def used_up(self) -> bool:
-        """Whether all have been handed out."""
+        """Whether all have been returned."""
         return self._next >= len(self._configurations)
 
     def sample(self, state: Any) -> bool:
-        """Write the next one into a state of OMPL's, or return False."""
+        """Write the next one into an OMPL state, or return False."""
         if self.used_up:
             return False
         self._write(state, self._configurations[self._next])
@@ -218,12 +218,12 @@ class GivenStates(ob.ValidStateSampler):  # type: ignore[name-defined]
         return True
 
     def sampleNear(self, state: Any, near: Any, distance: float) -> bool:
-        """Return False: a set of points has no place that was asked for."""
+        """Return False: a set of points cannot be sampled near a state."""
         return False
 
 
 class _Information(ob.SpaceInformation):  # type: ignore[name-defined]
-    """A SpaceInformation that knows the world it was made of."""
+    """A SpaceInformation with the world it was made of."""
 
     def __init__(self, world: World) -> None:
         space = ompl_space(world.space)
@@ -236,7 +236,7 @@ class _Information(ob.SpaceInformation):  # type: ignore[name-defined]
 
 
 class _Motions(ob.MotionValidator):  # type: ignore[name-defined]
-    """Motions as a world judges them."""
+    """Checks motions in a world."""
 
     def __init__(self, information: Any, world: World, read: Callable[[Any], list[float]]) -> None:
         super().__init__(information)
@@ -256,10 +256,7 @@ def _as_goals(goals: npt.ArrayLike, dim: int) -> Floats:
 
 
 def _shortest(space: Space, data: Any, states: StateFormat, terminals: Floats) -> Floats | None:
-    """Return the shortest path over OMPL's roadmap from the first of the ends to any other, or None.
-
-    OMPL's data leave milestones without edges out.
-    """
+    """Return the shortest path over OMPL's roadmap from the start to a goal, the rows of `terminals`, or None."""
     configurations = [tuple(states.read(data.getVertex(v).getState())) for v in range(data.numVertices())]
     scratch = data.getSpaceInformation().allocState()
     numbers = []

@@ -87,7 +87,7 @@ class PlanDisk(PlanOptions):
     csv: bool = False
     """Also write the path as OUT.csv."""
     guarantees: bool = False
-    """Print the roadmap's certificate: the clearance from which it has a path wherever one exists, and the largest
+    """Print the roadmap's certificate: the clearance from which it has a path if one exists, and the largest
     length of its path.  With points; the sampler cover guarantees most."""
 
 

@@ -28,7 +28,7 @@ from evenroad.robot_roadmap.static_scene import require_same_robot
 class MakeRoadmap(RobotOptions):
     """Make a roadmap for an arm in its cell: milestones and motions that touch neither the arm itself nor the cell.
 
-    It is made once, in some seconds, and serves every scene of that cell: evenroad plan today.yaml --roadmap FILE.
+    It is made once, in some seconds, and serves every scene of that cell: evenroad plan scene.yaml --roadmap FILE.
     """
 
     robot: tyro.conf.Positional[str]

@@ -19,7 +19,7 @@ VERBS = {
     "plan": ("evenroad.cli.plan:PlanDisk", "a path for a disk on a map, or for an arm in a scene (--robot)"),
     "roadmap": ("evenroad.cli.roadmap:MakeRoadmap", "a roadmap for one arm in its cell, good for every scene"),
     "view": ("evenroad.cli.view:View", "an arm, its scene and its path in the browser, or as a GIF"),
-    "send": ("evenroad.cli.send:Send", "a trajectory to a UR arm; a dry run unless told otherwise"),
+    "send": ("evenroad.cli.send:Send", "a trajectory to a UR arm; a dry run without --go"),
     "points": ("evenroad.cli.points:Points", "write a point set: shipped or constructed"),
     "measure": ("evenroad.cli.measure:Measure", "print every measure of a point set"),
     "certify": ("evenroad.cli.certify:Certify", "what a roadmap guarantees in every world, in every dimension"),
@@ -47,7 +47,7 @@ evenroad {__version__}: point sets that make sampling-based motion planners need
 
 Exit codes: 0 solved / done, 1 any other answer (no path), 2 bad input, 70 internal error, 130 interrupted.
 
-verbs (evenroad VERB --help tells of its options):
+verbs (evenroad VERB --help lists its options):
 """
 
 

@@ -100,21 +100,21 @@ class View(RobotOptions):
             goal = self.start if self.goal is None else self.goal
             request = arm_request(self.robot, self.world, self.start, goal, Reading(), **options)
             return request, self._planned(request)
-        result, asked = load_plan(self.world)
-        robot: Any = self.robot or asked.get("robot")
-        kept = asked.get("roadmap")
-        if not isinstance(robot or kept, str) or not isinstance(asked.get("scene"), str):
+        result, query = load_plan(self.world)
+        robot: Any = self.robot or query.get("robot")
+        kept = query.get("roadmap")
+        if not isinstance(robot or kept, str) or not isinstance(query.get("scene"), str):
             raise InvalidValue(f"{self.world} is not the plan of an arm: it names no robot and scene")
-        _require_sound(self.world, asked)
+        _require_sound(self.world, query)
         for name in FILES:
-            options[name] = options[name] or asked.get(name) or options[name]
-        options["group"] = options["group"] or ",".join(asked["joints"])
-        scene = load_scene(asked["scene"])
+            options[name] = options[name] or query.get(name) or options[name]
+        options["group"] = options["group"] or ",".join(query["joints"])
+        scene = load_scene(query["scene"])
         if kept is not None:
             roadmap = load_arm_roadmap(kept)
             scene = joined_scenes(roadmap.scene, scene)
             robot, options = (roadmap.robot, {}) if robot is None else (robot, options)
-        request = arm_request(robot, scene, result.start, list(result.goals), Reading(held=asked["held"]), **options)
+        request = arm_request(robot, scene, result.start, list(result.goals), Reading(held=query["held"]), **options)
         if self.n is not None:
             result = self._planned(request)
         return request, result
@@ -124,13 +124,13 @@ class View(RobotOptions):
         return solve(request, planner, Options(Budget(seconds=SECONDS)))
 
 
-def _require_sound(file: Path, asked: dict[str, Any]) -> None:
+def _require_sound(file: Path, query: dict[str, Any]) -> None:
     """Raise BrokenFile where a plan does not describe its robot as `evenroad plan` does."""
     kinds = {"joints": list, "held": dict, **FILES}
-    sound = all(isinstance(asked.get(name), kind) for name, kind in kinds.items())
+    sound = all(isinstance(query.get(name), kind) for name, kind in kinds.items())
     if sound:
-        pairs = [*(asked.get("packages") or {}).values(), *(asked.get("arguments") or {}).values()]
-        sound = all(isinstance(text, str) for text in (*asked["joints"], *pairs))
-        sound &= all(isinstance(value, int | float) for value in asked["held"].values())
+        pairs = [*(query.get("packages") or {}).values(), *(query.get("arguments") or {}).values()]
+        sound = all(isinstance(text, str) for text in (*query["joints"], *pairs))
+        sound &= all(isinstance(value, int | float) for value in query["held"].values())
     if not sound:
         raise BrokenFile(f"{file} is a damaged plan: of its robot's joints, held joints or files")

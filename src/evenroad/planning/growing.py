@@ -113,7 +113,7 @@ class _Growth:
         attempt, terminals = self.attempt, len(self.attempt.start_and_goals)
         samples = attempt.world.space.from_cube(points.points[self.drawn :])
         valid = attempt.valid(samples)
-        # Names of nodes: start and goals are the first, point i comes so many later.
+        # Names of nodes: start and goals first, then the points.
         self.names = np.concatenate([self.names, terminals + self.drawn + np.flatnonzero(valid)])
         self.milestones = np.concatenate([self.milestones, samples[valid]])
         self.drawn = points.n

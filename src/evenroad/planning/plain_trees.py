@@ -71,8 +71,8 @@ def grow_trees(
         begin = len(own.nodes)
         own.add(new[free], near[free])
         for node in range(begin, len(own.nodes)):
-            reached, asked = _reach(world, other, own.nodes[node], step, most_motions - motions)
-            motions += asked
+            reached, checked = _reach(world, other, own.nodes[node], step, most_motions - motions)
+            motions += checked
             if reached >= 0:
                 branches = own.branch(node)[::-1], other.branch(reached)
                 path = np.concatenate([own.nodes[branches[0]], other.nodes[branches[1]]])
@@ -94,13 +94,13 @@ def _samples(world: World, n: int, variant: int) -> Floats:
 def _reach(world: World, tree: _Tree, target: Floats, step: float, most: int) -> tuple[int, int]:
     """Grow a tree towards a configuration, (dim,); return its node there, or -1, and the number of checks."""
     node = int(tree.nearest(world, target[np.newaxis])[0])
-    for asked in range(min(MOST_STEPS, max(most, 0))):
+    for checked in range(min(MOST_STEPS, max(most, 0))):
         here = tree.nodes[node : node + 1]
         if (here[0] == target).all():
-            return node, asked
+            return node, checked
         new = _towards(world, here, target[np.newaxis], step)
         if not world.motion_valid(here, new)[0]:
-            return -1, asked + 1
+            return -1, checked + 1
         tree.add(new, np.array([node]))
         node = len(tree.nodes) - 1
     return (node if (tree.nodes[node] == target).all() else -1), MOST_STEPS

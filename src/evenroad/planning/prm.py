@@ -54,9 +54,9 @@ class PRM:
     ------
     InvalidValue
         If both `k` and `rule` are given, points are of another dimension than the space, an edge costs less than its
-        length, or a certificate is asked for with `edge_cost` or `success_only`.
+        length, or `certify` is given with `edge_cost` or `success_only`.
     NotAvailable
-        If a certificate is asked for where the metric is not flat.
+        With `certify` where the metric is not flat.
     UnknownName
         If there is no such search.
 
@@ -102,8 +102,8 @@ class PRM:
 class FMT:
     """A tree over points that grows outwards in the order of cost: FMT* (Janson et al. 2015).
 
-    Each milestone is joined to the tree over the neighbour that would be best if nothing were in the way, and only that
-    motion is checked.  So the tree is nearly the shortest one, for about one check a milestone.  It can miss a path
+    Each milestone is joined to the tree over the neighbour that would be best without obstacles, and only that motion
+    is checked.  So the tree is nearly the shortest one, for about one check a milestone.  It can miss a path
     that :class:`PRM` finds with the same points.  Without a path, the count ``start_component`` is the size of the
     tree.  Errors are those of :class:`PRM`.
 

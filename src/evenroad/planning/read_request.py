@@ -51,7 +51,7 @@ def read_request(
 ) -> Request:
     """Return world, start and goals, as far as they can be read; parameters and errors as :func:`evenroad.plan`."""
     if isinstance(world, str | os.PathLike):
-        # The radius tells a map from a scene: their names and suffixes are the same.
+        # The radius distinguishes a map from a scene, whose names and suffixes are the same.
         if "radius" in of_world:
             world = load_map(world, unknown_is_free=of_world.pop("unknown_is_free", False))
         elif "robot" not in of_world:

@@ -16,8 +16,8 @@ to it than delta are free.
     the inner endpoints adds at most 2 beta.  (The proof is that of Tsao, Solovey and Pavone 2020, for any l.)
     or goal that is tried with its nearest milestone only adds beta more, as does that milestone.
 
-The same holds on a torus while no motion is longer than half a turn.  Nothing is asked of the space's shape but that
-it is a box: the faces are no obstacles, and a chord of two of its points stays inside.
+The same holds on a torus while no motion is longer than half a turn.  The space is a box: the faces are no obstacles,
+and a chord of two of its points stays inside.
 """
 
 from __future__ import annotations

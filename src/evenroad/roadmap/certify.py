@@ -131,7 +131,7 @@ def _box_of(space: Space) -> tuple[Floats, Bools]:
 
 
 def _half_turn(space: Space) -> float:
-    """Return the length from which on a motion may lead the other way round; inf where nothing wraps."""
+    """Return the length from which a motion may lead in the other direction; inf where nothing wraps."""
     sides, wrapping = _box_of(space)
     return 0.5 * SAFE * float(sides[wrapping].min(initial=math.inf))
 
@@ -145,7 +145,7 @@ def _by_neighbours(
     goals: int,
     turn: float,
 ) -> Certificate:
-    """Return the certificate of the k nearest, symmetrised, among whatever milestones are valid, start and goals.
+    """Return the certificate of the k nearest, symmetrised, among the valid milestones, start and goals.
 
     A milestone x has y among its k nearest if fewer than k others are as near: k - 2 - goals milestones, the start and
     the goals.  So a pair is tried if it is nearer than the (k - goals)-th milestone is to one of the two.  For a

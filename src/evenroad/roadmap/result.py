@@ -79,7 +79,7 @@ class PlanResult(ResultMethods):
         ``goal_invalid``: all goals are.  ``start_outside_limits``, ``goal_outside_limits``: outside of the space, by a
         joint's limits or a map's; the message says whose.  ``goal_unreachable``: no configuration was found for a pose.
         ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.  ``not_certified``: a
-        proof was asked for, and the path is free only at states tested.
+        proof was requested, and the path is free only at states tested.
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start, goals : ndarrays, shapes (dim,) and (g, dim)
@@ -208,15 +208,15 @@ def require_start_and_goal(space: Space, result: PlanResult) -> PlanResult:
     for path in (result.path, result.milestone_path):
         if path is None:
             continue
-        for name, configuration, asked in (("start", path[0], result.start), ("end", path[-1], result.goal)):
+        for name, configuration, wanted in (("start", path[0], result.start), ("end", path[-1], result.goal)):
             # Most are equal numbers, which is ten times as fast to test.
-            if configuration.tolist() == asked.tolist():
+            if configuration.tolist() == wanted.tolist():
                 continue
             finite = np.isfinite(configuration).all()
-            away = float(space.distance(configuration[np.newaxis], asked[np.newaxis])[0]) if finite else math.inf
-            if not away <= NEAR * max(1.0, float(np.abs(asked).max())):
+            away = float(space.distance(configuration[np.newaxis], wanted[np.newaxis])[0]) if finite else math.inf
+            if not away <= NEAR * max(1.0, float(np.abs(wanted).max())):
                 raise AssertionError(
-                    f"the path that was found does not {name} where it was asked to, but {away:.3g} away:"
+                    f"the path that was found does not {name} at its query, but {away:.3g} away:"
                     " this is a fault of evenroad's, please report it"
                 )
     return result

@@ -81,7 +81,7 @@ class ResultMethods:
         UnknownName
             For another suffix.
         InvalidValue
-            If waypoints are asked for where there is no path.
+            For a ``.csv`` without a path.
         BrokenFile
             If the file cannot be written.
 

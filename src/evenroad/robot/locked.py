@@ -1,8 +1,8 @@
 """Infeasibility proofs for arms: the first joints alone cannot pass from start to goal.
 
-The first joints move the first links, whatever the others do.  Their ranges are divided into cells.  A cell is blocked
-throughout if its middle is, with bodies thinner by the movement within half a cell and by the excess of the spheres of
-the check.  The free cells form components, and no path leaves the component that it starts in.
+The first joints move the first links, for any values of the others.  Their ranges are divided into cells.  All of a
+cell is blocked if its middle is, with bodies thinner by the movement within half a cell and by the excess of the
+check's spheres.  The free cells form components, and no path leaves the component that it starts in.
 """
 
 from __future__ import annotations

@@ -40,7 +40,7 @@ def contacts_of(mujoco: Any, model: Any, drawn: Sequence[int]) -> Contacts:
 
     Geoms of one body, or of bodies without a joint between them, do not; nor those of a body and its parent, unless
     that stands in the world; nor those of excluded bodies, or of types and affinities without a common bit.  Pairs that
-    the file names collide, whatever else it says.
+    the file names collide in any case.
     """
     body = model.geom_bodyid
     types, affinities = (

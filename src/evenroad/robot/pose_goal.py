@@ -116,7 +116,7 @@ def pose_of(text: str, *, degrees: bool = False) -> tuple[Pose, bool]:
     """Return the pose of a text or numbers, and whether it has a rotation.
 
     ``x y z``, ``x y z roll pitch yaw`` (`degrees` or radians) or ``x y z qx qy qz qw`` [m], as ROS has them.  Raises
-    InvalidValue if these are not so many finite numbers, or the quaternion is not of norm 1 up to 0.001.
+    InvalidValue for another number of finite numbers, or if the quaternion is not of norm 1 up to 0.001.
     """
     row = as_numbers("a goal pose", text, (3, 6, 7))
     xyz, rest = row[:3], row[3:]

@@ -61,7 +61,7 @@ class RobotMethods:
         Raises
         ------
         InvalidValue
-            If it is not so many finite numbers, or a text has a value outside of the limits.
+            If it has another number of finite numbers, or a text has a value outside of the limits.
         UnknownName
             If there is no such state or joint.
 

@@ -83,7 +83,7 @@ class Obstacle:
         if getattr(body, "kind", None) not in kinds:
             raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(kinds)}, got a {body}")
         if isinstance(body, Mesh):
-            # Read now: a file may change, or be gone, before its triangles are asked for.
+            # Read now: a file may change, or be gone, before its triangles are used.
             body = replace(body, source=body.triangles, scale=(1.0, 1.0, 1.0))
         if body.link:
             raise InvalidValue(f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}")
@@ -238,7 +238,7 @@ class Scene:
             raise InvalidValue(f"obstacles of scene {self.name!r} must have names of their own, twice: {twice}")
 
     def fingerprint(self) -> str:
-        """Return the SHA-256 (hex) of what decides verdicts: obstacles and allowed contacts, in whatever order."""
+        """Return the SHA-256 (hex) of what decides results: obstacles and allowed contacts, in any order."""
         rows = set()
         for each in self.obstacles:
             numbers = (*each.size, *each.xyz, *each.rotation)

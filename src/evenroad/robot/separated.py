@@ -44,7 +44,7 @@ Tries = Sequence[tuple[int, tuple[float, ...], int]]
 
 
 class InScene(Protocol):
-    """What is asked of an arm's world."""
+    """The parts of an arm's world that proofs use."""
 
     @property
     def robot(self) -> Robot: ...  # noqa: D102
@@ -56,7 +56,7 @@ class InScene(Protocol):
     def clearance(self) -> float: ...  # noqa: D102
 
     def with_bodies(self, robot: Robot) -> Callable[[Floats], Bools]:
-        """Return what tells of configurations, (n, dim), which are free for a robot with other bodies."""
+        """Return a check of configurations, (n, dim), for a robot with other bodies."""
 
 
 def apart(
@@ -68,11 +68,10 @@ def apart(
     quickly: bool = False,
     whole: bool = True,
 ) -> Apart | None:
-    """Return what shows that no path leads from a start, (dim,), to any of the goals, (g, dim), or None.
+    """Return the reason why no path leads from a start, (dim,), to any of the goals, (g, dim), or None.
 
-    It is proved where bodies inside of the robot's true shapes show it, of all postures that reach the `poses`.  The
-    goals are those that were found for them, and others that were asked for; where there are yet others that nobody
-    listed, they are not the `whole`.
+    It is proved where it holds for bodies inside the robot's true shapes and all postures that reach the `poses`.  The
+    goals are postures found for these, and given ones; they are not the `whole` where there may be others.
     """
     robot, tries = world.robot, QUICK if quickly else THOROUGH
     tasks = [task_of(robot, goal) for goal in poses]
@@ -155,7 +154,7 @@ def _is_walled(bodies: Bodies, goal: Floats, start: Floats, reach: tuple[float, 
 
 
 def is_beyond(piece: Piece, chain: Chain, task: Floats) -> bool:
-    """Return whether no posture in a piece brings a tip to a pose, wherever the other joints are.
+    """Return whether no posture in a piece brings a tip to a pose, for all values of the other joints.
 
     The first joints place the next one's axis; from there the tip is no farther than the links are long, and no nearer
     than one of them is longer than all others.

@@ -83,7 +83,7 @@ _MISSING = {
 
 @dataclass(frozen=True)
 class _Model:
-    """What the URDF has, and what was asked for that it lacks."""
+    """Names of the URDF, and requested ones that it lacks."""
 
     urdf: Urdf
     virtual: frozenset[str]

@@ -19,7 +19,7 @@ from evenroad.robot.scene import Scene, limits_in_words
 from evenroad.space.joints import SLACK
 
 _PAIR = re.compile(r"[\s,]*([^=,]*?)\s*=\s*([^\s,=]*)")
-"""``name=value``, the name with whatever blanks it has."""
+"""Pattern of ``name=value``; names may have blanks."""
 
 
 def named_states(robot: Robot, scene: Scene | None = None) -> dict[str, dict[str, float]]:
@@ -126,7 +126,7 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
 def as_configuration(
     robot: Robot, q: npt.ArrayLike | Mapping[str, float] | str, scene: Scene | None = None, *, name: str = "q"
 ) -> Floats:
-    """Return a configuration, (dim,) [rad or m], from whatever people have one in; `name` is what errors call it.
+    """Return a configuration, (dim,) [rad or m], from a text, a mapping or numbers; `name` names it in errors.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def as_configuration(
         Numbers in the order of the group; or joint -> value, where joints that are left out are at 0, or the nearest to
         it within limits; or a text as :func:`configuration` takes it.
 
-    Raises as :func:`configuration` of texts; InvalidValue for what is not so many finite numbers, and for a joint
+    Raises as :func:`configuration` of texts; InvalidValue for another number of finite numbers, and for a joint
     outside of the group elsewhere than where the robot holds it; UnknownName for a joint that is not there.  Numbers
     and mappings may be outside of the limits.
     """

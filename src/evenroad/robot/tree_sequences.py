@@ -13,7 +13,7 @@ _SAMPLES = 2048
 _STEPS = 2048
 _PAIRS = 96
 _MANY = 8
-"""From so many dimensions on nearly all of a ball lies at its surface: lengths are spread otherwise."""
+"""Dimension from which nearly all of a ball lies at its surface, and lengths are spread otherwise."""
 _SHORTEST = 0.1
 """Of these lengths, as a share of the radius."""
 

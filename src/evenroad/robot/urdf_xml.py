@@ -124,7 +124,7 @@ def read_xml(path: Path, what: str, kind: str, tag: str = "robot") -> Element:
 
 
 def _parsed(content: bytes, path: Path) -> Element:
-    """Return the root of XML as other readers of URDFs take it: whatever prefixes, and blanks at both ends."""
+    """Return the root of XML as other readers of URDFs take it: with any prefixes, and blanks around it."""
     builder, parser = TreeBuilder(), expat.ParserCreate()
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end

@@ -1,4 +1,4 @@
-"""Walls: values of one joint at which two links are in each other, whatever all other joints do.
+"""Walls: values of one joint at which two links overlap for all values of the other joints.
 
 No path passes a wall, as a joint takes all values between those of its ends.  So a pair that two joints move on each
 other needs cells of one of them alone.
@@ -119,7 +119,7 @@ class _Pair:
     other: tuple[Joint, int] | None = None
 
     def walls(self) -> list[float]:
-        """Return values of the coordinate at which the two are in each other wherever the other joint is."""
+        """Return values of the coordinate at which the two overlap for all values of the other joint."""
         space = joint_space(self.robot)
         values = np.linspace(space.low[self.k], space.high[self.k], _VALUES)
         meet = self._in_middles(values, _FIRST)[2][:, 0].reshape(_VALUES, -1) >= 0
@@ -145,7 +145,7 @@ class _Pair:
         return half, poses, contacts(self.trees, *self.links, first, second)
 
     def _is_wall(self, value: float) -> bool:
-        """Return whether the two have a point in common wherever the other joint is.
+        """Return whether the two have a point in common for all values of the other joint.
 
         A point that is fixed to one hull moves in the other's frame by no more than its distance from the joint's axis
         times half a cell, from where it is in the middle of the cell.  If it is so deep in that other hull there, it is

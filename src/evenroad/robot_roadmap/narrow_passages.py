@@ -39,7 +39,7 @@ IN_ONE = 4
 """Largest number of queries in one passage."""
 
 FIRST = 4096
-"""Number of configurations that each query is tried to be joined to wherever they are: the first ones."""
+"""Number of first configurations that each query is tried to be joined to at any distance."""
 
 NEAR = 1500
 """Number of nearest configurations, of those that follow, that each query is tried to be joined to, too."""
@@ -117,7 +117,7 @@ def hard_queries(
                     return
                 own = int(owns[i])
                 # The pool is free of these already.
-                world = ArmWorld(bare, Scene(batch.walls(i), name="pocket"), resolution=STEP)
+                world = ArmWorld(bare, Scene(batch.walls(i), name="narrow passage"), resolution=STEP)
                 if not world.valid(pool[own : own + 1])[0]:
                     continue
                 others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))

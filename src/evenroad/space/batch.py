@@ -14,7 +14,7 @@ from evenroad.errors import InvalidValue
 
 
 def as_batch_pair(a: object, b: object, dim: int) -> tuple[Floats, Floats]:
-    """Return the two ends of a batch of motions, both checked by `as_batch`, of one length."""
+    """Return the endpoints of a batch of motions, both checked by `as_batch`, of one length."""
     first, second = as_batch("a", a, dim), as_batch("b", b, dim)
     if len(first) != len(second):
         raise InvalidValue(f"a and b must have the same length, got {len(first)} and {len(second)}")

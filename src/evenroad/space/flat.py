@@ -56,14 +56,14 @@ class FlatMetric:
         return len(self._turning) > 0
 
     def difference(self, a: Floats, b: Floats) -> Floats:
-        """Return ``b - a`` the short way round, not scaled, for two (n, dim) arrays as (n, dim).
+        """Return ``b - a`` in the shorter direction, not scaled, for two (n, dim) arrays as (n, dim).
 
-        Opposite places of a wrapping coordinate keep the sign of ``b - a``: the motion between them is the same in
-        both directions and, within one period, does not cross its ends.
+        Opposite values of a wrapping coordinate keep the sign of ``b - a``: the motion between them is the same both
+        ways and, within one period, does not cross its bounds.
         """
         difference = b - a
         for k in self._turning:
-            # rint takes one half to zero: exactly opposite places are left as they are.
+            # rint takes one half to zero: exactly opposite values stay as they are.
             difference[:, k] -= self.period[k] * np.rint(difference[:, k] / self.period[k])
         return difference
 

@@ -60,7 +60,7 @@ class FlatSpace(Space):
         return np.logical_and.reduce(within | self._flat.wrapping, axis=1)
 
     def distance(self, a: Floats, b: Floats) -> Floats:
-        """Return ``sqrt(sum_k (weight_k difference_k)^2)``, wrapping axes the short way: (n, dim) twice -> (n,)."""
+        """Return ``sqrt(sum_k (weight_k difference_k)^2)``, shorter on wrapping axes: (n, dim) twice -> (n,)."""
         first, second = as_batch_pair(a, b, self.dim)
         return self._flat.distance(self._canonical(first), self._canonical(second))
 
@@ -72,15 +72,15 @@ class FlatSpace(Space):
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the short motion from `a` to `b`.
 
-        Exact at both ends and never beyond them.  Between opposite places of a wrapping axis the motion is taken that
-        does not cross the ends of its range.
+        Exact at both endpoints and never beyond them.  Between opposite values of a wrapping axis the motion does not
+        cross the bounds of its range.
         """
         first, second = map(self._canonical, as_batch_pair(a, b, self.dim))
         fraction = as_fractions(t, len(first))
         between = first + fraction * self._flat.difference(first, second)
         bounded = ~self._flat.wrapping
         start, end = first[:, bounded], second[:, bounded]
-        # This form, unlike a + t (b - a), is exact at both ends; clipped, since a = b can still round.
+        # This form, unlike a + t (b - a), is exact at both endpoints; clipped, since a = b can still round.
         straight = (1.0 - fraction) * start + fraction * end
         between[:, bounded] = np.clip(straight, np.minimum(start, end), np.maximum(start, end))
         return np.where(fraction == 1.0, second, self._canonical(between))
@@ -175,7 +175,7 @@ class JointSpace(FlatSpace):
     """Bounded and wrapping joints in one vector, with the weighted Euclidean metric.
 
     A revolute joint that can turn on and on wraps; one with stops does not, even where its range exceeds a full turn:
-    the two ends of such a range are far apart.  A wrapping joint repeats after ``high - low``, so in radians these are
+    the bounds of such a range are far apart.  A wrapping joint repeats after ``high - low``, so in radians these are
     2 pi apart.  A value may exceed a bound by 1e-5.
 
     Parameters

@@ -22,9 +22,9 @@ def path_length(path: Floats, space: Space) -> float:
 
 
 def subdivide(path: Floats, space: Space, segments: npt.NDArray[np.integer]) -> tuple[Floats, Ints]:
-    """Divide each motion of a path, (p, dim), p >= 1, into so many equal segments, (p - 1,), >= 1.
+    """Divide each motion of a path, (p, dim), p >= 1, into equal segments, numbers (p - 1,), >= 1.
 
-    Returns the ends of all segments, (1 + sum(segments), dim), waypoints as they are, and which of them are the
+    Returns the states between segments, (1 + sum(segments), dim), waypoints as they are, and the rows of the
     waypoints, (p,).
     """
     own = np.concatenate([[0], np.cumsum(segments)]).astype(np.int64)
@@ -49,7 +49,7 @@ def resample(path: Floats, space: Space, step: float) -> tuple[Floats, Ints]:
 
 
 def configuration_at(path: Floats, space: Space, t: npt.ArrayLike) -> Floats:
-    """Return where on a path a robot is after shares `t` of its length, (n,) in [0, 1], as (n, dim).
+    """Return the configurations after shares `t` of a path's length, (n,) in [0, 1], as (n, dim).
 
     Raises InvalidValue if a share lies outside [0, 1].
     """

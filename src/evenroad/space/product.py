@@ -39,7 +39,7 @@ class Product(Space):
     Raises
     ------
     UnknownName
-        For another way to combine.
+        For another `combine`.
     InvalidValue
         If parts or weights are none.
 

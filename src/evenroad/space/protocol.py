@@ -98,13 +98,13 @@ class Space(Protocol):
         """
 
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
-        """Return configurations on the shortest motions from `a` to `b`; exact at both ends.
+        """Return configurations on the shortest motions from `a` to `b`; exact at both endpoints.
 
         Parameters
         ----------
         a, b : array_like, shape (n, dim)
         t : float or array_like, shape (n,)
-            Which fraction of the way, in [0, 1].
+            Fraction of the motion, in [0, 1].
 
         Returns
         -------

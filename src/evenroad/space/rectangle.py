@@ -97,5 +97,5 @@ class Rectangle(Space):
         """Return ``(1 - t) a + t b`` for `a`, `b` of shape (n, 2) and `t` in [0, 1], scalar or (n,)."""
         first, second = as_batch_pair(a, b, 2)
         column = as_fractions(t, len(first))
-        # This form, unlike a + t (b - a), is exact at both ends.
+        # This form, unlike a + t (b - a), is exact at both endpoints.
         return (1.0 - column) * first + column * second

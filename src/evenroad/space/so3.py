@@ -72,7 +72,7 @@ class SO3(Space):
         """Return the rotations a fraction `t`, scalar or (n,) in [0, 1], of the shortest turn from `a` to `b`.
 
         Spherical linear interpolation (K. Shoemake, SIGGRAPH 1985) towards b or -b, whichever is nearer, and
-        towards b where they are equally near.  Exact at both ends.  Errors as `distance`.
+        towards b where they are equally near.  Exact at both endpoints.  Errors as `distance`.
         """
         first, nearer = _on_one_side(a, b)
         fraction = as_fractions(t, len(first))

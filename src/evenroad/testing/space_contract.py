@@ -43,7 +43,7 @@ class SpaceContract:
         Parameters
         ----------
         n, seed : int
-            How many, and which ones.
+            Number of configurations, and their seed.
 
         Returns
         -------
@@ -61,7 +61,7 @@ class SpaceContract:
         return self.space.from_cube(np.random.default_rng(seed).random((n, self.space.cube_dim)))
 
     def pairs(self) -> tuple[Floats, Floats, float]:
-        """Return the ends of 30 random motions, two (30, dim) arrays, and a tolerance for their lengths."""
+        """Return the endpoints of 30 random motions, two (30, dim) arrays, and a tolerance for their lengths."""
         a, b = np.split(self.configurations(60), 2)
         return a, b, _TOLERANCE * float(self.space.distance(a, b).max())
 
@@ -81,7 +81,7 @@ class SpaceContract:
         np.testing.assert_array_equal(self.space.from_cube(u), rows)
 
     def test_equal_volumes_of_the_cube_get_equal_measure(self) -> None:
-        """At random places, compare the volumes of cube steps that go the same small distance."""
+        """At random points, compare the volumes of cube steps of the same small length."""
         if not self.measure_is_the_metrics:
             pytest.skip("measure_is_the_metrics is False")
         rng, dim = np.random.default_rng(3), self.space.cube_dim

@@ -13,7 +13,7 @@ from evenroad.world import World
 
 
 class WorldContract:
-    """Tests of a world: batch = loop, symmetry, free motions have free ends, and errors for bad batches.
+    """Tests of a world: batch = loop, symmetry, free motions have free endpoints, and errors for bad batches.
 
     Examples
     --------
@@ -26,17 +26,17 @@ class WorldContract:
     """
 
     world: World
-    """Set it in the subclass.  Of 400 random places and motions some must be free and some blocked."""
+    """Set it in the subclass.  Of 400 random configurations and motions some must be free and some blocked."""
     free_between = True
-    """Whether all places of a free motion are free, as in a world that tests motions exactly.  Set it to False for one
-    that tests states some way apart."""
+    """Whether all states of a free motion are free, as in a world that checks motions exactly.  Set it to False for one
+    that checks states at a resolution."""
 
     def configurations(self) -> Floats:
         """Return 400 random configurations, (400, dim)."""
         return self.world.space.from_cube(np.random.default_rng(11).random((400, self.world.space.cube_dim)))
 
     def motions(self) -> tuple[Floats, Floats]:
-        """Return the two ends of 400 motions, short ones and long ones."""
+        """Return the endpoints of 400 motions, short ones and long ones."""
         q = self.configurations()
         reach = np.random.default_rng(12).random(len(q)) ** 3
         return q, self.world.space.interpolate(q, np.roll(q, 1, axis=0), reach)
@@ -46,7 +46,7 @@ class WorldContract:
         for answer in (self.world.valid(q), self.world.motion_valid(*self.motions())):
             assert answer.shape == (len(q),)
             assert answer.dtype == np.bool_
-            assert 0 < int(answer.sum()) < len(q), "the contract needs both verdicts to mean anything"
+            assert 0 < int(answer.sum()) < len(q), "the contract needs both results to mean anything"
 
     def test_a_batch_gives_what_its_rows_give(self) -> None:
         q, (a, b) = self.configurations(), self.motions()

@@ -104,7 +104,7 @@ class Sheet:
             self._text((size[0] / 2, 20 + 22 * i), line, 18)
 
     def add(self, view: View, number: int, title: str, labels: tuple[str, str]) -> None:
-        """Put a view into its place, with frame, ticks and labels."""
+        """Paste a view, with frame, ticks and labels."""
         image = view.image.reduce(FINER)
         left = _LEFT + number * (self.available[0] + _BETWEEN) + (self.available[0] - image.width) // 2
         top = _TOP + (self.available[1] - image.height) // 2

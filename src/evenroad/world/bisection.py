@@ -57,7 +57,7 @@ def between_endpoints(segments: Ints, open_motions: Bools) -> Iterator[tuple[Int
 
 @njit(cache=True, nogil=True)
 def next_between(level: int, multiple: int, segments: int) -> tuple[int, int, int]:
-    """Return the next state of a motion of so many segments, after its position in the order: (level, multiple, state).
+    """Return the next state of a motion of n segments, after its position in the order: (level, multiple, state).
 
     `level` and `multiple` are those of the state before; 1 and -1 for the first.  The state is 0 after the last.
     """

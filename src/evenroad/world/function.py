@@ -21,7 +21,7 @@ from evenroad.world.one_or_many import OneOrMany, one_or_many
 
 OUTSIDE = "it lies outside the bounds of the space"
 """Reason why a configuration outside of the space is not free."""
-ONE_BY_ONE = "asked about one configuration at a time: from (n, dim) to (n,) it would be asked once a batch"
+ONE_BY_ONE = "called with one configuration at a time: from (n, dim) to (n,) it would be called once per batch"
 """Note on a function that takes one configuration."""
 SHARE_OF_EXTENT = 0.01
 """Default resolution, as a share of the extent of the space."""
@@ -32,14 +32,13 @@ FINER = 20
 @explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
 class FunctionWorld(OneOrMany):
-    """The configurations that a function calls free, and motions that are free at states close together.
+    """A world of a function that calls configurations free; motions are free at states close together.
 
-    A motion is divided into ``n = ceil(distance / resolution)`` segments of one length and free if all n + 1 ends of
-    segments are: the states of OMPL's DiscreteMotionValidator, which takes the first of them for granted.  What lies
-    between two states is not checked, so the resolution should be small beside the thinnest obstacle.  Endpoints come
-    first, then halves, quarters and so on (van der Corput's order), for all motions of a batch together, each until a
-    state of it is blocked: a vectorised function is called few times, with many states.  The final
-    path is checked more closely (`validate`): shortcutting tries so many motions that it would find the gaps.
+    A motion is divided into ``n = ceil(distance / resolution)`` equal segments, and free if all n + 1 states are: those
+    of OMPL's DiscreteMotionValidator, and the first.  Nothing between two states is checked, so the resolution should
+    be small beside the thinnest obstacle.  Endpoints come first, then halves, quarters and so on (van der Corput's
+    order), for all motions of a batch together: a vectorised function is called few times, with many states.  The final
+    path is checked more closely (`validate`), since shortcutting would find the gaps.
 
     Parameters
     ----------
@@ -51,14 +50,14 @@ class FunctionWorld(OneOrMany):
         to a bool, which costs a call each.  Must give equal answers to equal configurations.
     resolution : float, or a sequence of floats for a Product, optional
         The largest distance between neighbouring states, > 0, in the space's metric.  Several: one for each
-        part in the part's own metric; n is then the largest that any part asks for.  Default: a hundredth of the
+        part in the part's own metric; n is then the largest of all parts.  Default: a hundredth of the
         space's extent, the largest distance that 65 configurations spread over the space have from each other.
     vectorised : bool, optional
         Whether `is_valid` takes many configurations at once.  Default: it is called with many first, and with one
         after the other where that fails.
     name : str, optional
-        What the function tests, with all that its results depend on, for example ``"cell 7, tool v2"``.  It stands for
-        the function, which cannot be compared, in the world's fingerprint.
+        Name of the function with all that its results depend on, such as ``"cell 7, tool v2"``, for the world's
+        fingerprint.
 
     Raises
     ------
@@ -140,7 +139,7 @@ class FunctionWorld(OneOrMany):
         Raises
         ------
         NotAvailable
-            If the world has no name, or its space cannot be told from others.
+            If the world has no name, or its space no fingerprint.
         """
         if self.name is None:
             raise NotAvailable("a FunctionWorld has a fingerprint only with a name, such as name='cell 7'")

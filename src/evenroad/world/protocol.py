@@ -72,17 +72,17 @@ class Apart:
     """A proof that no path leads from a start to its goals."""
 
     message: str
-    """In a sentence: of which bodies, and by what."""
+    """One sentence: of which bodies, and by which argument."""
     proved: bool
     """Whether there is no path at all; else the world can find none, and others may be."""
 
 
 @runtime_checkable
 class ShowsApart(Protocol):
-    """A world that says what keeps a start from all of its goals, those among them that it calls blocked, too."""
+    """A world that can show that no path leads from a start to its goals, blocked ones included."""
 
     def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
-        """Return what keeps the start, (dim,), from the goals, (g, dim); None says nothing.
+        """Return the reason why no path leads from the start, (dim,), to the goals, (g, dim); None if unknown.
 
-        Asked `quickly`, it takes no more than some milliseconds.
+        With `quickly` it takes some milliseconds at most.
         """

@@ -85,7 +85,7 @@ def reversed_digits(first: int, count: int) -> Ints:
 
 
 def growing_vector(d: int, digits: int = DIGITS) -> Ints:
-    """Return z, (d,): at least so many of its binary digits are those of the sequence; the first component is 1.
+    """Return z, (d,), with at least this number of binary digits of the sequence; the first component is 1.
 
     The first 11 digits are found by a beam search over all beginnings of at most 2048 points together, the next 9 one
     by one, the rest are random; points below 2^m depend on the first m digits alone.  The score of a vector is

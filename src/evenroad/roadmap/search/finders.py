@@ -86,24 +86,24 @@ def find_any(terminals: Terminals, states: EdgeStates) -> Found:
     tree = np.zeros(len(states.configurations), dtype=np.int8)
     tree[terminals.start], tree[terminals.goals] = 1, 2
     parent_edge = np.full(len(tree), -1, dtype=np.int32)
-    asked, most = np.empty(0, dtype=np.int32), _FIRST
+    evaluated, most = np.empty(0, dtype=np.int32), _FIRST
     lazy_nodes = bool((states.node_states == UNKNOWN).any())
     known, trees = (states.edge_states, states.node_states), (tree, parent_edge, away)
     while True:
-        met, takers, asked = native.grow(edges, known, trees, asked, most)
+        met, takers, evaluated = native.grow(edges, known, trees, evaluated, most)
         if met >= 0:
             a, b = sorted(edges[met].tolist(), key=lambda node: tree[node])
             there, back = _path_back(parent_edge, edges, a), _path_back(parent_edge, edges, b)
             along = np.concatenate([there.edges, np.array([met], dtype=np.int32), back.edges[::-1]])
             return Found(np.concatenate([there.nodes, back.nodes[::-1]]), along)
-        if not len(asked):
+        if not len(evaluated):
             return NOT_FOUND
-        most += len(asked) // 4
+        most += len(evaluated) // 4
         if lazy_nodes:
             states.evaluate_nodes(takers)
-            states.evaluate_edges(asked[states.node_states[takers] == FREE])
+            states.evaluate_edges(evaluated[states.node_states[takers] == FREE])
         else:
-            states.evaluate_edges(asked)
+            states.evaluate_edges(evaluated)
 
 
 _FIRST = 16

@@ -13,7 +13,7 @@ from evenroad.geometry.shapes import Mesh, PointCloud
 from evenroad.robot.kernel.surface_grid import Grid, grid_of_points, grid_of_triangles
 
 MANY = 8
-"""From so many surfaces on there is a grid around all of them: motions among fewer are no quicker for it."""
+"""Number of surfaces from which a grid around all of them makes motions faster."""
 
 PADDING = 2.5e-7
 """Single precision makes a surface uncertain by less than this share of its farthest point's distance from the

@@ -34,7 +34,7 @@ _MOST_TURNED = 1e9
 
 @dataclass(frozen=True, eq=False)
 class RobotTables:
-    """A robot as checks see it: capsules and hulls on moving frames, the pairs of them that may touch, and how fast.
+    """Tables of a robot for checks: capsules and hulls on moving frames, pairs that may touch, and their speeds.
 
     Attributes
     ----------

@@ -15,10 +15,10 @@ Ints = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
 
 CELLS, LEAST_CELL = 400_000, 4e-3
-"""About so many cells of a grid, none smaller than this [m]."""
+"""Number of cells of a grid, about, and their least size [m]."""
 
 FARTHEST_STEPS, STEPS = 64, 4
-"""Distances beyond so many cells are not told apart; a byte counts parts of a cell."""
+"""Largest distance in cells that is distinguished; a byte counts parts of a cell."""
 
 _SURE = 1e-7
 """What is so near to a cell, in sides of one, is in it, too: more than rounding."""
@@ -40,7 +40,7 @@ class Grid:
     windings : int8 array, shape (x, y, z), or None
         How often a closed surface winds around the middle of each cell: not 0 inside.
     turned : bool
-        Whether the sides of triangles tell inside from outside; else windings are counted by twos.
+        Whether the orientation of triangles distinguishes inside and outside; else windings are counted by twos.
     """
 
     low: Floats
@@ -218,7 +218,7 @@ def _distances(taken: Bools) -> npt.NDArray[np.uint8]:
 
     Between cells d apart along an axis there are d - 1: so distances, axis by axis, from cells that are taken or next
     to one (after P. Felzenszwalb and D. Huttenlocher, Distance Transforms of Sampled Functions, 2012, but each line is
-    searched up to the farthest that is told apart, many lines at once).
+    searched up to the farthest distinguished one, many lines at once).
     """
     nx, ny, nz = taken.shape
     far = FARTHEST_STEPS * FARTHEST_STEPS

@@ -274,7 +274,7 @@ def sound_shapes(robot: Robot, shapes: Sequence[Shape] | None) -> tuple[Shape, .
     checks would all pass.
     """
     given = robot.capsules if shapes is None else shapes
-    # Coal has capsules along z alone: of another one only length and radius would be seen.
+    # Coal has capsules along z alone: it would use only length and radius of another one.
     chosen = tuple(along_z(shape) if isinstance(shape, Capsule) else shape for shape in given)
     links = {shape.link for shape in chosen}
     unknown = sorted(links - set(robot.links))

@@ -25,14 +25,14 @@ MeshStatus = Literal["free", "in collision", "not checked"]
 FINER = 10
 """States are this many times as dense as those that a motion was planned with."""
 SAMPLES = 100
-"""Random configurations that tell pairs whose shapes are always in contact."""
+"""Number of random configurations that find pairs whose shapes are always in contact."""
 
 
 @dataclass(frozen=True)
 class MeshCheck:
     """What the original shapes say about a path.
 
-    Of so many `states`, ends included, at most a tenth of the resolution apart; 0 where nothing was checked.
+    Number of `states`, endpoints included, at most a tenth of the resolution apart; 0 where nothing was checked.
     `message` says why not, or which motion is in collision where, and which bodies touch; `configuration` is the first
     state in collision [rad or m].  Pairs in `always_touching` were left out: their shapes touch in each of 100 random
     configurations.

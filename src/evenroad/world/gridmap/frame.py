@@ -17,8 +17,8 @@ from evenroad.space import Rectangle
 class MapFrame:
     """The transform between pixels and map coordinates.
 
-    Pixel (column c, row r), row 0 on top, is the square [c, c+1] x [r, r+1] of the pixel plane, whatever the
-    frame.  Two conventions place that plane in the map:
+    Pixel (column c, row r), row 0 on top, is the square [c, c+1] x [r, r+1] of the pixel plane.  Two conventions map
+    that plane to the map:
 
     * ``y_up=False``, a bare image: x to the right, y DOWN, `origin` is the image's top-left corner;
     * ``y_up=True``, a ROS map: `origin` is the lower-left corner of the lower-left pixel, y up along the

@@ -133,10 +133,10 @@ class CellGrid:
         return (column >= 0.0) & (column <= self.frame.cols) & (row >= 0.0) & (row <= self.frame.rows)
 
     def cropped(self) -> Self:
-        """Return the map without what lies beyond its outermost free cells, in the same place.
+        """Return the map without rows and columns beyond its outermost free cells, in the same position.
 
-        Nothing changes for a disk: what is left out is obstacle, and so is the outside of a map.  Points of its
-        rectangle are then drawn where the map is free, which matters where most of it is unknown.
+        Nothing changes for a disk, since the outside of a map is obstacle, too.  Points drawn over its rectangle then
+        lie where the map is free, even if most of it is unknown.
         """
         rows, cols = (np.flatnonzero((~self.occupied).any(axis=axis)) for axis in (1, 0))
         if not rows.size:

@@ -152,7 +152,7 @@ class DiskWorld(OneOrMany):
         -------
         ndarray, shape (n,)
             Negative where the disk overlaps an obstacle, at least minus its radius: there the centre lies in an
-            obstacle or outside the map.  The disk is free where it is at least the clearance asked for, by default 0.
+            obstacle or outside the map.  The disk is free from the clearance of the world on, by default 0.
         """
         return self._from_centre(as_batch("q", q, 2)) - (self.radius - self.margin)
 

@@ -121,9 +121,8 @@ def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False)
     * **trinary**: occupied if occupancy > occupied_thresh, free if occupancy < free_thresh, else unknown;
     * **scale**: the same, but a pixel that is not opaque is unknown.  Cells between the thresholds, which
       map_server grades from 1 to 99, are known neither to be free nor occupied: they count as unknown;
-    * **raw**: the pixel, on the scale 0..255, *is* the occupancy in percent, whatever `negate` says, and
-      values above 100 are unknown.  map_server leaves the decision to whoever uses the percentage; here it is
-      the same two thresholds.
+    * **raw**: the pixel, on the scale 0..255, *is* the occupancy in percent, with any `negate`, and values above
+      100 are unknown.  map_server does not decide what is occupied; here the same two thresholds do.
 
     Unknown cells are obstacles, unless `unknown_is_free`.  Raises BrokenFile if the YAML file or the image is missing
     or broken, or a key is missing or there twice; UnknownName if a key is nearly one that map_server knows, or a mode
