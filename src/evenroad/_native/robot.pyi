@@ -3,7 +3,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Bools, Floats, Ints
 
 Arrays = Mapping[str, npt.NDArray[np.generic]]
 
@@ -12,14 +12,19 @@ class Robot:
         self, frames: Arrays, bodies: Arrays, capsules: Arrays, pairs: Arrays, hulls: Arrays, limits: Arrays
     ) -> None: ...
 
+class HullTree:
+    def __init__(self, children: Ints, spans: Ints, boxes: Floats, points: Floats) -> None: ...
+    def contacts(self, first: int, second: int, poses: Floats) -> Ints: ...
+
 class Surface:
-    def __init__(self, corners: Floats, radius: float, grid: Mapping[str, object]) -> None: ...
+    def __init__(self, corners: Floats, radius: float, solid: Floats, turned: bool, reach: float) -> None: ...
     @staticmethod
     def around(surfaces: Sequence[Surface | None]) -> Surface: ...
 
 class Scene:
     added: float
     too_far: int
+    surfaces: int
     def __init__(
         self,
         robot: Robot,

@@ -18,10 +18,9 @@ from evenroad._native.robot import Checker
 from evenroad._native.robot import Scene as NativeScene
 from evenroad._shared import once_property
 from evenroad.errors import InvalidValue
-from evenroad.geometry.shapes import Mesh, PointCloud
+from evenroad.geometry.shapes import PointCloud
 from evenroad.robot.given import as_robot, as_scene
 from evenroad.robot.kernel.native_scene import native_scene
-from evenroad.robot.kernel.native_surfaces import surface_of
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
 from evenroad.robot.planes import with_planes
 from evenroad.robot.prepared_robots import prepared
@@ -147,13 +146,6 @@ class ArmWorld(OneOrMany):
         """The obstacles as native checks read them."""
         made = prepared(self.robot)
         return native_scene(made.native, made.tables, self.robot.links, self.scene, self.clearance)
-
-    @property
-    def among_surfaces(self) -> bool:
-        """Whether the robot can reach a cloud or a mesh: checks take longer then."""
-        bodies = (obstacle.body for obstacle in self.scene.obstacles)
-        reach = self.robot_tables.reach + self.clearance
-        return any(isinstance(each, PointCloud | Mesh) and surface_of(each, reach) is not None for each in bodies)
 
     @once_property
     def checker(self) -> Checker:

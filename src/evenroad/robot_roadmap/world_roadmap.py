@@ -212,7 +212,7 @@ class ArmWorldRoadmap(WorldRoadmap):
         if attempt.query.smooth == "quick":
             path, counts["shortcut_motions"] = arm_trees.shorten(world, path)
         elif attempt.query.smooth:
-            work = max(LEAST_WORK, (AMONG_SURFACES if world.among_surfaces else WORK) - found.batches)
+            work = max(LEAST_WORK, (AMONG_SURFACES if world.native_scene.surfaces else WORK) - found.batches)
             path, counts["shortcut_motions"] = arm_trees.smooth(world, path, batches=work)
         if attempt.query.smooth:
             length, attempt.watch.seconds["shortcut"] = self._length(path), now() - began

@@ -7,14 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints
 from evenroad._native import robot as native
-from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.hull_trees import hull_trees
 from evenroad.robot.kernel.placed_capsules import PlacedCapsule
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 def native_robot(tables: RobotTables, bounds: Floats) -> native.Robot:
@@ -28,8 +25,6 @@ def robot_arrays(tables: RobotTables, bounds: Floats) -> dict[str, dict[str, npt
     bodies = list(dict.fromkeys(capsule.link for capsule in capsules))
     number = {link: i for i, link in enumerate(bodies)}
     trees = hull_trees({link: placed.leaves for link, placed in tables.hulls.items()})
-    nodes = trees.ints[at.HEADER :].reshape(-1, at.NODE_INT_ROW)
-    points = int(trees.ints[at.NODE_FLOATS])
     return {
         "frames": {
             "parent": _ints([frame.parent for frame in frames]),
@@ -51,10 +46,10 @@ def robot_arrays(tables: RobotTables, bounds: Floats) -> dict[str, dict[str, npt
             "speeds": np.ascontiguousarray(tables.pair_speeds.T),
         },
         "hulls": {
-            "children": np.ascontiguousarray(nodes[:, :2]),
-            "spans": np.ascontiguousarray(nodes[:, 2:]),
-            "boxes": trees.floats[points:].reshape(-1, at.NODE_FLOAT_ROW),
-            "points": trees.floats[:points].reshape(-1, 3),
+            "children": trees.children,
+            "spans": trees.spans,
+            "boxes": trees.boxes,
+            "points": trees.points,
         },
         "limits": {
             "bounds": np.ascontiguousarray(bounds),

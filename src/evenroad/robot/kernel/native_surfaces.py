@@ -10,7 +10,6 @@ from evenroad._arrays import Floats
 from evenroad._native import robot as native
 from evenroad.geometry.mesh import closed_parts
 from evenroad.geometry.shapes import Mesh, PointCloud
-from evenroad.robot.kernel.surface_grid import Grid, grid_of_points, grid_of_triangles
 
 MANY = 8
 """Number of surfaces from which a grid around all of them makes motions faster."""
@@ -26,47 +25,25 @@ little."""
 
 @lru_cache(maxsize=64)
 def surface_of(body: PointCloud | Mesh, reach: float) -> native.Surface | None:
-    """Return what a robot of this reach can touch of a body; kept, since the next scene often has it, too."""
-    reached = _reached_parts(body, reach)
-    if reached is None:
+    """Return what a robot of this reach can touch of a body, None where that is nothing; kept for the next scene."""
+    solid, turned = np.zeros((0, 3, 3)), False
+    if isinstance(body, PointCloud):
+        points, radius = body.pose.apply(body.points), body.radius
+        near = points[np.linalg.norm(points, axis=1) <= reach + radius][:, np.newaxis]
+    else:
+        corners, radius = body.pose.apply(body.triangles.vertices)[body.triangles.triangles], 0.0
+        near, (closed, turned) = _within_reach(corners, reach), closed_parts(body.triangles)
+        solid = corners[closed]
+    if len(near) == 0:
         return None
-    corners, radius, grid = reached
-    given: dict[str, object] = {
-        "low": np.ascontiguousarray(grid.low),
-        "cell": np.array([grid.cell, grid.excess]),
-        "distances": grid.distances,
-    }
-    if grid.windings is not None:
-        given |= {"windings": grid.windings, "turned": grid.turned}
-    return native.Surface(np.ascontiguousarray(corners), radius, given)
+    padding = PADDING * (float(np.linalg.norm(near, axis=2).max()) + radius)
+    return native.Surface(np.ascontiguousarray(near), radius + padding, solid, turned, reach)
 
 
 @lru_cache(maxsize=4)
 def surfaces_around(bodies: tuple[PointCloud | Mesh, ...], reach: float) -> native.Surface:
     """Return the grid around several bodies that can be reached; kept, as they are."""
     return native.Surface.around([surface_of(body, reach) for body in bodies])
-
-
-def _reached_parts(body: PointCloud | Mesh, reach: float) -> tuple[Floats, float, Grid] | None:
-    """Return what a robot of this reach can touch of a body, None where that is nothing.
-
-    These are points, (n, 1, 3), or triangles, (n, 3, 3), the radius by which they are widened, and the grid around.
-    """
-    if isinstance(body, PointCloud):
-        points = body.pose.apply(body.points)
-        points = points[np.linalg.norm(points, axis=1) <= reach + body.radius]
-        if len(points) == 0:
-            return None
-        padding = PADDING * (float(np.linalg.norm(points, axis=1).max()) + body.radius)
-        return points[:, np.newaxis], body.radius + padding, grid_of_points(points)
-    mesh = body.triangles
-    corners = body.pose.apply(mesh.vertices)[mesh.triangles]
-    near = _within_reach(corners, reach)
-    solid, turned = closed_parts(mesh)
-    if len(near) == 0:
-        return None
-    padding = PADDING * float(np.linalg.norm(near, axis=2).max())
-    return near, padding, grid_of_triangles(near, corners[solid], turned, reach)
 
 
 def _within_reach(corners: Floats, reach: float) -> Floats:

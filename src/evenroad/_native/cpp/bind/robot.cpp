@@ -12,6 +12,7 @@ namespace evenroad::bind {
 namespace {
 
 using robot::Checker;
+using robot::HullTree;
 using robot::Robot;
 using robot::Scene;
 using robot::Surface;
@@ -67,22 +68,38 @@ void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle ca
   new (self) Robot(robot::make_robot(given));
 }
 
-void make_surface(Surface* self, nb::handle corners, double radius, nb::dict grid) {
-  const Array<const double, 3> of(corners, "corners");
+void make_hull_tree(HullTree<double>* self, nb::handle children, nb::handle spans, nb::handle boxes,
+                    nb::handle points) {
+  const Array<const std::int64_t, 2> of_children(children, "children"), of_spans(spans, "spans");
+  const Array<const double, 2> of_boxes(boxes, "boxes"), of_points(points, "points");
+  new (self) HullTree<double>(
+      robot::make_hull_tree<double>({of_children.span(), of_spans.span(), of_boxes.span(), of_points.span()}));
+}
+
+/// Return for each pose of a second body in the frame of a first, (n, 12), two leaves that touch, or -1 twice: (n, 2).
+nb::object hull_contacts(const HullTree<double>& tree, int first, int second, nb::handle poses) {
+  const Array<const double, 2> given(poses, "poses");
+  const Matrix<const double> rows = given.of_shape({given.shape(0), 12}).matrix();
+  const int nodes = static_cast<int>(tree.nodes.size());
+  require(0 <= first && first < nodes && 0 <= second && second < nodes, "roots must be numbers of nodes");
+  std::vector<std::int64_t> found(2 * rows.rows);
+  without_gil([&] {
+    for (std::size_t n = 0; n < rows.rows; n++) {
+      robot::RelativePose pose;
+      std::copy_n(&rows(n, 0), 9, pose.rotation);
+      std::copy_n(&rows(n, 9), 3, pose.translation);
+      const robot::HullContact contact = robot::find_hull_contact(tree, first, second, pose, 0.0);
+      found[2 * n] = contact.first, found[2 * n + 1] = contact.second;
+    }
+  });
+  return as_numpy(std::move(found), {rows.rows, 2});
+}
+
+void make_surface(Surface* self, nb::handle corners, double radius, nb::handle solid, bool turned, double reach) {
+  const Array<const double, 3> of(corners, "corners"), closed(solid, "solid");
   require(of.shape(2) == 3 && (of.shape(1) == 1 || of.shape(1) == 3), "corners must be (n, 1, 3) or (n, 3, 3)");
-  const Named of_grid(grid, "grid");
-  const auto distances = of_grid.array<std::uint8_t, 3>("distances");
-  const auto cell = of_grid.span<double>("cell");
-  require(cell.size() == 2, "grid.cell must be its side, and by how much distances may be too small");
-  robot::GivenSurface given{
-      of.span(), of.shape(1) == 3, radius, of_grid.span<double>("low"), cell[0], cell[1], {}, distances.span(), {},
-      false};
-  for (int axis = 0; axis < 3; axis++) given.cells[axis] = static_cast<int>(distances.shape(axis));
-  if (grid.contains("windings")) {
-    given.windings = of_grid.span<std::int8_t, 3>("windings");
-    given.turned = nb::cast<bool>(grid["turned"]);
-  }
-  new (self) Surface(robot::make_surface(given));
+  closed.of_shape({closed.shape(0), 3, 3});
+  new (self) Surface(robot::make_surface({of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach}));
 }
 
 /// Return the grid around surfaces, without leaves.
@@ -226,12 +243,19 @@ void add_robot(nb::module_& module) {
   nb::class_<Robot>(part, "Robot")
       .def("__init__", &make_robot, nb::arg("frames"), nb::arg("bodies"), nb::arg("capsules"), nb::arg("pairs"),
            nb::arg("hulls"), nb::arg("limits"));
-  nb::class_<Surface>(part, "Surface").def("__init__", &make_surface).def_static("around", &surface_around);
+  nb::class_<HullTree<double>>(part, "HullTree")
+      .def("__init__", &make_hull_tree, nb::arg("children"), nb::arg("spans"), nb::arg("boxes"), nb::arg("points"))
+      .def("contacts", &hull_contacts, nb::arg("first"), nb::arg("second"), nb::arg("poses"));
+  nb::class_<Surface>(part, "Surface")
+      .def("__init__", &make_surface, nb::arg("corners"), nb::arg("radius"), nb::arg("solid"), nb::arg("turned"),
+           nb::arg("reach"))
+      .def_static("around", &surface_around);
   nb::class_<Scene>(part, "Scene")
       .def("__init__", &make_scene, nb::arg("robot"), nb::arg("obstacles"), nb::arg("tested"), nb::arg("surfaces"),
            nb::arg("around").none(), nb::arg("clearance"))
       .def_ro("added", &Scene::added)
-      .def_ro("too_far", &Scene::too_far);
+      .def_ro("too_far", &Scene::too_far)
+      .def_prop_ro("surfaces", [](const Scene& scene) { return scene.surfaces.size(); });
   nb::class_<Checker>(part, "Checker")
       .def("__init__", &make_checker)
       .def("valid", &valid, nb::arg("q").none())

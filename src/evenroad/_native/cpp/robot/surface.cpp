@@ -164,28 +164,31 @@ void add_levels(Surface& surface, std::vector<Around> below, float wider) {
   } while (below.size() > 1);
 }
 
-DistanceGrid make_grid(const GivenSurface& given) {
-  DistanceGrid grid;
-  std::size_t count = 1;
+constexpr double CELLS = 400'000;  // about so many of a surface's grid
+
+/// Write a surface's grid, and how often it winds around each cell.
+void add_grid(Surface& surface, const GivenSurface& given) {
+  double low[3], high[3];
   for (int axis = 0; axis < 3; axis++) {
-    if (given.cells[axis] < 1) throw std::invalid_argument("a grid must have cells along each axis");
-    grid.cells[axis] = given.cells[axis], count *= given.cells[axis];
+    low[axis] = std::numeric_limits<double>::infinity(), high[axis] = -low[axis];
+    for (std::size_t i = axis; i < given.corners.size(); i += 3) {
+      low[axis] = std::min(low[axis], given.corners[i]), high[axis] = std::max(high[axis], given.corners[i]);
+    }
+    if (given.triangles) {
+      low[axis] = std::clamp(low[axis], -given.reach, given.reach);
+      high[axis] = std::clamp(high[axis], -given.reach, given.reach);
+    }
   }
-  if (given.distances.size() != count || !(given.windings.empty() || given.windings.size() == count)) {
-    throw std::invalid_argument("a grid must have a byte for each cell");
+  const GridPlace place = place_grid(low, high, CELLS);
+  std::vector<std::uint8_t> marked(place.count());
+  (given.triangles ? mark_triangles : mark_points)(place, given.corners, marked);
+  if (!given.solid.empty()) {
+    surface.windings = count_windings(place, given.solid, given.turned);
+    for (std::size_t i = 0; i < marked.size(); i++) marked[i] |= surface.windings[i] != 0;
   }
-  const auto vector = [](double x, double y, double z) {
-    return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
-  };
-  // A place on the upper side is in the last cell, not beyond it.
-  const double within = given.cell * (1.0 - 1e-5);
-  grid.low = vector(given.low[0], given.low[1], given.low[2]);
-  grid.size = vector(given.cells[0] * within, given.cells[1] * within, given.cells[2] * within);
-  grid.one_by_cell = static_cast<float>(1.0 / given.cell);
-  grid.step = static_cast<float>(given.cell / STEPS * (1.0 - 1e-6));
-  grid.told = static_cast<float>(given.told);
-  grid.distances.assign(given.distances.begin(), given.distances.end());
-  return grid;
+  surface.turned = given.turned;
+  const double told = place.cell * (1.0 / STEPS + 2.0 * std::sqrt(3.0)) * (1.0 + 1e-5);
+  surface.grid = make_grid(place, told, distances_to(place, marked));
 }
 
 }  // namespace
@@ -193,13 +196,19 @@ DistanceGrid make_grid(const GivenSurface& given) {
 Surface make_surface(const GivenSurface& given) {
   const int each = given.triangles ? 3 : 1;
   const std::size_t count = given.corners.size() / (3 * each);
-  if (count == 0 || given.corners.size() != 3 * each * count || given.low.size() != 3) {
+  if (count == 0 || given.corners.size() != 3 * each * count || given.solid.size() % 9 != 0) {
     throw std::invalid_argument("a surface must have points, (n, 1, 3), or triangles, (n, 3, 3), one or more");
   }
+  const auto within = [](std::span<const double> numbers, double most) {
+    return std::all_of(numbers.begin(), numbers.end(), [&](double number) { return std::abs(number) <= most; });
+  };
+  if (!(given.reach > 0 && given.reach <= 1e6 && within(given.corners, given.triangles ? 1e12 : 1e7) &&
+        within(given.solid, 1e12))) {
+    throw std::invalid_argument("a surface must be of numbers that are finite, and not too large");
+  }
   Surface surface;
-  surface.grid = make_grid(given);
-  surface.windings.assign(given.windings.begin(), given.windings.end());
-  surface.turned = given.turned, surface.radius = static_cast<float>(given.radius);
+  surface.radius = static_cast<float>(given.radius);
+  add_grid(surface, given);
   std::vector<Place> middles(count);
   double largest = 0;
   for (std::size_t i = 0; i < count; i++) {
@@ -246,89 +255,6 @@ Surface make_surface(const GivenSurface& given) {
     surface.points.resize(leaves, {far});
   add_levels(surface, std::move(around), wider);
   return surface;
-}
-
-namespace {
-
-constexpr double CELLS = 100'000, LEAST_CELL = 4e-3;  // about so many cells, none smaller than this [m]
-constexpr double LESS = 1.0 - 1e-5;  // what distances are multiplied by, for what single precision loses
-constexpr float NEVER = 1e9F;        // far more than any distance: the grid never says that something touches
-
-/// Where a surface's grid has the middles of cells along one axis: the cell, and the square of what is outside of it.
-struct Along {
-  std::vector<int> cells;
-  std::vector<float> outside;
-};
-
-Along along(const DistanceGrid& grid, int axis, std::span<const double> middles) {
-  const float low = axis == 0 ? grid.low.x : axis == 1 ? grid.low.y : grid.low.z;
-  const float size = axis == 0 ? grid.size.x : axis == 1 ? grid.size.y : grid.size.z;
-  Along made;
-  for (const double middle : middles) {
-    const double within = middle - low, inside = std::clamp(within, 0.0, static_cast<double>(size));
-    made.outside.push_back(static_cast<float>((within - inside) * (within - inside)));
-    made.cells.push_back(std::min(static_cast<int>(inside * grid.one_by_cell), grid.cells[axis] - 1));
-  }
-  return made;
-}
-
-}  // namespace
-
-Surface make_surface_around(std::span<const std::shared_ptr<const Surface>> surfaces) {
-  double low[3], high[3], product = 1;
-  for (int axis = 0; axis < 3; axis++) {
-    low[axis] = std::numeric_limits<double>::infinity(), high[axis] = -low[axis];
-    for (const auto& each : surfaces) {
-      const Vec3 &from = each->grid.low, &size = each->grid.size;
-      const double begin = axis == 0 ? from.x : axis == 1 ? from.y : from.z;
-      const double wide = axis == 0 ? size.x : axis == 1 ? size.y : size.z;
-      low[axis] = std::min(low[axis], begin), high[axis] = std::max(high[axis], begin + wide);
-    }
-    product *= std::max(high[axis] - low[axis], LEAST_CELL);
-  }
-  Surface made;
-  DistanceGrid& grid = made.grid;
-  const double cell = std::max(std::pow(product / CELLS, 1.0 / 3.0), LEAST_CELL);
-  std::vector<double> middles[3];
-  std::size_t count = 1;
-  for (int axis = 0; axis < 3; axis++) {
-    grid.cells[axis] = static_cast<int>(std::ceil((high[axis] - low[axis]) / cell + 1.0));
-    low[axis] -= 0.5 * (grid.cells[axis] * cell - (high[axis] - low[axis]));
-    for (int i = 0; i < grid.cells[axis]; i++) middles[axis].push_back(low[axis] + (i + 0.5) * cell);
-    count *= grid.cells[axis];
-  }
-  const auto single = [](double x, double y, double z) {
-    return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
-  };
-  const double within = cell * LESS;
-  grid.low = single(low[0], low[1], low[2]);
-  grid.size = single(grid.cells[0] * within, grid.cells[1] * within, grid.cells[2] * within);
-  grid.one_by_cell = static_cast<float>(1.0 / cell), grid.step = static_cast<float>(cell / STEPS * (1.0 - 1e-6));
-  grid.told = NEVER;
-  std::vector<float> squared(count, std::numeric_limits<float>::infinity());
-  for (const auto& each : surfaces) {
-    made.radius = std::max(made.radius, each->radius);
-    const DistanceGrid& own = each->grid;
-    const Along x = along(own, 0, middles[0]), y = along(own, 1, middles[1]), z = along(own, 2, middles[2]);
-    std::size_t place = 0;
-    for (int i = 0; i < grid.cells[0]; i++) {
-      for (int j = 0; j < grid.cells[1]; j++) {
-        const std::size_t row = (static_cast<std::size_t>(x.cells[i]) * own.cells[1] + y.cells[j]) * own.cells[2];
-        for (int k = 0; k < grid.cells[2]; k++, place++) {
-          const float away = static_cast<float>(own.distances[row + z.cells[k]]) * own.step;
-          squared[place] = std::min(squared[place], away * away + x.outside[i] + y.outside[j] + z.outside[k]);
-        }
-      }
-    }
-  }
-  const double half = std::sqrt(0.75) * cell;
-  grid.distances.reserve(count);
-  for (const float square : squared) {
-    const float away = std::sqrt(square) * static_cast<float>(LESS) - static_cast<float>(half / LESS);
-    const float steps = away * static_cast<float>(STEPS / cell);
-    grid.distances.push_back(static_cast<std::uint8_t>(std::clamp(steps, 0.0F, 255.0F)));
-  }
-  return made;
 }
 
 }  // namespace evenroad::robot

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/float16.hpp"
+#include "robot/surface_grid.hpp"
 
 namespace evenroad::robot {
 
@@ -28,15 +29,6 @@ struct SurfaceNode {
   Floats16 radius;
 };
 
-/// A byte for each cell: how far all of the cell is from the surface, rounded down, counted in `step`; 255 or more.
-struct DistanceGrid {
-  int cells[3] = {0, 0, 0};
-  Vec3 low, size;  // lower corner, and extents
-  float one_by_cell = 0, step = 0;
-  float told = 0;  // by how much a distance is larger at most than a byte says
-  std::vector<std::uint8_t> distances;
-};
-
 struct Surface {
   DistanceGrid grid;
   std::vector<std::int8_t> windings;  // how often it winds around the middle of each cell; empty: nothing is inside
@@ -50,20 +42,14 @@ struct Surface {
 /// Where the places to spare of a leaf or node are.
 constexpr float NOWHERE = 1e9F;
 
-/// A byte of a grid counts the STEPS-th part of a cell.
-constexpr int STEPS = 4;
-
 /// A surface as Python gives it.
 struct GivenSurface {
-  std::span<const double> corners;  // (n, 1, 3) points or (n, 3, 3) triangles
+  std::span<const double> corners;  // (n, 1, 3) points or (n, 3, 3) triangles, as far as the robot can reach them
   bool triangles;
   double radius;
-  std::span<const double> low;
-  double cell, told;
-  int cells[3];
-  std::span<const std::uint8_t> distances;
-  std::span<const std::int8_t> windings;  // or none
-  bool turned;
+  std::span<const double> solid;  // (m, 3, 3): triangles of closed surfaces, however far
+  bool turned;                    // whether the sides of these tell inside from outside
+  double reach;                   // the grid ends at that distance from the origin along each axis
 };
 
 /// Return a surface; std::invalid_argument if sizes do not fit.

@@ -1,0 +1,251 @@
+// Which cells triangles pass through, how often they wind around the others, and a distance transform.
+#include "robot/surface_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace evenroad::robot {
+
+namespace {
+
+constexpr double LEAST_CELL = 4e-3;  // [m]
+constexpr double SURE = 1e-7;        // what is so near to a cell, in sides of one, is in it, too: more than rounding
+constexpr int MOST_WINDINGS = 100;
+constexpr int FARTHEST = 64;  // distances beyond so many cells are not told apart
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
+
+/// A convex polygon: a triangle that is cut off four times at most.
+struct Polygon {
+  double corners[16][3];
+  int count = 0;
+
+  void range(int axis, double& least, double& most) const {
+    least = INFINITE, most = -INFINITE;
+    for (int i = 0; i < count; i++) least = std::min(least, corners[i][axis]), most = std::max(most, corners[i][axis]);
+  }
+};
+
+/// Return what is left of a polygon above a bound, or below it where `side` is -1.
+Polygon cut(const Polygon& from, int axis, double bound, double side) {
+  Polygon left;
+  for (int i = 0; i < from.count; i++) {
+    const double *corner = from.corners[i], *next = from.corners[i + 1 < from.count ? i + 1 : 0];
+    const double here = side * (corner[axis] - bound), there = side * (next[axis] - bound);
+    if (here >= 0.0) std::copy_n(corner, 3, left.corners[left.count++]);
+    if ((here >= 0.0) == (there >= 0.0)) continue;
+    const double share = here / (here - there);
+    double* between = left.corners[left.count++];
+    for (int entry = 0; entry < 3; entry++) between[entry] = corner[entry] + share * (next[entry] - corner[entry]);
+  }
+  return left;
+}
+
+/// Return what of a polygon is in a row of cells across an axis.
+Polygon within(const Polygon& from, int axis, int row) {
+  return cut(cut(from, axis, row - SURE, 1.0), axis, row + 1 + SURE, -1.0);
+}
+
+/// Return the first and last of `count` cells that a range along an axis is in, the first not above the second if any.
+std::pair<int, int> cells_of(double least, double most, int count) {
+  const double end = count;
+  return {std::max(static_cast<int>(std::floor(std::clamp(least, 0.0, 1e9) - SURE)), 0),
+          std::min(static_cast<int>(std::floor(std::clamp(most, -1.0, end) + SURE)), count - 1)};
+}
+
+void mark_triangle(const GridPlace& grid, const Polygon& triangle, std::vector<std::uint8_t>& marked) {
+  int first[3], last[3], longest = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    double least, most;
+    triangle.range(axis, least, most);
+    if (most < -SURE || least > grid.cells[axis] + SURE) return;
+    std::tie(first[axis], last[axis]) = cells_of(least, most, grid.cells[axis]);
+    if (last[axis] - first[axis] > last[longest] - first[longest]) longest = axis;
+  }
+  // Slabs, and in these columns along the longest axis: so they are few.
+  const int one = (longest + 1) % 3, other = (longest + 2) % 3;
+  int cell[3];
+  for (cell[one] = first[one]; cell[one] <= last[one]; cell[one]++) {
+    const Polygon slab = within(triangle, one, cell[one]);
+    for (cell[other] = first[other]; cell[other] <= last[other]; cell[other]++) {
+      const Polygon column = within(slab, other, cell[other]);
+      if (column.count == 0) continue;
+      double least, most;
+      column.range(longest, least, most);
+      const auto [begin, end] = cells_of(least, most, grid.cells[longest]);
+      for (cell[longest] = begin; cell[longest] <= end; cell[longest]++) {
+        marked[(static_cast<std::size_t>(cell[0]) * grid.cells[1] + cell[1]) * grid.cells[2] + cell[2]] = 1;
+      }
+    }
+  }
+}
+
+/// Return twice the area, with its sign, of a triangle in y and z between a side and a place; 0 counts as tiny.
+///
+/// A side that two triangles share is computed from the same end for both: what one leaves, the other takes.
+double area_beside(const double* a, const double* b, double y, double z) {
+  const bool exchanged = a[1] != b[1] ? a[1] > b[1] : a[2] > b[2];
+  if (exchanged) std::swap(a, b);
+  double area = (b[1] - a[1]) * (z - a[2]) - (b[2] - a[2]) * (y - a[1]);
+  if (area == 0.0) area = 1e-300;
+  return exchanged ? -area : area;
+}
+
+/// Write the squared distances that follow along the middle axis of three, of lengths a, b and c.
+void spread_along(std::span<const std::int32_t> squared, std::span<std::int32_t> least, int a, int b, int c) {
+  for (int i = 0; i < a; i++) {
+    for (int j = 0; j < b; j++) {
+      const auto row = [&](int k) { return (static_cast<std::size_t>(i) * b + k) * c; };
+      const auto best = least.subspan(row(j), c);
+      std::copy_n(squared.begin() + row(j), c, best.begin());
+      const std::int32_t farthest = *std::max_element(best.begin(), best.end());
+      for (int away = 1; away < FARTHEST && away * away < farthest; away++) {
+        for (const int k : {j - away, j + away}) {
+          if (k < 0 || k >= b) continue;
+          const std::int32_t* other = squared.data() + row(k);
+          for (int m = 0; m < c; m++) best[m] = std::min(best[m], other[m] + away * away);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+GridPlace place_grid(const double (&low)[3], const double (&high)[3], double count) {
+  GridPlace grid{};
+  double product = 1;
+  for (int axis = 0; axis < 3; axis++) product *= std::max(high[axis] - low[axis], LEAST_CELL);
+  grid.cell = std::max(std::pow(product / count, 1.0 / 3.0), LEAST_CELL);
+  for (int axis = 0; axis < 3; axis++) {
+    const double wide = high[axis] - low[axis];
+    grid.cells[axis] = static_cast<int>(std::ceil(wide / grid.cell + 1.0));
+    grid.low[axis] = low[axis] - 0.5 * (grid.cells[axis] * grid.cell - wide);
+  }
+  return grid;
+}
+
+void mark_points(const GridPlace& grid, std::span<const double> points, std::vector<std::uint8_t>& marked) {
+  const double one_by_cell = 1.0 / grid.cell;
+  for (std::size_t i = 0; i < points.size(); i += 3) {
+    std::size_t number = 0;
+    for (int axis = 0; axis < 3; axis++) {
+      const int cell = static_cast<int>((points[i + axis] - grid.low[axis]) * one_by_cell);
+      number = number * grid.cells[axis] + std::min(cell, grid.cells[axis] - 1);
+    }
+    marked[number] = 1;
+  }
+}
+
+void mark_triangles(const GridPlace& grid, std::span<const double> triangles, std::vector<std::uint8_t>& marked) {
+  for (std::size_t i = 0; i < triangles.size(); i += 9) {
+    Polygon triangle;
+    triangle.count = 3;
+    for (int entry = 0; entry < 9; entry++) {
+      triangle.corners[entry / 3][entry % 3] = (triangles[i + entry] - grid.low[entry % 3]) / grid.cell;
+    }
+    mark_triangle(grid, triangle, marked);
+  }
+}
+
+std::vector<std::int8_t> count_windings(const GridPlace& grid, std::span<const double> triangles, bool turned) {
+  const auto [nx, ny, nz] = grid.cells;
+  // Where lines along x through the middles of cells cross.
+  std::vector<std::int32_t> crossings(static_cast<std::size_t>(ny) * nz * (nx + 1));
+  const auto cells = [&](double place, int axis) {
+    return std::min(std::max((place - grid.low[axis]) / grid.cell - 0.5, -1.0), 1e9);
+  };
+  for (std::size_t i = 0; i < triangles.size(); i += 9) {
+    const double *a = triangles.data() + i, *b = a + 3, *c = a + 6;
+    int first[3], last[3];
+    for (int axis = 1; axis < 3; axis++) {
+      first[axis] = std::max(static_cast<int>(std::floor(cells(std::min({a[axis], b[axis], c[axis]}), axis))), 0);
+      last[axis] = static_cast<int>(std::ceil(cells(std::max({a[axis], b[axis], c[axis]}), axis)));
+      last[axis] = std::min(last[axis], grid.cells[axis] - 1);
+    }
+    for (int y = first[1]; y <= last[1]; y++) {
+      for (int z = first[2]; z <= last[2]; z++) {
+        const double p = grid.low[1] + (y + 0.5) * grid.cell, q = grid.low[2] + (z + 0.5) * grid.cell;
+        const double u = area_beside(b, c, p, q), v = area_beside(c, a, p, q), w = area_beside(a, b, p, q);
+        if ((u > 0.0) != (v > 0.0) || (v > 0.0) != (w > 0.0)) continue;
+        const double place = (u * a[0] + v * b[0] + w * c[0]) / (u + v + w);
+        const double behind = std::min(std::max((place - grid.low[0]) / grid.cell - 0.5, 0.0), static_cast<double>(nx));
+        const std::size_t line = (static_cast<std::size_t>(y) * nz + z) * (nx + 1);
+        crossings[line + static_cast<std::size_t>(std::ceil(behind))] += u > 0.0 || !turned ? 1 : -1;
+      }
+    }
+  }
+  std::vector<std::int8_t> windings(grid.count());
+  for (std::size_t line = 0; line < static_cast<std::size_t>(ny) * nz; line++) {
+    int winding = 0;
+    for (int x = 0; x < nx; x++) {
+      winding += crossings[line * (nx + 1) + x];
+      const int shown = turned ? winding : winding & 1;
+      windings[x * static_cast<std::size_t>(ny) * nz + line] =
+          static_cast<std::int8_t>(std::clamp(shown, -MOST_WINDINGS, MOST_WINDINGS));
+    }
+  }
+  return windings;
+}
+
+/// Between cells d apart along an axis there are d - 1: so distances, axis by axis, from cells that are marked or next
+/// to one (after P. Felzenszwalb and D. Huttenlocher, Distance Transforms of Sampled Functions, 2012, but each line is
+/// searched up to the farthest that is told apart, many lines at once).
+std::vector<std::uint8_t> distances_to(const GridPlace& grid, std::span<const std::uint8_t> marked) {
+  const auto [nx, ny, nz] = grid.cells;
+  std::vector<std::int32_t> squared(grid.count(), FARTHEST * FARTHEST), least(grid.count());
+  const auto line = [&](int x, int y) { return (static_cast<std::size_t>(x) * ny + y) * nz; };
+  for (int x = 0; x < nx; x++) {
+    for (int y = 0; y < ny; y++) {
+      for (int z = 0; z < nz; z++) {
+        if (marked[line(x, y) + z] == 0) continue;
+        for (int i = std::max(x - 1, 0); i < std::min(x + 2, nx); i++) {
+          for (int k = std::max(y - 1, 0); k < std::min(y + 2, ny); k++) {
+            std::fill(&squared[line(i, k) + std::max(z - 1, 0)], &squared[line(i, k)] + std::min(z + 2, nz), 0);
+          }
+        }
+      }
+    }
+  }
+  for (std::size_t first = 0; first < squared.size(); first += nz) {
+    std::int32_t* cells = &squared[first];
+    int away = FARTHEST;
+    for (int z = 0; z < nz; z++) {
+      away = cells[z] == 0 ? 0 : std::min(away + 1, FARTHEST);
+      cells[z] = away * away;
+    }
+    away = FARTHEST;
+    for (int z = nz - 1; z >= 0; z--) {
+      away = cells[z] == 0 ? 0 : std::min(away + 1, FARTHEST);
+      cells[z] = std::min(cells[z], away * away);
+    }
+  }
+  spread_along(squared, least, nx, ny, nz);
+  spread_along(least, squared, 1, nx, ny * nz);
+  std::vector<std::uint8_t> distances(squared.size());
+  for (std::size_t i = 0; i < squared.size(); i++) {
+    distances[i] = static_cast<std::uint8_t>(std::min(STEPS * std::sqrt(static_cast<double>(squared[i])), 255.0));
+  }
+  return distances;
+}
+
+DistanceGrid make_grid(const GridPlace& place, double told, std::vector<std::uint8_t> distances) {
+  // A place on the upper side is in the last cell, not beyond it.
+  const double within = place.cell * (1.0 - 1e-5);
+  const auto single = [](double x, double y, double z) {
+    return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+  };
+  DistanceGrid grid;
+  std::copy_n(place.cells, 3, grid.cells);
+  grid.low = single(place.low[0], place.low[1], place.low[2]);
+  grid.size = single(place.cells[0] * within, place.cells[1] * within, place.cells[2] * within);
+  grid.one_by_cell = static_cast<float>(1.0 / place.cell);
+  grid.step = static_cast<float>(place.cell / STEPS * (1.0 - 1e-6));
+  grid.told = static_cast<float>(told);
+  grid.distances = std::move(distances);
+  return grid;
+}
+
+}  // namespace evenroad::robot
