@@ -1,4 +1,4 @@
-"""120 calls that users of SciPy, OMPL, VAMP and MoveIt try by heart, and how many of them work.
+"""121 calls that users of SciPy, OMPL, VAMP and MoveIt try by heart, and how many of them work.
 
 Each case is what one types and what one then expects of it.  The list was written down before the
 code was looked at.  A call that does not work is in ``NOT_YET`` with its reason, and fails strictly:
@@ -158,6 +158,8 @@ CALLS = {
     "own world plans": (
         "x = er.plan(er.FunctionWorld(space, free, resolution=0.02), (-1, 0), (1, 0), er.draw('sobol', 256, 2))",
         "x.solved"),
+    "own world planner by name": (
+        "x = er.plan(er.FunctionWorld(space, free, resolution=0.02), (-1, 0), (1, 0), 'prm')", "x.solved"),
     "own world SE2": ("x = er.FunctionWorld(er.spaces.SE2((-5, -5), (5, 5)), free, resolution=0.02)", "x.dim == 3"),
     "own world box space": ("x = er.spaces.BoxSpace((-1, -1), (1, 1))", "x.dim == 2"),
 }  # fmt: skip

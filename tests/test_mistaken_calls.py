@@ -65,6 +65,10 @@ CALLS = {
     "result.plot(7)": "file",
     "result.plot(world='office.yaml')": "world",
     "er.show('plan.json')": "plan or a map",
+    "er.plan(arm, 'home', 'zero', timeout=1)": "seconds=5",
+    "er.RRTConnect(range=0.5)": "known: improve",
+    "er.PRM(n=512)": "points",
+    "er.build_roadmap(arm, n=64)": "points",
     "er.io.load_plan(7)": "file",
     "er.io.load_plan('nosuch.json')": "nosuch.json",
     # --- robots

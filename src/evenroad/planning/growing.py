@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._call import explains_calls
 from evenroad._checks import require_count, require_known
 from evenroad._clock import now
 from evenroad.errors import InvalidValue
@@ -31,6 +32,7 @@ SETTLED = 0.01
 """Share of shortening up to which a path counts as settled when the points were doubled."""
 
 
+@explains_calls
 @dataclass(frozen=True)
 class GrowingPRM:
     """A roadmap of more and more points of one sequence: `first`, then twice as many, lazily, until the answer is good.

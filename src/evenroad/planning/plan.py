@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -13,7 +13,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.enclosed import with_reasons
-from evenroad.planning.prm import PRM
+from evenroad.planning.prm import FMT, PRM
 from evenroad.planning.read_request import mesh_check, read_request
 from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request
 from evenroad.planning.tip_motion import TipMotion, refused
@@ -30,6 +30,9 @@ from evenroad.robot.constraint import Constraint
 from evenroad.robot.reference.validate import MeshCheck
 from evenroad.robot.scan import allowed_everywhere
 from evenroad.world import ShowsApart, World
+
+PLANNERS: dict[str, Callable[[], Planner]] = {"rrtconnect": RRTConnect, "prm": PRM, "fmt": FMT}
+"""Planners by name."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +78,7 @@ def plan(
         A pose stands for all configurations found that reach it.  Of several goals the path ends at the nearest if it
         is reached soon; along a roadmap, or with ``improve``, at the cheapest.
     planner : Planner, Roadmap, PointSet, str or path-like, optional
-        Such as ``er.RRTConnect()``, ``er.PRM(512)`` or ``er.FMT(1024)``.  Default: trees for an arm, a search of cells
+        Such as ``er.RRTConnect()``, ``er.PRM(512)`` or ``"fmt"``.  Default: trees for an arm, a search of cells
         for a disk on a map, points that grow for any other world.  A PointSet stands for ``er.PRM(points)``,
         a Roadmap, or its file, for that roadmap within the world.
     seconds : float, optional
@@ -119,7 +122,9 @@ def plan(
     >>> er.plan("box-reach", "home", "inside", robot="ur5").status
     <Status.SOLVED: 'solved'>
     """
-    if isinstance(planner, str | os.PathLike):
+    if isinstance(planner, str) and planner.lower() in PLANNERS:
+        planner = PLANNERS[planner.lower()]()
+    elif isinstance(planner, str | os.PathLike):
         planner = cast(Roadmap, above("plan.planner")(planner))
     if isinstance(planner, PointSet):
         planner = PRM(planner)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, dataclass, replace
 from typing import ClassVar, Protocol
 
+from evenroad._call import explains_calls
 from evenroad._checks import require_count, require_known
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import connector_of
@@ -21,6 +22,7 @@ from evenroad.roadmap.search import FINDERS, FREE, Finder, march
 from evenroad.space import Space
 
 
+@explains_calls
 @dataclass(frozen=True)
 class PRM:
     """A roadmap on points that are drawn beforehand: Algorithm 1 of Chahine et al. (2025).
@@ -98,6 +100,7 @@ class PRM:
         return _on_points(self, problem, query, planner, query.find)
 
 
+@explains_calls
 @dataclass(frozen=True)
 class FMT:
     """A tree over points that grows outwards in the order of cost: FMT* (Janson et al. 2015).

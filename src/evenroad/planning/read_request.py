@@ -69,8 +69,8 @@ def read_request(
             raise InvalidValue("a scene goes with robot=, the arm that moves in it: a name, a file or a Robot")
         return arm_request(of_world.pop("robot"), world, start, goal, reading, **of_world)
     if of_world:
-        what = "a world that is made says all of itself"
-        raise InvalidValue(f"{', '.join(of_world)}: unknown arguments of plan, or {what}, got {world!r}")
+        unknown = f"unknown keyword of plan in {shown(world)}: {next(iter(of_world))!r}"
+        raise InvalidValue(f"{unknown}; the time limit is seconds=5, others are limits={{'motions': 1000}}")
     if isinstance(world, ArmWorld):
         return request_in(world, start, goal, reading)
     if not hasattr(world, "motion_valid"):

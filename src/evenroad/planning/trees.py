@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from evenroad._call import explains_calls
 from evenroad._clock import now
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
@@ -33,6 +34,7 @@ TO_NEAREST = 300
 """Largest number of motions checked towards the nearest of several goals alone."""
 
 
+@explains_calls
 @dataclass(frozen=True)
 class RRTConnect:
     """Two trees that grow from start and goals until they meet (Kuffner and LaValle 2000), along an even sequence.
@@ -64,6 +66,7 @@ class RRTConnect:
         return solve_by(problem, trees_for(problem.world), improve=self.improve)
 
 
+@explains_calls
 @dataclass(frozen=True)
 class GridSearch:
     """A search over the cells of a map for a disk: exact, and it proves where there is no path.

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._call import explains_calls
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
@@ -35,6 +36,7 @@ K = 16
 Progress = Callable[[str, float], None]
 
 
+@explains_calls
 def build_roadmap(
     world: World,
     points: int | PointSet,
