@@ -104,13 +104,10 @@ def test_nobody_imports_the_adapters():
     assert [part for part, others in MAY_IMPORT.items() if "adapters" in others] == []
 
 
-def test_evenroad_imports_nothing_of_the_studies_and_the_command_knows_them_by_entry_points():
+def test_evenroad_imports_nothing_of_the_studies_and_knows_their_verbs_by_entry_points():
     importing = [path for path in MODULES if "import evenroad_studies" in path.read_text()]
     importing += [path for path in MODULES if "from evenroad_studies" in path.read_text()]
     assert importing == []
-
-
-def test_the_studies_bring_the_verbs_that_the_command_names():
     settings = tomllib.loads((ROOT.parents[1] / "studies" / "pyproject.toml").read_text(encoding="utf-8"))
     assert set(settings["project"]["entry-points"][ENTRY_POINTS]) == set(OF_STUDIES)
 

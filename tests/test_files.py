@@ -96,11 +96,8 @@ def test_what_does_not_parse_is_said_with_its_place(tmp_path, reader, text, says
     refused(BrokenFile, says, READERS[reader], tmp_path / "a")
 
 
-def test_a_missing_file_is_said_to_be_missing(tmp_path):
+def test_a_missing_file_is_said_to_be_missing_and_python_objects_are_never_unpacked(tmp_path):
     refused(BrokenFile, "cannot read the plan .*nowhere", read_json_file, Path("nowhere"), "plan")
-
-
-def test_an_array_of_python_objects_is_never_unpacked(tmp_path):
     np.save(tmp_path / "a.npy", np.array([{}, 1], dtype=object), allow_pickle=True)
     with pytest.raises(BrokenFile, match=r"a\.npy is not a readable \.npy array .*: .* holds Python objects"):
         load_points(tmp_path / "a.npy")

@@ -42,12 +42,9 @@ def test_with_points_the_path_is_that_of_the_command_with_so_many(tmp_path, monk
         assert result.path.tolist() == expected
 
 
-def test_options_of_files_do_not_go_with_a_robot_that_is_a_value():
+def test_ends_and_options_that_do_not_fit_are_refused():
     with pytest.raises(er.errors.InvalidValue, match="with the file of a robot"):
         er.plan("box-reach", "home", "inside", robot=er.load_robot("ur5"), group="a")
-
-
-def test_an_end_that_is_no_configuration_is_refused():
     with pytest.raises(er.errors.InvalidValue, match="start must be 6 finite numbers"):
         er.plan("box-reach", [0.0, 0.0], "inside", robot="ur5")
     with pytest.raises(er.errors.UnknownName, match="unknown state 'outside'"):
@@ -185,7 +182,7 @@ def test_of_poses_and_configurations_the_path_ends_at_one_and_the_cheapest_where
     assert len(first.goals) > 3
 
 
-def test_a_pose_that_cannot_be_reached_is_an_answer():
+def test_a_pose_that_cannot_be_reached_is_an_answer_and_does_not_stop_the_others():
     far = er.plan("box-reach", "home", er.Pose((2.0, 0.0, 0.0)), robot="ur5")
     assert far.status is er.Status.GOAL_UNREACHABLE
     assert "out of reach" in far.message
@@ -193,8 +190,5 @@ def test_a_pose_that_cannot_be_reached_is_an_answer():
     inside_wall = er.plan("box-reach", "home", er.PoseGoal(er.Pose((0.9, 0.0, 0.2)), position_only=True), robot="ur5")
     assert inside_wall.status is er.Status.GOAL_INVALID
     assert "touches 'box back'" in inside_wall.message
-
-
-def test_one_pose_that_cannot_be_reached_does_not_stop_the_others():
     result = er.plan("box-reach", "home", [er.Pose((2.0, 0.0, 0.0)), "inside"], robot="ur5")
     assert result.solved

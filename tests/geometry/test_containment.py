@@ -29,12 +29,9 @@ def test_a_body_is_in_a_large_box_by_the_share_of_its_volume(name):
     assert shares == pytest.approx([1.0, 0.5, 0.0], abs=0.02)
 
 
-def test_what_is_in_the_hole_of_a_mesh_is_not_inside_and_a_hull_does_not_count():
+def test_a_hole_of_a_mesh_a_hull_and_an_open_surface_are_no_inside():
     shares = share_inside([piece_of(Sphere(0.05))], [piece_of(ring())], moved(0.0, 0.3, 0.2))
     assert shares == pytest.approx([0.0, 1.0, 0.5], abs=0.15)
     assert share_inside([piece_of(ring())], [piece_of(Box((2.0, 2.0, 2.0)))], moved(0.0)) == [1.0]
-
-
-def test_an_open_surface_has_no_inside():
     sheet = TriangleMesh(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]]), np.array([[0, 1, 2]]))
     assert share_inside([piece_of(Mesh(sheet))], [piece_of(Box((4.0, 4.0, 4.0)))], moved(0.0)) == [0.0]

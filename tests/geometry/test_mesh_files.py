@@ -37,14 +37,11 @@ def test_the_surface_of_a_box_encloses_its_volume_with_outward_faces():
     assert (np.einsum("ij,ij->i", outward, (a + b + c) / 3 - middle) > 0).all()
 
 
-def test_merged_meshes_keep_their_triangles():
+def test_merged_meshes_keep_their_triangles_and_are_read_only():
     far = TriangleMesh(CUBE.vertices + 10, CUBE.triangles)
     both = merged((CUBE, far))
     assert both.triangles.shape == (24, 3)
     np.testing.assert_array_equal(both.vertices[both.triangles[12:]], far.vertices[far.triangles])
-
-
-def test_meshes_are_read_only():
     with pytest.raises(ValueError, match="read-only"):
         CUBE.vertices[0, 0] = 5.0
 

@@ -81,12 +81,9 @@ def test_a_capsule_along_z_has_its_ends_where_they_were(pose):
     assert along_z(turned) is turned
 
 
-def test_a_capsule_without_a_length_is_a_sphere():
+def test_a_capsule_without_a_length_is_a_sphere_and_without_its_pose_moved():
     ball = along_z(Capsule((1, 0, 0), (1, 0, 0), 0.5, pose=PLACE))
     assert ball == Sphere(0.5, pose=PLACE @ Pose((1, 0, 0)))
-
-
-def test_a_capsule_without_its_pose_has_its_ends_in_the_outer_frame():
     capsule = Capsule(0.1, 2.0, pose=PLACE, link="arm")
     moved = without_pose(capsule)
     np.testing.assert_allclose(moved.a, PLACE.apply((0, 0, -1)))
@@ -94,7 +91,7 @@ def test_a_capsule_without_its_pose_has_its_ends_in_the_outer_frame():
     assert without_pose(moved) is moved
 
 
-def test_a_height_map_is_the_surface_over_its_grid():
+def test_a_height_map_is_the_surface_over_its_grid_where_heights_are_known():
     heights = np.arange(12.0).reshape(3, 4) ** 2
     mesh = height_map(heights, 0.5, (-1.0, 2.0))
     assert len(mesh.triangles) == 12
@@ -106,9 +103,6 @@ def test_a_height_map_is_the_surface_over_its_grid():
     i, j = ((mesh.vertices[:, :2] + (1.0, -2.0)) / 0.5).round().astype(int).T
     np.testing.assert_array_equal(mesh.vertices[:, 2], heights[i, j])
     assert len(np.unique(middle[:, :2], axis=0)) == 12
-
-
-def test_there_is_no_surface_where_a_height_is_not_known():
     heights = np.zeros((3, 4))
     heights[0, 0] = np.nan
     assert len(height_map(heights, 0.1).triangles) == 10

@@ -107,14 +107,11 @@ def test_a_path_that_was_found_before_the_budget_was_spent_is_the_answer():
     assert late.counts["edges_checked"] <= checks
 
 
-def test_the_same_seed_gives_the_same_bits():
+def test_the_same_seed_gives_the_same_bits_and_sets_must_extend_one_another():
     one, other = (plan_growing(ChanceWorld(2, 0.8, 0.5), START, GOAL, rng=7, until="settled") for _ in range(2))
     assert one.path.tobytes() == other.path.tobytes()
     assert one.counts == other.counts
     assert one.stages == other.stages
-
-
-def test_sets_that_do_not_extend_one_another_are_refused():
     blocked = ChanceWorld(4, 1.0, 0.0)
     refused(InvalidValue, "do not begin with", plan_growing, blocked, START, GOAL, Lattice())
     refused(InvalidValue, "not a Generator", plan_growing, blocked, START, GOAL, rng=np.random.default_rng(0))

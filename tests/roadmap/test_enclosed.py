@@ -45,15 +45,12 @@ def test_of_several_goals_each_is_named_by_its_number():
     assert "Goal 1 is enclosed" in result.message
 
 
-def test_nothing_is_said_of_a_path_or_of_ends_that_move_freely():
+def test_nothing_is_said_of_a_path_and_without_words_it_is_only_counted():
     solved = plan(WORLD, START, (0.2, 0.6), PRM(16))
     assert with_reasons(WORLD, solved) is solved
     wall = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
     apart = plan(wall, START, (0.9, 0.5), PRM(64))
     assert with_reasons(wall, apart) is apart
-
-
-def test_a_world_without_words_counts_only():
     mute = SimpleNamespace(space=WORLD.space, valid=WORLD.valid, motion_valid=WORLD.motion_valid)
     message = with_reasons(mute, plan(mute, START, GOAL, PRM(16))).message
     assert "The goal is enclosed: 0 of 128 motions of length 0.04" in message

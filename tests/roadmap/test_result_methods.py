@@ -58,20 +58,14 @@ def test_a_plan_that_failed_is_drawn_too():
     assert BLOCKED.plot().size > (100, 100)
 
 
-def test_a_path_gets_times_by_the_limits_that_are_given():
+def test_a_path_gets_times_by_limits_that_are_given_or_its_robots_or_the_speed_on_a_map():
     limits = Limits((1.0, 1.0), (2.0, 2.0))
     fast, slow = RESULT.trajectory(limits), RESULT.trajectory(limits, speed=0.5)
     assert slow.duration == pytest.approx(2 * fast.duration, rel=0.02)
     assert fast.duration >= np.abs(np.diff(RESULT.path[[0, -1]], axis=0)).max()
-
-
-def test_on_a_map_the_speed_is_that_along_the_path():
     speeds = np.linalg.norm(RESULT.trajectory(speed=0.5).velocities, axis=1)
     assert 0.99 * 0.5 <= speeds.max() <= 0.5 * (1 + 1e-9)
     assert RESULT.trajectory(speed=2.5).duration < RESULT.length
-
-
-def test_the_path_of_an_arm_has_the_limits_of_its_robot():
     world = er.ArmWorld("ur5")
     result = er.plan(world, (0, -1.5, 0, -1.5, 0, 0), (1, -1.5, 0.5, -1.5, 0, 0))
     trajectory = result.trajectory(speed=0.3)

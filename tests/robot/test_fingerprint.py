@@ -35,12 +35,9 @@ def test_what_decides_verdicts_changes_the_fingerprint_of_a_robot_or_a_scene(oth
     assert other.fingerprint() != (CELL if isinstance(other, Scene) else UR5).fingerprint()
 
 
-def test_names_and_orders_do_not_count():
+def test_names_orders_and_signs_of_zeros_do_not_count():
     assert replace(UR5, name="it", states={"home": {}}).fingerprint() == UR5.fingerprint()
     backwards = Scene(CELL.obstacles[::-1], name="another", allowed=CELL.allowed)
     assert backwards.fingerprint() == CELL.fingerprint()
-
-
-def test_zeros_of_both_signs_are_one_number():
     plus, minus = (Scene((Obstacle("a", Box((1, 1, 1), pose=Pose((zero, 0, 0)))),), name="s") for zero in (0.0, -0.0))
     assert plus.fingerprint() == minus.fingerprint()

@@ -46,13 +46,10 @@ def test_limits_of_a_leader_are_narrowed_to_those_of_its_mimics(followers, expec
     assert found == pytest.approx(list(expected))
 
 
-def test_a_joint_that_turns_on_stops_where_its_mimic_does():
+def test_a_joint_that_turns_on_stops_where_its_mimic_does_and_rounding_narrows_nothing():
     assert limits(leader(-math.inf, math.inf, "continuous"), follower(-1.0, 2.0, 0.5)) == ("revolute", -2.0, 4.0)
     free = follower(-math.inf, math.inf, 2.0)
     assert limits(leader(-math.inf, math.inf, "continuous"), free) == ("continuous", -math.inf, math.inf)
-
-
-def test_limits_written_alike_up_to_rounding_stay_as_they_are_written():
     """0.7 / 0.1 is not 7: a start at the limit must not be outside of it."""
     assert limits(leader(-7.0, 7.0), follower(-0.7, 0.7, 0.1)) == ("revolute", -7.0, 7.0)
 

@@ -39,12 +39,9 @@ def test_a_world_keeps_to_the_limits_of_its_scene():
     assert world.robot.fingerprint() == replace(world, resolution=0.1).robot.fingerprint()
 
 
-def test_limits_that_narrow_nothing_leave_the_robot_the_same_value():
+def test_limits_that_narrow_nothing_leave_the_robot_and_those_of_no_joint_are_refused():
     robot = ur5()
     assert ArmWorld(robot, Scene(name="wide", limits={"elbow_joint": (-9.0, 9.0)})).robot is robot
-
-
-def test_limits_of_a_joint_that_is_not_there_are_refused():
     with pytest.raises(er.errors.UnknownName, match="limits of scene 'cell 7': 'knee'"):
         ArmWorld(ur5(), Scene(name="cell 7", limits={"knee": (0.0, 1.0)}))
 

@@ -237,12 +237,9 @@ def test_what_a_later_joint_moves_is_gone_with_its_followers():
     assert first_links(robot, 3).capsules == robot.capsules
 
 
-def test_joints_that_are_held_stay_where_they_are():
+def test_first_links_keep_what_is_held_and_bodies_thinner_than_a_cell_prove_nothing():
     robot = replace(flat_arm(joints=4), group=("joint1", "joint2", "joint3"), held={"joint0": 0.7})
     assert first_links(robot, 2).held["joint0"] == 0.7
-
-
-def test_bodies_thinner_than_a_cell_moves_them_vanish_and_prove_nothing():
     robot = first_links(flat_arm(), 2)
     assert thinner(robot, np.array([1.0, 1.0]), SLACK).capsules == ()
     world = ArmWorld(flat_arm(), posts(at(1.0, 0.3)))

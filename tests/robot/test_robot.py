@@ -93,14 +93,11 @@ def test_two_arms_of_one_kind_are_joined_with_a_prefix():
     assert both.group == UR5.group
 
 
-def test_a_rigid_tool_is_loaded_like_a_robot(tmp_path):
+def test_a_rigid_tool_is_loaded_like_a_robot_or_capsules_as_they_are(tmp_path):
     tool = load_robot(write(tmp_path, urdf(link("rod"), name="rod")))
     assert tool.group == ()
     assert UR5.with_tool(tool, at="tool0").capsules[-1] == tool.capsules[0]
     refused(InvalidValue, "one joint or more", ArmWorld, tool, Scene(name="empty"))
-
-
-def test_a_rigid_tool_is_capsules_as_they_are():
     rod = Capsule((0, 0, 0), (0, 0, 0.2), 0.01)
     assert UR5.with_tool([rod], at="tool0").capsules[-1] == Capsule(rod.a, rod.b, 0.01, link="tool")
 

@@ -19,15 +19,12 @@ def test_limits_are_those_of_the_joints_in_the_order_of_the_group(robot):
         assert (lower, upper) == (joints[name].lower, joints[name].upper)
 
 
-def test_a_configuration_may_be_numbers_a_mapping_or_the_name_of_a_state():
+def test_a_configuration_may_be_numbers_a_mapping_with_0_where_it_is_silent_or_a_state():
     row = ARM.configuration("home")
     places = [row, row.tolist(), dict(zip(ARM.joint_names, row, strict=True)), "home", ARM.states["home"]]
     (pose,) = {ARM.fk(place, "tool0") for place in places}
     frame = link_poses(ARM, row[np.newaxis])[0, ARM.links.index("tool0")]
     assert np.allclose(pose.matrix, frame, rtol=0, atol=1e-15)
-
-
-def test_joints_that_a_mapping_leaves_out_are_at_0():
     assert ARM.fk({"elbow_joint": -1.5}, "tool0") == ARM.fk([0, 0, -1.5, 0, 0, 0], "tool0")
 
 

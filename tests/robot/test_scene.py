@@ -133,12 +133,9 @@ def test_what_is_merged_into_an_obstacle_may_be_said_again(tmp_path):
     assert [(each.size, each.cell) for each in (a, b, c)] == [((1,), True), ((2,), True), ((2,), True)]
 
 
-def test_a_scene_that_is_missing_gets_the_list_of_shipped_ones():
+def test_a_file_goes_before_a_shipped_scene_and_a_missing_one_gets_their_list(tmp_path, monkeypatch):
     with pytest.raises(BrokenFile, match=r"no scene file nowhere.yaml; shipped: box-reach.yaml, box-reach-narr"):
         load_scene("nowhere.yaml")
-
-
-def test_a_file_goes_before_a_shipped_scene(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert load_scene("box-reach.yaml") == load_scene("box-reach")
     write(tmp_path, "obstacles: {}\n", "box-reach.yaml")
@@ -267,10 +264,13 @@ LISTED = {"name": "table", "box": {"size": (0.8, 1.2, 0.04)}, "xyz": [0.5, 0, -0
 BALLS = {"obstacles": [{"sphere": 0.1}, {"shape": "sphere", "radius": 0.1, "xyz": [1, 0, 0]}]}
 
 
-def test_obstacles_of_a_list_without_names_get_one_as_shapes_do():
+def test_obstacles_of_a_list_without_names_get_one_and_two_scenes_share_nothing():
     assert [each.name for each in Scene(BALLS).obstacles] == ["sphere 0", "sphere 1"]
     twice = {"obstacles": [LISTED, LISTED]}
     refused(InvalidValue, "of their own, twice: 'table'", Scene, twice)
+    first, second = Scene([TABLE]), Scene([TABLE])
+    first.states["home"] = {}
+    assert second.states == {}
 
 
 def test_a_planning_scene_of_moveit_is_a_scene_without_a_file():
@@ -280,21 +280,12 @@ def test_a_planning_scene_of_moveit_is_a_scene_without_a_file():
     assert scene.obstacles == Scene([TABLE]).obstacles
 
 
-def test_two_scenes_share_nothing_that_can_change():
-    first, second = Scene([TABLE]), Scene([TABLE])
-    first.states["home"] = {}
-    assert second.states == {}
-
-
-def test_capsules_and_meshes_are_made_of_what_people_have():
+def test_capsules_meshes_and_scenes_are_made_of_what_people_have_and_show_themselves_in_one_line():
     assert Capsule(0.1, 0.4) == Capsule(radius=0.1, length=0.4) == Capsule((0, 0, -0.2), (0, 0, 0.2), 0.1)
     vertices, triangles = np.eye(3), [[0, 1, 2]]
     theirs = SimpleNamespace(vertices=vertices, faces=triangles)
     for mesh in (Mesh((vertices, triangles), scale=2), Mesh(theirs, 2, name="m")):
         assert mesh.triangles == TriangleMesh(2 * vertices, triangles)
-
-
-def test_scenes_and_shapes_show_themselves_in_one_line():
     assert repr(TABLE) == "Box((0.8, 1.2, 0.04), pose=Pose((0.5, 0, -0.02)), name='table')"
     assert repr(Sphere(0.1)) == "Sphere(radius=0.1)"
     assert repr(Scene([TABLE])) == "Scene('scene', 1 obstacle: table)"

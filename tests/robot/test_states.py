@@ -115,22 +115,16 @@ def test_numbers_and_states_of_the_group_alone_hold_nothing(only_a):
     assert held_values(at_states(held, ("down", "0.5"), UP)) == {"b": 0.75}
 
 
-def test_two_states_that_differ_in_what_is_not_planned_for_are_refused(only_a):
-    with pytest.raises(
-        InvalidValue, match="'b' is not planned for, .* from 0.5 in the state 'up' to 1 in 'bent'; the group is a"
-    ):
-        at_states(only_a, ("up", "bent"), UP)
-
-
-def test_a_state_is_never_taken_for_the_posture_that_it_is_not(only_a):
-    refused(InvalidValue, "'up' has joint 'b' at 0.5, where 'arm' holds it at 0", configuration, only_a, "up", UP)
-
-
-def test_a_state_cannot_hold_a_joint_outside_its_limits_nor_one_that_is_not_there(only_a):
+def test_a_state_lacks_no_joint_breaks_no_limit_and_is_not_taken_for_another_posture(only_a):
     scene = Scene((), name="s", states={"far": {"a": 0, "b": 99}, "odd": {"a": 0, "knee": 1}})
     with pytest.raises(InvalidValue, match="the state 'far' puts joint 'b' at 99 rad, 98 rad outside its limits"):
         at_states(only_a, ("far", "0"), scene)
     refused(UnknownName, "joint of the state 'odd': 'knee'; known: a, b", at_states, only_a, ("odd", "0"), scene)
+    refused(InvalidValue, "'up' has joint 'b' at 0.5, where 'arm' holds it at 0", configuration, only_a, "up", UP)
+    with pytest.raises(
+        InvalidValue, match="'b' is not planned for, .* from 0.5 in the state 'up' to 1 in 'bent'; the group is a"
+    ):
+        at_states(only_a, ("up", "bent"), UP)
 
 
 def test_a_state_beyond_a_limit_by_rounding_holds_the_joint_there(only_a):

@@ -108,15 +108,12 @@ def test_more_goals_than_fit_a_batch(world):
     np.testing.assert_array_equal(several.path[-1], goals[several.goal])
 
 
-def test_ends_that_are_not_free_give_no_path(world):
+def test_ends_that_are_not_free_give_no_path_and_one_that_is_both_is_one(world):
     blocked = np.array([0.0, 0.9, 0.0, 0.0, 0.0])
     beyond = START + np.array([0.0, 9.0, 0.0, 0.0, 0.0])
     for start, goal in ((blocked, GOAL), (START, blocked), (beyond, GOAL), (START, beyond)):
         none = connect(world, start, [goal])
         assert (none.goal, len(none.path), none.motions) == (-1, 0, 0)
-
-
-def test_start_and_goal_may_be_one(world):
     same = connect(world, START, [START])
     assert same.goal == 0
     np.testing.assert_array_equal(same.path, [START, START])

@@ -67,27 +67,21 @@ def test_a_band_that_the_foot_blocks_is_proved_in_an_empty_scene(robot):
     assert er.plan(Scene(), UP, [OVER, ROUND], robot=robot, seconds=2.0).status == "solved"
 
 
-def test_it_is_soon_shown_again(robot):
+def test_walls_are_kept_with_the_robot_and_known_out_of_its_cache(robot, tmp_path):
     world = ArmWorld(robot)
     assert world.apart(UP, OVER[np.newaxis], quickly=True).proved
     assert walls_of(replace(robot)) is walls_of(robot)
     assert walls_of(replace(robot, pairs=())) != walls_of(robot)
-
-
-def test_a_robot_from_the_cache_knows_its_walls(robot, tmp_path):
     again = turret(tmp_path), turret(tmp_path)
     assert all(walls_of(each) == walls_of(robot) for each in again)
     assert [hull.solid for hull in again[1].hulls] == [hull.solid for hull in robot.hulls]
 
 
-def test_a_pair_that_is_not_tested_blocks_nothing(robot):
+def test_a_pair_that_is_not_tested_and_what_is_no_solid_block_nothing(robot, tmp_path):
     for pairs in ((), tuple(pair for pair in robot.pairs if pair != ("foot", "arm"))):
         allowed = replace(robot, pairs=pairs)
         assert may_connect(ArmWorld(allowed), UP, OVER)
         assert er.plan(Scene(), UP, OVER, robot=allowed, seconds=2.0).status == "solved"
-
-
-def test_what_is_no_solid_blocks_nothing(tmp_path):
     """A foot without its lid: nobody knows where its inside is."""
     open_foot = trimesh.creation.cylinder(radius=0.15, height=0.2, sections=12).apply_translation((0, 0, 0.1))
     open_foot.update_faces(np.arange(len(open_foot.faces)) > 0)

@@ -153,15 +153,12 @@ def test_the_cell_is_there_even_where_the_scene_does_not_name_it(roadmap):
     np.testing.assert_array_equal(named.path, unnamed.path)
 
 
-def test_a_scene_that_contradicts_the_cell_is_refused(roadmap):
+def test_a_scene_that_contradicts_the_cell_is_refused_and_ranges_of_both_hold(roadmap):
     higher = TABLE.obstacles[0].at(replace(TABLE.obstacles[0].body.pose, xyz=(0.25, 0.0, 0.1)))
     with pytest.raises(InvalidValue, match=r"'table' of scene 'cell' is a box of 1, 1.2, 0.05 at \(0.25, 0, 0.1\)"):
         roadmap.within(ArmWorld(roadmap.robot, replace(TABLE, obstacles=(higher,))))
     with pytest.raises(InvalidValue, match="does not allow 'base' to touch it"):
         roadmap.within(ArmWorld(roadmap.robot, replace(TABLE, allowed=frozenset({("shoulder", "table")}))))
-
-
-def test_ranges_of_cell_and_scene_both_hold():
     cell, scene = (
         Scene(name="cell", limits={"a": (-1.0, 1.0), "b": (0.0, 1.0)}),
         Scene(name="today", limits={"a": (0.0, 3.0)}),

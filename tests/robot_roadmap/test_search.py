@@ -18,6 +18,7 @@ from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.turns import MOST_MULTI_TURN, MOST_TURNS, one_turn
 from evenroad.space import JointSpace
 from tests.robot.kernel_arms import box_scene, ur5
+from tests.robot_roadmap.worlds import within
 
 TURN = 2.0 * np.pi
 
@@ -87,12 +88,6 @@ def roadmap():
     return arm_roadmap(ArmWorld(ur5(joints=3), cell), 48, 5, recipe=Recipe(2.0, 100))
 
 
-def within(roadmap, scene=None, robot=None, **options):
-    """The roadmap in a world of boxes, with the roadmap's robot."""
-    scene = box_scene() if scene is None else scene
-    return roadmap.within(ArmWorld(roadmap.robot if robot is None else robot, scene, **options))
-
-
 def length_of(path):
     return float(np.sum(np.linalg.norm(np.diff(path, axis=0), axis=1)))
 
@@ -100,7 +95,7 @@ def length_of(path):
 def test_the_path_is_as_long_as_that_of_a_slow_search_and_proved_again(roadmap):
     rng, found = np.random.default_rng(3), 0
     for goals in (1, 1, 3):
-        known = within(roadmap)
+        known = within(roadmap, box_scene())
         q = known.world.space.from_cube(rng.random((4000, 3)))
         ends = q[known.world.valid(q)]
         for i in range(0, 8 * (1 + goals), 1 + goals):
@@ -125,7 +120,7 @@ def test_the_path_is_as_long_as_that_of_a_slow_search_and_proved_again(roadmap):
 
 
 def test_what_one_query_found_out_is_not_asked_again(roadmap):
-    known = within(roadmap)
+    known = within(roadmap, box_scene())
     start, goal = far_apart(known)
     first, second = known.connect(start, goal), known.connect(start, goal)
     assert second.motions < first.motions
@@ -151,7 +146,7 @@ def far_apart(known):
 
 
 def test_a_goal_more_than_a_turn_away_is_reached_and_no_limit_left(roadmap):
-    known = within(roadmap)
+    known = within(roadmap, box_scene())
     start, goal = far_apart(known)
     assert goal[0, 0] - start[0] > 1.5 * TURN
     path = known.connect(start, goal).path
@@ -199,10 +194,10 @@ def test_of_very_many_joints_only_those_turn_on_that_the_search_can_follow():
 
 
 def test_a_search_in_slices_finds_what_it_finds_in_one_go(roadmap):
-    start, goal = far_apart(within(roadmap))
+    start, goal = far_apart(within(roadmap, box_scene()))
     found = []
     for batches in (1, 10**9):
-        known = within(roadmap)
+        known = within(roadmap, box_scene())
         checks = [checks_of(world) for world in known._worlds]
         search = ProvedSearch(known._graph, np.concatenate([start[np.newaxis], goal]), (48, 3.0, 1.0), *checks)
         calls = 1
@@ -214,17 +209,17 @@ def test_a_search_in_slices_finds_what_it_finds_in_one_go(roadmap):
 
 
 def test_checks_run_out_and_come_back(roadmap):
-    known = within(roadmap)
+    known = within(roadmap, box_scene())
     start, goal = far_apart(known)
     assert known.connect(start, goal, most_motions=1).motions == 1
     again = known.connect(start, goal)
-    fresh = within(roadmap).connect(start, goal)
+    fresh = within(roadmap, box_scene()).connect(start, goal)
     np.testing.assert_array_equal(again.path, fresh.path)
 
 
 def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_kept(roadmap, monkeypatch):
     monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.TRIED_MOTIONS", 1)
-    known = within(roadmap)
+    known = within(roadmap, box_scene())
     start, goal = far_apart(known)
     first = known.plan(start, goal[0], smooth=False)
     assert first.planner == "roadmap, then trees"
@@ -235,13 +230,13 @@ def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_kept(ro
     assert second.planner == "roadmap"
     assert second.counts["edges_checked"] < 10
     assert known.world.validate(second.path).all()
-    other = within(roadmap).plan(start, goal[0], smooth=False, trees=False)
+    other = within(roadmap, box_scene()).plan(start, goal[0], smooth=False, trees=False)
     assert not other.solved or other.counts["edges_checked"] > second.counts["edges_checked"]
 
 
 @pytest.mark.parametrize("copied", [deepcopy, lambda known: pickle.loads(pickle.dumps(known))])
 def test_a_copy_of_a_kept_scene_answers_alike_from_memory_of_its_own(roadmap, copied):
-    known = within(roadmap)
+    known = within(roadmap, box_scene())
     ends = list(itertools.islice(hard(known), 8))
     assert any(known.plan(start, goal[0]).solved for start, goal in ends[:4])
     copy = copied(known)
@@ -252,7 +247,7 @@ def test_a_copy_of_a_kept_scene_answers_alike_from_memory_of_its_own(roadmap, co
 
 def test_there_is_room_for_more_milestones_than_the_roadmap_has(roadmap, monkeypatch):
     monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.TRIED_MOTIONS", 1)
-    known = within(roadmap)
+    known = within(roadmap, box_scene())
     some = list(itertools.islice(hard(known), 6))
     found = [known.plan(start, goal[0], smooth=False) for start, goal in some]
     assert all(result.solved for result in found)
@@ -276,7 +271,7 @@ def test_motions_of_many_turns_are_not_kept_but_planned():
 
 
 def test_a_goal_that_is_not_free_is_left_out(roadmap):
-    known = within(roadmap)
+    known = within(roadmap, box_scene())
     start, goal = far_apart(known)
     touching = np.array([0.0, 0.6, 0.0])
     assert not known.world.valid(touching[np.newaxis])[0]

@@ -7,13 +7,10 @@ from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
 
 
-def test_a_batch_is_read_only_and_of_float64():
+def test_a_batch_is_read_only_and_of_float64_and_fractions_become_a_column():
     batch = as_batch("q", [[1, 2]], 2)
     assert batch.dtype == np.float64
     assert not batch.flags.writeable
-
-
-def test_fractions_become_a_column():
     np.testing.assert_array_equal(as_fractions(0.25, 2), [[0.25], [0.25]])
     np.testing.assert_array_equal(as_fractions([0.0, 1.0], 2), [[0.0], [1.0]])
 

@@ -63,13 +63,10 @@ def test_every_part_moves_as_it_would_alone():
         np.testing.assert_array_equal(between[:, columns], part.interpolate(a[:, columns], b[:, columns], t))
 
 
-def test_a_pose_is_inside_if_all_of_its_parts_are():
+def test_a_pose_is_inside_if_all_of_its_parts_are_and_products_are_values():
     space = SE3([0, 0, 0], [1, 1, 1])
     q = [[0.5, 0.5, 0.5, 1, 0, 0, 0], [1.5, 0.5, 0.5, 1, 0, 0, 0], [0.5, 0.5, 0.5, 1, 1, 0, 0]]
     assert space.contains(q).tolist() == [True, False, False]
-
-
-def test_products_are_values():
     assert SE3([0, 0, 0], [1, 1, 1]) == SE3((0, 0, 0), np.ones(3))
     assert SE3([0, 0, 0], [1, 1, 1]) != SE3([0, 0, 0], [1, 1, 1], weights=[1, 2])
     assert len({SE2([0, 0], [1, 1]), SE2([0, 0], [1, 1])}) == 1

@@ -85,14 +85,11 @@ def test_movej_goes_from_waypoint_to_waypoint(trajectory, tmp_path):
     assert {option["r"] for option in options} == {"0"}
 
 
-def test_urscript_needs_six_joints_and_the_cycle_of_a_controller(trajectory, tmp_path):
+def test_urscript_needs_six_joints_and_a_controllers_cycle_and_files_are_all_written_or_none(trajectory, tmp_path):
     refused(InvalidValue, "six joints", save_trajectory, tmp_path / "t.script", trajectory, NAMES)
     slow = make_trajectory([[0.0] * 6, [1.0] * 6], Limits((1.0,) * 6, (1.0,) * 6), step=0.01)
     refused(InvalidValue, r"0\.008", save_trajectory, tmp_path / "t.script", slow)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_several_files_are_all_written_or_none(trajectory, tmp_path):
     with pytest.raises(InvalidValue, match="six joints"):
         save_trajectories([tmp_path / "t.json", tmp_path / "t.script"], trajectory, NAMES)
     assert list(tmp_path.iterdir()) == []

@@ -31,14 +31,11 @@ def test_the_clearance_of_a_disks_path_is_the_least_distance_along_it(seed):
     assert truth - 0.02 <= result.clearance <= truth + 1e-9
 
 
-def test_what_was_asked_for_is_a_part_of_the_clearance():
+def test_clearance_has_what_was_asked_for_and_of_a_path_without_motions_that_of_its_place():
     grid = _rooms(3)
     near, far = grid.world(0.7), grid.world(0.7, clearance=0.4)
     path = np.array([[20.2, 11.1], [20.3, 11.2]])
     assert near.path_clearance(path) == pytest.approx(far.path_clearance(path))
-
-
-def test_a_path_without_motions_has_the_clearance_of_its_place():
     world = GridMap(np.zeros((10, 10), dtype=bool)).world(1.0)
     assert world.path_clearance(np.array([[5.0, 5.0]])) == pytest.approx(4.0)
 

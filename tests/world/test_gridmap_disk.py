@@ -143,14 +143,11 @@ def test_a_corner_that_is_passed_just_before_a_long_motion_ends_blocks_it(angle,
         assert world.motion_valid([start, end], [end, start]).tolist() == [free, free]
 
 
-def test_outside_the_map_nothing_is_free():
+def test_outside_the_map_nothing_is_free_nor_where_the_disk_is_wider_than_it():
     world = GridMap(empty()).world(0.001)
     outside = [[-1.0, 5.0], [5.0, -1e-9], [60.0, 5.0], [5.0, 40.5], [1e300, 1e300], [0.0, 0.0], [60.0, 40.0]]
     assert not world.valid(outside).any()
     assert not world.motion_valid(outside, [[30.0, 20.0]] * len(outside)).any()
-
-
-def test_a_disk_wider_than_the_map_fits_nowhere():
     grid = GridMap(empty(10, 1000))
     places = grid.space.from_cube(np.random.default_rng(0).random((200, 2)))
     assert not grid.world(5.001).valid(places).any()

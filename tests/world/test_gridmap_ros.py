@@ -85,12 +85,9 @@ def test_grey_with_alpha_counts_its_grey_three_times(tmp_path):
     assert verdicts(path) == "ouf"
 
 
-def test_in_scale_mode_graded_cells_are_unknown(tmp_path):
+def test_in_scale_mode_graded_cells_and_pixels_that_are_not_opaque_are_unknown(tmp_path):
     path = written(tmp_path, row(0, 89, 90, 127, 205, 206, 255), mode="scale")
     assert verdicts(path) == "oouuuff"
-
-
-def test_in_scale_mode_pixels_that_are_not_opaque_are_unknown(tmp_path):
     pixels = np.zeros((1, 5, 4), dtype=np.uint8)
     pixels[0, :, :3] = [[0] * 3, [255] * 3, [0] * 3, [255] * 3, [127] * 3]
     pixels[0, :, 3] = [255, 255, 254, 0, 255]
@@ -120,14 +117,11 @@ def test_every_grey_level_agrees_with_the_rule_written_out(tmp_path):
         assert verdicts(path) == expected
 
 
-def test_the_frame_is_the_files(tmp_path):
+def test_the_frame_is_the_files_and_the_first_row_of_the_image_the_top(tmp_path):
     grid = load_map(written(tmp_path, np.zeros((4, 6), np.uint8), origin="[-1, 2.5, 0.3]"))
     assert (grid.frame.origin, grid.frame.yaw, grid.frame.resolution) == ((-1.0, 2.5), 0.3, 0.05)
     assert grid.frame.y_up
     assert math.isclose(grid.space.area, 0.3 * 0.2)
-
-
-def test_the_first_row_of_the_image_is_the_top_of_the_map(tmp_path):
     pixels = np.full((4, 6), 254, dtype=np.uint8)
     pixels[0, 0] = 0
     world = load_map(written(tmp_path, pixels)).world(0.001)

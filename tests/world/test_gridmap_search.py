@@ -101,15 +101,12 @@ def test_a_door_is_passed_by_a_disk_that_fits_and_a_larger_one_is_proved_to_fail
         assert CELLS.connect(world, a, b[np.newaxis]).goal == -1
 
 
-def test_of_several_goals_the_one_that_is_reached_first_is_named():
+def test_of_several_goals_the_one_reached_first_is_named_and_a_bound_on_motions_kept():
     occupied = np.zeros((40, 60), dtype=bool)
     occupied[:, 30] = True
     world = GridMap(occupied).world(2.0)
     connection = CELLS.connect(world, np.array([5.0, 5.0]), np.array([[50.0, 5.0], [25.0, 30.0], [6.0, 20.0]]))
     assert connection.goal == 2
-
-
-def test_a_bound_on_motions_is_kept():
     rng = np.random.default_rng(0)
     world = GridMap(cluttered(rng)).world(1.3)
     a, b = free_places(world, rng, 2)

@@ -35,11 +35,8 @@ def test_ties_and_zeros_are_counted_right(seed, n, d):
     assert star_discrepancy(points) == pytest.approx(slow_star_discrepancy(points), abs=1e-14)
 
 
-def test_midpoints_of_the_line_have_one_over_2n():
+def test_midpoints_of_the_line_have_one_over_2n_and_it_bounds_the_l2_star_discrepancy():
     assert star_discrepancy((np.arange(50)[:, None] + 0.5) / 50) == pytest.approx(0.01, abs=1e-14)
-
-
-def test_it_bounds_the_l2_star_discrepancy():
     for seed, (n, d) in enumerate([(100, 2), (60, 3), (30, 5)]):
         points = np.random.default_rng(seed).random((n, d))
         assert MEASURES["star"].rooted(points) <= star_discrepancy(points) <= 1.0

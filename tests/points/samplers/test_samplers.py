@@ -126,12 +126,9 @@ def test_a_start_index_below_zero_is_refused(start):
     refused(InvalidValue, "start", Halton, start=start)
 
 
-def test_every_error_is_both_ours_and_a_builtin():
+def test_every_name_makes_a_sampler_of_that_name_and_errors_are_ours_and_builtins():
     refused(EvenroadError, "", draw, "uniform", 0, 2)
     refused(ValueError, "", draw, "uniform", 0, 2)
-
-
-def test_every_name_makes_a_sampler_of_that_name():
     for name in SAMPLERS:
         assert make_sampler(name).name == name
 
