@@ -4,7 +4,7 @@ import numpy as np
 import trimesh
 
 from evenroad.robot.kinematics import link_poses
-from tests.robot.urdf_texts import joint, link, urdf
+from tests.robot.urdf_texts import joint, link, urdf, write
 
 WIDE = "<limit lower='-2.8' upper='2.8' velocity='2' effort='1'/>"
 PRONG, GAP, LONG = 0.02, 0.16, 0.20
@@ -52,9 +52,7 @@ def write_fork_arm(folder, *, scale="1 1 1", file="meshes/fork.stl", last="<caps
         joint("screw", "slider", "nose", "fixed", "", "-0.1 0 0.05"),
         name="fork arm",
     )  # fmt: skip
-    path = folder / "arm.urdf"
-    path.write_text(text)
-    return path
+    return write(folder, text)
 
 
 def write_plate_arm(folder):
@@ -73,9 +71,7 @@ def write_plate_arm(folder):
         joint("spin", "tip", "collar", "revolute", WIDE, "0 0 0", "0 1 0"),
         name="plate arm",
     )  # fmt: skip
-    path = folder / "plate.urdf"
-    path.write_text(text)
-    return path
+    return write(folder, text, "plate.urdf")
 
 
 ROD = (0.03, 0.04, 0.3), (0.0, 0.0, -0.03)
@@ -94,8 +90,7 @@ def write_fork_and_rod(folder):
         joint("lift", "arm", "rod", "revolute", wide, "0 0.02 0", "1 0.3 0"),
         name="fork and rod",
     )  # fmt: skip
-    (folder / "fork.urdf").write_text(text)
-    return folder / "fork.urdf"
+    return write(folder, text, "fork.urdf")
 
 
 def rod_touches(robot, q):

@@ -13,7 +13,7 @@ from evenroad.robot.kernel.hull_trees import contacts, hull_trees
 from evenroad.robot.kinematics import link_poses
 from tests.robot.kernel_arms import edge, states_along, through_contact
 from tests.robot.mesh_arms import rod_touches
-from tests.robot.urdf_texts import joint, link, urdf
+from tests.robot.urdf_texts import joint, link, urdf, write
 
 EMPTY = Scene((), name="empty")
 
@@ -142,8 +142,7 @@ def stones(tmp_path_factory):
         joint("tilt", "table", "b", "revolute", wide, "0 0 0", "0 1 0"),
         name="stones",
     )  # fmt: skip
-    (folder / "stones.urdf").write_text(text)
-    return load_robot(folder / "stones.urdf"), corners
+    return load_robot(write(folder, text, "stones.urdf")), corners
 
 
 def stones_gap(robot, corners, q):
@@ -181,8 +180,7 @@ def test_parallel_plates_as_thin_as_paper_pass_each_other(tmp_path):
         joint("up", "sled", "b", "prismatic", wide, "0 0 0", "0 0 1"),
         name="plates",
     )  # fmt: skip
-    (tmp_path / "plates.urdf").write_text(text)
-    world = ArmWorld(load_robot(tmp_path / "plates.urdf"), EMPTY)
+    world = ArmWorld(load_robot(write(tmp_path, text, "plates.urdf")), EMPTY)
     q = np.array([[x, z] for x in (-0.25, -0.01, 0.0, 0.15) for z in (-1e-3, -1e-4, -5e-6, 0.0, 5e-6, 1e-4, 1e-3)])
     np.testing.assert_array_equal(world.valid(q), np.abs(q[:, 1]) > 5e-5)
     beside = np.array([[0.35, 0.0], [-0.35, 0.0]])

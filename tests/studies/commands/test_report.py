@@ -1,15 +1,9 @@
 import pytest
 
-from evenroad_studies.report import page
-from evenroad_studies.report.charts import new_figure
 from tests.studies.report.stores import made_up, solved, task, write_store
+from tests.studies.report.stores import without_pictures as without_pictures
 
-
-@pytest.fixture(autouse=True)
-def _without_pictures(monkeypatch):
-    monkeypatch.setattr(page, "draw_curves", lambda cells, title: new_figure(1, 1))
-    monkeypatch.setattr(page, "draw_scene", lambda problem: new_figure(1, 1))
-    monkeypatch.setattr(page, "draw_point_sets", lambda: new_figure(1, 1))
+pytestmark = pytest.mark.usefixtures("without_pictures")
 
 
 def test_a_report_is_written_and_summed_up_within_100_columns(run, tmp_path):

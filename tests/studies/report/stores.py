@@ -1,10 +1,13 @@
 """Small stores with made-up rows."""
 
 import numpy as np
+import pytest
 
 from evenroad_studies.bench.store import open_store, read_rows
 from evenroad_studies.bench.task import Outcome, Task
+from evenroad_studies.report import page
 from evenroad_studies.report.analysis import analyse
+from evenroad_studies.report.charts import new_figure
 from evenroad_studies.report.runs import runs_of
 
 RATES = {
@@ -15,6 +18,14 @@ RATES = {
 }
 COUNTS = (128, 256, 512)
 POOL = 16
+
+
+@pytest.fixture
+def without_pictures(monkeypatch):
+    """Pictures are most of the time, and not what most tests look at."""
+    monkeypatch.setattr(page, "draw_curves", lambda cells, title: new_figure(1, 1))
+    monkeypatch.setattr(page, "draw_scene", lambda problem: new_figure(1, 1))
+    monkeypatch.setattr(page, "draw_point_sets", lambda: new_figure(1, 1))
 
 
 def task(problem="maze-1", sampler="uniform", n=128, run=0, **others):

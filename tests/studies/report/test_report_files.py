@@ -9,10 +9,9 @@ import pytest
 
 from evenroad.errors import BrokenFile
 from evenroad_studies.bench.task import Outcome
-from evenroad_studies.report import page as module
 from evenroad_studies.report import write_report
-from evenroad_studies.report.charts import new_figure
 from tests.studies.report.stores import made_up, solved, task, write_store
+from tests.studies.report.stores import without_pictures as without_pictures
 
 LEGACY = {"rule": "k=10 earlier", "search": "stock"}
 FAILED = Outcome("failed", error="Traceback (most recent call last):\n  boo\nValueError: <script> | 50%\n")
@@ -138,14 +137,6 @@ def test_the_same_store_gives_the_same_bytes(store, report, tmp_path):
         assert ours.read_bytes() == theirs.read_bytes(), ours.name
 
 
-@pytest.fixture
-def _without_pictures(monkeypatch):
-    """Pictures are most of the time, and not what these tests look at."""
-    monkeypatch.setattr(module, "draw_curves", lambda cells, title: new_figure(1, 1))
-    monkeypatch.setattr(module, "draw_scene", lambda problem: new_figure(1, 1))
-    monkeypatch.setattr(module, "draw_point_sets", lambda: new_figure(1, 1))
-
-
 def test_a_folder_that_cannot_be_made_is_refused(store, tmp_path):
     (tmp_path / "file").write_text("mine")
     for folder in (tmp_path / "no" / "such", tmp_path / "file"):
@@ -154,7 +145,7 @@ def test_a_folder_that_cannot_be_made_is_refused(store, tmp_path):
     assert (tmp_path / "file").read_text() == "mine"
 
 
-@pytest.mark.usefixtures("_without_pictures")
+@pytest.mark.usefixtures("without_pictures")
 @pytest.mark.parametrize("samplers", [("uniform",), ("lattice",), ("of another version",)])
 def test_one_sampler_and_one_run_are_enough(tmp_path, samplers):
     rows = [(task("of another version", sampler), solved()) for sampler in samplers]
@@ -163,7 +154,7 @@ def test_one_sampler_and_one_run_are_enough(tmp_path, samplers):
     assert "≤ 128" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.usefixtures("_without_pictures")
+@pytest.mark.usefixtures("without_pictures")
 def test_a_store_of_failures_only_is_reported(tmp_path):
     rows = [(task(run=run), FAILED) for run in range(3)]
     report = write_report(write_store(tmp_path / "a.db", rows), tmp_path / "out")
