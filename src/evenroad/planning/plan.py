@@ -16,7 +16,7 @@ from evenroad.planning.enclosed import with_reasons
 from evenroad.planning.prm import FMT, PRM
 from evenroad.planning.read_request import mesh_check, read_request
 from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request
-from evenroad.planning.tip_motion import TipMotion, refused
+from evenroad.planning.tip_motion import TipMotion, unreached
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import require_certified
@@ -160,9 +160,8 @@ def budget_of(planner: Planner | None, seconds: float | None, limits: Budget | M
 def solve(request: Request, planner: Planner | None, options: Options) -> PlanResult:
     """Plan a request; the path is free in its world."""
     motion, given = TipMotion.of(options.constraints), request.given
-    if given is not None and given.unreached:
-        status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
-        return replace(refused(request, status, given.unreached), timings={"goals": given.seconds})
+    if (result := unreached(request)) is not None:
+        return result
     apart = None if given is None else given.apart(request.world, straight=motion.line is not None)
 
     def plan_once(world: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:

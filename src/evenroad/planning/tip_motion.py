@@ -33,6 +33,15 @@ def refused(request: Request, status: Status, message: str) -> PlanResult:
     return make_result(request.world, request.start, request.goals, status, message)
 
 
+def unreached(request: Request) -> PlanResult | None:
+    """Return the result where no posture reaches a pose among the goals; else None."""
+    given = request.given
+    if given is None or not given.unreached:
+        return None
+    status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
+    return replace(refused(request, status, given.unreached), timings={"goals": given.seconds})
+
+
 def _chain(request: Request, tip: str) -> Chain:
     """Return the chain of a link: the named one, else that of the goal poses, else the last one."""
     robot = request.world.robot

@@ -7,15 +7,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import counted, require_count
 from evenroad._clock import now
 from evenroad._shared import OwnLock, one_at_a_time
-from evenroad.geometry.pose import Pose
 from evenroad.planning import arm_trees
 from evenroad.planning.connectors import ArmTrees
+from evenroad.planning.read_request import request_in
+from evenroad.planning.request import ConfigurationLike, Goal, Reading
+from evenroad.planning.tip_motion import unreached
 from evenroad.planning.trees import RRTConnect
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
@@ -24,11 +25,8 @@ from evenroad.roadmap.connector import Connection, Smooth
 from evenroad.roadmap.point_roadmap import WorldRoadmap
 from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.query import Query as PlanQuery
-from evenroad.roadmap.query import as_start_and_goals
 from evenroad.roadmap.result import NO_POINTS, make_result
-from evenroad.robot import ArmWorld, configuration
-from evenroad.robot.goals import Goals, goals_of
-from evenroad.robot.pose_goal import PoseGoal
+from evenroad.robot import ArmWorld
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 from evenroad.robot_roadmap.query import GREED, Query, SearchResult, search
 from evenroad.robot_roadmap.static_scene import left_to_check, require_within
@@ -116,7 +114,6 @@ class ArmWorldRoadmap(WorldRoadmap):
     ) -> SearchResult:
         return search(self._graph, self._worlds, Query(start, goals, links, greed), most, deadline)
 
-    @one_at_a_time
     def plan(
         self,
         start: ConfigurationLike,
@@ -150,16 +147,23 @@ class ArmWorldRoadmap(WorldRoadmap):
         InvalidValue, UnknownName
             If start or goal is not a configuration of the robot.
         """
-        read = read_start_and_goals(self.world, start, goal)
-        if isinstance(read, PlanResult):
-            return read
-        first, goals, budget = read[0], read[1].configurations, budget or Budget(seconds=SECONDS)
-        query = PlanQuery(first, goals, smooth=smooth, budget=budget, connector=ArmTrees(self.world))
-        return self._planned(Attempt(self.world, query, NO_POINTS, "none", PLANNER), trees)
+        request = request_in(self.world, start, goal, Reading())
+        if (result := unreached(request)) is not None:
+            return result
+        problem = Problem(
+            self.world, request.start, request.goals, budget=budget or Budget(seconds=SECONDS), smooth=smooth
+        )
+        return self._solve(problem, trees)
 
     def solve(self, problem: Problem) -> PlanResult:
         """Plan along the roadmap, in its world, as planners of :func:`evenroad.plan` do."""
-        return self.plan(problem.start, problem.goals, budget=problem.budget, smooth=problem.smooth)
+        return self._solve(problem, trees=True)
+
+    @one_at_a_time
+    def _solve(self, problem: Problem, trees: bool) -> PlanResult:
+        how = dict(smooth=problem.smooth, budget=problem.budget, connector=ArmTrees(self.world))
+        query = PlanQuery(problem.start, problem.goals, **how)  # type: ignore[arg-type]
+        return self._planned(Attempt(self.world, query, NO_POINTS, "none", PLANNER), trees)
 
     def _planned(self, attempt: Attempt, trees: bool) -> PlanResult:
         """Return the result of a query."""
@@ -238,45 +242,3 @@ class ArmWorldRoadmap(WorldRoadmap):
         waypoints = path.tolist()
         # Where nothing wraps the sum is the same, in a tenth of the time.
         return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, waypoints, waypoints[1:]))
-
-
-ConfigurationLike = str | npt.ArrayLike
-"""A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
-
-POSES = (Pose, PoseGoal)
-Goal = ConfigurationLike | Pose | PoseGoal
-"""A configuration, or a pose of a link."""
-
-
-def read_start_and_goals(
-    world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[Goal]
-) -> tuple[Floats, Goals] | PlanResult:
-    """Return start, (dim,), and goals, with all postures found for poses; or the result if a pose is not reached."""
-    if not any(isinstance(each, POSES) for each in (goal if isinstance(goal, list | tuple) else (goal,))):
-        first, goals = as_start_and_goals(_configuration(world, start), _configurations(world, goal), world.space)
-        return first, Goals(goals, ("",) * len(goals))
-    targets: Sequence[Goal] = [goal] if isinstance(goal, POSES) else goal  # type: ignore[assignment]
-    at_start, space = _configuration(world, start), world.space
-    first = as_start_and_goals(at_start, at_start, space)[0]
-    given = goals_of(
-        world,
-        first,
-        targets,
-        lambda each: as_start_and_goals(at_start, _configuration(world, each), space)[1][0],
-    )
-    if not given.unreached:
-        return first, given
-    status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
-    timings = {"goals": given.seconds}
-    return make_result(world, first, given.configurations, status, given.unreached, timings=timings)
-
-
-def _configuration(world: ArmWorld, given: ConfigurationLike) -> npt.ArrayLike:
-    """Return the configuration of a text; numbers stay as they are."""
-    return configuration(world.robot, given, world.scene) if isinstance(given, str) else given
-
-
-def _configurations(world: ArmWorld, goal: Goal | Sequence[Goal]) -> npt.ArrayLike:
-    if isinstance(goal, list | tuple) and any(isinstance(each, str) for each in goal):
-        return [_configuration(world, each) for each in goal]  # type: ignore[return-value]
-    return _configuration(world, goal)  # type: ignore[arg-type]
