@@ -7,7 +7,7 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constra
 CLANG  := $(if $(filter default undefined,$(origin CXX)),ziglang)
 KERNEL := $(shell find src/evenroad/_native/cpp -name '*.?pp') src/evenroad/_native/CMakeLists.txt tools/build_backend.py
 
-.PHONY: help demo test test-peers lint native sanitize tidy docs bench bank mazes release-check clean
+.PHONY: help demo test test-peers lint native sanitize tidy docs bench bank mazes wheels release-check clean
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
@@ -20,7 +20,8 @@ help:
 	@echo "make bench  the slow tables and timings -> out/bench/"
 	@echo "make bank   rebuild (or finish) the shipped point sets"
 	@echo "make mazes  redraw the shipped mazes"
-	@echo "make release-check  build the wheels and try them in an empty environment, as a new user would"
+	@echo "make wheels  source distribution and wheels -> out/wheels"
+	@echo "make release-check  try them in empty environments, as a new user would"
 	@echo "make clean  remove the environment and out/"
 
 # A stamp a file that pip finished: a stopped install is taken up again, a finished one costs nothing.
@@ -93,7 +94,13 @@ bank: $(VENV)/.dev $(VENV)/.native
 mazes: $(VENV)/.dev $(VENV)/.native
 	$(BIN)/python studies/tools/draw_mazes.py
 
-release-check: $(VENV)/.core $(VENV)/.native
+# Wheels of this Python for x86_64 and aarch64, glibc and musl, from any Linux.
+wheels: $(VENV)/.tools
+	rm -rf out/wheels
+	$(PIP) ziglang
+	$(BIN)/python tools/build_backend.py --wheels out/wheels
+
+release-check: wheels
 	$(BIN)/python tools/release_check.py
 
 clean:

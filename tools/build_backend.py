@@ -1,11 +1,13 @@
 """What builds evenroad: scikit-build-core, with a compiler that comes as a wheel, and editable installs built in place.
 
-    python tools/build_backend.py              # build the native kernel into src/evenroad/_native; or: make native
-    python tools/build_backend.py --sanitized  # one more build of it, for tests: make sanitize
+    python tools/build_backend.py               # build the native kernel into src/evenroad/_native; or: make native
+    python tools/build_backend.py --sanitized   # one more build of it, for tests: make sanitize
+    python tools/build_backend.py --wheels DIR  # source distribution, wheels of all targets, studies: make wheels
 
 A compiler of your own is taken where the environment variable CXX names one: `CXX=clang++ pip install .`.  Otherwise
 clang of the wheel `ziglang` compiles: nothing but Python needs to be installed.  (scikit-build-core alone would take
-the compiler that Python was built with, whether or not it exists.)
+the compiler that Python was built with, whether or not it exists.)  On Linux that clang compiles for any processor and
+an old C library: `EVENROAD_TARGET=aarch64-linux-gnu pip wheel .` makes a wheel for another machine.
 
 An editable install is a path to `src`, and the kernel lies beside its Python files, so `PYTHONPATH=src` works as well.
 """
@@ -26,14 +28,17 @@ import sysconfig
 import tempfile
 import time
 import zipfile
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ROOT / "src" / "evenroad" / "_native"
 ZIG = "ziglang>=0.17,<0.18"
-GLIBC = "2.28"
-"""The oldest C library that a wheel built by `ziglang` runs with."""
+LIBRARIES = {"gnu": ("gnu.2.28", "manylinux_2_28"), "musl": ("musl", "musllinux_1_2")}
+"""The oldest C library that a wheel built by `ziglang` runs with, in clang's words and in a wheel's name."""
+TARGETS = tuple(f"{machine}-linux-{library}" for library in LIBRARIES for machine in ("x86_64", "aarch64"))
+"""What `make wheels` builds for."""
 
 Settings = dict[str, Any] | None
 
@@ -79,8 +84,10 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
     from scikit_build_core import build
 
     announce()
-    defined = {f"cmake.define.{name}": value for name, value in definitions().items()}
-    return build.build_wheel(wheel_directory, {**defined, **(config_settings or {})}, metadata_directory)
+    settings: dict[str, Any] = {f"cmake.define.{name}": value for name, value in definitions().items()}
+    if not os.environ.get("CXX") and sys.platform == "linux":
+        settings["wheel.tags"] = [wheel_tag(target())]
+    return build.build_wheel(wheel_directory, {**settings, **(config_settings or {})}, metadata_directory)
 
 
 def build_editable(
@@ -132,18 +139,42 @@ def definitions() -> dict[str, str]:
     # clang's own C++ library is built once and kept beside it: installations that share a cache replace each other's.
     os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(folder / ".cache"))
     defined |= {"CMAKE_CXX_COMPILER": f"{zig};c++", "EVENROAD_ZIG": "ON"}
+    # One optimization for CMake's trials and the kernel: for each, clang's own C++ library would be built once more.
+    flags = "-O3 -s -fno-sanitize=undefined"
     if sys.platform == "linux":
-        musl = "musl" in (sysconfig.get_config_var("MULTIARCH") or sysconfig.get_config_var("HOST_GNU_TYPE"))
-        target = f"{platform.machine()}-linux-" + ("musl" if musl else f"gnu.{GLIBC}")
-        defined["CMAKE_CXX_FLAGS"] = f"-target {target}"
-    return defined
+        machine, _, library = target().split("-")
+        flags += f" -fPIC -target {machine}-linux-{LIBRARIES[library][0]}"
+        python, _, _ = str(sysconfig.get_config_var("SOABI")).partition(platform.machine())
+        defined["EVENROAD_SOABI"] = python + target()
+        if machine != platform.machine():
+            defined |= {"CMAKE_SYSTEM_NAME": "Linux", "CMAKE_SYSTEM_PROCESSOR": machine}
+    return {**defined, "CMAKE_CXX_FLAGS": flags}
+
+
+def target() -> str:
+    """Return the machine and the C library to build for, as in the name of a module: this one's, or EVENROAD_TARGET."""
+    library = "musl" if "musl" in str(sysconfig.get_config_var("SOABI")) else "gnu"
+    return os.environ.get("EVENROAD_TARGET") or f"{platform.machine()}-linux-{library}"
+
+
+def wheel_tag(target: str) -> str:
+    """Return for which Pythons and machines a wheel is: `cp311-cp311-manylinux_2_28_x86_64`."""
+    from packaging import tags
+
+    machine, _, library = target.split("-")
+    python = next(tags.cpython_tags(platforms=[f"{LIBRARIES[library][1]}_{machine}"]))
+    return str(python)
 
 
 def announce() -> None:
-    """Say what is going on."""
+    """Say what is going on, also to somebody who waits for pip, which shows nothing of a build."""
     own = os.environ.get("CXX")
-    how = f"with {own}: half a minute" if own else "with clang of the wheel ziglang: one to two minutes"
-    print(f"building the native kernel {how}, once", file=sys.stderr, flush=True)
+    how = f"with {own}" if own else "with clang of the wheel ziglang"
+    line = f"evenroad: compiling the native kernel {how}, once: one to two minutes"
+    print(line, file=sys.stderr, flush=True)
+    with suppress(OSError), open("/dev/tty", "w") as terminal:
+        if not sys.stderr.isatty():
+            print(f"\n{line}", file=terminal)
 
 
 def build_in_place(kind: str = "native", **more: str) -> None:
@@ -201,5 +232,26 @@ def build_sanitized() -> None:
     raise SystemExit(subprocess.run(tests, env=environment, cwd=ROOT).returncode)
 
 
+def build_wheels(folder: str) -> None:
+    """Build what a release holds for this Python on Linux."""
+    os.environ.pop("CXX", None)
+    os.chdir(ROOT)
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    build_sdist(folder)
+    for each in TARGETS:
+        os.environ["EVENROAD_TARGET"] = each
+        build_wheel(folder)
+    from hatchling import build as of_studies
+
+    where = Path(folder).resolve()
+    os.chdir(ROOT / "studies")
+    of_studies.build_wheel(str(where))
+
+
 if __name__ == "__main__":
-    build_sanitized() if "--sanitized" in sys.argv[1:] else build_in_place()
+    if "--wheels" in sys.argv[1:]:
+        build_wheels(sys.argv[-1])
+    elif "--sanitized" in sys.argv[1:]:
+        build_sanitized()
+    else:
+        build_in_place()

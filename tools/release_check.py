@@ -1,16 +1,18 @@
-"""Build the wheels, install them into an empty environment, try them as a new user would; print what each step took.
+"""Try what `make wheels` built, in empty environments, as a new user would; print what each step took.
 
-    python tools/release_check.py                              # or: make release-check
-    python tools/release_check.py --python python3.13 --dist dist   # wheels that were built, with another interpreter
+    python tools/release_check.py                              # or: make release-check, which builds first
+    python tools/release_check.py --python python3.13          # with another interpreter
 
-Nothing of the checkout is used once the wheels are built: commands run in a folder of their own, with a home of their
-own, so nothing is compiled or kept yet.  Stops at the first step that fails, with exit code 1.
+Commands run in a folder of their own, with a home of their own, so nothing is kept yet.  The source distribution and
+the checkout are installed, too: one with no compiler, cmake or ar in PATH, the other with g++.  Stops at the first step
+that fails, with exit code 1.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import platform
 import re
 import resource
 import subprocess
@@ -21,8 +23,10 @@ import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-LARGEST_WHEEL = 5e6
-BUILD_TOOLS = "build hatchling scikit-build-core nanobind ziglang cmake ninja"
+LARGEST_WHEEL, LARGEST_INSTALL = 5.0, 300.0
+"""Of the wheel, and of all that it needs [MB]."""
+LONGEST = {"no compiler": 180.0, "g++": 90.0}
+"""An install that compiles may take so long, on two quiet cores [s]: on others this is only said."""
 
 URDF = """<robot name="my_arm">
   <link name="base"/>
@@ -95,12 +99,20 @@ def processor_seconds() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def check_names(wheel: Path, package: str) -> None:
-    """Stop unless all of a wheel is in its package or its metadata."""
-    names = zipfile.ZipFile(wheel).namelist()
-    outside = [name for name in names if not re.match(rf"{package}(-[\d.]+\.dist-info)?/", name)]
+def check_wheel(wheel: Path, package: str) -> None:
+    """Stop unless all of a wheel is in its package or its metadata, with modules that are small and stripped."""
+    archive = zipfile.ZipFile(wheel)
+    outside = [name for name in archive.namelist() if not re.match(rf"{package}(-[\d.]+\.dist-info)?/", name)]
     if outside:
         raise SystemExit(f"{wheel.name} holds files outside of {package}: {outside[:5]}")
+    if any(name.endswith((".cpp", ".hpp", "CMakeLists.txt")) for name in archive.namelist()):
+        raise SystemExit(f"{wheel.name} holds sources of the kernel")
+    modules = [name for name in archive.namelist() if name.endswith(".so")]
+    whole = [name for name in modules if b".symtab" in archive.read(name)]
+    if whole or (package == "evenroad" and len(modules) < 2):
+        raise SystemExit(f"{wheel.name} has the modules {modules}, of which are not stripped: {whole}")
+    if wheel.stat().st_size > LARGEST_WHEEL * 1e6:
+        raise SystemExit(f"{wheel.name} is larger than {LARGEST_WHEEL:g} MB")
 
 
 def size_of(folder: Path) -> float:
@@ -108,24 +120,45 @@ def size_of(folder: Path) -> float:
     return sum(path.lstat().st_size for path in folder.rglob("*") if not path.is_dir()) / 1e6
 
 
-def build(steps: Steps, dist: Path, work: Path) -> None:
-    """Build source distribution and wheels, by a tool in an environment of its own."""
-    tool = work / "build"
-    steps.run("(an environment for the build)", f"{sys.executable} -m venv {tool}")
-    steps.run("(its tools)", f"{tool}/bin/python -m pip install -q {BUILD_TOOLS}")
-    steps.run("build: sdist", f"{tool}/bin/python -m build --no-isolation -s -o {dist} {ROOT}")
-    steps.run("build: wheel", f"{tool}/bin/python -m build --no-isolation -w -o {dist} {ROOT}")
-    steps.run(
-        "build: wheel of the studies",
-        f"{tool}/bin/python -m build --no-isolation -w -o {dist} {ROOT}/studies",
-    )
+def check_wheels(steps: Steps, dist: Path, work: Path) -> Path:
+    """Look into all wheels and return the one for this machine; auditwheel says whether their names are true."""
+    audit = work / "audit"
+    steps.run("(an environment for auditwheel)", f"{sys.executable} -m venv {audit}")
+    steps.run("(auditwheel)", f"{audit}/bin/python -m pip install -q auditwheel")
+    for wheel in sorted(dist.glob("*.whl")):
+        package = wheel.name.partition("-")[0]
+        check_wheel(wheel, package)
+        steps.note(wheel.name, f"{wheel.stat().st_size / 1e6:.2f} MB")
+        if package == "evenroad":
+            tag = wheel.stem.rpartition("-")[2]
+            steps.run(f"auditwheel: {tag}", f"{audit}/bin/auditwheel show {wheel}", says=f'"{tag}"')
+    (here,) = dist.glob(f"evenroad-*manylinux*{platform.machine()}.whl")
+    return here
+
+
+def install_compiling(steps: Steps, dist: Path, work: Path, options: argparse.Namespace, kept: dict[str, str]) -> None:
+    """Install the source distribution where there is no compiler, and the checkout where there is one."""
+    (sdist,) = dist.glob("evenroad-*.tar.gz")
+    for how, what, path, more in (
+        ("no compiler", sdist.resolve(), "", {}),
+        ("g++", ROOT, ":/usr/bin:/bin", {"CXX": "g++"}),
+    ):
+        venv = work / f"compiled-{how[0]}"
+        steps.run(f"an empty environment: {how}", f"{options.python} -m venv {venv}")
+        environment = {**kept, "PATH": f"{venv}/bin{path}", **more}
+        began = time.perf_counter()
+        pip = f"{venv}/bin/python -m pip install -v --disable-pip-version-check {options.pip} {what}"
+        steps.run(f"pip install, {how}", pip, says="compiling the native kernel", env=environment)
+        if time.perf_counter() - began > LONGEST[how]:
+            print(f"    longer than {LONGEST[how]:g} s: is this machine quiet, and has it two cores?")
+        steps.run("    it plans", "evenroad demo --out demo", says="solved", cwd=venv, env=environment)
 
 
 def main() -> None:
     """Run all steps."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--python", default=sys.executable, help="the interpreter of the empty environment")
-    parser.add_argument("--dist", type=Path, help="a folder with wheels: nothing is built")
+    parser.add_argument("--dist", type=Path, default=ROOT / "out" / "wheels", help="a folder with wheels")
     parser.add_argument("--pip", default="", help="more for pip install, as -c constraints.txt")
     options = parser.parse_args()
     steps = Steps()
@@ -134,17 +167,10 @@ def main() -> None:
 
 
 def try_all(steps: Steps, work: Path, options: argparse.Namespace) -> None:
-    """Build, install, and run what a new user would, in a folder that is thrown away."""
-    dist = options.dist or work / "dist"
-    if options.dist is None:
-        build(steps, dist, work)
-    (wheel,) = dist.glob("evenroad-*.whl")
+    """Install, and run what a new user would, in a folder that is thrown away."""
+    dist = options.dist
+    wheel = check_wheels(steps, dist, work)
     (studies,) = dist.glob("evenroad_studies-*.whl")
-    for each, package in ((wheel, "evenroad"), (studies, "evenroad_studies")):
-        check_names(each, package)
-        steps.note(f"size of {each.name.split('-')[0]}", f"{each.stat().st_size / 1e6:.2f} MB")
-    if wheel.stat().st_size > LARGEST_WHEEL:
-        raise SystemExit(f"{wheel.name} is larger than {LARGEST_WHEEL / 1e6:g} MB")
     venv, home, desk = work / "venv", work / "home", work / "desk"
     home.mkdir()
     desk.mkdir()
@@ -162,12 +188,18 @@ def try_all(steps: Steps, work: Path, options: argparse.Namespace) -> None:
     steps.run("an empty environment", f"{options.python} -m venv {venv}", cwd=ROOT)
     before = size_of(venv)
     steps.run("pip install of the wheel", f"{pip} {wheel.resolve()}", cwd=ROOT)
-    steps.note("size of what was installed", f"{size_of(venv) - before:.0f} MB")
+    installed = size_of(venv) - before
+    steps.note("size of what was installed", f"{installed:.0f} MB")
+    if installed > LARGEST_INSTALL:
+        raise SystemExit(f"that is more than {LARGEST_INSTALL:g} MB")
     print(steps.run("evenroad --version -v", "evenroad --version -v", **here))
     steps.run("first plan for one's own URDF", OWN_PLAN.format("first"), says="solved", **here)
     steps.run("second plan", OWN_PLAN.format("second"), says="solved", **here)
     if (desk / "first.csv").read_bytes() != (desk / "second.csv").read_bytes():
         raise SystemExit("first and second plan differ")
+    picture = "evenroad demo --out demo"
+    steps.run("a picture without the extra", picture, says="pip install 'evenroad[pictures]'", **here)
+    steps.run("the extra", f"{pip} 'evenroad[pictures]'", cwd=desk)
     for name, command in README_STEPS.items():
         steps.run(name, command, **here)
     large = "evenroad points -n 512 -d 2 --sampler hickernell -o large.npy"
@@ -177,10 +209,11 @@ def try_all(steps: Steps, work: Path, options: argparse.Namespace) -> None:
     steps.run("the large set", large, **here)
     for name, command in STUDIES_STEPS.items():
         steps.run(name, command, **here)
-    outside = [path for path in desk.parent.iterdir() if path.name not in ("venv", "home", "desk", "dist", "build")]
+    outside = [path for path in desk.parent.iterdir() if path.name not in ("venv", "home", "desk", "audit")]
     if outside:
         raise SystemExit(f"files were left outside: {outside}")
     steps.note("size of the caches", f"{size_of(home):.1f} MB")
+    install_compiling(steps, dist, work, options, {**kept, **cache})
     print("\n| step | |\n|---|---|")
     for name, value in steps.rows:
         print(f"| {name} | {value} |")

@@ -91,8 +91,8 @@ def require_extra(module: str, extra: str, what: str) -> Any:
     try:
         return import_module(module)
     except ImportError as error:
-        how = f"pip install 'evenroad[{extra}]', in a clone '.[{extra}]'"
-        raise NotAvailable(f"{what} needs the extra: {how} ({error})") from error
+        # Pip takes the evenroad that is installed, wherever it came from, and adds what is missing.
+        raise NotAvailable(f"{what} needs the extra: pip install 'evenroad[{extra}]' ({error})") from error
 
 
 def as_batch(name: str, values: object, dim: int) -> Floats:

@@ -86,6 +86,14 @@ def test_without_a_picture_nothing_is_drawn_and_matplotlib_is_not_even_loaded(tm
     assert "png" not in done.stdout
 
 
+def test_without_matplotlib_the_plan_is_written_and_the_extra_is_named(run, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    code, out, err = run(*plan_arguments(out="a"), "-n", 256)
+    assert (code, err) == (0, "")
+    assert "pip install 'evenroad[pictures]'" in out
+    assert [path.name for path in tmp_path.iterdir()] == ["a.json"]
+
+
 def test_the_answer_is_there_before_the_picture_is_drawn(run, tmp_path, monkeypatch):
     def fail(*_):
         assert (tmp_path / "a.json").exists()

@@ -218,9 +218,7 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
             mesh = mesh.to_mesh()
         vertices, triangles = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
     except ImportError as error:
-        raise NotAvailable(
-            f"reading {file} needs the extra: pip install 'evenroad[mesh]', in a clone '.[mesh]' ({error})"
-        ) from error
+        raise NotAvailable(f"reading {file} needs the extra: pip install 'evenroad[dae]' ({error})") from error
     except BrokenFile:
         raise
     # trimesh's readers raise whatever their parsers do, down to struct.error and KeyError.

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from evenroad._checks import as_file
+from evenroad._checks import as_file, require_extra
 from evenroad._files import atomic_write
 from evenroad.errors import NotAvailable
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld
 from evenroad.viz.arm import draw_arm_plan
-from evenroad.viz.plan import plan_figure
 from evenroad.world.gridmap import DiskWorld, GridMap
 
 _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 40
@@ -29,7 +28,8 @@ def plot_result(result: PlanResult, path: str | os.PathLike[str] | None = None, 
     world = result.world if world is None else world
     if isinstance(world, DiskWorld):
         file = BytesIO()
-        plan_figure(result, world).savefig(file, format="png")
+        drawing = require_extra("evenroad.viz.plan", "pictures", "a picture of a plan on a map")
+        drawing.plan_figure(result, world).savefig(file, format="png")
         picture: Image.Image = Image.open(file)
         picture.load()
     elif isinstance(world, ArmWorld):
