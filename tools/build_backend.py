@@ -84,7 +84,13 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
     from scikit_build_core import build
 
     announce()
-    settings: dict[str, Any] = {f"cmake.define.{name}": value for name, value in definitions().items()}
+    defined = definitions()
+    settings: dict[str, Any] = {f"cmake.define.{name}": value for name, value in defined.items()}
+    # Of the modules that an editable install left beside the Python files, only those that are built anew stay.
+    own = defined.get("EVENROAD_SOABI", sysconfig.get_config_var("SOABI"))
+    native = "evenroad/_native"
+    modules = [f"{native}/*.so", f"!{native}/*.{own}.so", f"{native}/_sanitized*"]
+    settings["wheel.exclude"] = [*modules, f"{native}/CMakeLists.txt", f"{native}/cpp/**"]
     if not os.environ.get("CXX") and sys.platform == "linux":
         settings["wheel.tags"] = [wheel_tag(target())]
     return build.build_wheel(wheel_directory, {**settings, **(config_settings or {})}, metadata_directory)
