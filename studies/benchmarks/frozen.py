@@ -81,7 +81,6 @@ def arm_verdicts() -> Bools:
     found = []
     for problem in arm_problems():
         found.append(verdicts(ArmWorld(problem.robot, problem.scene), 10_000, 2_000))
-        found.append(verdicts(ArmWorld(problem.robot, problem.scene, backend="scalar"), 1_000, 100))
     return np.concatenate(found)
 
 
