@@ -38,13 +38,48 @@ constexpr const char* type_name() {
   return "another type";
 }
 
-/// Refuse an array: `wanted` in words, and what was given instead.
+/// Refuse an argument: `wanted` in words, and what was given instead.
 [[noreturn]] void refuse(const char* name, const std::string& wanted, nb::handle given);
 
 /// Throw InvalidValue with this text unless the condition holds.
 inline void require(bool holds, const std::string& text) {
   if (!holds) throw InvalidValue(text);
 }
+
+/// Refuse numbers unless all of them lie in a range, and so are numbers.
+void require_within(std::span<const double> numbers, double low, double high, const char* name);
+
+/// Refuse numbers that are infinite or none.
+void require_finite(std::span<const double> numbers, const char* name);
+
+/// Refuse numbers of something unless all are from 0 to below `count`.
+template <class T>
+void require_below(std::span<const T> numbers, std::size_t count, const char* name) {
+  using Unsigned = std::make_unsigned_t<T>;
+  // Negative ones are large then.
+  Unsigned largest = 0;
+  for (const T number : numbers) largest = std::max(largest, static_cast<Unsigned>(number));
+  if (numbers.empty() || largest < count) return;
+  throw InvalidValue(std::string(name) + " must be from 0 to below " + std::to_string(count) + ", got " +
+                     std::to_string(static_cast<T>(largest)));
+}
+inline void require_below(std::int64_t number, std::size_t count, const char* name) {
+  require_below(std::span<const std::int64_t>(&number, 1), count, name);
+}
+
+/// Refuse a number of motions, say, that no computer will have made.
+inline void require_budget(std::int64_t most, const char* name) { require_below(most, std::size_t{1} << 53, name); }
+
+/// Return what a tuple or list holds; `name` is what an error calls it.
+template <class T>
+T value_of(nb::handle given, const char* name) {
+  T value{};
+  if (given.is_none() || !nb::try_cast(given, value)) refuse(name, "value of another type", given);
+  return value;
+}
+
+/// Whether an array of doubles may hold what is infinite or no number.
+enum class Entries : std::uint8_t { FINITE, ANY };
 
 /// A C-contiguous array of T with `Axes` axes, kept alive as long as this is.
 ///
@@ -53,13 +88,16 @@ template <class T, int Axes>
 class Array {
  public:
   /// Check an argument; `name` is what the error calls it.
-  Array(nb::handle given, const char* name) : name_(name) {
+  Array(nb::handle given, const char* name, Entries entries = Entries::FINITE) : name_(name) {
     if (!nb::try_cast(given, array_, false)) {
       const std::string writable = std::is_const_v<T> ? "" : "writable, ";
       refuse(name,
              writable + "C-contiguous array of " + type_name<T>() + " with " + std::to_string(Axes) +
                  (Axes == 1 ? " axis" : " axes"),
              given);
+    }
+    if constexpr (std::is_same_v<T, const double>) {
+      if (entries == Entries::FINITE) require_finite(span(), name);
     }
   }
 
@@ -103,6 +141,9 @@ class Array {
   const char* name_;
 };
 
+using Floats = Array<const double, 1>;
+using FloatRows = Array<const double, 2>;
+
 /// Give memory to Python as a NumPy array of this shape.
 template <class T>
 nb::object as_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {
@@ -116,18 +157,6 @@ nb::object as_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> 
 /// Give bytes that are 0 or 1 to Python as an array of bools.
 inline nb::object as_bools(std::vector<std::uint8_t>&& values, std::initializer_list<std::size_t> shape) {
   return as_numpy(std::move(values), shape).attr("view")("bool");
-}
-
-/// Refuse numbers of something unless all are from 0 to below `count`.
-template <class T>
-void require_below(std::span<const T> numbers, std::size_t count, const char* name) {
-  using Unsigned = std::make_unsigned_t<T>;
-  // Negative ones are large then.
-  Unsigned largest = 0;
-  for (const T number : numbers) largest = std::max(largest, static_cast<Unsigned>(number));
-  if (numbers.empty() || largest < count) return;
-  throw InvalidValue(std::string(name) + " must be from 0 to below " + std::to_string(count) + ", got " +
-                     std::to_string(static_cast<T>(largest)));
 }
 
 /// Call a function while other threads of Python run.

@@ -32,13 +32,14 @@ const char* in_words(planning::Growth growth) {
 
 /// Where trees grow, and what drives them: arrays that Python keeps.
 struct Problem {
-  Array<const double, 2> ends, samples, steps;
+  FloatRows ends, samples, steps;
 
   Problem(nb::handle given_ends, nb::handle given_samples, nb::handle given_steps, std::size_t dim)
       : ends(given_ends, "ends"), samples(given_samples, "samples"), steps(given_steps, "steps") {
     for (const auto* each : {&ends, &samples, &steps}) each->of_shape({each->shape(0), dim});
     require(ends.shape(0) >= 2, "ends must be a start and one goal or more");
     require(samples.shape(0) >= 1 && steps.shape(0) >= 1, "samples and steps must not be empty");
+    require_within(samples.span(), 0.0, 1.0, "samples"), require_within(steps.span(), -1.0, 1.0, "steps");
   }
 };
 
@@ -73,10 +74,15 @@ nb::tuple tree_of(const planning::Tree& tree, std::size_t dim) {
   return nb::make_tuple(as_numpy(std::move(nodes), {size, dim}), as_numpy(std::move(parents), {size}));
 }
 
-Path path_from(const Array<const double, 2>& points, const NativeChecks& checks) {
+/// Return a path whose waypoints are in the ranges of the joints.
+Path path_from(const FloatRows& points, const NativeChecks& checks) {
   require(points.shape(0) >= 2, "path must have 2 waypoints or more");
   points.of_shape({points.shape(0), checks.joints.size()});
-  return {points.span(), checks.joints};
+  Path path{points.span(), checks.joints};
+  for (std::size_t i = 0; i < path.size(); i++) {
+    require(planning::enter(path[i], checks.joints), "path must be within the limits of the joints");
+  }
+  return path;
 }
 
 nb::object points_of(const Path& path) {
@@ -86,8 +92,9 @@ nb::object points_of(const Path& path) {
 }
 
 nb::tuple shorten(NativeChecks& checks, nb::handle path, nb::handle pairs, std::int64_t most_shortcuts) {
-  const Array<const double, 2> points(path, "path"), shares(pairs, "pairs");
+  const FloatRows points(path, "path"), shares(pairs, "pairs");
   shares.of_shape({shares.shape(0), 2});
+  require_within(shares.span(), 0.0, 1.0, "pairs");
   Path shorter = path_from(points, checks);
   without_gil([&] { planning::shorten(shorter, shares.matrix(), most_shortcuts, checks); });
   return nb::make_tuple(points_of(shorter), checks.counts.motions);
@@ -95,9 +102,11 @@ nb::tuple shorten(NativeChecks& checks, nb::handle path, nb::handle pairs, std::
 
 nb::tuple smooth(NativeChecks& checks, nb::handle path, nb::tuple guides, std::int64_t most_batches, bool proved) {
   require(guides.size() == 2, "guides must be (pairs, directions)");
-  const Array<const double, 2> points(path, "path"), shares(guides[0], "pairs"), sphere(guides[1], "directions");
+  const FloatRows points(path, "path"), shares(guides[0], "pairs"), sphere(guides[1], "directions");
   shares.of_shape({shares.shape(0), 2}), sphere.of_shape({sphere.shape(0), checks.joints.size()});
   require(shares.shape(0) >= 1 && sphere.shape(0) >= 1, "pairs and directions must not be empty");
+  require_within(shares.span(), 0.0, 1.0, "pairs"), require_within(sphere.span(), -1.0, 1.0, "directions");
+  require_budget(most_batches, "most_batches");
   Path smoothed = path_from(points, checks);
   const planning::Guides by{shares.matrix(), sphere.matrix()};
   const bool is_proved = without_gil([&] { return planning::smooth(smoothed, by, most_batches, proved, checks); });
@@ -106,8 +115,10 @@ nb::tuple smooth(NativeChecks& checks, nb::handle path, nb::tuple guides, std::i
 }
 
 nb::object prove_or_bend(NativeChecks& checks, nb::handle path, double margin, nb::handle directions) {
-  const Array<const double, 2> points(path, "path"), sphere(directions, "directions");
+  const FloatRows points(path, "path"), sphere(directions, "directions");
   sphere.of_shape({sphere.shape(0), checks.joints.size()});
+  require(sphere.shape(0) >= 1 && margin >= 0.0 && margin <= 1.0, "directions must not be empty, margin from 0 to 1");
+  require_within(sphere.span(), -1.0, 1.0, "directions");
   Path bent = path_from(points, checks);
   const bool is_proved = without_gil([&] { return planning::prove_or_bend(bent, margin, sphere.matrix(), checks); });
   return is_proved ? points_of(bent) : nb::none();
@@ -118,12 +129,12 @@ struct LoneTree {
   planning::Tree tree;
   std::size_t dim;
 
-  explicit LoneTree(nb::handle given) : LoneTree(Array<const double, 1>(given, "period").span()) {}
-  explicit LoneTree(std::span<const double> period) : tree({period, period, period}), dim(period.size()) {}
-
-  std::span<const double> configuration(nb::handle q) const {
-    return Array<const double, 1>(q, "q").of_shape({dim}).span();
+  explicit LoneTree(nb::handle given) : LoneTree(Floats(given, "period", Entries::ANY).span()) {}
+  explicit LoneTree(std::span<const double> period) : tree({period, period, period}), dim(period.size()) {
+    require(dim >= 1, "period must have one entry or more");
   }
+
+  std::span<const double> configuration(nb::handle q) const { return Floats(q, "q").of_shape({dim}).span(); }
   planning::Node known(planning::Node node) const {
     require(0 <= node && node < tree.size(), "the tree has no such node");
     return node;
@@ -158,6 +169,7 @@ void add_planning(nb::module_& module) {
       .def(nb::init<NativeChecks&, nb::handle, nb::handle, nb::handle>(), nb::keep_alive<1, 2>())
       .def("grow",
            [](Trees& trees, std::int64_t most_motions, std::int64_t batches) {
+             require_budget(most_motions, "most_motions"), require_budget(batches, "batches");
              return in_words(without_gil([&] { return trees.planner.grow(most_motions, batches); }));
            })
       .def_prop_ro("path", &path_of)

@@ -19,8 +19,8 @@ nb::tuple as_tuple(points::PairSums&& result) {
 }
 
 nb::tuple maximum_pair_sums(nb::handle columns, nb::handle ceiling, nb::handle slope, bool want_gradient) {
-  const Array<const double, 2> at(columns, "columns");
-  const Array<const double, 1> top(ceiling, "ceiling"), fall(slope, "slope");
+  const FloatRows at(columns, "columns");
+  const Floats top(ceiling, "ceiling"), fall(slope, "slope");
   top.of_shape({at.shape(0)}), fall.of_shape({at.shape(0)});
   return as_tuple(without_gil(
       [&] { return points::pair_sums(at.matrix(), points::MaximumPairs{top.span(), fall.span()}, want_gradient); }));
@@ -28,8 +28,8 @@ nb::tuple maximum_pair_sums(nb::handle columns, nb::handle ceiling, nb::handle s
 
 nb::tuple distance_pair_sums(nb::handle columns, nb::tuple pairs, bool want_gradient) {
   require(pairs.size() == 5, "pairs must be (level, slope, curvature, own, own_slope)");
-  const Array<const double, 2> at(columns, "columns"), own(pairs[3], "own"), own_slope(pairs[4], "own_slope");
-  const Array<const double, 1> level(pairs[0], "level"), slope(pairs[1], "slope"), curvature(pairs[2], "curvature");
+  const FloatRows at(columns, "columns"), own(pairs[3], "own"), own_slope(pairs[4], "own_slope");
+  const Floats level(pairs[0], "level"), slope(pairs[1], "slope"), curvature(pairs[2], "curvature");
   const std::size_t d = at.shape(0), n = at.shape(1);
   level.of_shape({d}), slope.of_shape({d}), curvature.of_shape({d});
   own.of_shape({d, n}), own_slope.of_shape({d, n});
@@ -38,7 +38,7 @@ nb::tuple distance_pair_sums(nb::handle columns, nb::tuple pairs, bool want_grad
 }
 
 nb::tuple riesz_rows(nb::handle columns, unsigned s, bool periodic, bool want_gradient) {
-  const Array<const double, 2> at(columns, "columns");
+  const FloatRows at(columns, "columns");
   points::RieszRows rows = without_gil([&] { return points::riesz_rows(at.matrix(), s, periodic, want_gradient); });
   const std::size_t d = at.shape(0), n = at.shape(1);
   return nb::make_tuple(as_numpy(std::move(rows.nearest), {n}), as_numpy(std::move(rows.sums), {n}),
@@ -46,19 +46,23 @@ nb::tuple riesz_rows(nb::handle columns, unsigned s, bool periodic, bool want_gr
 }
 
 double star_discrepancy(nb::handle columns) {
-  const Array<const double, 2> at(columns, "columns");
+  const FloatRows at(columns, "columns");
   require(at.size() > 0, "columns must hold at least one point and one coordinate");
   const std::span<const double> last = at.matrix()[at.shape(0) - 1];
   require(std::is_sorted(last.begin(), last.end()), "columns must come in the order of their last row");
   return without_gil([&] { return points::star_discrepancy(at.matrix()); });
 }
 
+/// So many coordinates are not examined in a year.
+constexpr double MOST_WORK = 1e15;
+
 nb::tuple bound_dispersion(nb::handle coordinates, nb::handle periods, nb::handle lengths, double lower, double share,
                            double most) {
-  const Array<const double, 2> at(coordinates, "points");
-  const Array<const double, 1> period(periods, "period"), sides(lengths, "sides");
+  const FloatRows at(coordinates, "points");
+  const Floats period(periods, "period", Entries::ANY), sides(lengths, "sides");
   period.of_shape({at.shape(1)}), sides.of_shape({at.shape(1)});
   require(at.size() > 0, "points must hold at least one point and one coordinate");
+  require(share >= 0.0 && most <= MOST_WORK, "share must be 0 or more, and most 1e15 or less");
   const points::Dispersion found = without_gil(
       [&] { return points::bound_dispersion(at.matrix(), period.span(), sides.span(), lower, share, most); });
   return nb::make_tuple(found.lower, found.upper, found.work);

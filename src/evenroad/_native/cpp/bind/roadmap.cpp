@@ -16,9 +16,10 @@ using namespace nb::literals;
 using Int32s = Array<const std::int32_t, 1>;
 using Int64s = Array<const std::int64_t, 1>;
 using Int8s = Array<const std::int8_t, 1>;
-using Floats = Array<const double, 1>;
 
 namespace {
+
+constexpr std::size_t MOST_NODES = std::numeric_limits<std::int32_t>::max();
 
 nb::object row(std::vector<std::int32_t>&& numbers) {
   const std::size_t count = numbers.size();
@@ -42,15 +43,17 @@ class Edges {
 /// Points, (n, d), and periods of their axes, (d,).
 class PeriodicPoints {
  public:
-  PeriodicPoints(nb::handle points, nb::handle period) : points_(points, "points"), period_(period, "period") {
+  PeriodicPoints(nb::handle points, nb::handle period)
+      : points_(points, "points"), period_(period, "period", Entries::ANY) {
     period_.of_shape({points_.shape(1)});
-    require(count() <= std::numeric_limits<std::int32_t>::max(), "points must be fewer than 2^31");
+    require(points_.shape(1) >= 1, "points must have one coordinate or more");
+    require(count() <= MOST_NODES, "points must be fewer than 2^31");
   }
   std::size_t count() const { return points_.shape(0); }
   roadmap::Periodic set() const { return {points_.matrix(), period_.span()}; }
 
  private:
-  Array<const double, 2> points_;
+  FloatRows points_;
   Floats period_;
 };
 
@@ -63,6 +66,7 @@ nb::object k_nearest(nb::handle points, nb::handle period, std::size_t k, bool e
 nb::object pairs_within(nb::handle points, nb::handle period, double radius) {
   const PeriodicPoints given(points, period);
   require(given.count() >= 1, "points must be one or more");
+  require(radius >= 0.0, "radius must be a number >= 0");
   auto pairs = without_gil([&] { return roadmap::pairs_within(given.set(), radius); });
   const std::size_t count = pairs.size() / 2;
   return as_numpy(std::move(pairs), {count, 2});
@@ -76,22 +80,24 @@ nb::object distances_from(nb::handle points, nb::handle period, nb::handle point
 }
 
 nb::object k_smallest(nb::handle distances, nb::handle usable, std::size_t k, double radius) {
-  const Floats away(distances, "distances");
+  const Floats away(distances, "distances", Entries::ANY);
   const Array<const bool, 1> among(usable, "usable");
   among.of_shape({away.size()});
-  return row(without_gil([&] { return roadmap::k_smallest(away.span(), among.span(), k, radius); }));
+  const std::size_t most = std::min(k, away.size());
+  return row(without_gil([&] { return roadmap::k_smallest(away.span(), among.span(), most, radius); }));
 }
 
 void make_graph(roadmap::Graph* self, std::size_t nodes, nb::handle edges) {
+  require(nodes <= MOST_NODES, "nodes must be fewer than 2^31");
   const Edges given(edges, nodes);
   new (self) roadmap::Graph(without_gil([&] { return roadmap::Graph(nodes, given.matrix()); }));
 }
 
 roadmap::Graph with_links(const roadmap::Graph& graph, std::size_t nodes, nb::handle links,
                           std::int32_t numbered_from) {
-  require(nodes >= graph.nodes(), "nodes must be at least those of the graph");
-  require(numbered_from >= 0, "numbered_from must be at least 0");
+  require(graph.nodes() <= nodes && nodes <= MOST_NODES, "nodes must be at least those of the graph, and below 2^31");
   const Edges given(links, nodes);
+  require(numbered_from >= 0 && given.count() <= MOST_NODES - numbered_from, "numbers of links must be below 2^31");
   return without_gil([&] { return graph.with_links(nodes, given.matrix(), numbered_from); });
 }
 
@@ -108,7 +114,7 @@ nb::tuple shortest_path(const roadmap::Graph& graph, nb::tuple costs, nb::tuple 
   const Int8s edges(states[0], "edge_states"), nodes(states[1], "node_states");
   require_all_edges(graph, weights.size(), "weights"), require_all_edges(graph, edges.size(), "edge_states");
   bounds.of_shape({graph.nodes()}), nodes.of_shape({graph.nodes()});
-  require_below(std::span<const std::int64_t>(&start, 1), graph.nodes(), "start");
+  require_below(start, graph.nodes(), "start");
   require_below(ends.span(), graph.nodes(), "goals");
   roadmap::Path path = without_gil([&] {
     return roadmap::shortest_path(graph, {weights.span(), bounds.span()}, {edges.span(), nodes.span()},
@@ -123,7 +129,7 @@ nb::tuple best_offers(const roadmap::Graph& graph, std::int64_t node, nb::handle
   const Int8s stage(stages, "stage");
   require_all_edges(graph, weights.size(), "weights");
   cost.of_shape({graph.nodes()}), stage.of_shape({graph.nodes()});
-  require_below(std::span<const std::int64_t>(&node, 1), graph.nodes(), "node");
+  require_below(node, graph.nodes(), "node");
   roadmap::Offers offers = without_gil([&] {
     const auto number = static_cast<std::int32_t>(node);
     return roadmap::best_offers(graph.fixed(), number, weights.span(), cost.span(), stage.span());
@@ -146,7 +152,7 @@ nb::tuple grow(nb::handle edges, nb::tuple states, nb::tuple trees, nb::handle a
   require(states.size() == 2 && trees.size() == 3, "states must be (edges, nodes), trees (tree, parent_edge, away)");
   const Array<std::int8_t, 1> tree(trees[0], "tree");
   const Array<std::int32_t, 1> parent_edge(trees[1], "parent_edge");
-  const Array<const double, 2> away(trees[2], "away");
+  const FloatRows away(trees[2], "away");
   const std::size_t nodes = tree.size();
   parent_edge.of_shape({nodes}), away.of_shape({2, nodes});
   const Edges given(edges, nodes);
@@ -172,7 +178,7 @@ nb::object spread_order(nb::tuple set, nb::handle preferences, std::size_t count
   require_below(which.span(), given.count(), "which");
   require(std::is_sorted(first.span().begin(), first.span().end()), "first must not fall");
   require_below(first.span(), which.size() + 1, "first");
-  const roadmap::Serving share{nb::cast<double>(serving[0]), nb::cast<double>(serving[1])};
+  const roadmap::Serving share{value_of<double>(serving[0], "least"), value_of<double>(serving[1], "served")};
   return as_numpy(without_gil([&] {
                     return roadmap::spread_order(given.set(), preference.span(), count, {first.span(), which.span()},
                                                  share);

@@ -3,6 +3,7 @@
 #include <nanobind/stl/unique_ptr.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "bind/arrays.hpp"
 #include "robot/motion_check.hpp"
@@ -10,6 +11,12 @@
 namespace evenroad::bind {
 
 namespace {
+
+/// No length is larger [m].
+constexpr double FARTHEST = 1e9;
+
+/// No motion has more states.
+constexpr double MOST_STATES = 1e9;
 
 using robot::Checker;
 using robot::HullTree;
@@ -28,7 +35,7 @@ class Named {
   template <class T, int Axes = 1>
   Array<const T, Axes> array(const char* key) const {
     require(given_.contains(key), std::string(name_) + " must have " + key);
-    return {given_[key], key};
+    return {given_[key], key, key == std::string("bounds") ? Entries::ANY : Entries::FINITE};
   }
   /// Return all entries of an array; the dictionary keeps it alive.
   template <class T, int Axes = 1>
@@ -62,6 +69,12 @@ void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle ca
                  of_hulls.span<double, 2>("boxes"), of_hulls.span<double, 2>("points")};
   given.arms = {of_capsules.span<double, 2>("speeds"), of_pairs.span<double, 2>("speeds")};
   given.bounds = of_limits.span<double, 2>("bounds");
+  const std::size_t dim = given.bounds.size() / 3;
+  for (std::size_t k = 0; 3 * dim == given.bounds.size() && k < dim; k++) {
+    const double low = given.bounds[k], high = given.bounds[dim + k], period = given.bounds[2 * dim + k];
+    require(std::isfinite(low) && std::isfinite(high) && low <= high && period > 0.0,
+            "bounds must be finite, low before high, and periods > 0");
+  }
   const auto padding = of_limits.span<double>("padding"), reach = of_limits.span<double>("reach");
   require(padding.size() == 1 && reach.size() == 1, "limits.padding and limits.reach must be one number each");
   given.padding = padding[0], given.reach = reach[0];
@@ -98,6 +111,9 @@ nb::object hull_contacts(const HullTree<double>& tree, int first, int second, nb
 void make_surface(Surface* self, nb::handle corners, double radius, nb::handle solid, bool turned, double reach) {
   const Array<const double, 3> of(corners, "corners"), closed(solid, "solid");
   require(of.shape(2) == 3 && (of.shape(1) == 1 || of.shape(1) == 3), "corners must be (n, 1, 3) or (n, 3, 3)");
+  require_within(of.span(), -FARTHEST, FARTHEST, "corners"),
+      require_within(closed.span(), -FARTHEST, FARTHEST, "solid");
+  require_within({&radius, 1}, 0.0, FARTHEST, "radius"), require_within({&reach, 1}, 0.0, FARTHEST, "reach");
   closed.of_shape({closed.shape(0), 3, 3});
   new (self) Surface(robot::make_surface({of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach}));
 }
@@ -105,7 +121,7 @@ void make_surface(Surface* self, nb::handle corners, double radius, nb::handle s
 /// Return the grid around surfaces, without leaves.
 std::unique_ptr<Surface> surface_around(nb::list surfaces) {
   std::vector<std::shared_ptr<const Surface>> all;
-  for (nb::handle each : surfaces) all.push_back(nb::cast<std::shared_ptr<Surface>>(each));
+  for (nb::handle each : surfaces) all.push_back(value_of<std::shared_ptr<Surface>>(each, "surfaces"));
   require(!all.empty(), "surfaces must be one or more");
   return std::make_unique<Surface>(robot::make_surface_around(all));
 }
@@ -114,20 +130,21 @@ std::unique_ptr<Surface> surface_around(nb::list surfaces) {
 /// the grid around these, or None.
 void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle tested, nb::list surfaces,
                 nb::object around, double clearance) {
-  const Array<const double, 2> rows(obstacles, "obstacles");
+  require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");
+  const FloatRows rows(obstacles, "obstacles");
   require(rows.shape(1) == sizeof(robot::GivenObstacle) / sizeof(double), "obstacles must have 16 numbers each");
   std::vector<robot::GivenObstacle> given(rows.shape(0));
   if (!given.empty()) __builtin_memcpy(given.data(), rows.data(), given.size() * sizeof(robot::GivenObstacle));
   const Array<const bool, 2> flags(tested, "tested");
   Scene scene = robot::make_scene(of, given, flags.matrix(), clearance);
-  if (!around.is_none()) scene.around = nb::cast<std::shared_ptr<Surface>>(around);
+  if (!around.is_none()) scene.around = value_of<std::shared_ptr<Surface>>(around, "around");
   for (nb::handle each : surfaces) {
-    const auto part = nb::cast<nb::tuple>(each);
+    const auto part = value_of<nb::tuple>(each, "surfaces");
     require(part.size() == 3, "surfaces must be (surface, number, tested) each");
     const Array<const bool, 1> capsules(part[2], "tested");
     capsules.of_shape({of.capsules.size()});
-    scene.surfaces.push_back({nb::cast<std::shared_ptr<Surface>>(part[0]),
-                              nb::cast<int>(part[1]),
+    scene.surfaces.push_back({value_of<std::shared_ptr<Surface>>(part[0], "surface"),
+                              value_of<int>(part[1], "number"),
                               {capsules.span().begin(), capsules.span().end()}});
     for (std::size_t i = 0; i < of.capsules.size(); i++) scene.surfaces_tested[i] += capsules.span()[i];
   }
@@ -136,7 +153,11 @@ void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle t
 
 void make_checker(Checker* self, std::shared_ptr<Robot> of, std::shared_ptr<Scene> scene, double resolution,
                   double clearance, bool touches_itself) {
-  require(resolution > 0, "resolution must be > 0");
+  require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");
+  double longest = 0.0;
+  for (std::size_t k = 0; k < of->bounds.low.size(); k++) longest += of->bounds.high[k] - of->bounds.low[k];
+  require(resolution > 0 && longest / resolution < MOST_STATES,
+          "resolution must be > 0, and motions have fewer states");
   require(scene->tested.rows == of->capsules.size(), "the scene must be one of this robot");
   new (self) Checker(std::move(of), std::move(scene), resolution, clearance, touches_itself);
 }
@@ -231,8 +252,10 @@ nb::tuple in_words(const robot::Contact& contact) {
 }
 
 nb::tuple find_contact(const Checker& checker, nb::handle q) {
-  const Array<const double, 1> given(q, "q");
+  const Floats given(q, "q");
   given.of_shape({dim(checker)});
+  std::vector<double> inside(dim(checker));
+  require(robot::enter(given.span(), checker.robot().bounds, inside), "q must be within the limits of the joints");
   return in_words(robot::find_contact(checker, given.span()));
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 #include "bind/arrays.hpp"
 #include "planning/native_checks.hpp"
@@ -26,53 +27,56 @@ using robot_roadmap::SceneGraph;
 using robot_roadmap::Search;
 using robot_roadmap::Verdict;
 
-void require_finite(std::span<const double> numbers, const char* name) {
-  for (const double number : numbers) require(std::isfinite(number), std::string(name) + " must be finite");
-}
-
 /// Return joints of (limits, middles of the ranges of milestones, which have more than one turn, which are endless).
 Joints joints_of(nb::tuple given, std::size_t dim) {
   require(given.size() == 4, "joints must be (limits, middle, multi_turn, endless)");
-  const Array<const double, 2> limits(given[0], "limits");
-  const Array<const double, 1> middle(given[1], "middle");
+  const FloatRows limits(given[0], "limits", Entries::ANY);
+  const Floats middle(given[1], "middle");
   const Array<const bool, 1> multi_turn(given[2], "multi_turn"), endless(given[3], "endless");
   limits.of_shape({2, dim}), middle.of_shape({dim}), multi_turn.of_shape({dim}), endless.of_shape({dim});
-  require_finite(middle.span(), "middle");
   std::vector<Joint> joints;
   for (std::size_t k = 0; k < dim; k++) {
     const bool is_counted = multi_turn.span()[k];
     require(!is_counted || k < robot_roadmap::MOST_MULTI_TURN, "only the first joints may have more than one turn");
-    joints.push_back(
-        {limits.matrix()(0, k), limits.matrix()(1, k), middle.span()[k], is_counted, endless.span()[k] && !is_counted});
+    const Joint joint{limits.matrix()(0, k), limits.matrix()(1, k), middle.span()[k], is_counted,
+                      endless.span()[k] && !is_counted};
+    constexpr double FARTHEST = (robot_roadmap::MOST_TURNS + 1) * robot_roadmap::TURN;
+    require(!is_counted || (joint.middle - joint.low <= FARTHEST && joint.high - joint.middle <= FARTHEST),
+            "limits must be few turns from the middle");
+    joints.push_back(joint);
   }
   return Joints(std::move(joints));
 }
 
 void make_scene_graph(SceneGraph* self, nb::handle milestones, nb::handle edges, nb::handle turns, nb::tuple joints) {
-  const Array<const double, 2> points(milestones, "milestones");
+  const FloatRows points(milestones, "milestones");
   const Array<const std::int32_t, 2> ends(edges, "edges");
   const Array<const std::int8_t, 2> past(turns, "turns");
   const std::size_t dim = points.shape(1);
   ends.of_shape({ends.shape(0), 2}), past.of_shape({ends.shape(0), dim});
   require(points.shape(0) >= 1, "milestones must be one or more");
-  require_finite(points.span(), "milestones");
   require_below(ends.span(), points.shape(0), "edges");
   for (const int turn : past.span()) require(-1 <= turn && turn <= 1, "turns must be -1, 0 or 1");
   Joints of = joints_of(joints, dim);
+  for (std::size_t k = 0; k < dim; k++) {
+    for (std::size_t row = 0; row < points.shape(0) && of[k].multi_turn; row++) {
+      require(std::abs(points.matrix()(row, k) - of[k].middle) <= robot_roadmap::TURN,
+              "milestones must lie in one turn of a joint that has several");
+    }
+  }
   auto graph = std::make_shared<const Graph>(points.matrix(), ends.matrix(), past.matrix(), of);
   new (self) SceneGraph(std::move(graph), std::move(of), ends.shape(0));
 }
 
 SceneGraph within(const SceneGraph& graph, nb::handle low, nb::handle high) {
-  const Array<const double, 1> lower(low, "low"), upper(high, "high");
+  const Floats lower(low, "low", Entries::ANY), upper(high, "high", Entries::ANY);
   lower.of_shape({graph.joints.size()}), upper.of_shape({graph.joints.size()});
   return graph.within(lower.span(), upper.span());
 }
 
 void insert(SceneGraph& graph, nb::handle path) {
-  const Array<const double, 2> points(path, "path");
+  const FloatRows points(path, "path");
   points.of_shape({points.shape(0), graph.joints.size()});
-  require_finite(points.span(), "path");
   without_gil([&] { graph.insert(points.matrix()); });
 }
 
@@ -96,6 +100,20 @@ nb::tuple state_of(const SceneGraph& graph) {
                         graph.roadmap_edges());
 }
 
+/// Return whether half edges lead to milestones over edges, and those of each milestone come to an end.
+bool are_chains(const std::vector<Number>& first, const std::vector<HalfEdge>& halves) {
+  const auto is_below = [](Number number, std::size_t count) { return number >= 0 && std::cmp_less(number, count); };
+  std::size_t visited = 0;
+  for (const Number begin : first) {
+    for (Number half = begin; half != robot_roadmap::NONE; half = halves[half].next) {
+      if (!is_below(half, halves.size()) || ++visited > halves.size()) return false;
+      if (!is_below(halves[half].milestone, first.size()) || !is_below(halves[half].edge, halves.size() / 2))
+        return false;
+    }
+  }
+  return true;
+}
+
 void restore(SceneGraph* self, nb::tuple state) {
   require(state.size() == 7, "this is not the state of a SceneGraph");
   Joints joints(from_bytes<Joint>(state[0]));
@@ -104,7 +122,7 @@ void restore(SceneGraph* self, nb::tuple state) {
   auto halves = from_bytes<HalfEdge>(state[3]);
   auto nodes = from_bytes<Verdict>(state[4]), edges = from_bytes<Verdict>(state[5]);
   const bool is_whole = milestones.size() == first.size() * joints.size() && nodes.size() == first.size() &&
-                        2 * edges.size() == halves.size();
+                        2 * edges.size() == halves.size() && are_chains(first, halves);
   require(is_whole, "this is not the state of a SceneGraph");
   const Matrix<const double> rows{milestones.data(), first.size(), joints.size()};
   auto graph = std::make_shared<const Graph>(rows, std::move(first), std::move(halves));
@@ -114,16 +132,16 @@ void restore(SceneGraph* self, nb::tuple state) {
 
 /// A question with the array that it reads.
 struct Asked {
-  Array<const double, 2> rows;
+  FloatRows rows;
   Question question;
 
   Asked(const SceneGraph& graph, nb::handle start_and_goals, nb::tuple rules)
       : rows(start_and_goals, "start_and_goals") {
     rows.of_shape({rows.shape(0), graph.joints.size()});
     require(rows.shape(0) >= 2, "start_and_goals must be a start and one goal or more");
-    require_finite(rows.span(), "start_and_goals");
     require(rules.size() == 3, "rules must be (links, greed, check_cost)");
-    question = {rows.matrix(), nb::cast<std::size_t>(rules[0]), nb::cast<double>(rules[1]), nb::cast<double>(rules[2])};
+    question = {rows.matrix(), value_of<std::size_t>(rules[0], "links"), value_of<double>(rules[1], "greed"),
+                value_of<double>(rules[2], "check_cost")};
     require(question.links >= 1, "links must be 1 or more");
   }
 };
@@ -222,6 +240,7 @@ void add_robot_roadmap(nb::module_& module) {
       .def("go_on",
            [](ProvedSearch& search, std::int64_t most_motions, std::int64_t batches) {
              require_unchanged(search.search());
+             require_budget(most_motions, "most_motions"), require_budget(batches, "batches");
              return in_words(without_gil([&] { return search.go_on(most_motions, batches); }));
            })
       .def_prop_ro("path", [](const ProvedSearch& search) { return path_of(search.search()); })

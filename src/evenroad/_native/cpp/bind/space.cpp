@@ -13,8 +13,8 @@ nb::object given_away(OwnMatrix<double>&& matrix) {
 }
 
 nb::object flat_distances(nb::handle first, nb::handle second, nb::handle scales, nb::handle periods) {
-  const Array<const double, 2> a(first, "a"), b(second, "b");
-  const Array<const double, 1> scale(scales, "scale"), period(periods, "period");
+  const FloatRows a(first, "a"), b(second, "b");
+  const Floats scale(scales, "scale"), period(periods, "period");
   const std::size_t dim = scale.size();
   a.of_shape({a.shape(0), dim}), b.of_shape({b.shape(0), dim}), period.of_shape({dim});
   return given_away(
@@ -22,7 +22,7 @@ nb::object flat_distances(nb::handle first, nb::handle second, nb::handle scales
 }
 
 nb::object quaternion_angles(nb::handle first, nb::handle second) {
-  const Array<const double, 2> a(first, "a"), b(second, "b");
+  const FloatRows a(first, "a"), b(second, "b");
   a.of_shape({a.shape(0), 4}), b.of_shape({b.shape(0), 4});
   return given_away(without_gil([&] { return space::quaternion_angles(a.matrix(), b.matrix()); }));
 }

@@ -10,10 +10,10 @@ namespace {
 
 nb::object squared_speeds(nb::tuple curve, nb::handle ceilings, nb::handle accelerations) {
   require(curve.size() == 5, "curve must be (ahead, ahead_bend, behind, behind_bend, steps)");
-  const Array<const double, 2> ahead(curve[0], "ahead"), ahead_bend(curve[1], "ahead_bend");
-  const Array<const double, 2> behind(curve[2], "behind"), behind_bend(curve[3], "behind_bend");
-  const Array<const double, 1> steps(curve[4], "steps"), ceiling(ceilings, "ceiling");
-  const Array<const double, 1> acceleration(accelerations, "acceleration");
+  const FloatRows ahead(curve[0], "ahead"), ahead_bend(curve[1], "ahead_bend");
+  const FloatRows behind(curve[2], "behind"), behind_bend(curve[3], "behind_bend");
+  const Floats steps(curve[4], "steps"), ceiling(ceilings, "ceiling");
+  const Floats acceleration(accelerations, "acceleration");
   const std::size_t intervals = steps.size(), joints = acceleration.size();
   for (const auto* each : {&ahead, &ahead_bend, &behind, &behind_bend}) each->of_shape({intervals, joints});
   ceiling.of_shape({intervals + 1});

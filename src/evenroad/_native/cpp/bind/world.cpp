@@ -24,7 +24,7 @@ class Points {
   }
 
  private:
-  Array<const double, 2> array_;
+  FloatRows array_;
 };
 
 nb::object as_rows(const std::vector<world::Point>& points) {
@@ -44,7 +44,7 @@ bool has_occupied_ring(Matrix<const bool> padded) {
 
 void make_disk(world::Disk* self, nb::handle padded, nb::handle frame, double radius) {
   const Array<const bool, 2> occupied(padded, "padded");
-  const Array<const double, 1> of(frame, "frame");
+  const Floats of(frame, "frame");
   of.of_shape({8});
   require(occupied.shape(0) >= 3 && occupied.shape(1) >= 3 && has_occupied_ring(occupied.matrix()),
           "padded must be a map with a ring of occupied cells around it");
@@ -103,20 +103,25 @@ nb::object cells(const world::Disk& disk) {
 }
 
 nb::tuple find_path(const world::Disk& disk, nb::handle start, nb::handle goals, std::int64_t most) {
-  const Array<const double, 1> from(start, "start");
+  const Floats from(start, "start");
   from.of_shape({2});
   const std::vector<world::Point> to = Points(goals, "goals").all();
   require(!to.empty(), "goals must be one or more");
+  require_budget(most, "most");
   const world::LatticePath found =
       without_gil([&] { return world::find_path(disk, {from.data()[0], from.data()[1]}, to, most); });
   return nb::make_tuple(as_rows(found.points), found.goal, found.expanded, found.motions);
 }
 
+/// A path has no more points than this while it is straightened: motions of all pairs of them are looked at.
+constexpr std::size_t MOST_SPREAD = 10'000;
+
 nb::tuple straighten(const world::Disk& disk, nb::handle path, const nb::tuple& spreads) {
   const std::vector<world::Point> points = Points(path, "path").all();
   require(points.size() >= 2, "path must have two points or more");
   std::vector<std::int64_t> offered;
-  for (const nb::handle each : spreads) offered.push_back(nb::cast<std::int64_t>(each));
+  for (const nb::handle each : spreads) offered.push_back(value_of<std::int64_t>(each, "spreads"));
+  for (const std::int64_t each : offered) require_below(each, MOST_SPREAD, "spreads");
   const world::Straightened found = without_gil([&] { return world::straighten(disk, points, offered); });
   return nb::make_tuple(as_rows(found.points), found.motions);
 }

@@ -60,7 +60,7 @@ template <class V>
 EVENROAD_INLINE V abs(V a) {
   using Bits = decltype(a < a);
   constexpr int SIGN = sizeof(a[0]) * 8 - 1;
-  return (V)((Bits)a & ~(Bits{} + 1 << SIGN));
+  return (V)((Bits)a & ~((Bits{} + 1) << SIGN));
 }
 
 template <class V>

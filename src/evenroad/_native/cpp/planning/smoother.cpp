@@ -31,10 +31,6 @@ constexpr std::int64_t OF_PROOF = 6;
 
 constexpr std::size_t HALF = LANES / 2;
 
-void bring_in(Path& path, const Joints& joints) {
-  for (std::size_t i = 0; i < path.size(); i++) enter(path[i], joints);
-}
-
 /// A path without its ends where these nearly touch something: they stay as they are, and what leads away from them.
 struct Middle {
   Path path;
@@ -136,7 +132,6 @@ bool shorten_as_given(Path& path, const Guides& guides, std::int64_t most_batche
 }  // namespace
 
 void shorten(Path& path, Matrix<const double> pairs, std::int64_t most_shortcuts, MotionChecks& checks) {
-  bring_in(path, checks.joints);
   Shortcuts shortcuts(path, checks, Demand::PROVED);
   shortcuts.pass_by();
   for (std::size_t row = 0; row < pairs.rows; row++) shortcuts.join_shares(pairs[row]);
@@ -145,7 +140,6 @@ void shorten(Path& path, Matrix<const double> pairs, std::int64_t most_shortcuts
 }
 
 bool smooth(Path& path, const Guides& guides, std::int64_t most_batches, bool is_given_proved, MotionChecks& checks) {
-  bring_in(path, checks.joints);
   if (path.size() < 3) return true;
   if (std::optional<Path> shorter = smoothed(path, guides, most_batches, checks)) {
     path = std::move(*shorter);

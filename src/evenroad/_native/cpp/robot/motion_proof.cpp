@@ -8,6 +8,9 @@ namespace evenroad::robot {
 
 namespace {
 
+/// A stretch is halved no more often, whatever the tolerance: its half is then less than 1e-13 of the motion.
+constexpr int DEEPEST_STRETCH = 40;
+
 /// What sums of single precision are multiplied by to be no less than the true ones.
 constexpr float UP = 1.0F + 3e-7F;
 
@@ -88,7 +91,9 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
     workspace.counts.configurations += taken;
     const Mask near = blocked(workspace, workspace.enlarged, Wanted::ALL) & ((1U << taken) - 1);
     count -= taken;
-    if (near != 0 && (half * fastest < limits.tolerance || count + 2 * LANES > MOST_WAITING)) return false;
+    const bool is_halvable =
+        half * fastest >= limits.tolerance && level < DEEPEST_STRETCH && count + 2 * LANES <= MOST_WAITING;
+    if (near != 0 && !is_halvable) return false;
     for (int lane = taken - 1; lane >= 0; lane--) {
       if ((near >> lane & 1) == 0) continue;
       for (const double side : {0.5, -0.5}) waiting[count++] = {motion.share[lane] + side * half, level + 1};

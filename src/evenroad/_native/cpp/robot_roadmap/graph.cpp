@@ -1,6 +1,8 @@
 // Half edges of the roadmap lie one after the other for each milestone; later ones are put before them.
 #include "robot_roadmap/graph.hpp"
 
+#include <tuple>
+
 namespace evenroad::robot_roadmap {
 
 Graph::Graph(Matrix<const double> milestones)

@@ -151,9 +151,9 @@ class Search {
   /// Return the nodes near a map point that can be reached straight, ring by ring until there are enough.
   std::vector<std::int64_t> links(Point from) {
     const Point at = disk_.frame().to_padded(from);
-    // Far outside there is nothing to link to.
+    // Far outside there is nothing to link to; nor is there at what is no number.
     const auto nearest = [](double along) {
-      return static_cast<std::int64_t>(std::nearbyint(2.0 * std::min(std::max(along, -1e9), 1e9)));
+      return static_cast<std::int64_t>(std::nearbyint(2.0 * (along >= -1e9 ? std::min(along, 1e9) : -1e9)));
     };
     const std::int64_t column = nearest(at.x), row = nearest(at.y);
     const std::int64_t last_row = 2 * disk_.rows() - 1, last_column = 2 * disk_.columns() - 1;

@@ -27,7 +27,7 @@ std::vector<Point> spread(const std::vector<Point>& points, std::int64_t most) {
   std::vector<Point> spread;
   for (std::size_t i = 0; i + 1 < points.size(); i++) {
     const double piece = distance(points[i], points[i + 1]);
-    const auto parts = 1 + static_cast<std::int64_t>(total > 0.0 ? spare * piece / total : 0.0);
+    const auto parts = 1 + static_cast<std::int64_t>(total > 0.0 && std::isfinite(total) ? spare * piece / total : 0.0);
     for (std::int64_t k = 0; k < parts; k++) {
       const double t = static_cast<double>(k) / static_cast<double>(parts);
       spread.push_back({(1.0 - t) * points[i].x + t * points[i + 1].x, (1.0 - t) * points[i].y + t * points[i + 1].y});
