@@ -7,7 +7,7 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constra
 CLANG  := $(if $(filter default undefined,$(origin CXX)),ziglang)
 KERNEL := $(shell find src/evenroad/_native/cpp -name '*.?pp') src/evenroad/_native/CMakeLists.txt tools/build_backend.py
 
-.PHONY: help demo test test-peers lint native sanitize tidy docs bench bank mazes wheels release-check clean
+.PHONY: help demo test test-peers lint native sanitize fuzz tidy docs bench bank mazes wheels release-check clean
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
@@ -15,6 +15,7 @@ help:
 	@echo "make lint   ruff, mypy and clang-format"
 	@echo "make native  the native kernel alone, into src/evenroad/_native"
 	@echo "make sanitize  its tests under the address and undefined-behaviour sanitizers"
+	@echo "make fuzz   random arrays for the native kernel under the sanitizers, for long"
 	@echo "make tidy   clang-tidy over the native kernel"
 	@echo "make docs   the pages as a site -> out/docs/index.html"
 	@echo "make bench  the slow tables and timings -> out/bench/"
@@ -51,11 +52,15 @@ $(VENV)/.peers: $(VENV)/.dev
 native: $(VENV)/.native
 
 # Once for each state of the kernel: its tests where memory errors and undefined behaviour stop the program.
-$(VENV)/.sanitized: $(KERNEL) | $(VENV)/.dev
+$(VENV)/.sanitized: $(KERNEL) $(shell find tests/native -name '*.py') | $(VENV)/.dev
 	$(BIN)/python tools/build_backend.py --sanitized
 	@touch $@
 
 sanitize: $(VENV)/.sanitized
+
+# The same arrays as in `make test`, a thousand times as many.
+fuzz: $(VENV)/.dev
+	EVENROAD_FUZZ=2000 $(BIN)/python tools/build_backend.py --sanitized -s -n 0 tests/native/test_inconsistent_tables.py
 
 tidy: $(VENV)/.dev
 	$(BIN)/python tools/tidy_native.py
@@ -70,7 +75,7 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 	$(BIN)/clang-format --dry-run -Werror src/evenroad/_native/cpp/*/*.?pp
 
-test: lint $(VENV)/.native
+test: lint $(VENV)/.native $(VENV)/.sanitized
 	$(BIN)/pytest -n 2
 
 test-peers: $(VENV)/.peers $(VENV)/.native

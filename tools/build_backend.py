@@ -1,7 +1,7 @@
 """What builds evenroad: scikit-build-core, with a compiler that comes as a wheel, and editable installs built in place.
 
     python tools/build_backend.py               # build the native kernel into src/evenroad/_native; or: make native
-    python tools/build_backend.py --sanitized   # one more build of it, for tests: make sanitize
+    python tools/build_backend.py --sanitized   # one more build of it, and its tests: make sanitize
     python tools/build_backend.py --wheels DIR  # source distribution, wheels of all targets, studies: make wheels
 
 A compiler of your own is taken where the environment variable CXX names one: `CXX=clang++ pip install .`.  Otherwise
@@ -28,6 +28,7 @@ import sysconfig
 import tempfile
 import time
 import zipfile
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -216,26 +217,28 @@ def run(tool: str, *arguments: str) -> None:
         raise SystemExit(f"{tool} {shlex.join(arguments)}\n{done.stdout[-8000:]}")
 
 
-def build_sanitized() -> None:
-    """Build the kernel for tests with a compiler that has sanitizers, which the wheel's clang has not; or say so."""
-    compiler = os.environ.setdefault("CXX", "g++")
-    if shutil.which(shlex.split(compiler)[0]) is None:
-        print(f"no {compiler}: the kernel is not tested under sanitizers", file=sys.stderr)
+def test_sanitized(tests: Sequence[str]) -> None:
+    """Build the kernel with a compiler that has sanitizers, which the wheel's clang has not, and run tests with it."""
+    compiler = shlex.split(os.environ.setdefault("CXX", "g++"))
+    # The second: exceptions are watched, too, and Python itself loads no C++ library.
+    asked = [[*compiler, f"-print-file-name={library}"] for library in ("libasan.so", "libstdc++.so.6")]
+    found = shutil.which(compiler[0]) is not None
+    libraries = [subprocess.run(each, capture_output=True, text=True).stdout.strip() for each in asked if found]
+    if not found or not all(Path(each).is_file() for each in libraries):
+        print(f"{compiler[0]} with sanitizers is not installed: the kernel is not tested under them", file=sys.stderr)
         return
     build_in_place("sanitized", EVENROAD_SANITIZE="ON")
-    runtime = subprocess.run(
-        [*shlex.split(compiler), "-print-file-name=libasan.so"], capture_output=True, text=True, check=True
-    ).stdout.strip()
     environment = {
         **os.environ,
         "EVENROAD_ARCH": "sanitized",
-        "LD_PRELOAD": runtime,
-        # Python keeps memory until it ends.
-        "ASAN_OPTIONS": "detect_leaks=0",
+        "LD_PRELOAD": " ".join(libraries),
+        "PYTHONPATH": os.pathsep.join((str(ROOT / "src"), str(ROOT / "studies" / "src"))),
+        # Python keeps memory until it ends; of what is too large, an error is raised.
+        "ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1",
         "UBSAN_OPTIONS": "print_stacktrace=1",
     }
-    tests = [sys.executable, "-m", "pytest", "-q", "-n", "0", str(ROOT / "tests" / "native")]
-    raise SystemExit(subprocess.run(tests, env=environment, cwd=ROOT).returncode)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests]
+    raise SystemExit(subprocess.run(command, env=environment, cwd=ROOT).returncode)
 
 
 def build_wheels(folder: str) -> None:
@@ -258,6 +261,6 @@ if __name__ == "__main__":
     if "--wheels" in sys.argv[1:]:
         build_wheels(sys.argv[-1])
     elif "--sanitized" in sys.argv[1:]:
-        build_sanitized()
+        test_sanitized(sys.argv[2:] or ["-n", "2", "tests/native"])
     else:
         build_in_place()

@@ -1,6 +1,7 @@
 // One extension module: the bindings, which are compiled once, with the kernels of one instruction set.
 #include <exception>
 #include <stdexcept>
+#include <typeinfo>
 
 #include "bind/parts.hpp"
 
@@ -15,6 +16,9 @@ void translate(const std::exception_ptr& thrown, void*) {
   } catch (const std::invalid_argument& error) {
     nb::object kind = nb::module_::import_("evenroad.errors").attr("InvalidValue");
     PyErr_SetString(kind.ptr(), error.what());
+  } catch (const std::bad_cast&) {
+    nb::object kind = nb::module_::import_("evenroad.errors").attr("InvalidValue");
+    PyErr_SetString(kind.ptr(), "what a tuple or list holds must be of the types that the stubs name");
   }
 }
 

@@ -54,7 +54,7 @@ void make_scene_graph(SceneGraph* self, nb::handle milestones, nb::handle edges,
   const Array<const std::int8_t, 2> past(turns, "turns");
   const std::size_t dim = points.shape(1);
   ends.of_shape({ends.shape(0), 2}), past.of_shape({ends.shape(0), dim});
-  require(points.shape(0) >= 1, "milestones must be one or more");
+  require(points.shape(0) >= 1 && dim >= 1, "milestones must be one or more, of one joint or more");
   require_below(ends.span(), points.shape(0), "edges");
   for (const int turn : past.span()) require(-1 <= turn && turn <= 1, "turns must be -1, 0 or 1");
   Joints of = joints_of(joints, dim);
@@ -121,8 +121,8 @@ void restore(SceneGraph* self, nb::tuple state) {
   auto first = from_bytes<Number>(state[2]);
   auto halves = from_bytes<HalfEdge>(state[3]);
   auto nodes = from_bytes<Verdict>(state[4]), edges = from_bytes<Verdict>(state[5]);
-  const bool is_whole = milestones.size() == first.size() * joints.size() && nodes.size() == first.size() &&
-                        2 * edges.size() == halves.size() && are_chains(first, halves);
+  const bool is_whole = joints.size() >= 1 && milestones.size() == first.size() * joints.size() &&
+                        nodes.size() == first.size() && 2 * edges.size() == halves.size() && are_chains(first, halves);
   require(is_whole, "this is not the state of a SceneGraph");
   const Matrix<const double> rows{milestones.data(), first.size(), joints.size()};
   auto graph = std::make_shared<const Graph>(rows, std::move(first), std::move(halves));

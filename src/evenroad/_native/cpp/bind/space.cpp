@@ -14,7 +14,7 @@ nb::object given_away(OwnMatrix<double>&& matrix) {
 
 nb::object flat_distances(nb::handle first, nb::handle second, nb::handle scales, nb::handle periods) {
   const FloatRows a(first, "a"), b(second, "b");
-  const Floats scale(scales, "scale"), period(periods, "period");
+  const Floats scale(scales, "scale"), period(periods, "period", Entries::ANY);
   const std::size_t dim = scale.size();
   a.of_shape({a.shape(0), dim}), b.of_shape({b.shape(0), dim}), period.of_shape({dim});
   return given_away(
