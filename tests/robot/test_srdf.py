@@ -255,6 +255,18 @@ def test_fingers_that_are_held_stand_where_they_do_not_touch(tmp_path, limits, g
     assert held_values(robot) == {"grip": grip}
 
 
+@pytest.mark.parametrize(
+    ("states", "grip"), [((0.03,), 0.03), ((0.0, 0.03), 0.03), ((0.0,), 0.02), ((0.01, 0.03), 0.01)]
+)
+def test_fingers_stand_where_the_first_state_has_them_in_which_they_do_not_touch(tmp_path, states, grip):
+    said = "<group name='hand'><joint name='grip'/></group><disable_collisions link1='base' link2='upper'/>"
+    for i, value in enumerate(states):
+        said += f"<group_state name='s{i}' group='hand'><joint name='grip' value='{value}'/></group_state>"
+    path = write(tmp_path, fingers(0.0, 0.04))
+    robot = load_model(path, srdf=srdf_of(tmp_path, said), group="shoulder,elbow").robot
+    assert held_values(robot) == {"grip": grip}
+
+
 def test_the_srdf_of_an_arm_with_a_hand_is_read_again_and_planned_with(tmp_path):
     path = write(tmp_path, fingers(0.0, 0.04))
     srdf = write(tmp_path, srdf_text(load_model(path)), "arm.srdf")
@@ -262,11 +274,13 @@ def test_the_srdf_of_an_arm_with_a_hand_is_read_again_and_planned_with(tmp_path)
     assert model.robot.group == ("shoulder", "elbow")
     assert not model.always_touching
     assert any("planned for is the group 'hand'" in note for note in model.notes)
-    assert plan(Scene(name="nothing"), "home", "0.5,0.5", robot=path, srdf=srdf).solved
+    assert plan("empty", "home", "ready", robot=path, srdf=srdf).solved
     everything = load_model(path, srdf=srdf, group="planned").robot
-    home = configuration(everything, "home")
+    home, ready = (configuration(everything, name) for name in ("home", "ready"))
     np.testing.assert_array_equal(home, [0.0, 0.0, 0.02])
-    assert ArmWorld(everything, Scene(name="nothing")).valid(home[np.newaxis]).all()
+    assert ready[2] == 0.02
+    assert np.abs(ready[:2]).max() > 0.1
+    assert ArmWorld(everything, Scene(name="nothing")).valid([home, ready]).all()
 
 
 def test_pairs_that_always_touch_are_disabled_in_what_is_written(tmp_path):

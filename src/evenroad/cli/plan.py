@@ -107,7 +107,7 @@ class RobotOptions:
     package: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """NAME=FOLDER: the folder of a ROS package with meshes; you can give several."""
     xacro: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """NAME=VALUE: an argument of a xacro; you can give several."""
+    """NAME=VALUE: an argument of a xacro, which may be empty; you can give several."""
 
     def options(self) -> dict[str, Any]:
         """Return the arguments of `load_model`; fitting reports on standard error."""
@@ -117,7 +117,7 @@ class RobotOptions:
             "bodies": self.bodies,
             "use_visuals": self.use_visuals,
             "packages": _pairs("package", self.package),
-            "arguments": _pairs("xacro", self.xacro),
+            "arguments": _pairs("xacro", self.xacro, may_be_empty=True),
             "progress": say_fitting,
         }
 
@@ -131,10 +131,10 @@ def say_fitting(step: int, steps: int, what: str) -> None:
         print(line, file=sys.stderr, flush=True)
 
 
-def _pairs(option: str, texts: Iterable[str]) -> dict[str, str]:
+def _pairs(option: str, texts: Iterable[str], may_be_empty: bool = False) -> dict[str, str]:
     pairs = [text.partition("=") for text in texts]
     for name, separator, value in pairs:
-        if not (name and separator and value):
+        if not (name and separator and (value or may_be_empty)):
             raise InvalidValue(f"--{option} must be of the form NAME=VALUE, got {name + separator + value!r}")
     return {name: value for name, _, value in pairs}
 
@@ -151,7 +151,7 @@ class PlanArm(PlanOptions, RobotOptions):
     planner = "evenroad.cli.plan_arm:plan_arm"
 
     world: tyro.conf.Positional[Path]
-    """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml)."""
+    """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml, empty.yaml)."""
     start: tuple[str, ...]
     """One number per joint, separated by commas, name=value,..., or a named state."""
     robot: str | None = None

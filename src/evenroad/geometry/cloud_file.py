@@ -25,9 +25,9 @@ _LONGEST_HEADER = 1 << 16
 def load_cloud(path: str | os.PathLike[str]) -> Floats:
     """Read the points of a cloud from a file by its suffix, (n, 3); other columns are ignored.
 
-    ``.ply`` (ascii or binary, its element ``vertex``), ``.pcd`` (ascii or binary), ``.xyz`` (text: three numbers or
-    more per line, ``#`` begins a comment), ``.npy`` (an array of three columns or more, or of fields x, y, z).  Rows of
-    NaN in .pcd files are ignored: they are pixels without a depth.
+    ``.ply`` (ascii or binary, its element ``vertex``), ``.pcd`` (ascii, binary or compressed), ``.xyz`` (text: three
+    numbers or more per line, ``#`` begins a comment), ``.npy`` (an array of three columns or more, or of fields x, y,
+    z).  Rows of NaN in .pcd files are ignored: they are pixels without a depth.
 
     Raises
     ------
@@ -101,17 +101,16 @@ def _read_pcd(file: Path) -> Floats:
     header, data = _header(file.read_bytes(), b"DATA")
     said = {words[0]: words[1:] for words in header}
     kind = said["DATA"][0]
-    if kind == "binary_compressed":
-        raise BrokenFile(
-            f"the cloud {file} is compressed, which is not read: pcl_convert_pcd_ascii_binary IN OUT 1 makes it binary"
-        )
-    if kind not in ("ascii", "binary"):
-        raise ValueError(f"its data are {kind!r}, not ascii or binary")
+    if kind not in ("ascii", "binary", "binary_compressed"):
+        raise ValueError(f"its data are {kind!r}, not ascii, binary or binary_compressed")
     names, count = said["FIELDS"], _count("POINTS", said["POINTS"][0])
     width, height = (_count(key, said.get(key, ["1"])[0]) for key in ("WIDTH", "HEIGHT"))
     if "WIDTH" in said and width * height != count:
         raise ValueError(f"it has {width} x {height} points by WIDTH and HEIGHT, and {count} by POINTS")
     counts = [_count("COUNT", word) for word in said.get("COUNT", ["1"] * len(names))]
+    if kind == "binary_compressed":
+        widths = [_count("SIZE", size) * many for size, many in zip(said["SIZE"], counts, strict=True)]
+        data = _rows_of_columns(data, widths, count)
     if sum(counts) * count > len(data):
         raise ValueError(f"it is cut off: {count} points of {sum(counts)} numbers were announced")
     fields = []
@@ -122,6 +121,39 @@ def _read_pcd(file: Path) -> Floats:
             fields.append((own, "<" + _PCD_TYPES[letter] + size))
     points = _rows(data, count, fields, kind == "ascii")
     return points[~np.isnan(points).all(axis=1)]
+
+
+def _rows_of_columns(data: bytes, widths: list[int], count: int) -> bytes:
+    """Return rows, one a point, of compressed columns, one a field of so many bytes a point."""
+    packed, size = (int.from_bytes(data[i : i + 4], "little") for i in (0, 4))
+    if size != sum(widths) * count or packed != len(data) - 8:
+        raise ValueError(f"{packed} bytes of {size} were announced, {len(data) - 8} of {sum(widths) * count} are there")
+    columns = np.split(np.frombuffer(_unpacked(data[8:], size), dtype=np.uint8), count * np.cumsum(widths)[:-1])
+    rows = [column.reshape(count, width) for column, width in zip(columns, widths, strict=True)]
+    return np.concatenate(rows, axis=1).tobytes()
+
+
+def _unpacked(data: bytes, size: int) -> bytes:
+    """Return what LZF packed (M. Lehmann's liblzf): bytes as they are, and copies of what came shortly before."""
+    out, i = bytearray(), 0
+    while i < len(data) and len(out) <= size:
+        first = data[i]
+        if first < 32:
+            out += data[i + 1 : i + 2 + first]
+            i += 2 + first
+            continue
+        length, i = first >> 5, i + 1
+        if length == 7:
+            length, i = length + data[i], i + 1
+        start, i, length = len(out) - 1 - ((first & 31) << 8 | data[i]), i + 1, length + 2
+        if start < 0:
+            raise ValueError("its compressed data are damaged")
+        piece = out[start : start + length]
+        # A copy may run into what it writes.
+        out += (piece * (length // len(piece) + 1))[:length]
+    if len(out) != size or i != len(data):
+        raise ValueError("its compressed data are damaged")
+    return bytes(out)
 
 
 def _count(what: str, word: str) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._rng import generator
 from evenroad.errors import InvalidValue
+from evenroad.geometry.kept import Fitted, fitted_once
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 MOST_SIDE_BY_SIDE = 4
@@ -25,7 +26,9 @@ _CUTS = (0.15, 0.3, 0.5, 0.7, 0.85)
 _LONGEST_EDGE = 1.0 / 6.0
 """Largest length of an edge, in parts of the mesh's extent; longer ones are divided."""
 _LOOKED_AT = 300
-"""Number of triangles by which splits are compared."""
+"""Number of triangles by which splits of one part are compared."""
+_SHOWN = 2000
+"""Number of triangles by which parts are compared."""
 
 
 def fit_capsules(shape: Shape) -> tuple[Capsule, ...]:
@@ -51,8 +54,7 @@ def fit_capsules(shape: Shape) -> tuple[Capsule, ...]:
 def _fitted(shape: Shape) -> list[Fitted]:
     """Return the capsules in the shape's own frame."""
     if isinstance(shape, Mesh):
-        mesh = shape.triangles
-        return capsules_around_mesh(mesh.vertices, mesh.triangles)
+        return fitted_once("around", shape.triangles, lambda mesh: capsules_around_mesh(mesh.vertices, mesh.triangles))
     if isinstance(shape, Box):
         return _around_box(np.array(shape.size))
     if isinstance(shape, Sphere):
@@ -91,9 +93,13 @@ def _around_box(size: Floats) -> list[tuple[Floats, Floats, float]]:
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """Triangles, (t, 3, 3), a capsule around them, and the two parts of their best split, if any."""
+    """Triangles, (t, 3, 3), a capsule around them, and the two parts of their best split, if any.
+
+    `outer`, (n, 3), are corners of the hull of some of them, around which the capsule is: it only compares splits.
+    """
 
     corners: Floats
+    outer: Floats
     capsule: Fitted
     halves: tuple[_Part, ...] = ()
 
@@ -113,7 +119,7 @@ def capsules_around_mesh(vertices: Floats, triangles: Ints) -> list[Fitted]:
     along a coordinate or principal axis.  A capsule is convex, so it contains triangles whose corners it contains.
     """
     corners = divided(vertices[triangles])
-    parts = [_splittable(_Part(corners, _rough(corners)))]
+    parts = [_splittable(_part(corners))]
     found = [parts]
     while len(parts) < MOST_CAPSULES:
         best = max(range(len(parts)), key=lambda i: parts[i].gain)
@@ -131,8 +137,9 @@ def capsules_around_mesh(vertices: Floats, triangles: Ints) -> list[Fitted]:
 def _merged(parts: list[_Part]) -> list[_Part]:
     """Return the parts after joining pairs of them while that lowers the cost."""
     for i, j in itertools.combinations(range(len(parts)), 2):
-        corners = np.concatenate([parts[i].corners, parts[j].corners])
-        fewer = [part for k, part in enumerate(parts) if k not in (i, j)] + [_Part(corners, _rough(corners))]
+        both = np.concatenate([parts[i].corners, parts[j].corners])
+        joined = _part(both, np.concatenate([parts[i].outer, parts[j].outer]))
+        fewer = [part for k, part in enumerate(parts) if k not in (i, j)] + [joined]
         if _cost(fewer) < _cost(parts):
             return _merged(fewer)
     return parts
@@ -145,11 +152,17 @@ def _cost(parts: list[_Part]) -> float:
 
 def _splittable(part: _Part) -> _Part:
     """Return the part with the best split tried."""
-    below = best_cut(part.corners, lambda side: volume(_rough(side)))
+    below = best_cut(part.corners, lambda side: volume(rough_capsule_around(side.reshape(-1, 3))))
     if below is None:
         return part
-    sides = part.corners[below], part.corners[~below]
-    return _Part(part.corners, part.capsule, tuple(_Part(side, _rough(side)) for side in sides))
+    return replace(part, halves=tuple(_part(part.corners[side]) for side in (below, ~below)))
+
+
+def _part(corners: Floats, points: Floats | None = None) -> _Part:
+    """Return a part of these triangles; `points` are corners of their hull, if known."""
+    shown = corners[:: max(1, len(corners) // _SHOWN)].reshape(-1, 3)
+    outer = extreme(shown if points is None else points)
+    return _Part(corners, outer, rough_capsule_around(outer))
 
 
 def best_cut(corners: Floats, cost: Callable[[Floats], float]) -> Bools | None:
@@ -173,10 +186,6 @@ def best_cut(corners: Floats, cost: Callable[[Floats], float]) -> Bools | None:
     return best
 
 
-def _rough(corners: Floats) -> Fitted:
-    return rough_capsule_around(corners.reshape(-1, 3))
-
-
 def divided(corners: Floats, share: float = _LONGEST_EDGE) -> Floats:
     """Return triangles, (t, 3, 3), of the same surface with edges of at most this share of its extent."""
     longest = share * float(np.ptp(corners.reshape(-1, 3), axis=0).max())
@@ -194,12 +203,12 @@ def divided(corners: Floats, share: float = _LONGEST_EDGE) -> Floats:
     return np.concatenate(done)
 
 
-Fitted = tuple[Floats, Floats, float]
-"""Endpoints a and b, each (3,), and radius of a capsule."""
 SAMPLES = 1 << 15
 """Number of points that estimate the volume of a union: a standard error of about half a per cent."""
 _LEAST_RADIUS = 1e-6
 """Radius around points in a line [m]."""
+_SHARES = np.array([0.0, 0.1, 0.2, 0.35, 0.6, 1.0])
+"""Radii that are tried on an axis, as shares of the points' reach along it beside the least one."""
 
 
 def capsule_around(points: Floats) -> Fitted:
@@ -210,14 +219,15 @@ def capsule_around(points: Floats) -> Fitted:
     from scipy.optimize import minimize
 
     points = extreme(points)
-    centre, frames = _starts(points)
-    frame = min(frames, key=lambda start: volume(_capsule_on(points, centre, start)))
-    best = _capsule_on(points, centre, frame)
+    centre, axes = _starts(points)
+    frame = _frame(min(axes, key=lambda axis: volume(_smallest_on(points, centre, axis[np.newaxis]))))
+    best = _smallest_on(points, centre, frame[:1])
     size = float(np.ptp(points, axis=0).max()) or 1.0
 
     def moved(x: Floats) -> Fitted:
-        tilted = _frame(frame[0] + x[0] * frame[1] + x[1] * frame[2])
-        return _capsule_on(points, centre + size * (x[2] * frame[1] + x[3] * frame[2]), tilted)
+        tilted = frame[0] + x[0] * frame[1] + x[1] * frame[2]
+        place = centre + size * (x[2] * frame[1] + x[3] * frame[2])
+        return _smallest_on(points, place, (tilted / np.linalg.norm(tilted))[np.newaxis])
 
     steps = np.vstack([np.zeros(4), 0.1 * np.eye(4)])
     options = dict(maxiter=200, xatol=1e-4, fatol=1e-4 * volume(best), initial_simplex=steps)
@@ -228,8 +238,7 @@ def capsule_around(points: Floats) -> Fitted:
 
 def rough_capsule_around(points: Floats) -> Fitted:
     """Return the smallest capsule around points, (n, 3), through the middle along a principal or coordinate axis."""
-    centre, frames = _starts(points)
-    return min((_capsule_on(points, centre, frame) for frame in frames), key=volume)
+    return _smallest_on(points, *_starts(points))
 
 
 def volume(capsule: Fitted) -> float:
@@ -238,34 +247,33 @@ def volume(capsule: Fitted) -> float:
     return math.pi * radius**2 * (math.dist(a, b) + 4.0 / 3.0 * radius)
 
 
-def _starts(points: Floats) -> tuple[Floats, list[Floats]]:
-    """Return the middle of the points' bounding box, and frames along principal and coordinate axes."""
+def _starts(points: Floats) -> tuple[Floats, Floats]:
+    """Return the middle of the points' bounding box, and their principal and the coordinate axes, (6, 3)."""
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=len(points) < 3)
-    return centre, [_frame(axis) for axis in (*np.eye(3), *axes)]
+    relative = points - points.mean(axis=0)
+    return centre, np.concatenate([np.eye(3), np.linalg.eigh(relative.T @ relative)[1].T])
 
 
-def _capsule_on(points: Floats, origin: Floats, frame: Floats) -> Fitted:
-    """Return the smallest of six capsules around the points on the line through `origin` along ``frame[0]``.
+def _smallest_on(points: Floats, origin: Floats, axes: Floats) -> Fitted:
+    """Return the smallest capsule around the points on a line through `origin` along one of the axes, (n, 3).
 
-    The radius is the least that the line allows, or more where the shorter caps save volume.
+    Six are tried on each: with the least radius that the line allows, and with more, where shorter caps save volume.
     """
     relative = points - origin
-    along = relative @ frame[0]
-    squared = np.maximum(np.einsum("ni,ni->n", relative, relative) - along**2, 0.0)
-    least = math.sqrt(float(squared.max()))
-    span = 0.5 * float(np.ptp(along))
-    candidates = []
-    for share in (0.0, 0.1, 0.2, 0.35, 0.6, 1.0):
-        radius = math.hypot(least, share * span) * (1.0 + 1e-12) + 1e-12 * span
-        reach = np.sqrt(np.maximum(radius**2 - squared, 0.0))
-        # A point is within the cap of an end that is no further than `reach` from it along the axis.
-        low, high = float((along + reach).min()), float((along - reach).max())
-        if low > high:
-            low = high = 0.5 * (low + high)
-        endpoints = (origin + low * frame[0], origin + high * frame[0])
-        candidates.append((*endpoints, max(radius, _LEAST_RADIUS)))
-    return min(candidates, key=volume)
+    along = axes @ relative.T
+    squared = np.maximum((relative**2).sum(axis=1) - along**2, 0.0)
+    span = 0.5 * np.ptp(along, axis=1)[:, np.newaxis]
+    radius = np.hypot(np.sqrt(squared.max(axis=1))[:, np.newaxis], _SHARES * span) * (1.0 + 1e-12) + 1e-12 * span
+    reach = np.sqrt(np.maximum(radius[:, :, np.newaxis] ** 2 - squared[:, np.newaxis], 0.0))
+    # A point is within the cap of an end that is no further than `reach` from it along the axis.
+    low = (along[:, np.newaxis] + reach).min(axis=2)
+    high = (along[:, np.newaxis] - reach).max(axis=2)
+    middle = 0.5 * (low + high)
+    low, high = np.minimum(low, middle), np.maximum(high, middle)
+    radius = np.maximum(radius, _LEAST_RADIUS)
+    best = int((radius**2 * (high - low + 4.0 / 3.0 * radius)).argmin())
+    axis, radius_of_best = axes[best // len(_SHARES)], float(radius.flat[best])
+    return origin + low.flat[best] * axis, origin + high.flat[best] * axis, radius_of_best
 
 
 def _frame(axis: Floats) -> Floats:

@@ -10,7 +10,8 @@ import numpy as np
 from evenroad._arrays import Bools, Floats
 from evenroad.geometry.fit import Fitted, divided
 from evenroad.geometry.hulls import distances, winding_number
-from evenroad.geometry.mesh import closed_parts
+from evenroad.geometry.kept import fitted_once
+from evenroad.geometry.mesh import TriangleMesh, closed_parts
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 MOST_SIDE_BY_SIDE = 8
@@ -57,10 +58,7 @@ def inner_of(shapes: Iterable[Shape]) -> tuple[Capsule, ...] | None:
 
 def _inside(shape: Shape) -> list[Fitted]:
     if isinstance(shape, Mesh):
-        mesh = shape.triangles
-        closed, turned = closed_parts(mesh)
-        # Where the orientation of triangles does not say what is inside, nothing is known to be solid.
-        return _in_mesh(_proper(mesh.vertices[mesh.triangles][closed])) if turned and closed.any() else []
+        return fitted_once("inside", shape.triangles, _in_mesh)
     if isinstance(shape, Box):
         return _in_box(np.array(shape.size))
     if isinstance(shape, Cylinder):
@@ -96,16 +94,23 @@ def _proper(corners: Floats) -> Floats:
     return corners[(corners != np.roll(corners, 1, axis=1)).any(axis=2).all(axis=1)]
 
 
-def _in_mesh(corners: Floats) -> list[Fitted]:
-    """Return balls inside closed, consistently oriented surfaces, triangles (t, 3, 3)."""
+def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
+    """Return balls inside the closed, consistently oriented parts of a mesh; none where its orientation is unclear."""
     from scipy.spatial import cKDTree
 
+    closed, turned = closed_parts(mesh)
+    # Where sides do not tell nobody knows what is solid.
+    if not turned or not closed.any():
+        return []
+    corners = _proper(mesh.vertices[mesh.triangles][closed])
     middles = _points_inside(corners)
     if not len(middles):
         return []
     surface = divided(corners, _FINE)
     points = np.concatenate([surface.reshape(-1, 3), surface.mean(axis=1)])
-    away = cKDTree(points).query(middles)[0]
+    away = cKDTree(points, balanced_tree=False, compact_nodes=False).query(middles)[0]
+    centroids = corners.mean(axis=1)
+    reach = 1e-9 + np.linalg.norm(corners - centroids[:, np.newaxis], axis=2).max(axis=1)
     balls: list[Fitted] = []
     left, largest = np.ones(len(middles), dtype=np.bool_), 0.0
     while left.any() and len(balls) < MOST_BALLS:
@@ -117,7 +122,9 @@ def _in_mesh(corners: Floats) -> list[Fitted]:
         # Grid and tree only propose: all triangles decide whether the ball is inside.
         if not is_inside(corners, centre):
             continue
-        radius = float(distances(np.broadcast_to(centre, (len(corners), 3)), corners).min())
+        # Corners of others are farther away than some point of the surface.
+        near = corners[np.linalg.norm(centroids - centre, axis=1) <= away[k] + reach]
+        radius = float(distances(np.broadcast_to(centre, (len(near), 3)), near).min())
         left &= np.linalg.norm(middles - centre, axis=1) > _APART * radius
         largest = max(largest, radius)
         balls.append((centre, centre, radius))

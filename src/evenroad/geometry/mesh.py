@@ -68,16 +68,24 @@ class TriangleMesh:
         set_fields(self, vertices=vertices, triangles=triangles.astype(np.int64))
 
     @cached_property
-    def _values(self) -> tuple[object, ...]:
-        return self.name, *(sha256(array.tobytes()).digest() for array in (self.vertices, self.triangles))
+    def digest(self) -> str:
+        """A hash of vertices and triangles."""
+        return "".join(sha256(array.tobytes()).hexdigest() for array in (self.vertices, self.triangles))
+
+    @cached_property
+    def welded(self) -> Ints:
+        """The triangles, (t, 3), by numbers of places: corners at one place have one number, whatever their rows."""
+        _, number = np.unique(self.vertices, axis=0, return_inverse=True)
+        found: Ints = number.reshape(-1)[self.triangles]
+        return found
 
     def __hash__(self) -> int:
-        return hash(self._values)
+        return hash((self.name, self.digest))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, TriangleMesh):
             return NotImplemented
-        return self is other or self._values == other._values
+        return self is other or (self.name, self.digest) == (other.name, other.digest)
 
 
 def merged(meshes: tuple[TriangleMesh, ...]) -> TriangleMesh:
@@ -96,9 +104,8 @@ def scaled(mesh: TriangleMesh, factors: Sequence[float]) -> TriangleMesh:
 
 def volume_of(mesh: TriangleMesh) -> float:
     """Return the volume of a mesh; where it is not closed, that of its convex hull."""
-    _, number = np.unique(mesh.vertices, axis=0, return_inverse=True)
-    sides = np.sort(number.reshape(-1)[mesh.triangles][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    _, times = np.unique(sides, axis=0, return_counts=True)
+    sides = np.sort(mesh.welded[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    _, times = np.unique(sides[:, 0] * len(mesh.vertices) + sides[:, 1], return_counts=True)
     corners = mesh.vertices[mesh.triangles]
     if (times == 2).all():
         # Of a closed surface: tetrahedra from the origin to every triangle, with signs.
@@ -169,8 +176,7 @@ def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
-    _, number = np.unique(mesh.vertices, axis=0, return_inverse=True)
-    faces = number.reshape(-1)[mesh.triangles]
+    faces = mesh.welded
     a, b = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).T
     count = int(faces.max()) + 1
     _, part = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count)), directed=False)
@@ -206,6 +212,10 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
     file = Path(path)
     if not file.is_file():
         raise BrokenFile(f"the mesh {file} is missing")
+    if file.suffix.lower() == ".bt":
+        from evenroad.geometry.octomap import read_octomap
+
+        return scaled(read_octomap(file), [factor] * 3)
     try:
         import trimesh
 

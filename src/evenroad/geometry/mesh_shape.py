@@ -70,7 +70,7 @@ class Mesh(Shape):
     def triangles(self) -> TriangleMesh:
         """Scaled triangles in the shape's frame; errors as :func:`evenroad.geometry.load_mesh`."""
         mesh = self.source if isinstance(self.source, TriangleMesh) else load_mesh(self.source)
-        return scaled(mesh, self.scale)
+        return mesh if self.scale == (1.0, 1.0, 1.0) else scaled(mesh, self.scale)
 
     @property
     def volume(self) -> float:

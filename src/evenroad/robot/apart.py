@@ -1,8 +1,8 @@
-"""Values of the joints outside the group at which the bodies they carry do not touch."""
+"""Values of joints at which bodies do not touch: of those outside the group, and of a posture to move to."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
@@ -19,11 +19,17 @@ _SAMPLES = 200
 """Number of random values of all of them that are tried next."""
 
 
-def held_apart(robot: KinematicTree, pieces: Pieces, pairs: Collection[tuple[str, str]]) -> dict[str, float]:
+def held_apart(
+    robot: KinematicTree,
+    pieces: Pieces,
+    pairs: Collection[tuple[str, str]],
+    states: Collection[Mapping[str, float]] = (),
+) -> dict[str, float]:
     """Return values of held joints at which the fewest of these pairs touch, joint -> value [rad or m].
 
-    Only joints between bodies that touch where the robot holds them are returned: a gripper closed at 0 is half opened.
-    Pairs that touch at all values of the held joints, or depend on joints of the group, change nothing.
+    Only joints between bodies that touch where the robot holds them are returned: they stand as one of the `states`
+    has them, else a gripper closed at 0 is half opened.  Pairs that touch at all values of the held joints, or depend
+    on joints of the group, change nothing.
     """
     movable = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
     held = held_values(robot)
@@ -43,6 +49,8 @@ def held_apart(robot: KinematicTree, pieces: Pieces, pairs: Collection[tuple[str
     if not moved:
         return {}
     tried = _sampled_values([movable[name] for name in moved], [held[name] for name in moved])
+    known = [[float(state.get(name, held[name])) for name in moved] for state in states]
+    tried = np.concatenate([tried[:1], np.reshape(known, (-1, len(moved))), tried[1:]])
     values = {name: np.full(len(tried), value) for name, value in held.items()}
     values |= dict(zip(moved, tried.T, strict=True))
     count = _touching(robot, bodied, every, values).sum(axis=1)
@@ -50,6 +58,25 @@ def held_apart(robot: KinematicTree, pieces: Pieces, pairs: Collection[tuple[str
     if count[best] == count[0]:
         return {}
     return dict(zip(moved, tried[best].tolist(), strict=True))
+
+
+def bent_posture(
+    robot: KinematicTree, pieces: Pieces, pairs: Sequence[tuple[str, str]], home: Mapping[str, float]
+) -> dict[str, float]:
+    """Return a posture away from `home` in which none of these pairs touches, joint -> value [rad or m].
+
+    Joints of the group that no other follows are drawn from the middle half of their ranges, of whole turns at most;
+    the others stay.  Empty where none of 200 is free.
+    """
+    followed = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
+    moved = [joint for joint in robot.joints if joint.name in robot.group and joint.name not in followed]
+    low, high = (np.clip([getattr(joint, end) for joint in moved], -np.pi, np.pi) for end in ("lower", "upper"))
+    drawn = low + (0.25 + 0.5 * generator(0).random((_SAMPLES, len(moved)))) * (high - low)
+    values = {name: np.full(_SAMPLES, value) for name, value in home.items()}
+    values |= {joint.name: drawn[:, i].round(3) for i, joint in enumerate(moved)}
+    bodied = {link: pieces[link] for pair in pairs for link in pair}
+    free = np.flatnonzero(~_touching(robot, bodied, pairs, values).any(axis=1))
+    return {name: float(each[free[0]]) for name, each in values.items()} if len(free) and moved else {}
 
 
 def _joints_between(robot: KinematicTree, first: str, second: str) -> set[str]:
@@ -87,4 +114,4 @@ def _touching(
     of_link = {link: np.ascontiguousarray(poses[:, robot.links.index(link)]) for link in pieces}
     trees = hull_trees({link: [(piece.parts, piece.radius) for piece in of] for link, of in pieces.items()})
     found = [contacts(trees, a, b, of_link[a], of_link[b])[:, 0] >= 0 for a, b in pairs]
-    return np.stack(found, axis=1)
+    return np.stack(found, axis=1) if found else np.zeros((count, 0), dtype=np.bool_)

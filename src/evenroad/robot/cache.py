@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
+import time
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
+from copy import deepcopy
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -29,7 +32,7 @@ from evenroad.robot.robot import Robot
 from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.urdf import Urdf
 
-_FORMAT = 17
+_FORMAT = 19
 """Version of the cache: it counts up when the same files give another robot, or the format changes."""
 
 
@@ -76,6 +79,50 @@ def keep(key: str, model: RobotModel) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
         with atomic_write(file) as stream:
             stream.write(sealed(json.dumps(asdict(model), default=np.ndarray.tolist).encode(), key))
+
+
+_known: dict[object, tuple[dict[Path, tuple[int, ...]], RobotModel, RobotModel]] = {}
+"""What was asked for in this process -> the files and when they were saved, the robot, and a copy to compare with."""
+_AT_ONCE = 100_000_000
+"""A file that was saved so shortly before it is read might be saved again without a new time [ns]."""
+_FOLDERS = ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
+
+
+def stamps(files: Iterable[Any]) -> dict[Path, tuple[int, ...]]:
+    """Return when each of these files was saved, and how large it is; what is no file is left out."""
+    found: dict[Path, tuple[int, ...]] = {}
+    for path in files:
+        if isinstance(path, Path):
+            with suppress(OSError):
+                status = path.stat()
+                found[path] = status.st_mtime_ns, status.st_size, status.st_ino
+    return found
+
+
+def known(asked: object) -> RobotModel | None:
+    """Return the robot that was made of the same files in this process, if none of them was saved since."""
+    files, model, copy = _known.get(_place(asked), ({}, None, None))
+    if model is None or copy is None or stamps(files) != files:
+        return None
+    # Mappings are the only part of a robot that can change.
+    same = (model.robot.states, model.robot.held) == (copy.robot.states, copy.robot.held)
+    return model if same else None
+
+
+def know(asked: object, files: dict[Path, tuple[int, ...]], model: RobotModel) -> None:
+    """Remember a robot for this process, but not where a file includes others, or was saved just now."""
+    content = next(iter(files)).read_bytes()
+    plain = b"<robot" in content and b"<xacro:" not in content and b"<mujoco" not in content
+    if not plain or max(saved for saved, *_ in files.values()) > time.time_ns() - _AT_ONCE or stamps(files) != files:
+        return
+    if len(_known) >= 32:
+        _known.clear()
+    robot = replace(model.robot, states=deepcopy(model.robot.states), held=dict(model.robot.held))
+    _known[_place(asked)] = files, model, replace(model, robot=robot)
+
+
+def _place(asked: object) -> object:
+    return asked, os.getcwd(), *map(os.environ.get, _FOLDERS)
 
 
 def _file(key: str) -> Path:

@@ -7,6 +7,7 @@ from typing import Protocol
 
 from evenroad.errors import InvalidValue, UnknownName, shown
 from evenroad.robot.joint import Joint
+from evenroad.robot.kinematics import KinematicTree, held_values
 from evenroad.robot.urdf import Urdf
 
 _MOST_NAMED = 8
@@ -69,6 +70,9 @@ def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
     serial = {name: joints for name, joints in filled.items() if any(run >= set(joints) for run in runs)}
     longest = max(map(len, serial.values()), default=0)
     found = {name: joints for name, joints in serial.items() if len(joints) == longest}
+    # A finger may have as many joints as the arm that carries it.
+    carried = {joint for joints in found.values() for joint in _below(urdf, joints[-1])}
+    found = {name: joints for name, joints in found.items() if joints[0] not in carried}
     if len(set(found.values())) != 1:
         which = "no one of which is the longest chain" if found else "none of which is a chain"
         raise InvalidValue(
@@ -76,6 +80,17 @@ def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
             f" {few_of(list(filled))}"
         )
     return next(iter(found))
+
+
+def _below(urdf: Urdf, name: str) -> set[str]:
+    """Return the joints that a joint moves."""
+    moved = {joint.child for joint in urdf.joints if joint.name == name}
+    below = set()
+    for joint in urdf.joints:
+        if joint.parent in moved:
+            moved.add(joint.child)
+            below.add(joint.name)
+    return below
 
 
 def group_notes(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | None) -> tuple[str, ...]:
@@ -114,6 +129,17 @@ def chosen_states(
         if set(chosen) <= set(values):
             found.setdefault(name, values)
     return found
+
+
+def held_states(srdf: Srdf, robot: KinematicTree) -> dict[str, float]:
+    """Return where named states have the joints that a robot holds, joint -> value; of several the first says."""
+    held: dict[str, float] = {}
+    joints = {joint.name: joint for joint in robot.joints}
+    for values in srdf.states.values():
+        for name in held_values(robot):
+            if name in values and joints[name].lower <= values[name] <= joints[name].upper:
+                held.setdefault(name, values[name])
+    return held
 
 
 def _words(wanted: str | Sequence[str]) -> list[str]:

@@ -16,17 +16,19 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.fit import fit_capsules, union_volume
 from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.inner import inner_of
+from evenroad.geometry.kept import takes_long
+from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Capsule, Mesh, Shape
 from evenroad.robot.apart import held_apart
-from evenroad.robot.cache import cached, keep, key_of
-from evenroad.robot.groups import choose_group, chosen_states, group_notes
+from evenroad.robot.cache import cached, keep, key_of, know, known, stamps
+from evenroad.robot.groups import choose_group, chosen_states, group_notes, held_states
 from evenroad.robot.mjcf import read_mjcf
 from evenroad.robot.pairs import pairs_of, self_pairs
 from evenroad.robot.robot import Robot
 from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.srdf import read_srdf
 from evenroad.robot.urdf import Urdf, read_urdf
-from evenroad.robot.urdf_xml import RobotFile
+from evenroad.robot.urdf_xml import RobotFile, outermost
 
 DATA = Path(__file__).parent / "data"
 ROBOTS = ("arm7", "ur5")
@@ -146,9 +148,15 @@ def load_model(
         tuple((name, os.fspath(folder)) for name, folder in sorted((packages or {}).items())),
         tuple(sorted((arguments or {}).items())),
     )
-    urdf = read_robot(file)
     srdf_path = own_srdf if srdf is None else Path(srdf)
     bodies_path = None if bodies is None else Path(bodies)
+    asked = file, srdf_path, bodies_path, str(group)
+    model = known(asked)
+    if model is not None:
+        return model
+    before = stamps((path, srdf_path, bodies_path))
+    urdf = read_robot(file)
+    before |= stamps(shape.source for shape in urdf.shapes if isinstance(shape, Mesh))
     others = (("SRDF", srdf_path), ("file of bodies", bodies_path))
     key = key_of(urdf, others, group)
     model = cached(key)
@@ -157,12 +165,15 @@ def load_model(
         # Files may have been saved while they were read: the robot may then mix two versions.
         if key_of(urdf, others, group) == key:
             keep(key, model)
-    return replace(model, file=file)
+    model = replace(model, file=file)
+    know(asked, before, model)
+    return model
 
 
 def read_robot(file: RobotFile) -> Urdf:
-    """Return what the file of a robot says, an MJCF by its suffix ``.xml`` or ``.mjcf``."""
-    return read_mjcf(file) if file.path.suffix in (".xml", ".mjcf") else read_urdf(file)
+    """Return what the file of a robot says: an MJCF with the suffix ``.xml`` or ``.mjcf``, else a URDF or xacro."""
+    is_mjcf = file.path.suffix in (".xml", ".mjcf") and outermost(file.path) != "robot"
+    return read_mjcf(file) if is_mjcf else read_urdf(file)
 
 
 def find_robot(source: PathLike) -> tuple[Path, Path | None]:
@@ -192,6 +203,7 @@ def _build(
     srdf = None if srdf_path is None else read_srdf(srdf_path, urdf)
     chosen = choose_group(urdf, srdf, group)
     given = {} if bodies_path is None else read_bodies(bodies_path, urdf.links)
+    urdf = replace(urdf, shapes=_opened(urdf.shapes))
     capsules = _capsules(urdf, given, progress)
     if not capsules:
         hint = "; --use-visuals takes what is drawn" if urdf.drawn_only else ""
@@ -211,13 +223,15 @@ def _build(
     # Of those that a robot's own file lets touch, each has its reason; those of an SRDF have one for all.
     untested = {frozenset((a, b)): why for a, b, why in urdf.untested or ()}
     by_srdf = srdf is not None and bool(srdf.disabled)
+    pieces = _pieces(urdf, given)
     if srdf is not None:
         untested = dict.fromkeys(srdf.disabled, "disabled in the SRDF") | untested
     said = by_srdf or urdf.untested is not None
-    pieces = _pieces(urdf, given)
-    if by_srdf:
+    if srdf is not None and by_srdf:
         # Elsewhere pairs that touch where they are held are not tested as long as they are held there.
-        robot = replace(robot, held=held_apart(robot, pieces, pairs_of(robot, pieces, untested)))
+        robot = replace(robot, held=held_states(srdf, robot))
+        apart = held_apart(robot, pieces, pairs_of(robot, pieces, untested), srdf.states.values())
+        robot = replace(robot, held={**robot.held, **apart})
     pairs = self_pairs(robot, pieces, untested if said else None, drop_touching=not by_srdf)
     links = tuple(_link_body(urdf, link, capsules[link], link in given) for link in capsules)
     drawn_only = tuple(link for link in urdf.drawn_only if link not in capsules)
@@ -246,13 +260,26 @@ def _contained(pair: tuple[str, str]) -> str:
     )
 
 
+def _opened(shapes: Sequence[Shape]) -> tuple[Shape, ...]:
+    """Return shapes with their meshes read, each file once."""
+    meshes: dict[object, TriangleMesh] = {}
+    opened = []
+    for shape in shapes:
+        if isinstance(shape, Mesh):
+            key = shape.source, shape.scale
+            meshes[key] = meshes.get(key) or shape.triangles
+            shape = replace(shape, source=meshes[key], scale=(1.0, 1.0, 1.0))
+        opened.append(shape)
+    return tuple(opened)
+
+
 def _capsules(
     urdf: Urdf, given: dict[str, tuple[Capsule, ...]], progress: Callable[[int, int, str], None] | None
 ) -> dict[str, tuple[Capsule, ...]]:
     found: dict[str, tuple[Capsule, ...]] = {}
     fitted = [shape for shape in urdf.shapes if shape.link not in given]
     for i, shape in enumerate(fitted):
-        if progress is not None and isinstance(shape, Mesh):
+        if progress is not None and isinstance(shape, Mesh) and takes_long("around", shape.triangles):
             progress(i, len(fitted), f"{shape} of {shape.link}")
         found[shape.link] = found.get(shape.link, ()) + fit_capsules(shape)
     found |= given

@@ -21,7 +21,7 @@ from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
 from evenroad.robot.scan import allowed_within, without_shapes
 from evenroad.robot.scene import MARGIN, Cut, Obstacle, Scene, Seen
 
-SCENES = ("box-reach", "box-reach-narrow")
+SCENES = ("box-reach", "box-reach-narrow", "empty")
 """Names of the shipped scenes."""
 _SECTIONS = ("name", "allowed", "states", "limits", "attach")
 _OPTIONAL = ("xyz", "rpy", "xyzw", "cell")
@@ -82,7 +82,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     Parameters
     ----------
     source : str or path-like
-        A ``.yaml`` as above, a scene of MoveIt, or ``box-reach`` or ``box-reach-narrow``.
+        A ``.yaml`` as above, a scene of MoveIt, or ``box-reach``, ``box-reach-narrow`` or ``empty``.
 
     Returns
     -------

@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element
 
 from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue
-from evenroad.robot.apart import held_apart
+from evenroad.robot.apart import bent_posture, held_apart
 from evenroad.robot.groups import chains, few_of
 from evenroad.robot.joint import Joint
 from evenroad.robot.pairs import TOUCHING
@@ -187,8 +187,8 @@ def srdf_text(model: RobotModel) -> str:
 
     Groups are the robot's chains without a branch, each named after the link at its end, and the group that the robot
     has where it is none of these.  Every group has a state ``home``, at 0 or the nearest to it within limits, or near
-    there where links would touch, beside the states that are known.  Read again with this file, the robot tests the
-    same pairs, but for those that touched in every sample.
+    there where links would touch, and where one was found a state ``ready``, free and bent, beside the states that are
+    known.  Read again with this file, the robot tests the same pairs, but for those that touched in every sample.
     """
     robot = model.robot
     root = ElementTree.Element("robot", name=robot.name)
@@ -204,8 +204,9 @@ def srdf_text(model: RobotModel) -> str:
             ElementTree.SubElement(group, "joint", name=joint)
     neutral = {joint.name: joint.neutral for joint in robot.joints}
     neutral |= held_apart(replace(robot, group=(), held={}), pieces_of(robot), robot.pairs)
+    ready = bent_posture(robot, pieces_of(robot), robot.pairs, neutral)
     for name, members in names.items():
-        for state, values in ({"home": neutral} | dict(robot.states)).items():
+        for state, values in ({"home": neutral, "ready": ready} | dict(robot.states)).items():
             if set(members) <= set(values):
                 element = ElementTree.SubElement(root, "group_state", name=state, group=name)
                 for joint in members:

@@ -147,12 +147,28 @@ def _expanded(file: RobotFile) -> Element:
     xacro = require_extra("xacrodoc", "xacro", f"{file.path} is a xacro file, which")
     # It keeps packages for the whole process, those of the last robot, too.
     xacro.packages.reset()
-    xacro.packages.update_package_cache(dict(file.packages))
+    xacro.packages._finder.finder_funcs.insert(0, (lambda name: _package(name, file), LookupError))
     try:
         text = xacro.XacroDoc.from_file(str(file.path), subargs=dict(file.arguments)).to_urdf_string()
     except Exception as error:  # Whatever its macros raise.
         raise BrokenFile(f"the xacro {file.path} cannot be expanded: {error}") from error
     return _parsed(text.encode(), file.path)
+
+
+def _package(name: str, file: RobotFile) -> str:
+    """Return the folder of a package; LookupError if there is none."""
+    for folder in _package_folders(name, file):
+        if folder.is_dir():
+            return str(folder)
+    raise LookupError(name)
+
+
+def outermost(path: Path) -> str:
+    """Return the tag of the outermost element of an XML; an empty text of what is none."""
+    try:
+        return _parsed(path.read_bytes(), path).tag
+    except (OSError, BrokenFile):
+        return ""
 
 
 def drawn_only(root: Element) -> tuple[str, ...]:
@@ -244,7 +260,8 @@ def find_mesh(name: str, file: RobotFile, link: str) -> Path:
     """Return the file that a URDF means by `name`.
 
     ``package://PACKAGE/FILE`` is looked for in the given packages, in the folder of the URDF and those above it, either
-    inside of a folder PACKAGE or in one, and where ROS keeps packages (``ROS_PACKAGE_PATH``, ``AMENT_PREFIX_PATH``);
+    inside of a folder PACKAGE, or one whose ``package.xml`` has this name, or in one, and where ROS keeps packages
+    (``ROS_PACKAGE_PATH``, ``AMENT_PREFIX_PATH``); so is what a xacro finds.
     ``file://`` is absolute; all else is relative to the URDF.  Raises BrokenFile if there is none; the text says where
     it was looked for.
     """
@@ -270,17 +287,31 @@ def _candidates(name: str, file: RobotFile) -> Iterator[Path]:
         yield Path(rest)
         return
     package, _, inside = rest.partition("/")
-    given = dict(file.packages)
+    for found in _package_folders(package, file):
+        yield found / inside
+
+
+def _package_folders(package: str, file: RobotFile) -> Iterator[Path]:
+    """Yield the folders in which a package may be, whether they exist or not."""
+    given, folder = dict(file.packages), file.path.absolute().parent
     if package in given:
-        yield Path(given[package]) / inside
+        yield Path(given[package])
     for above in (folder, *folder.parents):
-        if above.name == package:
-            yield above / inside
-        yield above / package / inside
+        if package in (above.name, _said_name(above / "package.xml")):
+            yield above
+        yield above / package
     for root in _paths("ROS_PACKAGE_PATH"):
-        yield (root if root.name == package else root / package) / inside
+        yield root if root.name == package else root / package
     for root in _paths("AMENT_PREFIX_PATH"):
-        yield root / "share" / package / inside
+        yield root / "share" / package
+
+
+def _said_name(manifest: Path) -> str:
+    """Return the name that a ``package.xml`` gives its package, if it is there."""
+    try:
+        return (_parsed(manifest.read_bytes(), manifest).findtext("name") or "").strip()
+    except (OSError, BrokenFile):
+        return ""
 
 
 def _paths(variable: str) -> list[Path]:

@@ -39,26 +39,30 @@ def _tree_over(low: Floats, high: Floats, reach: Floats) -> tuple[Ints, Floats, 
     children, boxes = np.full((2 * n - 1, 2), -1), np.empty((2 * n - 1, 7))
     leaf, order = np.zeros(2 * n - 1, dtype=np.int64), np.arange(n)
     centres = low + high
-    waiting = [(0, 0, n)]
-    made = 1
-    while waiting:
-        node, first, end = waiting.pop()
-        below = order[first:end]
-        lowest, highest = low[below].min(axis=0), high[below].max(axis=0)
+    # Of the nodes of a level: their numbers, where their boxes lie in the order, and the number of their first child.
+    node, first, end, child = np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64), np.array([n]), np.ones(1, int)
+    while len(node):
+        count = end - first
+        starts = np.cumsum(count) - count
+        of = np.repeat(np.arange(len(node)), count)
+        place = first[of] + np.arange(len(of)) - starts[of]
+        below = order[place]
+        lowest, highest = np.minimum.reduceat(low[below], starts), np.maximum.reduceat(high[below], starts)
         middle, half = 0.5 * (lowest + highest), 0.5 * (highest - lowest) + 1e-12
-        away = (0.5 * centres[below] - middle) ** 2
+        away = (0.5 * centres[below] - middle[of]) ** 2
         radius = np.sqrt(away[:, 0] + away[:, 1] + away[:, 2]) + reach[below] + 1e-12
-        boxes[node] = *middle, *half, radius.max()
-        if end - first == 1:
-            leaf[node] = order[first]
-            continue
+        boxes[node] = np.column_stack([middle, half, np.maximum.reduceat(radius, starts)])
+        leaf[node] = np.where(count == 1, order[first], 0)
         # The first of the longest sides.
-        order[first:end] = below[np.argsort(centres[below, half.argmax()], kind="stable")]
+        order[place] = below[np.lexsort((centres[below, half.argmax(axis=1)[of]], of))]
+        inner = count > 1
+        node, first, end, child = node[inner], first[inner], end[inner], child[inner]
         halfway = (first + end) // 2
-        for side, parts in enumerate(((first, halfway), (halfway, end))):
-            children[node, side] = made
-            waiting.append((made, *parts))
-            made += 1
+        children[node] = np.column_stack([child, child + 1])
+        node = np.concatenate([child, child + 1])
+        # The second half is numbered through before the first.
+        child = np.concatenate([child + 2 * (end - halfway), child + 2])
+        first, end = np.concatenate([first, halfway]), np.concatenate([halfway, end])
     return children, boxes, leaf
 
 

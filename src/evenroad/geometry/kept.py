@@ -1,0 +1,50 @@
+"""What was fitted to a mesh, kept between runs: the same file serves many robots, SRDFs and groups."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from contextlib import suppress
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad._files import atomic_write, cache_folder
+from evenroad._seal import read_sealed, sealed
+from evenroad.geometry.mesh import TriangleMesh
+
+Fitted = tuple[Floats, Floats, float]
+"""End points a and b, each (3,), and radius of a capsule."""
+_FORMAT = 1
+"""Version of what is kept: it counts up when the same mesh gets other capsules."""
+_FEW = 300
+"""Number of triangles up to which fitting is quicker than reading."""
+
+
+def fitted_once(what: str, mesh: TriangleMesh, fit: Callable[[TriangleMesh], list[Fitted]]) -> list[Fitted]:
+    """Return what `fit` fits to a mesh, from the user's cache if that was done before; `what` names it there."""
+    if len(mesh.triangles) <= _FEW:
+        return fit(mesh)
+    key, file = _place(what, mesh)
+    content = read_sealed(file, key, f"what was fitted to {mesh.name}")
+    if content is not None:
+        return [(np.array(a), np.array(b), radius) for a, b, radius in json.loads(content)]
+    found = fit(mesh)
+    with suppress(OSError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with atomic_write(file) as stream:
+            said = [(a.tolist(), b.tolist(), radius) for a, b, radius in found]
+            stream.write(sealed(json.dumps(said).encode(), key))
+    return found
+
+
+def takes_long(what: str, mesh: TriangleMesh) -> bool:
+    """Return whether a mesh of many triangles has yet to be fitted to."""
+    return len(mesh.triangles) > _FEW and not _place(what, mesh)[1].exists()
+
+
+def _place(what: str, mesh: TriangleMesh) -> tuple[str, Path]:
+    key = sha256(f"{what}|{_FORMAT}|{mesh.digest}".encode()).hexdigest()
+    return key, cache_folder() / "meshes" / f"{key[:32]}.json"

@@ -1,0 +1,83 @@
+"""Reading an OctoMap (``.bt``): its occupied cells as boxes, whose outside is a mesh."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from evenroad._arrays import Floats, Ints
+from evenroad.errors import BrokenFile
+from evenroad.geometry.mesh import TriangleMesh
+
+_LEVELS = 16
+"""Depth of the tree; the finest cells are 2^-16 of the root."""
+_OCCUPIED, _INNER = 2, 3
+"""What two bits of a node say of a child; of 1 it is free, of 0 unknown."""
+_SIDES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
+"""Corners of the sides of a cube, counterclockwise from outside; the bits of a corner say x, y and z."""
+
+
+def read_octomap(file: Path) -> TriangleMesh:
+    """Return the surface of all occupied cells of an OctoMap in metres, its inside solid; unknown cells are free.
+
+    The format is that of Hornung et al. (2013), "OctoMap: an efficient probabilistic 3D mapping framework": a header
+    in text, then for each inner node, depth first, two bits for each of eight children.  Sides that two cells of one
+    size share are left out.  Raises BrokenFile if the file is no such map, cut off, or without an occupied cell.
+    """
+    try:
+        header, data = file.read_bytes().split(b"\ndata\n", 1)
+        lines = [line.split() for line in header.decode("ascii").splitlines() if line and not line.startswith("#")]
+        said = {words[0]: words[1] for words in lines}
+        resolution, count = float(said["res"]), int(said["size"])
+    except (OSError, ValueError, KeyError, IndexError) as error:
+        raise BrokenFile(f"cannot read the OctoMap {file}: its header must have id, size, res and data") from error
+    if said.get("id") != "OcTree" or not header.startswith(b"# Octomap OcTree binary file"):
+        raise BrokenFile(f"{file} is no binary OctoMap of type OcTree: octomap's convert_octree writes one as .bt")
+    if not 0.0 < resolution < 1e3:
+        raise BrokenFile(f"the resolution of the OctoMap {file} must be > 0 and < 1000 m, got {resolution:g}")
+    cells = _occupied(data, count, file)
+    if len(cells) == 0:
+        raise BrokenFile(f"the OctoMap {file} has no occupied cell: nothing would ever collide")
+    return _surface(cells, resolution, file.name)
+
+
+def _occupied(data: bytes, count: int, file: Path) -> Ints:
+    """Return x, y, z and the width of the occupied cells in finest cells, (n, 4); the middle of the root is at 0."""
+    root = 1 << (_LEVELS - 1)
+    waiting = [(-root, -root, -root, 2 * root)]
+    found, offset, nodes = [], 0, 1 if count else 0
+    while waiting and count:
+        x, y, z, width = waiting.pop()
+        said = int.from_bytes(data[offset : offset + 2], "little")
+        offset += 2
+        if offset > len(data) or width == 1:
+            raise BrokenFile(f"the OctoMap {file} is cut off or damaged at byte {offset} of its data")
+        half, inner = width // 2, []
+        for i in range(8):
+            kind = said >> (2 * i) & 3
+            nodes += kind > 0
+            child = (x + half * (i & 1), y + half * (i >> 1 & 1), z + half * (i >> 2), half)
+            if kind == _OCCUPIED:
+                found.append(child)
+            elif kind == _INNER:
+                inner.append(child)
+        waiting += reversed(inner)
+    if nodes != count or offset != len(data):
+        raise BrokenFile(
+            f"the OctoMap {file} announces {count} nodes, and has {nodes} in {offset} of {len(data)} bytes"
+        )
+    return np.array(found, dtype=np.int64).reshape(-1, 4)
+
+
+def _surface(cells: Ints, resolution: float, name: str) -> TriangleMesh:
+    """Return the sides of cells, (n, 4), that no neighbour of the same width shares."""
+    corner = np.array([(i & 1, i >> 1 & 1, i >> 2) for i in range(8)])
+    corners = cells[:, np.newaxis, :3] + cells[:, np.newaxis, 3:] * corner
+    places, number = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    sides = number.reshape(-1, 8)[:, _SIDES].reshape(-1, 4)
+    _, side, times = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
+    a, b, c, d = sides[times[side.reshape(-1)] == 1].T
+    triangles = np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3)
+    vertices: Floats = resolution * places.astype(np.float64)
+    return TriangleMesh(vertices, triangles, name)
