@@ -35,6 +35,43 @@ def pcd(kind, points=POINTS, count=None):
     return head.encode() + table.tobytes()
 
 
+def lzf(data):
+    """`data` packed as liblzf does, greedily: at each place the longest copy of what came before, else the byte."""
+    out, i = b"", 0
+    while i < len(data):
+        best, start = 0, 0
+        for j in range(max(0, i - 8192), i):
+            length = 0
+            while i + length < len(data) and length < 264 and data[j + length] == data[i + length]:
+                length += 1
+            best, start = max((best, start), (length, j))
+        if best < 3:
+            out, i = out + bytes([0, data[i]]), i + 1
+            continue
+        back, said = i - start - 1, best - 2
+        long = bytes([said - 7]) if said >= 7 else b""
+        out += bytes([min(said, 7) << 5 | back >> 8]) + long + bytes([back & 255])
+        i += best
+    return out
+
+
+def packed_pcd(points):
+    """Compressed: column after column."""
+    head = pcd("binary_compressed", points[:0], len(points)).partition(b"DATA")[0] + b"DATA binary_compressed\n"
+    gap = np.zeros((len(points), 3), "u1")
+    x, y, z = points.T.astype("<f4")
+    columns = x.tobytes() + y.tobytes() + gap.tobytes() + z.tobytes() + np.full(len(points), 7, "<u4").tobytes()
+    data = lzf(columns)
+    return head + np.array([len(data), len(columns)], "<u4").tobytes() + data
+
+
+def test_a_compressed_cloud_of_many_points_is_the_binary_one(tmp_path):
+    points = np.random.default_rng(0).integers(-9, 9, (400, 3)) / 8.0
+    points[100:200] = points[0]
+    (tmp_path / "a.pcd").write_bytes(packed_pcd(points))
+    np.testing.assert_array_equal(load_cloud(tmp_path / "a.pcd"), points)
+
+
 FILES = {
     "ascii.ply": ply("ascii"),
     "little.ply": ply("binary_little_endian"),
@@ -45,6 +82,7 @@ FILES = {
     "binary.pcd": pcd("binary"),
     "holes.pcd": pcd("binary", np.insert(POINTS, 1, np.nan, axis=0)),
     "commas.xyz": b"# a scan\n0.5,-1.25,2.0\n\n3 4.5 -5.75 0.9 # bright\n0.125 0 1\n",
+    "packed.pcd": packed_pcd(POINTS),
 }
 
 
@@ -87,8 +125,9 @@ def test_arrays_may_have_more_columns_or_fields(tmp_path, columns):
     ("kind.ply", ply("ascii").replace(b"ascii", b"text"), "not a readable cloud"),
     ("flat.ply", ply("ascii").replace(b"float32 z", b"float32 height"), "not a readable cloud"),
     ("faces.ply", ply("ascii").replace(b"vertex 3", b"edge 3"), "first element is not 'vertex'"),
-    ("packed.pcd", pcd("binary").replace(b"DATA binary", b"DATA binary_compressed"), "pcl_convert_pcd"),
-    ("odd.pcd", pcd("binary").replace(b"DATA binary", b"DATA zipped"), "not ascii or binary"),
+    ("packed.pcd", packed_pcd(POINTS)[:-1], "announced"),
+    ("damaged.pcd", packed_pcd(POINTS).replace(b"compressed\n", b"compressed\n#")[:-1], "announced"),
+    ("odd.pcd", pcd("binary").replace(b"DATA binary", b"DATA zipped"), "not ascii, binary"),
     ("holes.ply", ply("ascii", np.full((2, 3), np.nan)), "finite points, 2 of 2 are not"),
     ("far.pcd", pcd("binary", np.full((2, 3), np.inf)), "finite points, 2 of 2 are not"),
     ("dark.pcd", pcd("binary", np.full((2, 3), np.nan)), "is empty"),

@@ -124,7 +124,7 @@ def _read_pcd(file: Path) -> Floats:
 
 
 def _rows_of_columns(data: bytes, widths: list[int], count: int) -> bytes:
-    """Return rows, one a point, of compressed columns, one a field of so many bytes a point."""
+    """Return the rows of points that compressed columns hold; a field has `widths` bytes in each row."""
     packed, size = (int.from_bytes(data[i : i + 4], "little") for i in (0, 4))
     if size != sum(widths) * count or packed != len(data) - 8:
         raise ValueError(f"{packed} bytes of {size} were announced, {len(data) - 8} of {sum(widths) * count} are there")

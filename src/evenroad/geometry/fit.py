@@ -226,8 +226,8 @@ def capsule_around(points: Floats) -> Fitted:
 
     def moved(x: Floats) -> Fitted:
         tilted = frame[0] + x[0] * frame[1] + x[1] * frame[2]
-        place = centre + size * (x[2] * frame[1] + x[3] * frame[2])
-        return _smallest_on(points, place, (tilted / np.linalg.norm(tilted))[np.newaxis])
+        origin = centre + size * (x[2] * frame[1] + x[3] * frame[2])
+        return _smallest_on(points, origin, (tilted / np.linalg.norm(tilted))[np.newaxis])
 
     steps = np.vstack([np.zeros(4), 0.1 * np.eye(4)])
     options = dict(maxiter=200, xatol=1e-4, fatol=1e-4 * volume(best), initial_simplex=steps)

@@ -27,7 +27,7 @@ def fitted_once(what: str, mesh: TriangleMesh, fit: Callable[[TriangleMesh], lis
     """Return what `fit` fits to a mesh, from the user's cache if that was done before; `what` names it there."""
     if len(mesh.triangles) <= _FEW:
         return fit(mesh)
-    key, file = _place(what, mesh)
+    key, file = _key_and_file(what, mesh)
     content = read_sealed(file, key, f"what was fitted to {mesh.name}")
     if content is not None:
         return [(np.array(a), np.array(b), radius) for a, b, radius in json.loads(content)]
@@ -42,9 +42,9 @@ def fitted_once(what: str, mesh: TriangleMesh, fit: Callable[[TriangleMesh], lis
 
 def takes_long(what: str, mesh: TriangleMesh) -> bool:
     """Return whether a mesh of many triangles has yet to be fitted to."""
-    return len(mesh.triangles) > _FEW and not _place(what, mesh)[1].exists()
+    return len(mesh.triangles) > _FEW and not _key_and_file(what, mesh)[1].exists()
 
 
-def _place(what: str, mesh: TriangleMesh) -> tuple[str, Path]:
+def _key_and_file(what: str, mesh: TriangleMesh) -> tuple[str, Path]:
     key = sha256(f"{what}|{_FORMAT}|{mesh.digest}".encode()).hexdigest()
     return key, cache_folder() / "meshes" / f"{key[:32]}.json"

@@ -215,7 +215,8 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
     if file.suffix.lower() == ".bt":
         from evenroad.geometry.octomap import read_octomap
 
-        return scaled(read_octomap(file), [factor] * 3)
+        vertices, triangles = read_octomap(file)
+        return TriangleMesh(factor * vertices, triangles, file.name)
     try:
         import trimesh
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from evenroad._arrays import Floats, Ints
 from evenroad.errors import BrokenFile
-from evenroad.geometry.mesh import TriangleMesh
 
 _LEVELS = 16
 """Depth of the tree; the finest cells are 2^-16 of the root."""
@@ -18,12 +17,12 @@ _SIDES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), 
 """Corners of the sides of a cube, counterclockwise from outside; the bits of a corner say x, y and z."""
 
 
-def read_octomap(file: Path) -> TriangleMesh:
-    """Return the surface of all occupied cells of an OctoMap in metres, its inside solid; unknown cells are free.
+def read_octomap(file: Path) -> tuple[Floats, Ints]:
+    """Return vertices, (v, 3) [m], and triangles, (t, 3), around the occupied cells of an OctoMap.
 
     The format is that of Hornung et al. (2013), "OctoMap: an efficient probabilistic 3D mapping framework": a header
     in text, then for each inner node, depth first, two bits for each of eight children.  Sides that two cells of one
-    size share are left out.  Raises BrokenFile if the file is no such map, cut off, or without an occupied cell.
+    size share are left out; unknown cells are free.  Raises BrokenFile if the file is no such map, cut off, or without an occupied cell.
     """
     try:
         header, data = file.read_bytes().split(b"\ndata\n", 1)
@@ -39,7 +38,7 @@ def read_octomap(file: Path) -> TriangleMesh:
     cells = _occupied(data, count, file)
     if len(cells) == 0:
         raise BrokenFile(f"the OctoMap {file} has no occupied cell: nothing would ever collide")
-    return _surface(cells, resolution, file.name)
+    return _surface(cells, resolution)
 
 
 def _occupied(data: bytes, count: int, file: Path) -> Ints:
@@ -70,14 +69,14 @@ def _occupied(data: bytes, count: int, file: Path) -> Ints:
     return np.array(found, dtype=np.int64).reshape(-1, 4)
 
 
-def _surface(cells: Ints, resolution: float, name: str) -> TriangleMesh:
+def _surface(cells: Ints, resolution: float) -> tuple[Floats, Ints]:
     """Return the sides of cells, (n, 4), that no neighbour of the same width shares."""
     corner = np.array([(i & 1, i >> 1 & 1, i >> 2) for i in range(8)])
     corners = cells[:, np.newaxis, :3] + cells[:, np.newaxis, 3:] * corner
-    places, number = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    lattice, number = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     sides = number.reshape(-1, 8)[:, _SIDES].reshape(-1, 4)
     _, side, times = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
     a, b, c, d = sides[times[side.reshape(-1)] == 1].T
     triangles = np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3)
-    vertices: Floats = resolution * places.astype(np.float64)
-    return TriangleMesh(vertices, triangles, name)
+    vertices: Floats = resolution * lattice.astype(np.float64)
+    return vertices, triangles

@@ -82,7 +82,7 @@ def keep(key: str, model: RobotModel) -> None:
 
 
 _known: dict[object, tuple[dict[Path, tuple[int, ...]], RobotModel, RobotModel]] = {}
-"""What was asked for in this process -> the files and when they were saved, the robot, and a copy to compare with."""
+"""What was asked for in this process -> the files and when they were saved, the robot, and a copy for comparison."""
 _AT_ONCE = 100_000_000
 """A file that was saved so shortly before it is read might be saved again without a new time [ns]."""
 _FOLDERS = ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
@@ -101,7 +101,7 @@ def stamps(files: Iterable[Any]) -> dict[Path, tuple[int, ...]]:
 
 def known(asked: object) -> RobotModel | None:
     """Return the robot that was made of the same files in this process, if none of them was saved since."""
-    files, model, copy = _known.get(_place(asked), ({}, None, None))
+    files, model, copy = _known.get(_asked_here(asked), ({}, None, None))
     if model is None or copy is None or stamps(files) != files:
         return None
     # Mappings are the only part of a robot that can change.
@@ -118,10 +118,10 @@ def know(asked: object, files: dict[Path, tuple[int, ...]], model: RobotModel) -
     if len(_known) >= 32:
         _known.clear()
     robot = replace(model.robot, states=deepcopy(model.robot.states), held=dict(model.robot.held))
-    _known[_place(asked)] = files, model, replace(model, robot=robot)
+    _known[_asked_here(asked)] = files, model, replace(model, robot=robot)
 
 
-def _place(asked: object) -> object:
+def _asked_here(asked: object) -> object:
     return asked, os.getcwd(), *map(os.environ.get, _FOLDERS)
 
 

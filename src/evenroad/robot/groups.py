@@ -72,6 +72,7 @@ def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
     found = {name: joints for name, joints in serial.items() if len(joints) == longest}
     # A finger may have as many joints as the arm that carries it.
     carried = {joint for joints in found.values() for joint in _below(urdf, joints[-1])}
+    carried -= {joint for run in runs for joints in found.values() if joints[-1] in run for joint in run}
     found = {name: joints for name, joints in found.items() if joints[0] not in carried}
     if len(set(found.values())) != 1:
         which = "no one of which is the longest chain" if found else "none of which is a chain"

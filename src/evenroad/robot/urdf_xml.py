@@ -128,6 +128,7 @@ def _parsed(content: bytes, path: Path) -> Element:
     builder, parser = TreeBuilder(), expat.ParserCreate()
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.data
     try:
         parser.Parse(content.strip(b" \t\r\n\0"), True)
         return builder.close()

@@ -45,8 +45,8 @@ def _tree_over(low: Floats, high: Floats, reach: Floats) -> tuple[Ints, Floats, 
         count = end - first
         starts = np.cumsum(count) - count
         of = np.repeat(np.arange(len(node)), count)
-        place = first[of] + np.arange(len(of)) - starts[of]
-        below = order[place]
+        at = first[of] + np.arange(len(of)) - starts[of]
+        below = order[at]
         lowest, highest = np.minimum.reduceat(low[below], starts), np.maximum.reduceat(high[below], starts)
         middle, half = 0.5 * (lowest + highest), 0.5 * (highest - lowest) + 1e-12
         away = (0.5 * centres[below] - middle[of]) ** 2
@@ -54,7 +54,7 @@ def _tree_over(low: Floats, high: Floats, reach: Floats) -> tuple[Ints, Floats, 
         boxes[node] = np.column_stack([middle, half, np.maximum.reduceat(radius, starts)])
         leaf[node] = np.where(count == 1, order[first], 0)
         # The first of the longest sides.
-        order[place] = below[np.lexsort((centres[below, half.argmax(axis=1)[of]], of))]
+        order[at] = below[np.lexsort((centres[below, half.argmax(axis=1)[of]], of))]
         inner = count > 1
         node, first, end, child = node[inner], first[inner], end[inner], child[inner]
         halfway = (first + end) // 2
