@@ -22,7 +22,8 @@ def read_octomap(file: Path) -> tuple[Floats, Ints]:
 
     The format is that of Hornung et al. (2013), "OctoMap: an efficient probabilistic 3D mapping framework": a header
     in text, then for each inner node, depth first, two bits for each of eight children.  Sides that two cells of one
-    size share are left out; unknown cells are free.  Raises BrokenFile if the file is no such map, cut off, or without an occupied cell.
+    size share are left out; unknown cells are free.  Raises BrokenFile if the file is no such map, cut off, or without
+    an occupied cell.
     """
     try:
         header, data = file.read_bytes().split(b"\ndata\n", 1)

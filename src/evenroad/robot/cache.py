@@ -82,7 +82,7 @@ def keep(key: str, model: RobotModel) -> None:
 
 
 _known: dict[object, tuple[dict[Path, tuple[int, ...]], RobotModel, RobotModel]] = {}
-"""What was asked for in this process -> the files and when they were saved, the robot, and a copy for comparison."""
+"""Request of this process -> its files with their times, the robot, and a copy for comparison."""
 _AT_ONCE = 100_000_000
 """A file that was saved so shortly before it is read might be saved again without a new time [ns]."""
 _FOLDERS = ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
