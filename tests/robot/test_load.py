@@ -178,6 +178,20 @@ def test_the_cache_takes_notice_of_every_change(tmp_path, changed):
     assert load_robot(path, **options) != before
 
 
+def test_a_robot_read_before_is_the_same_until_a_file_or_a_state_changes(tmp_path):
+    path = _with_mesh(tmp_path)
+    for file in (path, tmp_path / "part.stl"):
+        os.utime(file, (1e9, 1e9))
+    robot = load_model(path).robot
+    assert load_model(path).robot is robot
+    os.utime(tmp_path / "part.stl", (1.1e9, 1.1e9))
+    again = load_model(path).robot
+    assert again is not robot
+    assert again == robot
+    again.states["mine"] = {"a": 0.5}
+    assert "mine" not in load_model(path).robot.states
+
+
 def test_the_cache_knows_shapes_by_all_their_digits(tmp_path):
     box = "<collision><geometry><box size='0.1 0.1 {}'/></geometry></collision>"
     robots = [load_robot(write(tmp_path, two_joints(box.format(z)))) for z in ("0.3", "0.30000001")]
@@ -249,6 +263,8 @@ def test_of_a_damaged_cache_comes_the_right_robot_and_one_line(tmp_path, monkeyp
     right = load_model(path)
     (kept,) = kept_robots()
     content, made = kept.read_bytes(), []
+    # As another process, which has not read it before.
+    monkeypatch.setattr(load, "known", lambda request: None)
     monkeypatch.setattr(load, "_build", lambda *arguments: made.append(arguments) or replace(right, file=None))
     broken = [each for each in damaged(content, np.random.default_rng(1)) if each != content]
     for i, each in enumerate(broken):
