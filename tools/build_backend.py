@@ -91,7 +91,7 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
     own = defined.get("EVENROAD_SOABI", sysconfig.get_config_var("SOABI"))
     native = "evenroad/_native"
     modules = [f"{native}/*.so", f"!{native}/*.{own}.so", f"{native}/_sanitized*"]
-    settings["wheel.exclude"] = [*modules, f"{native}/CMakeLists.txt", f"{native}/cpp/**"]
+    settings["wheel.exclude"] = [*modules, f"{native}/CMakeLists.txt", f"{native}/cpp/**", "__pycache__"]
     if not os.environ.get("CXX") and sys.platform == "linux":
         settings["wheel.tags"] = [wheel_tag(target())]
     return build.build_wheel(wheel_directory, {**settings, **(config_settings or {})}, metadata_directory)

@@ -131,7 +131,8 @@ def check_wheels(steps: Steps, dist: Path, work: Path) -> Path:
         steps.note(wheel.name, f"{wheel.stat().st_size / 1e6:.2f} MB")
         if package == "evenroad":
             tag = wheel.stem.rpartition("-")[2]
-            steps.run(f"auditwheel: {tag}", f"{audit}/bin/auditwheel show {wheel}", says=f'"{tag}"')
+            family = tag.partition("_")[0]
+            steps.run(f"auditwheel: {tag}", f"{audit}/bin/auditwheel show {wheel}", says=f'"{family}_')
     (here,) = dist.glob(f"evenroad-*manylinux*{platform.machine()}.whl")
     return here
 
