@@ -40,9 +40,9 @@ def fitted_once(what: str, mesh: TriangleMesh, fit: Callable[[TriangleMesh], lis
     return found
 
 
-def takes_long(what: str, mesh: TriangleMesh) -> bool:
-    """Return whether a mesh of many triangles has yet to be fitted to."""
-    return len(mesh.triangles) > _FEW and not _key_and_file(what, mesh)[1].exists()
+def is_new(what: str, mesh: TriangleMesh) -> bool:
+    """Return whether a mesh will be fitted to, as nothing is kept of it."""
+    return len(mesh.triangles) <= _FEW or not _key_and_file(what, mesh)[1].exists()
 
 
 def _key_and_file(what: str, mesh: TriangleMesh) -> tuple[str, Path]:

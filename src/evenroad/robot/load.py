@@ -16,7 +16,7 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.fit import fit_capsules, union_volume
 from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.inner import inner_of
-from evenroad.geometry.kept import takes_long
+from evenroad.geometry.kept import is_new
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Capsule, Mesh, Shape
 from evenroad.robot.apart import held_apart
@@ -279,7 +279,7 @@ def _capsules(
     found: dict[str, tuple[Capsule, ...]] = {}
     fitted = [shape for shape in urdf.shapes if shape.link not in given]
     for i, shape in enumerate(fitted):
-        if progress is not None and isinstance(shape, Mesh) and takes_long("around", shape.triangles):
+        if progress is not None and isinstance(shape, Mesh) and is_new("around", shape.triangles):
             progress(i, len(fitted), f"{shape} of {shape.link}")
         found[shape.link] = found.get(shape.link, ()) + fit_capsules(shape)
     found |= given
