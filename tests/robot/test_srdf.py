@@ -228,6 +228,15 @@ def test_of_several_groups_the_longest_chain_is_the_arm(read, groups, joints):
     assert group_notes(arm, srdf, "grip") == ()
 
 
+def test_a_finger_of_as_many_joints_as_its_arm_is_no_arm(tmp_path):
+    names = ("base", "upper", "hand", "index1", "index2", "thumb1", "thumb2")
+    carriers = ("base", "upper", "hand", "index1", "hand", "thumb1")
+    arm = urdf(*map(link, names), *(joint(f"to_{b}", a, b) for a, b in zip(carriers, names[1:], strict=True)))
+    path = write(tmp_path, arm)
+    written = write(tmp_path, srdf_text(load_model(path)), "arm.srdf")
+    assert load_model(path, srdf=written).robot.group == ("to_upper", "to_hand")
+
+
 @pytest.mark.parametrize("groups", [("shoulder", "elbow"), ("shoulder elbow grip", "elbow grip")])
 def test_where_no_group_is_the_arm_the_option_is_named(read, groups):
     arm, srdf = read(groups_of({f"g{i}": members for i, members in enumerate(groups)}))

@@ -70,10 +70,15 @@ def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
     serial = {name: joints for name, joints in filled.items() if any(run >= set(joints) for run in runs)}
     longest = max(map(len, serial.values()), default=0)
     found = {name: joints for name, joints in serial.items() if len(joints) == longest}
-    # A finger may have as many joints as the arm that carries it.
-    carried = {joint for joints in found.values() for joint in _below(urdf, joints[-1])}
-    carried -= {joint for run in runs for joints in found.values() if joints[-1] in run for joint in run}
-    found = {name: joints for name, joints in found.items() if joints[0] not in carried}
+    # A finger may have as many joints as the arm that carries it; parts of one run are no finger and arm.
+    run_of = {joint: i for i, run in enumerate(runs) for joint in run}
+    carried = {
+        name
+        for name, joints in found.items()
+        for others in found.values()
+        if run_of[joints[0]] != run_of[others[0]] and joints[0] in _below(urdf, others[-1])
+    }
+    found = {name: joints for name, joints in found.items() if name not in carried}
     if len(set(found.values())) != 1:
         which = "no one of which is the longest chain" if found else "none of which is a chain"
         raise InvalidValue(
