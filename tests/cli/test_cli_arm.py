@@ -7,7 +7,6 @@ import pytest
 import trimesh
 from PIL import Image
 
-from evenroad.cli import main
 from evenroad.robot import ArmWorld, in_scene, load_robot, load_scene
 from evenroad.robot.certified import CertifiedWorld
 from tests.robot.urdf_texts import SPHERE, joint, link, two_joints, urdf
@@ -88,24 +87,6 @@ def test_a_path_that_is_not_proved_is_none_where_a_proof_was_asked_for(answer, t
     monkeypatch.setattr(ArmWorld, "validate", lambda self, path: np.arange(len(path) - 1) != 1)
     assert "not_certified: motion 2 of" in answer(*arm_arguments(), "--certified", code=1)[1]
     assert not (tmp_path / "a.csv").exists()
-
-
-def test_what_is_compiled_is_said_once_and_only_when_it_is(monkeypatch, capsys):
-    from numba.core import event
-
-    from evenroad import _compiled
-
-    def compiling():
-        with event.trigger_event("numba:compile"):
-            return capsys.readouterr().err
-
-    monkeypatch.setattr(_compiled, "is_kept", lambda function: False)
-    # Plans to configurations compile nothing.
-    assert main([*arm_arguments(out="a"), "--no-picture"]) == 0
-    assert (capsys.readouterr().err, compiling()) == ("", "")
-    _compiled.say_if_compiling("evenroad.robot.kernel.reach", "solve", 5)
-    assert compiling() == "evenroad: compiling for this machine, once: about 5 s\n"
-    assert compiling() == ""
 
 
 @pytest.mark.parametrize(("start", "extra"), [

@@ -11,7 +11,7 @@ from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.robot import ArmWorld, Joint, Obstacle, Robot, Scene, link_poses, load_robot
 from evenroad.robot import closed_form as closed
 from evenroad.robot.chain import TURN, chain_of, default_tip
-from evenroad.robot.inverse_kinematics import MOST, misses, reach, task_of
+from evenroad.robot.inverse_kinematics import MOST, reach, task_of
 from evenroad.robot.pose_goal import PoseGoal, as_axis, pose_of
 from tests.refused import refused
 from tests.robot.kernel_arms import random_tree
@@ -84,7 +84,7 @@ class EaikOf:
     def __init__(self, chain, postures):
         wrong = postures[:1] + 0.3
         rows = np.concatenate([postures + TURN, wrong])
-        self.Q = rows[:, chain.ints[:, 0]] * chain.rows[:6, 12] + chain.rows[:6, 13]
+        self.Q = rows[:, chain.coordinates] * chain.rows[:6, 12] + chain.rows[:6, 13]
 
     def calculate_IK(self, pose):
         return self
@@ -239,7 +239,8 @@ def test_what_is_found_does_not_depend_on_what_was_asked_before():
 def test_misses_are_those_of_forward_kinematics():
     q, goal = np.array([0.3, -1.2, 1.4, -0.8, 0.9, 0.2]), PoseGoal(Pose((0.4, 0.1, 0.2)), "tool0")
     near, turned = off(UR5, q, "tool0", goal.pose.matrix)
-    assert misses(*task_of(UR5, goal), q) == pytest.approx((near[0], turned[0]), abs=1e-12)
+    chain, task = task_of(UR5, goal)
+    assert task.misses(chain.tip_poses(q[np.newaxis])[0]) == pytest.approx((near[0], turned[0]), abs=1e-12)
 
 
 def test_a_tip_that_is_not_there_and_one_that_nothing_moves_are_refused():

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from evenroad._compiled import defer_blas, say_if_compiling
+from evenroad._compiled import defer_blas
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     chosen_budget,
@@ -45,7 +45,7 @@ def plan_arm(plan: PlanArm) -> int:
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
     kept = None if plan.roadmap is None else kept_roadmap(plan)
-    _say_if_compiling(plan)
+    defer_blas()
     robot = kept.robot if kept is not None and plan.robot is None else plan.robot
     assert robot is not None
     request = arm_request(
@@ -157,9 +157,3 @@ def _constraints(plan: PlanArm) -> Constraint | None:
     elif plan.upright_axis is not None:
         raise InvalidValue("--upright-axis goes with --upright")
     return straight & upright if straight and upright else straight or upright
-
-
-def _say_if_compiling(plan: PlanArm) -> None:
-    defer_blas()
-    if plan.goal_pose or plan.straight or plan.upright:
-        say_if_compiling("evenroad.robot.kernel.reach", "solve", 5)

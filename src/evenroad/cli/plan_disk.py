@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad._compiled import say_if_compiling
 from evenroad.cli.certify import guarantee_rows, guarantees
 from evenroad.cli.plan import PlanDisk
 from evenroad.cli.plan_parts import (
@@ -49,7 +48,6 @@ def plan_disk(plan: PlanDisk) -> int:
     files = output_files(plan, map_files(plan.world), suffixes, "map")
     for name, value in (("start", start), *(("goal", goal) for goal in goals)):
         _require_on_map(gridmap, name, value)
-    say_if_compiling("evenroad.world.gridmap.search", "find_path", 15)
     if wants_points(plan) and gridmap.unknown.any():
         # Points are drawn over the rectangle, most of which may be unknown.
         gridmap = gridmap.cropped()

@@ -14,8 +14,8 @@ from evenroad.geometry.pose import Pose, Vector
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.chain import Chain
 from evenroad.robot.constraint import Constraint
-from evenroad.robot.inverse_kinematics import followed_from, task
 from evenroad.robot.pose_goal import as_axis
+from evenroad.robot.pose_task import PoseTask
 
 STEP = 0.005
 """Distance between configurations of a line [m]."""
@@ -92,12 +92,13 @@ def line_from(world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats,
     turn, here, away = line_at(chain, straight, q)
     count = max(1, int(np.ceil(length / STEP)))
     shares = length * np.arange(count + 1) / count
-    tasks = np.tile(task(Pose(tuple(here.tolist()), tuple(turn.ravel().tolist()))), (count + 1, 1))
-    tasks[:, 9:12] = here + shares[:, np.newaxis] * away
-    path, done = followed_from(chain, tasks, q, _LONGEST, world.space.flat.wrapping)
+    task = PoseTask(Pose(tuple(here.tolist()), tuple(turn.ravel().tolist())))
+    positions = here + shares[:, np.newaxis] * away
+    path = chain.followed(q, task.row, positions, _LONGEST, world.space.flat.wrapping)
+    done = len(path)
     where = f"of the straight line of {length:g} m"
     if done <= count:
-        return Line(path[:1], f"after {shares[max(done - 1, 0)]:.3g} m {where} no joint angles go on")
+        return Line(q[np.newaxis], f"after {shares[max(done - 1, 0)]:.3g} m {where} no joint angles go on")
     free = world.validate(path)
     if not free.all():
         first = int(np.flatnonzero(~free)[0])

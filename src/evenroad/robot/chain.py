@@ -10,6 +10,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_known
+from evenroad._native import robot as kernel
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.robot.kernel.moving_tree import MovingFrame, MovingTree
@@ -23,6 +24,9 @@ TURN = 2.0 * math.pi
 _EVEN = 2048
 """Number of configurations with known tips: numeric solutions begin at the nearest ones."""
 
+STEPS = 60
+"""Largest number of steps of a numeric solution."""
+
 
 @dataclass(frozen=True, eq=False)
 class Chain:
@@ -33,8 +37,10 @@ class Chain:
     group: tuple[str, ...]
     """The coordinates."""
     frames: tuple[MovingFrame, ...]
-    ints: Ints
-    """Coordinate of each frame that carries the tip, and whether it slides, (k, 2)."""
+    coordinates: Ints
+    """Coordinate of each frame that carries the tip, (k,)."""
+    slides: Bools
+    """Which of them slide, (k,)."""
     rows: Floats
     """Rotation (9) and translation (3) in the frame before, multiplier and offset; last the tip's, (k + 1, 14)."""
     low: Floats
@@ -48,7 +54,7 @@ class Chain:
     @cached_property
     def moving(self) -> Ints:
         """Coordinates that move the tip."""
-        return np.unique(self.ints[:, 0])
+        return np.unique(self.coordinates)
 
     @cached_property
     def even(self) -> tuple[Floats, Floats]:
@@ -63,13 +69,33 @@ class Chain:
         q[:, self.moving] += (points - 0.5) * width[self.moving]
         return q, self.tip_poses(q)
 
+    @cached_property
+    def native(self) -> kernel.Chain:
+        """The chain for compiled code."""
+        return kernel.Chain(self.coordinates, self.slides, self.rows, len(self.group))
+
     def tip_poses(self, q: Floats) -> Floats:
         """Return poses of the tip at configurations, (n, dim): rotation row by row, and origin, (n, 12)."""
-        from evenroad.robot.kernel.reach import tip_poses
+        return self.native.tip_poses(np.ascontiguousarray(q))
 
-        out = np.empty((len(q), 12))
-        tip_poses(np.array(q), self.ints, self.rows, out)
-        return out
+    def reached(
+        self, q: Floats, task: Floats, *, limits: bool = True, steps: int = STEPS, enough: int = 2**31
+    ) -> tuple[Floats, Floats]:
+        """Return configurations, (n, dim), moved by at most `steps` steps until `enough` reach a task, (22,), and the
+        squared errors, (n,).
+        """
+        within = np.array([self.low, self.high]) if limits else _unlimited(len(self.group))
+        return self.native.reach(np.ascontiguousarray(q), task, within, steps, enough)
+
+    def followed(self, q: Floats, task: Floats, positions: Floats, longest: float, wraps: Bools) -> Floats:
+        """Return configurations, (m, dim), that bring the tip through positions, (n, 3), with the rotation of a task:
+        as many as there are.
+
+        The first begins at `q`, (dim,), each at the one before, within limits unless a joint `wraps`; none steps
+        farther than `longest`.
+        """
+        within = np.where(wraps, _unlimited(len(self.group)), self.bounds)
+        return self.native.follow(np.ascontiguousarray(q), task, positions, within, STEPS, longest)
 
     def reach(self) -> tuple[Floats, float]:
         """Return a point that no joint moves and the largest distance of the tip from it [m]."""
@@ -105,7 +131,7 @@ def chain_of(robot: Robot, tip: str) -> Chain:
         row[:] = *frame.rotation.ravel(), *frame.translation, frame.multiplier, frame.offset
     # A link is placed by what takes its points into its frame.
     rows[-1, :12] = *placement.rotation.ravel(), *placement.translation
-    ints = np.array([[frame.coordinate, int(frame.slides)] for frame in frames], dtype=np.int64)
+    coordinates = np.array([frame.coordinate for frame in frames], dtype=np.int64)
     ranges = np.array([space.low, space.high])
     # All that a coordinate moves has to be where it was after a turn, not the tip alone.
     turns = np.ones(len(robot.group), dtype=np.bool_)
@@ -117,7 +143,8 @@ def chain_of(robot: Robot, tip: str) -> Chain:
         tip,
         robot.group,
         frames,
-        ints,
+        coordinates,
+        np.array([frame.slides for frame in frames], dtype=np.bool_),
         rows,
         np.where(full, -np.inf, ranges[0]),
         np.where(full, np.inf, ranges[1]),
@@ -128,6 +155,10 @@ def chain_of(robot: Robot, tip: str) -> Chain:
         _recent.clear()
     _recent[id(tables), tip] = tables, chain
     return chain
+
+
+def _unlimited(dim: int) -> Floats:
+    return np.array([[-math.inf], [math.inf]]).repeat(dim, axis=1)
 
 
 def _carrying(tree: MovingTree, number: int) -> tuple[MovingFrame, ...]:

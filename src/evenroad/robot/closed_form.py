@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.geometry.pose import Pose
 from evenroad.robot.chain import Chain
 
 _kept: dict[int, tuple[Chain, Any]] = {}
@@ -23,19 +24,17 @@ def closed_form(chain: Chain) -> Any | None:
     return robot
 
 
-def branches(chain: Chain, robot: Any, rotation: Floats, translation: Floats) -> Floats:
+def branches(chain: Chain, robot: Any, pose: Pose) -> Floats:
     """Return all configurations that EAIK finds for the tip's pose, (n, dim), angles in any turn; not yet checked."""
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = rotation.reshape(3, 3), translation
-    angles = np.array(robot.calculate_IK(pose).Q, dtype=np.float64).reshape(-1, 6)
+    angles = np.array(robot.calculate_IK(pose.matrix).Q, dtype=np.float64).reshape(-1, 6)
     q = np.zeros((len(angles), len(chain.group)))
-    q[:, chain.ints[:, 0]] = (angles - chain.rows[:6, 13]) / chain.rows[:6, 12]
+    q[:, chain.coordinates] = (angles - chain.rows[:6, 13]) / chain.rows[:6, 12]
     return q[np.isfinite(q).all(axis=1)]
 
 
 def _made(chain: Chain) -> Any | None:
-    coordinates = chain.ints[:, 0]
-    if len(chain.frames) != 6 or len(set(coordinates.tolist())) != 6 or chain.ints[:, 1].any():
+    coordinates = chain.coordinates
+    if len(chain.frames) != 6 or len(set(coordinates.tolist())) != 6 or chain.slides.any():
         return None
     try:
         # Only the binding: EAIK's own reader of URDFs takes seconds to import.

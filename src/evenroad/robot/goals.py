@@ -12,7 +12,7 @@ from evenroad._arrays import Floats
 from evenroad._clock import now
 from evenroad.geometry.pose import Pose
 from evenroad.robot.chain import chain_of, default_tip, frame_pose
-from evenroad.robot.inverse_kinematics import Checks, Reached, misses, reach, task_of
+from evenroad.robot.inverse_kinematics import Checks, Reached, reach, task_of
 from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
 from evenroad.robot.robot import Robot
 from evenroad.robot.separated import InScene, apart
@@ -122,5 +122,6 @@ def _record(world: Checks, goal: PoseGoal, reached: Reached, end: Floats | None)
         "why_not": reached.why,
     }
     if end is not None:
-        record["off_m"], record["off_rad"] = misses(*task_of(world.robot, goal), end)
+        chain, task = task_of(world.robot, goal)
+        record["off_m"], record["off_rad"] = task.misses(chain.tip_poses(end[np.newaxis])[0])
     return record

@@ -13,10 +13,10 @@ import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
 from evenroad._checks import as_row
-from evenroad.geometry.pose import Pose
 from evenroad.robot.chain import TURN, Chain, chain_of, default_tip, frame_pose
 from evenroad.robot.closed_form import branches, closed_form
 from evenroad.robot.pose_goal import PoseGoal
+from evenroad.robot.pose_task import PoseTask
 from evenroad.robot.robot import Robot
 
 STARTS = 64
@@ -27,7 +27,6 @@ MOST = 64
 
 _ENOUGH = 24
 """Number of configurations after which the search ends for an arm with more joints than the pose has numbers."""
-_STEPS = 60
 _POLISHED = 4
 _SAME = 1e-4
 """Distance below which configurations are one posture [rad or m]."""
@@ -83,7 +82,7 @@ def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike) -> Reached:
     start = np.array(as_row("start", start, len(world.robot.group)))  # type: ignore[arg-type]
     chain, task = task_of(world.robot, goal)
     solved, best = np.empty((0, len(start))), start
-    spare = len(chain.moving) > _numbers(task)
+    spare = len(chain.moving) > task.numbers
     solver, free = "numeric", np.empty(0, dtype=np.bool_)
     for found, solver, best in stages(chain, task, start, exact=goal.is_exact):  # noqa: B007
         solved = distinct(chain, np.concatenate([solved, found]), _APART if spare else _SAME)
@@ -101,35 +100,18 @@ def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike) -> Reached:
     return Reached(turned, len(solved), int((~free).sum()), solver, turned[0])
 
 
-def task_of(robot: Robot, goal: PoseGoal) -> tuple[Chain, Floats]:
-    """Return the chain of a goal's tip, and the goal in the frame of the root, for compiled code."""
+def task_of(robot: Robot, goal: PoseGoal) -> tuple[Chain, PoseTask]:
+    """Return the chain of a goal's tip, and the goal in the frame of the root."""
     chain = chain_of(robot, goal.tip or default_tip(robot))
-    pose = frame_pose(robot, goal.frame) @ goal.pose
-    return chain, task(pose, goal.free_axis, goal.position_only, goal.position_tolerance, goal.angle_tolerance)
+    pose, pointing = frame_pose(robot, goal.frame) @ goal.pose, None
+    if goal.free_axis is not None:
+        x, y, z = (pose.rotation_matrix @ goal.free_axis).tolist()
+        pointing = goal.free_axis, (x, y, z)
+    near, tilt = goal.position_tolerance, goal.angle_tolerance
+    return chain, PoseTask(pose, pointing, True, not goal.position_only, near, tilt)
 
 
-def task(
-    pose: Pose,
-    axis: tuple[float, ...] | None = None,
-    position_only: bool = False,
-    near: float = 0.0,
-    tilt: float = 0.0,
-) -> Floats:
-    """Return a goal for compiled code."""
-    from evenroad.robot.kernel import reach as at
-
-    row = np.zeros(at.GOAL)
-    row[:12] = *pose.rotation, *pose.xyz
-    row[at.PLACED], row[at.TURNED], row[at.NEAR], row[at.TILT] = 1.0, at.ALL, near, tilt
-    if position_only:
-        row[at.TURNED] = at.NOT
-    elif axis is not None:
-        row[at.TURNED] = at.BY_AXIS
-        row[at.AXIS : at.AXIS + 3], row[at.DIRECTION : at.DIRECTION + 3] = axis, pose.rotation_matrix @ axis
-    return row
-
-
-def stages(chain: Chain, task: Floats, start: Floats, *, exact: bool) -> Iterator[tuple[Floats, str, Floats]]:
+def stages(chain: Chain, task: PoseTask, start: Floats, *, exact: bool) -> Iterator[tuple[Floats, str, Floats]]:
     """Yield postures within limits that reach a task, (n, dim), their solver, and the nearest configuration: more and
     more.
 
@@ -137,7 +119,7 @@ def stages(chain: Chain, task: Floats, start: Floats, *, exact: bool) -> Iterato
     """
     robot = closed_form(chain) if exact else None
     if robot is not None:
-        q = branches(chain, robot, task[:9], task[9:12])
+        q = branches(chain, robot, task.pose)
         still = np.setdiff1d(np.arange(len(start)), chain.moving)
         q[:, still] = start[still]
         q = wrapped(chain, _polished(chain, task, q))
@@ -150,75 +132,30 @@ def stages(chain: Chain, task: Floats, start: Floats, *, exact: bool) -> Iterato
         yield q, "numeric", best
 
 
-def numeric(chain: Chain, task: Floats, start: Floats, *, limits: bool = True) -> Iterator[tuple[Floats, Floats]]:
+def numeric(chain: Chain, task: PoseTask, start: Floats, *, limits: bool = True) -> Iterator[tuple[Floats, Floats]]:
     """Yield postures found from even starts, (n, dim), and the nearest one: more and more."""
-    from evenroad.robot.kernel import reach as kernel
-
     starts, tips = chain.even
-    away = task[kernel.PLACED] * np.square(tips[:, 9:] - task[9:12]).sum(axis=1)
-    if task[kernel.TURNED] == kernel.ALL:
-        away += 0.25 * np.square(tips[:, :9] - task[:9]).sum(axis=1)
-    elif task[kernel.TURNED] == kernel.BY_AXIS:
-        axis = tips[:, :9].reshape(-1, 3, 3) @ task[kernel.AXIS : kernel.AXIS + 3]
-        away += 0.5 * np.square(axis - task[kernel.DIRECTION : kernel.DIRECTION + 3]).sum(axis=1)
-    nearest = np.argsort(away, kind="stable")
+    nearest = np.argsort(task.nearness(tips), kind="stable")
     still = np.setdiff1d(np.arange(len(start)), chain.moving)
-    enough = _ENOUGH if len(chain.moving) > _numbers(task) else len(starts)
+    enough = _ENOUGH if len(chain.moving) > task.numbers else len(starts)
     best, least = start, math.inf
     # The start of the query first; then near ones and, where these fail, farther ones.
     for rows in (nearest[:STARTS], nearest[STARTS : 4 * STARTS], nearest[4 * STARTS :: 4]):
         q = np.concatenate([start[np.newaxis], starts[rows]])
         q[:, still] = start[still]
-        missing = solved_from(chain, task, q, enough=enough, limits=limits)
+        q, missing = chain.reached(q, task.row, limits=limits, enough=enough)
         k = int(missing.argmin())
         if missing[k] < least:
             least, best = float(missing[k]), wrapped(chain, q[k : k + 1])[0]
         yield wrapped(chain, q[missing == 0.0]), best
 
 
-def solved_from(
-    chain: Chain, task: Floats, q: Floats, *, enough: int = 2**31, limits: bool = True, steps: int = _STEPS
-) -> Floats:
-    """Move configurations, (n, dim), in place, until they reach a task; return the squared errors, (n,)."""
-    from evenroad.robot.kernel import reach as kernel
-
-    none = np.full(q.shape[1], np.inf)
-    low, high = (chain.low, chain.high) if limits else (-none, none)
-    missing = np.full(len(q), np.inf)
-    tables, bounds = (chain.ints, chain.rows), (low, high)
-    kernel.solve(q, tables, bounds, task[np.newaxis], steps, enough, 0.0, missing)
-    return missing
-
-
-def followed_from(chain: Chain, tasks: Floats, q: Floats, longest: float, wraps: Bools) -> tuple[Floats, int]:
-    """Return configurations, (n, dim), that reach one of `tasks`, (n, tasks), after the other, and their number.
-
-    The first begins at `q`, (dim,), each at the one before, within limits unless a joint `wraps`; none steps farther
-    than `longest`.
-    """
-    from evenroad.robot.kernel import reach as kernel
-
-    low, high = np.where(wraps, [[-np.inf], [np.inf]], chain.bounds)
-    waypoints, missing = np.repeat(q[np.newaxis], len(tasks), axis=0), np.empty(len(tasks))
-    tables, bounds = (chain.ints, chain.rows), (low, high)
-    return waypoints, kernel.solve(waypoints, tables, bounds, tasks, _STEPS, len(tasks) + 1, longest, missing)
-
-
-def _numbers(task: Floats) -> int:
-    """Return the number of numbers that a task fixes; those with a tolerance do not count."""
-    from evenroad.robot.kernel import reach as at
-
-    turned = 0 if task[at.TILT] else {at.NOT: 0, at.BY_AXIS: 2, at.ALL: 3}[int(task[at.TURNED])]
-    return turned + (0 if task[at.NEAR] else int(3 * task[at.PLACED]))
-
-
-def _polished(chain: Chain, task: Floats, q: Floats) -> Floats:
+def _polished(chain: Chain, task: PoseTask, q: Floats) -> Floats:
     """Return the configurations that reach a task after a few more steps; closed forms lose digits near
     singularities.
     """
-    first = q.copy()
-    missing = solved_from(chain, task, q, limits=False, steps=_POLISHED)
-    return q[(missing < 1e-18) & (np.abs(q - first).max(axis=1, initial=0.0) < _COARSE)]
+    moved, missing = chain.reached(q, task.row, limits=False, steps=_POLISHED)
+    return moved[(missing < 1e-18) & (np.abs(moved - q).max(axis=1, initial=0.0) < _COARSE)]
 
 
 def wrapped(chain: Chain, q: Floats) -> Floats:
@@ -271,10 +208,10 @@ def _with_turns(chain: Chain, q: Floats, start: Floats) -> Floats:
     return rows[np.argsort(far.ravel()[kept], kind="stable")]
 
 
-def _why_not(chain: Chain, task: Floats, goal: PoseGoal, best: Floats, start: Floats) -> str:
+def _why_not(chain: Chain, task: PoseTask, goal: PoseGoal, best: Floats, start: Floats) -> str:
     """Return, in words, why no configuration reaches a task: out of reach, limits, or unknown."""
     point, far = chain.reach()
-    distance = math.dist(task[9:12], point)
+    distance = math.dist(task.pose.xyz, point)
     if distance > far + goal.position_tolerance:
         return (
             f"{goal} is out of reach: {distance:.4g} m from where the first joint turns, and no joint angles bring"
@@ -291,27 +228,8 @@ def _why_not(chain: Chain, task: Floats, goal: PoseGoal, best: Floats, start: Fl
                 f"{goal} is reached only beyond the limits of joints: nearest with {chain.group[k]!r} at"
                 f" {beyond[row, k]:.4g}, {over[row, k]:.3g} outside [{low:.4g}, {high:.4g}]"
             )
-    near, tilt = misses(chain, task, best)
+    near, tilt = task.misses(chain.tip_poses(best[np.newaxis])[0])
     return (
         f"no configuration was found for {goal}, and none may exist: the nearest that was tried"
         f" is {1e3 * near:.3g} mm and {math.degrees(tilt):.3g} deg off"
     )
-
-
-def misses(chain: Chain, task: Floats, q: Floats) -> tuple[float, float]:
-    """Return the deviations of a configuration, (dim,), from the position [m] and rotation [rad] of a task."""
-    from evenroad.robot.kernel import reach as at
-
-    tip = chain.tip_poses(q[np.newaxis])[0]
-    near = math.dist(tip[9:], task[9:12]) if task[at.PLACED] else 0.0
-    turn = tip[:9].reshape(3, 3)
-    if task[at.TURNED] == at.BY_AXIS:
-        axis, wanted = turn @ task[at.AXIS : at.AXIS + 3], task[at.DIRECTION : at.DIRECTION + 3]
-        return near, math.atan2(float(np.linalg.norm(np.cross(axis, wanted))), float(axis @ wanted))
-    if task[at.TURNED] == at.NOT:
-        return near, 0.0
-    between = task[:9].reshape(3, 3) @ turn.T
-    sine = 0.5 * np.linalg.norm(
-        [between[2, 1] - between[1, 2], between[0, 2] - between[2, 0], between[1, 0] - between[0, 1]]
-    )
-    return near, math.atan2(float(sine), 0.5 * (float(np.trace(between)) - 1.0))

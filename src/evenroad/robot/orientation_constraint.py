@@ -16,8 +16,8 @@ from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.cartesian_line import between, tilts
 from evenroad.robot.chain import Chain
 from evenroad.robot.constraint import Constraint
-from evenroad.robot.inverse_kinematics import solved_from
 from evenroad.robot.pose_goal import AXES, as_axis
+from evenroad.robot.pose_task import PoseTask
 from evenroad.robot.tree_sequences import share_pairs
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
@@ -136,13 +136,9 @@ class OrientationWorld:
 
     def projected(self, q: Floats) -> tuple[Floats, Bools]:
         """Return the configurations, (n, dim), projected to a share of the tolerance, and which succeeded."""
-        from evenroad.robot.kernel import reach as at
-
-        task = np.zeros(at.GOAL)
-        task[at.TURNED], task[at.TILT] = at.BY_AXIS, _AIM * self.tolerance
-        task[at.AXIS : at.AXIS + 3], task[at.DIRECTION : at.DIRECTION + 3] = self.axis, UP
-        moved = np.array(q)
-        return moved, solved_from(self.chain, task, moved) == 0.0
+        task = PoseTask(pointing=(self.axis, UP), placed=False, angle_tolerance=_AIM * self.tolerance)
+        moved, missing = self.chain.reached(q, task.row)
+        return moved, missing == 0.0
 
     def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), are free and upright: (n,)."""

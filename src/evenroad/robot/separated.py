@@ -13,6 +13,7 @@ from evenroad.robot.chain import Chain
 from evenroad.robot.inverse_kinematics import task_of
 from evenroad.robot.locked import BEYOND, Bodies, Piece, piece_of
 from evenroad.robot.pose_goal import PoseGoal
+from evenroad.robot.pose_task import PoseTask
 from evenroad.robot.robot import Robot
 from evenroad.robot.walls import pieces_between_walls
 from evenroad.world.protocol import Apart
@@ -37,7 +38,7 @@ _NEAR = 1e-3
 
 PROVED = "proved: there is no path"
 
-Task = tuple[Chain, Floats]
+Task = tuple[Chain, PoseTask]
 """A pose goal as inverse kinematics takes it."""
 
 Tries = Sequence[tuple[int, tuple[float, ...], int]]
@@ -153,36 +154,34 @@ def _is_walled(bodies: Bodies, goal: Floats, start: Floats, reach: tuple[float, 
     return piece is not None and not piece.holds(start)
 
 
-def is_beyond(piece: Piece, chain: Chain, task: Floats) -> bool:
+def is_beyond(piece: Piece, chain: Chain, task: PoseTask) -> bool:
     """Return whether no posture in a piece brings a tip to a pose, for all values of the other joints.
 
     The first joints place the next one's axis; from there the tip is no farther than the links are long, and no nearer
     than one of them is longer than all others.
     """
-    from evenroad.robot.kernel import reach as at
-
-    known, coordinates = len(piece.cells.count), chain.ints[:, 0].tolist()
+    known, coordinates = len(piece.cells.count), chain.coordinates.tolist()
     first_free = next((i for i, coordinate in enumerate(coordinates) if coordinate >= known), len(coordinates))
-    bars, target = np.linalg.norm(chain.rows[first_free + 1 :, 9:12], axis=1).tolist(), task[9:12]
-    if bars and task[at.TURNED] == at.ALL and task[at.TILT] == 0.0:
+    bars, target = np.linalg.norm(chain.rows[first_free + 1 :, 9:12], axis=1).tolist(), np.array(task.pose.xyz)
+    if bars and task.turns_fully and task.angle_tolerance == 0.0:
         # Where the last joint is is known, too.
-        turn = task[:9].reshape(3, 3) @ chain.rows[-1, :9].reshape(3, 3).T
+        turn = task.pose.rotation_matrix @ chain.rows[-1, :9].reshape(3, 3).T
         target, bars = target - turn @ chain.rows[-1, 9:12], bars[:-1]
     slides = _slides(chain)
     most = sum(bars) + sum(slides[first_free:])
     least = max([0.0, *(2.0 * bar - most for bar in bars)])
     away, moved = _distances(piece, chain, first_free, target, slides)
-    near = _NEAR + float(task[at.NEAR])
+    near = _NEAR + task.position_tolerance
     return bool(((away - moved > most + near) | (away + moved < least - near)).all())
 
 
 def _slides(chain: Chain) -> list[float]:
     """Return how far each frame slides at most; 0 where it turns [m]."""
     lengths = []
-    for coordinate, slides, multiplier, offset in np.column_stack([chain.ints, chain.rows[:-1, 12:14]]).tolist():
-        low, high = chain.bounds[:, int(coordinate)] + (-BEYOND, BEYOND)
+    for coordinate, slides, row in zip(chain.coordinates, chain.slides, chain.rows, strict=False):
+        (low, high), (multiplier, offset) = chain.bounds[:, coordinate] + (-BEYOND, BEYOND), row[12:]
         extremes = abs(multiplier * low + offset), abs(multiplier * high + offset)
-        lengths.append(max(extremes) if slides else 0.0)
+        lengths.append(float(max(extremes)) if slides else 0.0)
     return lengths
 
 
@@ -190,15 +189,15 @@ def _distances(
     piece: Piece, chain: Chain, first_free: int, target: Floats, slides: list[float]
 ) -> tuple[Floats, float]:
     """Return how far a frame's origin is from a point in all cells' middles, (n,), and how far half a cell moves it."""
-    cells, rows, ints = piece.cells, chain.rows, chain.ints
+    cells, rows, coordinates = piece.cells, chain.rows, chain.coordinates
     where = np.nonzero(piece.reached)
     q = np.stack([cells.middles[k][row] for k, row in enumerate(where)], axis=1)
     rotation, origin = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
     for i in range(first_free):
         origin = origin + rotation @ rows[i, 9:12]
         rotation = rotation @ rows[i, :9].reshape(3, 3)
-        value = rows[i, 12] * q[:, ints[i, 0]] + rows[i, 13]
-        if ints[i, 1]:
+        value = rows[i, 12] * q[:, coordinates[i]] + rows[i, 13]
+        if chain.slides[i]:
             origin = origin + rotation[:, :, 2] * value[:, np.newaxis]
             continue
         cosine, sine, zero = np.cos(value), np.sin(value), np.zeros_like(value)
@@ -207,7 +206,7 @@ def _distances(
     origin = origin + rotation @ rows[first_free, 9:12]
     straight, moved = float(np.linalg.norm(rows[first_free, 9:12])), 0.0
     for i in range(first_free - 1, -1, -1):
-        half = 0.5 * float(cells.size[ints[i, 0]]) * abs(float(rows[i, 12]))
-        moved += half * (1.0 if ints[i, 1] else straight)
+        half = 0.5 * float(cells.size[coordinates[i]]) * abs(float(rows[i, 12]))
+        moved += half * (1.0 if chain.slides[i] else straight)
         straight += float(np.linalg.norm(rows[i, 9:12])) + slides[i]
     return np.linalg.norm(origin - target, axis=1), moved

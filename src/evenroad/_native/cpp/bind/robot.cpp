@@ -285,6 +285,7 @@ void add_robot(nb::module_& module) {
       .def("motion_valid", &motion_valid, nb::arg("a").none(), nb::arg("b").none(), nb::arg("tolerance") = 0.0)
       .def("find_contact", &find_contact)
       .def_prop_ro("fixed_contact", [](const Checker& checker) { return in_words(checker.fixed_contact()); });
+  add_chain(part);
 }
 
 }  // namespace evenroad::bind

@@ -1,0 +1,120 @@
+// evenroad._native.robot.Chain: the joints that carry a link, where they bring it, and configurations for its poses.
+#include <algorithm>
+
+#include "bind/arrays.hpp"
+#include "robot/inverse_kinematics.hpp"
+
+namespace evenroad::bind {
+
+using namespace nb::literals;
+
+namespace {
+
+using robot::Chain;
+
+constexpr std::size_t POSE = 12, JOINT = POSE + 2, TASK = POSE + 3 + 3 + 4;
+
+robot::Pose pose_of(const double* numbers) {
+  robot::Pose pose;
+  std::copy_n(numbers, 9, pose.rotation.begin());
+  std::copy_n(numbers + 9, 3, pose.origin.begin());
+  return pose;
+}
+
+/// Rows are pose, multiplier and offset of each joint, and last the tip's pose.
+void make_chain(Chain* self, nb::handle coordinates, nb::handle slides, nb::handle rows, std::size_t dim) {
+  const Array<const std::int64_t, 1> of(coordinates, "coordinates");
+  const Array<const bool, 1> sliding(slides, "slides");
+  const Array<const double, 2> numbers(rows, "rows");
+  sliding.of_shape({of.size()});
+  numbers.of_shape({of.size() + 1, JOINT});
+  require_below(of.span(), dim, "coordinates");
+  Chain chain{static_cast<int>(dim), {}, pose_of(numbers.matrix()[of.size()].data())};
+  for (std::size_t i = 0; i < of.size(); i++) {
+    const std::span<const double> row = numbers.matrix()[i];
+    chain.joints.push_back(
+        {pose_of(row.data()), static_cast<int>(of.span()[i]), sliding.span()[i], row[POSE], row[POSE + 1]});
+  }
+  new (self) Chain(std::move(chain));
+}
+
+/// A task is its pose, an axis, a direction, whether the place counts, what counts of the turn, and the tolerances.
+robot::PoseTask task_of(nb::handle given) {
+  const Array<const double, 1> row(given, "task");
+  row.of_shape({TASK});
+  const double* numbers = row.data();
+  const double turn = numbers[POSE + 7];
+  require(turn == 0.0 || turn == 1.0 || turn == 2.0, "the turn of a task must be 0, 1 or 2");
+  robot::PoseTask task{};
+  task.pose = pose_of(numbers);
+  std::copy_n(numbers + POSE, 3, task.axis.begin());
+  std::copy_n(numbers + POSE + 3, 3, task.direction.begin());
+  task.placed = numbers[POSE + 6] > 0.0;
+  task.turn = static_cast<robot::Turn>(static_cast<int>(turn));
+  task.position_tolerance = numbers[POSE + 8];
+  task.angle_tolerance = numbers[POSE + 9];
+  return task;
+}
+
+/// Limits are rows of lows and highs, (2, dim); both may be infinite.
+robot::Limits limits_of(const Array<const double, 2>& given, std::size_t dim) {
+  given.of_shape({2, dim});
+  return {given.matrix()[0], given.matrix()[1]};
+}
+
+std::size_t dim(const Chain& chain) { return static_cast<std::size_t>(chain.dim); }
+
+nb::object tip_poses(const Chain& chain, nb::handle q) {
+  const Array<const double, 2> given(q, "q");
+  given.of_shape({given.shape(0), dim(chain)});
+  std::vector<double> poses(given.shape(0) * POSE);
+  without_gil([&] {
+    std::vector<robot::Axis> axes(chain.joints.size());
+    for (std::size_t i = 0; i < given.shape(0); i++) {
+      const robot::Pose tip = chain.place_tip(given.matrix()[i], axes);
+      std::copy(tip.rotation.begin(), tip.rotation.end(), &poses[i * POSE]);
+      std::copy(tip.origin.begin(), tip.origin.end(), &poses[i * POSE + 9]);
+    }
+  });
+  return as_numpy(std::move(poses), {given.shape(0), POSE});
+}
+
+/// Return configurations moved, and what each lacks, squared.
+nb::tuple reach(const Chain& chain, nb::handle q, nb::handle task, nb::handle limits, int steps, std::size_t enough) {
+  const Array<const double, 2> given(q, "q"), bounds(limits, "limits");
+  const std::size_t rows = given.shape(0);
+  given.of_shape({rows, dim(chain)});
+  const robot::PoseTask wanted = task_of(task);
+  const robot::Limits within = limits_of(bounds, dim(chain));
+  std::vector<double> moved(given.span().begin(), given.span().end());
+  std::vector<double> missing =
+      without_gil([&] { return robot::reach(chain, wanted, within, steps, enough, {moved.data(), rows, dim(chain)}); });
+  return nb::make_tuple(as_numpy(std::move(moved), {rows, dim(chain)}), as_numpy(std::move(missing), {rows}));
+}
+
+/// Return the configurations, (n, dim), with which the tip gets through positions, as far as it does.
+nb::object follow(const Chain& chain, nb::handle q, nb::handle task, nb::handle positions, nb::handle limits, int steps,
+                  double longest) {
+  const Array<const double, 1> begin(q, "q");
+  const Array<const double, 2> places(positions, "positions"), bounds(limits, "limits");
+  begin.of_shape({dim(chain)});
+  places.of_shape({places.shape(0), 3});
+  const robot::PoseTask wanted = task_of(task);
+  const robot::Limits within = limits_of(bounds, dim(chain));
+  std::vector<double> path =
+      without_gil([&] { return robot::follow(chain, wanted, begin.span(), places.matrix(), within, steps, longest); });
+  const std::size_t done = dim(chain) == 0 ? 0 : path.size() / dim(chain);
+  return as_numpy(std::move(path), {done, dim(chain)});
+}
+
+}  // namespace
+
+void add_chain(nb::module_& robot) {
+  nb::class_<Chain>(robot, "Chain")
+      .def("__init__", &make_chain, "coordinates"_a, "slides"_a, "rows"_a, "dim"_a)
+      .def("tip_poses", &tip_poses, "q"_a)
+      .def("reach", &reach, "q"_a, "task"_a, "limits"_a, "steps"_a, "enough"_a)
+      .def("follow", &follow, "q"_a, "task"_a, "positions"_a, "limits"_a, "steps"_a, "longest"_a);
+}
+
+}  // namespace evenroad::bind

@@ -1,0 +1,231 @@
+#include "robot/inverse_kinematics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace evenroad::robot {
+
+namespace {
+
+constexpr double EXACT = 1e-10;  // an error is none that is no larger [m, rad]
+constexpr double LONGEST = 0.8;  // no joint moves by more in a step [rad or m]
+constexpr int LOOK = 8;          // after so many steps the error must have halved
+constexpr double DAMPING = 0.03;
+constexpr double INF = std::numeric_limits<double>::infinity();
+
+/// By how much a tip has to move and to turn, or does so with a coordinate: in the root's frame.
+using Twist = std::array<double, 6>;
+
+double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Point cross(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double norm(const Point& a) { return std::sqrt(dot(a, a)); }
+
+Point scaled(const Point& a, double by) { return {a[0] * by, a[1] * by, a[2] * by}; }
+
+/// Return the turn, axis times angle, that takes an axis of the tip to where it is to point.
+Point turn_of_axis(const Pose& tip, const PoseTask& task) {
+  const auto& r = tip.rotation;
+  const Point a = {dot({r[0], r[1], r[2]}, task.axis), dot({r[3], r[4], r[5]}, task.axis),
+                   dot({r[6], r[7], r[8]}, task.axis)};
+  Point across = cross(a, task.direction);
+  double sine = norm(across);
+  const double cosine = dot(a, task.direction);
+  if (sine < 1e-12 && cosine < 0.0) {
+    // Opposite: any axis across will do.
+    across = std::abs(a[0]) < 0.9 ? Point{0.0, a[2], -a[1]} : Point{-a[2], 0.0, a[0]};
+    sine = 1e-12;
+    const double length = norm(across);
+    for (double& each : across) each = each * sine / length;
+  }
+  return scaled(across, sine > 1e-12 ? std::atan2(sine, cosine) / sine : 1.0);
+}
+
+/// Return the turn, axis times angle, that takes the tip's rotation to the wanted one.
+Point turn_of_all(const Pose& tip, const PoseTask& task) {
+  // Of the goal times the tip's inverse: twice the axis times the sine, and one plus twice the cosine.
+  const auto &goal = task.pose.rotation, &own = tip.rotation;
+  Point twice{};
+  double trace = 0.0;
+  for (int k = 0; k < 3; k++) {
+    twice[0] += goal[6 + k] * own[3 + k] - goal[3 + k] * own[6 + k];
+    twice[1] += goal[k] * own[6 + k] - goal[6 + k] * own[k];
+    twice[2] += goal[3 + k] * own[k] - goal[k] * own[3 + k];
+    trace += goal[k] * own[k] + goal[3 + k] * own[3 + k] + goal[6 + k] * own[6 + k];
+  }
+  const double sine = 0.5 * norm(twice), angle = std::atan2(sine, 0.5 * (trace - 1.0));
+  if (sine > 1e-9) return scaled(twice, 0.5 * angle / sine);
+  // Half a turn has no axis here: one is as good as another, and the next step will see it.
+  if (angle > 1.0) twice[0] += 2.0 * angle;
+  return scaled(twice, 0.5);
+}
+
+Twist error_of(const Pose& tip, const PoseTask& task) {
+  Twist error{};
+  if (task.placed) {
+    for (int axis = 0; axis < 3; axis++) error[axis] = task.pose.origin[axis] - tip.origin[axis];
+  }
+  if (task.turn != Turn::NOT) {
+    const Point turn = task.turn == Turn::ALL ? turn_of_all(tip, task) : turn_of_axis(tip, task);
+    std::copy(turn.begin(), turn.end(), error.begin() + 3);
+  }
+  return error;
+}
+
+/// Leave of an error what its tolerance does not cover, aiming a little inside; return its square, 0 if covered.
+double uncovered(Twist& error, const PoseTask& task) {
+  const double tolerances[] = {task.position_tolerance, task.angle_tolerance};
+  double total = 0.0;
+  for (int part = 0; part < 2; part++) {
+    const double allowed = tolerances[part];
+    const std::span<double, 3> of(&error[3 * part], 3);
+    const double squared = of[0] * of[0] + of[1] * of[1] + of[2] * of[2], size = std::sqrt(squared);
+    const double scale = size <= std::max(allowed, EXACT) ? 0.0 : 1.0 - 0.5 * allowed / size;
+    total += squared * scale * scale;
+    for (double& each : of) each *= scale;
+  }
+  return total;
+}
+
+/// A chain within limits, with memory for the steps of a configuration.
+class Solver {
+ public:
+  Solver(const Chain& chain, const Limits& limits)
+      : chain_(chain),
+        limits_(limits),
+        axes_(chain.joints.size()),
+        jacobian_(chain.dim),
+        used_(chain.dim),
+        step_(chain.dim) {}
+
+  /// Move a configuration until its tip is where it is wanted; return what is missing, squared.
+  double solve(std::span<double> q, const PoseTask& task, int steps) {
+    double before = INF;
+    for (int count = 0;; count++) {
+      const Pose tip = chain_.place_tip(q, axes_);
+      Twist error = error_of(tip, task);
+      const double missing = uncovered(error, task);
+      if (missing == 0.0 || count == steps) return missing;
+      if (count % LOOK == 0) {
+        if (missing > 0.25 * before) return missing;
+        before = missing;
+      }
+      write_jacobian(tip, task);
+      write_step(q, error, DAMPING * missing + 1e-16);
+      double largest = LONGEST;
+      for (const double each : step_) largest = std::max(largest, std::abs(each));
+      for (std::size_t k = 0; k < q.size(); k++) {
+        q[k] = std::min(std::max(q[k] + step_[k] * (LONGEST / largest), limits_.low[k]), limits_.high[k]);
+      }
+    }
+  }
+
+ private:
+  /// Write how the tip moves and turns with each coordinate, as far as the task says what it should.
+  void write_jacobian(const Pose& tip, const PoseTask& task) {
+    std::fill(jacobian_.begin(), jacobian_.end(), Twist{});
+    for (std::size_t i = 0; i < axes_.size(); i++) {
+      const ChainJoint& joint = chain_.joints[i];
+      const Point axis = scaled(axes_[i].direction, joint.multiplier);
+      const Point& at = axes_[i].origin;
+      Twist& column = jacobian_[joint.coordinate];
+      if (task.placed) {
+        const Point arm = {tip.origin[0] - at[0], tip.origin[1] - at[1], tip.origin[2] - at[2]};
+        const Point moves = joint.slides ? axis : cross(axis, arm);
+        for (int k = 0; k < 3; k++) column[k] += moves[k];
+      }
+      if (joint.slides || task.turn == Turn::NOT) continue;
+      // Where one axis alone is to point, a turn about it changes nothing.
+      const double along = task.turn == Turn::BY_AXIS ? dot(axis, task.direction) : 0.0;
+      for (int k = 0; k < 3; k++) column[3 + k] += axis[k] - along * task.direction[k];
+    }
+  }
+
+  /// Write the step of all coordinates that do not leave their limits by it.
+  void write_step(std::span<const double> q, const Twist& error, double damping) {
+    std::fill(used_.begin(), used_.end(), 1.0);
+    for (std::size_t tried = 0; tried < q.size(); tried++) {
+      write_least_squares(error, damping);
+      bool stuck = false;
+      for (std::size_t k = 0; k < q.size(); k++) {
+        if ((q[k] >= limits_.high[k] && step_[k] > 0.0) || (q[k] <= limits_.low[k] && step_[k] < 0.0)) {
+          used_[k] = 0.0;
+          stuck = true;
+        }
+      }
+      if (!stuck) return;
+    }
+  }
+
+  /// Write the step of the coordinates that are used, by Cholesky's factor of J J' + damping.
+  void write_least_squares(const Twist& error, double damping) {
+    double factor[6][6];
+    Twist solved;
+    for (int i = 0; i < 6; i++) {
+      for (int j = 0; j <= i; j++) {
+        double total = i == j ? damping : 0.0;
+        for (std::size_t k = 0; k < step_.size(); k++) total += used_[k] * jacobian_[k][i] * jacobian_[k][j];
+        for (int m = 0; m < j; m++) total -= factor[i][m] * factor[j][m];
+        // But for rounding, no pivot is less than the damping.
+        factor[i][j] = i == j ? std::sqrt(std::max(total, damping)) : total / factor[j][j];
+      }
+    }
+    for (int i = 0; i < 6; i++) {
+      double total = error[i];
+      for (int m = 0; m < i; m++) total -= factor[i][m] * solved[m];
+      solved[i] = total / factor[i][i];
+    }
+    for (int i = 5; i >= 0; i--) {
+      double total = solved[i];
+      for (int m = i + 1; m < 6; m++) total -= factor[m][i] * solved[m];
+      solved[i] = total / factor[i][i];
+    }
+    for (std::size_t k = 0; k < step_.size(); k++) {
+      double total = 0.0;
+      for (int i = 0; i < 6; i++) total += jacobian_[k][i] * solved[i];
+      step_[k] = used_[k] * total;
+    }
+  }
+
+  const Chain& chain_;
+  const Limits& limits_;
+  std::vector<Axis> axes_;
+  std::vector<Twist> jacobian_;      // a column for each coordinate
+  std::vector<double> used_, step_;  // 1 or 0 for each coordinate, and by how much it moves
+};
+
+}  // namespace
+
+std::vector<double> reach(const Chain& chain, const PoseTask& task, const Limits& limits, int steps, std::size_t enough,
+                          Matrix<double> q) {
+  Solver solver(chain, limits);
+  std::vector<double> missing(q.rows, INF);
+  for (std::size_t i = 0, found = 0; i < q.rows && found < enough; i++) {
+    missing[i] = solver.solve(q[i], task, steps);
+    found += missing[i] == 0.0;
+  }
+  return missing;
+}
+
+std::vector<double> follow(const Chain& chain, PoseTask task, std::span<const double> from,
+                           Matrix<const double> positions, const Limits& limits, int steps, double longest) {
+  Solver solver(chain, limits);
+  std::vector<double> path, before(from.begin(), from.end()), q = before;
+  for (std::size_t i = 0; i < positions.rows; i++) {
+    std::copy_n(positions[i].begin(), 3, task.pose.origin.begin());
+    if (solver.solve(q, task, steps) > 0.0) break;
+    for (std::size_t k = 0; k < q.size(); k++) {
+      if (i > 0 && std::abs(q[k] - before[k]) > longest) return path;
+    }
+    path.insert(path.end(), q.begin(), q.end());
+    before = q;
+  }
+  return path;
+}
+
+}  // namespace evenroad::robot
