@@ -41,7 +41,7 @@ STILL_THERE = {
     # The method of files.
     "tell": {"tell"},
     # To place a body where it is, as a verb.
-    "place": {*("_place_tip", "place_capsule", "place_hulls")},
+    "place": {*("place_capsule", "place_hulls")},
     # The key of scene files.
     "ends": {"allowed_near_ends", "near_ends"},
     # The key of the record of a plan.
