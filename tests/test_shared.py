@@ -1,16 +1,13 @@
-"""What threads share: made once, used by one at a time, its clock never set back."""
+"""What threads share: made once, used by one at a time."""
 
 import copy
 import os
 import pickle
-import threading
 import time
-from itertools import pairwise
 
 import pytest
-from numba.core import event
 
-from evenroad import _clock, _files, qmc
+from evenroad import _files, qmc
 from evenroad._shared import OwnLock, once, once_property, one_at_a_time
 from tests.threads import THREADS, together
 
@@ -55,27 +52,6 @@ def test_methods_are_called_one_after_the_other_and_copies_wait_for_nobody():
         copy.deepcopy(value).use()
         with pickle.loads(pickle.dumps(value._lock)):
             pass
-
-
-def test_the_clock_is_never_set_back_in_a_thread_that_compiles_nothing():
-    seen, over = [], threading.Event()
-
-    def watch():
-        while not over.is_set():
-            seen.append(_clock.now())
-
-    watching = threading.Thread(target=watch)
-    watching.start()
-    wall, began = time.perf_counter(), _clock.now()
-    for _ in range(20):
-        with event.trigger_event("numba:compile"), event.trigger_event("numba:compile"):
-            time.sleep(5e-3)
-        time.sleep(1e-3)
-    took = _clock.now() - began
-    over.set()
-    watching.join()
-    assert (time.perf_counter() - wall) - took >= 0.1, "the clock stood still meanwhile"
-    assert all(earlier <= later for earlier, later in pairwise(seen))
 
 
 def test_files_that_are_written_at_once_leave_the_rights_of_new_files_as_they_were(tmp_path, monkeypatch):

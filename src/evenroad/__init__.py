@@ -9,11 +9,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from evenroad import _compiled
-
 __version__ = "0.1.0"
-
-_compiled.provide_cache()
 
 
 def _read_homes() -> dict[str, tuple[str, str]]:

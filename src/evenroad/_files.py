@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import stat
+import sys
 import tempfile
 import threading
 from collections.abc import Iterator
@@ -12,7 +13,6 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
-from evenroad._compiled import user_cache
 from evenroad.errors import BrokenFile
 
 try:
@@ -133,7 +133,13 @@ def read_json_file(path: str | os.PathLike[str], what: str) -> Any:
 
 def cache_folder() -> Path:
     """Return the folder of cached files: ``$EVENROAD_CACHE``, or the platform's cache folder."""
-    return Path(os.environ.get("EVENROAD_CACHE") or user_cache("evenroad"))
+    if own := os.environ.get("EVENROAD_CACHE"):
+        return Path(own)
+    if sys.platform == "darwin":
+        return Path("~/Library/Caches/evenroad").expanduser()
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", os.path.expanduser("~")), "evenroad", "Cache")
+    return Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "evenroad")
 
 
 def require_writable_folder(path: str | os.PathLike[str]) -> None:

@@ -7,6 +7,7 @@ import shutil
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
+from time import perf_counter
 
 WIDTH = 100
 """Largest width of a table [columns]."""
@@ -61,16 +62,12 @@ class LineProgress:
 
     def __init__(self, title: str, report: Callable[[str], object], every: float = 10.0) -> None:
         self.title, self.report, self.every = title, report, every
-        # Imported late: it loads numba.
-        from evenroad._clock import now
-
-        self.now = now
-        self.began = self.last = now()
+        self.began = self.last = perf_counter()
         self.first_step: int | None = None
 
     def __call__(self, step: int, steps: int, best: float | None = None) -> None:
         """Report `step` of `steps`, over all sets."""
-        now = self.now()
+        now = perf_counter()
         if self.first_step is None:
             # Steps before a resumption do not count for the pace.
             self.first_step = step

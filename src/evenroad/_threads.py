@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import starmap
 from typing import Any, TypeVar
 
-from evenroad._compiled import processors
-
 AHEAD = 32
 """Number of tasks that are drawn before the first of them is done."""
 
 Result = TypeVar("Result")
+
+
+def processors() -> int:
+    """Return how many processors this process may use; 1 for a worker of others, which use the rest."""
+    if multiprocessing.parent_process() is not None:
+        return 1
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def in_order(function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:

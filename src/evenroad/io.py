@@ -183,7 +183,7 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
 
 def versions() -> dict[str, str]:
     """Return the versions of evenroad, Python and the numerical libraries."""
-    libraries = {name: metadata.version(name) for name in ("numpy", "numba", "scipy")}
+    libraries = {name: metadata.version(name) for name in ("numpy", "scipy")}
     return {"evenroad": __version__, "python": platform.python_version(), **libraries}
 
 

@@ -1,7 +1,6 @@
 """The command as a process: how it is started, interrupted, and run where nothing can be kept."""
 
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -27,7 +26,7 @@ def test_the_package_can_be_run_as_a_module():
 INTERRUPTED = (130, "evenroad: interrupted; what was finished is kept\n")
 
 
-@pytest.mark.parametrize("module", ["tyro", "evenroad.cli.verbs", "numba", "PIL"])
+@pytest.mark.parametrize("module", ["tyro", "evenroad.cli.verbs", "numpy", "PIL"])
 def test_an_interrupt_while_modules_are_imported_exits_with_130_and_one_line(module):
     code = f"""
 import sys
@@ -111,42 +110,6 @@ def test_an_interrupt_that_others_drop_is_not_lost_and_leaves_no_traceback(run):
     assert (done.returncode, done.stderr) == INTERRUPTED
 
 
-@pytest.fixture
-def read_only(tmp_path):
-    """The environment of a copy of the package that cannot be written, even by root, for a user without a home."""
-    copy = tmp_path / "site" / "evenroad"
-    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    for folder in (copy, *(path for path in copy.rglob("*") if path.is_dir())):
-        # A file of this name keeps everybody from making the folder.
-        (folder / "__pycache__").write_text("")
-    temporary = tmp_path / "tmp"
-    temporary.mkdir()
-    return {
-        "PYTHONPATH": str(copy.parent),
-        "HOME": "/dev/null/nobody",
-        "XDG_CACHE_HOME": "",
-        "NUMBA_CACHE_DIR": "",
-        "TMPDIR": str(temporary),
-    }
-
-
-LOAD_COMPILED = "import evenroad; from evenroad.world.bisection import next_between; print(next_between(1, -1, 4))"
-
-
-def test_without_a_folder_for_compiled_code_it_works_and_says_so_in_one_line(read_only, tmp_path):
-    """In /proc nobody can make a folder, whatever its rights say to root."""
-    for home in ("/dev/null/nobody", "/proc/nobody"):
-        done = python("-c", LOAD_COMPILED, **read_only | {"HOME": home})
-        assert (done.returncode, done.stdout) == (0, "(1, 1, 2)\n")
-        assert done.stderr.count("\n") == 1
-        assert done.stderr.startswith("evenroad: no folder to keep compiled code in")
-        assert list(Path(read_only["TMPDIR"]).iterdir()) == []
-    # A folder of the user's choice is used in silence.
-    done = python("-c", LOAD_COMPILED, **read_only | {"NUMBA_CACHE_DIR": str(tmp_path / "kept")})
-    assert (done.returncode, done.stdout, done.stderr) == (0, "(1, 1, 2)\n", "")
-    assert list((tmp_path / "kept").rglob("*.nbi"))
-
-
 def test_an_error_of_our_own_is_never_exit_code_1():
     done = with_verbs_that("def run(arguments):\n    raise KeyError('slip')\n")
     assert done.returncode == 70
@@ -156,38 +119,23 @@ def test_an_error_of_our_own_is_never_exit_code_1():
     )
 
 
-def test_two_first_runs_at_once_both_work_and_leave_what_the_third_loads(tmp_path):
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    both = [
-        subprocess.Popen([sys.executable, "-c", LOAD_COMPILED], env=environment, stdout=subprocess.PIPE)
-        for _ in range(2)
-    ]
-    assert [run.communicate()[0] for run in both] == [b"(1, 1, 2)\n"] * 2
-    files = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nb?")}
-    assert len(files) == 2
-    assert python("-c", LOAD_COMPILED, NUMBA_CACHE_DIR=str(tmp_path)).stdout == "(1, 1, 2)\n"
-    assert files == {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nb?")}
-
-
-def test_a_version_says_what_it_runs_on_and_where_compiled_code_is(tmp_path):
-    done = python("-m", "evenroad", "--version", "-v", NUMBA_CACHE_DIR=str(tmp_path))
+def test_a_version_says_what_it_runs_on_and_where_things_are_kept(tmp_path):
+    done = python("-m", "evenroad", "--version", "-v", EVENROAD_CACHE=str(tmp_path))
     rows = dict(line.split(maxsplit=1) for line in done.stdout.splitlines()[1:3])
     assert done.stdout.startswith(f"evenroad {evenroad.__version__}\n")
-    assert "numba" in rows["runs"]
+    assert "numpy" in rows["runs"]
     assert str(tmp_path) in done.stdout
     refused = python("-m", "evenroad", "--version", "-x")
     assert (refused.returncode, refused.stdout) == (2, "")
     assert refused.stderr == "evenroad: error: unknown option of --version: '-x'; known: --verbose, -v\n"
 
 
-def test_linear_algebra_is_not_loaded_for_a_plan_and_works_all_the_same(tmp_path):
+def test_neither_an_import_nor_a_plan_of_an_arm_loads_linear_algebra_or_numba(tmp_path):
     code = f"""
-import sys, numba, numpy as np
+import sys
 from evenroad.cli.verbs import run
 words = "plan box-reach --robot ur5 --start home --goal inside --no-picture --out {tmp_path}/a"
 assert run(words.split()) == 0
-print("scipy.linalg" in sys.modules)
-a = np.random.default_rng(0).random((3, 3))
-print(np.allclose(numba.njit(lambda a: a @ np.linalg.inv(a))(a), np.eye(3)), "scipy.linalg" in sys.modules)
+print("scipy.linalg" in sys.modules, "numba" in sys.modules, "llvmlite" in sys.modules)
 """
-    assert python("-c", code).stdout.splitlines()[-2:] == ["False", "True True"]
+    assert python("-c", code).stdout.splitlines()[-1] == "False False False"

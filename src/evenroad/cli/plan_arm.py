@@ -7,7 +7,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from evenroad._compiled import defer_blas
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     chosen_budget,
@@ -45,7 +44,6 @@ def plan_arm(plan: PlanArm) -> int:
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
     kept = None if plan.roadmap is None else kept_roadmap(plan)
-    defer_blas()
     robot = kept.robot if kept is not None and plan.robot is None else plan.robot
     assert robot is not None
     request = arm_request(

@@ -96,11 +96,16 @@ def _run(arguments: list[str]) -> int:
 
 
 def _print_surroundings() -> None:
-    """Print versions, processor and cache folders."""
+    """Print versions, which build of the native kernel runs, and the cache folder."""
     from evenroad._files import cache_folder
-    from evenroad._njit import surroundings
+    from evenroad._native import variants
+    from evenroad.io import versions
 
-    rows = {**surroundings(), "sets and meshes": str(cache_folder())}
+    rows = {
+        "runs on": ", ".join(f"{name} {version}" for name, version in versions().items()),
+        "native kernel": variants.load().__name__.rpartition("._")[2].replace("_", "-"),
+        "sets and meshes": str(cache_folder()),
+    }
     for name, value in rows.items():
         print(f"{name:16} {value}")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from time import perf_counter as now
 from typing import Protocol
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count, require_positive
-from evenroad._clock import now
 from evenroad._native import planning
 from evenroad._native.robot import Checker
 from evenroad.errors import InvalidValue

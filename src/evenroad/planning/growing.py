@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, replace
+from time import perf_counter as now
 from typing import ClassVar
 
 import numpy as np
@@ -10,7 +11,6 @@ import numpy.typing as npt
 
 from evenroad._call import explains_calls
 from evenroad._checks import require_count, require_known
-from evenroad._clock import now
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import connector_of
 from evenroad.points.pointset import PointSet

@@ -7,10 +7,11 @@ Trees of robots are compiled, see `arm_trees`; these are for worlds in Python.
 
 from __future__ import annotations
 
+from time import perf_counter as now
+
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
-from evenroad._clock import now
 from evenroad.points.samplers import make_sampler
 from evenroad.roadmap.connector import Connection
 from evenroad.world import World

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import count, pairwise
+from time import perf_counter as now
 from typing import Any, ClassVar
 
 import numpy as np
 
 from evenroad._call import explains_calls
-from evenroad._clock import now
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import CELLS, connector_of, trees_for

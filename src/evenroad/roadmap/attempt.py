@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from time import perf_counter as now
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad._clock import now
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch
 from evenroad.roadmap.connector import Connection, Connector

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from time import perf_counter as now
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_count, require_positive
-from evenroad._clock import now
 
 _FIRST_BATCH = 32
 """Number of rows in the first batch of checks where time is limited."""
@@ -58,7 +58,7 @@ class Budget:
         return ", ".join(limits)
 
     def deadline(self) -> float:
-        """Return the deadline of a query that begins now, on the clock of ``evenroad._clock``."""
+        """Return the deadline of a query that begins now, on the clock of ``time.perf_counter``."""
         return now() + (math.inf if self.seconds is None else self.seconds)
 
     def rest(self, deadline: float, motions: int) -> Budget:
@@ -87,8 +87,8 @@ def in_time(
 ) -> Iterator[npt.NDArray[np.integer]]:
     """Yield `rows` in batches, all at once if there is no deadline.
 
-    The pace carries over from call to call.  Raises BudgetSpent when the deadline (on the clock of ``evenroad._clock``)
-    has passed and rows are left.
+    The pace carries over from call to call.  Raises BudgetSpent when the deadline (of ``time.perf_counter``) has passed
+    and rows are left.
     """
     pace = Pace() if pace is None else pace
     first, is_limited = 0, math.isfinite(deadline)

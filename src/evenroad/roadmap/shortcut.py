@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from time import perf_counter as now
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad._clock import now
 from evenroad.roadmap.budget import BudgetSpent, in_time
 from evenroad.roadmap.query import EdgeCost
 from evenroad.roadmap.search import confirmed, shortest_path
@@ -41,7 +41,7 @@ def shortcut(
     are removed, in time with those beside them, and the next shortest path is tried.
 
     `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  At the deadline, on the clock of
-    ``evenroad._clock``, the best path so far is the answer.  The second number is that of the motions checked,
+    ``time.perf_counter``, the best path so far is the answer.  The second number is that of the motions checked,
     without strict checks.
     """
     work = _Shortcut(path, world, world.space.distance if cost is None else cost, deadline)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from time import perf_counter as now
 from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._clock import now
 from evenroad.geometry.pose import Pose
 from evenroad.robot.chain import chain_of, default_tip, frame_pose
 from evenroad.robot.inverse_kinematics import Checks, Reached, reach, task_of

@@ -75,7 +75,7 @@ class Obstacle:
     seen: Seen | None = None
     cuts: tuple[Cut, ...] = ()
     row: bytes = field(init=False, repr=False, compare=False)
-    """Sixteen doubles for compiled code, see ``kernel/obstacles.py``; none for clouds and meshes."""
+    """Sixteen doubles for native code, see ``kernel/native_scene.py``; none for clouds and meshes."""
 
     def __post_init__(self) -> None:
         body = along_z(self.body) if isinstance(self.body, Capsule) else self.body

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from time import perf_counter as now
 from typing import NamedTuple
 
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._clock import now
 from evenroad._native.robot_roadmap import ProvedSearch, SceneGraph
 from evenroad.planning.arm_trees import checks_of
 from evenroad.robot import ArmWorld

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from time import perf_counter as now
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import counted, require_count
-from evenroad._clock import now
 from evenroad._shared import OwnLock, one_at_a_time
 from evenroad.planning import arm_trees
 from evenroad.planning.connectors import ArmTrees

@@ -12,7 +12,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from evenroad._arrays import Bools, Ints
-from evenroad._njit import njit
 from evenroad.errors import InvalidValue
 
 MOST_SEGMENTS = 2**30
@@ -53,22 +52,3 @@ def between_endpoints(segments: Ints, open_motions: Bools) -> Iterator[tuple[Int
             if wanted.any():
                 yield motion[wanted], state[wanted]
         level += 1
-
-
-@njit(cache=True, nogil=True)
-def next_between(level: int, multiple: int, segments: int) -> tuple[int, int, int]:
-    """Return the next state of a motion of n segments, after its position in the order: (level, multiple, state).
-
-    `level` and `multiple` are those of the state before; 1 and -1 for the first.  The state is 0 after the last.
-    """
-    while True:
-        multiple += 2
-        if multiple >= 1 << level:
-            level, multiple = level + 1, 1
-        if 1 << (level - 1) >= segments:
-            return level, multiple, 0
-        state = (multiple * segments) >> level
-        # Rounded down, an odd multiple may fall on an even one beside it, which has another level.
-        before, after = ((multiple - 1) * segments) >> level, ((multiple + 1) * segments) >> level
-        if before < state < after:
-            return level, multiple, state

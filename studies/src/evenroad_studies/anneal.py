@@ -8,10 +8,10 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_count
-from evenroad._njit import njit
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import BELOW_ONE, as_unit_points

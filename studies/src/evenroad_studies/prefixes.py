@@ -7,9 +7,9 @@ over the pairs, and a pair's slope is one sum over the prefixes that hold it: tw
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
 from evenroad._arrays import Floats
-from evenroad._njit import njit
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.measures.l2 import MaximumPairs, ProductTerms, hickernell, star
 from evenroad.points.pointset import as_unit_points

@@ -5,11 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from evenroad import _njit, _sources
 from evenroad.errors import InvalidValue
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
-from evenroad_studies.worlds import chain
 from evenroad_studies.worlds.chain import ChainWorld, horn
 from tests.threads import together
 
@@ -147,9 +145,3 @@ def test_threads_give_the_verdicts_of_one():
     asked = [lambda i=i: TEN.motion_valid(q[i : i + 8], q[i + 8 : i + 16]).tolist() for i in range(0, 48, 8)]
     alone = [ask() for ask in asked]
     assert all(each == alone for each in together(*asked))
-
-
-def test_edits_of_what_the_studies_import_of_themselves_are_noticed():
-    assert _sources._files_of("evenroad_studies.worlds.chain") == (chain.__file__,)
-    assert _sources._files_of("evenroad._njit") == (_njit.__file__,)
-    assert _sources._files_of("evenroad_studies.no_such_module") == ()

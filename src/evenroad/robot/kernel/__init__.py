@@ -1,1 +1,1 @@
-"""The arm kernel: robots and scenes as tables, and compiled code that checks them by the batch."""
+"""Robots and scenes as the native kernel takes them."""

@@ -8,10 +8,10 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from evenroad._arrays import Ints32
 from evenroad._checks import require_known
-from evenroad._njit import njit
 from evenroad.roadmap.query import edge_costs
 from evenroad.roadmap.search import FINDERS, FREE, UNKNOWN, EdgeStates, join, length_along, search_problem
 

@@ -9,8 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-
-from evenroad._njit import njit
+from numba import njit
 
 NORM_FLOOR = 1e-5
 """Added to a variance, so that its root can be divided by."""

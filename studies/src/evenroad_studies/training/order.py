@@ -12,10 +12,10 @@ import math
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 from evenroad._arrays import Ints
 from evenroad._checks import require_count
-from evenroad._njit import njit
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.measures import star_discrepancy

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count
-from evenroad._njit import njit
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import FlatSpace
-from evenroad.world.bisection import next_between
+from evenroad_studies.worlds.bisection import next_between
 from evenroad_studies.worlds.corridor import CompiledWorld, comes_first
 
 

@@ -9,10 +9,10 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
+from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count, require_known, require_positive
-from evenroad._njit import njit
 from evenroad.errors import InvalidValue
 from evenroad.space import BoxSpace, Space
 from evenroad.space.batch import as_batch, as_batch_pair

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count, require_positive
-from evenroad._njit import njit
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_cube_batch
 from evenroad_studies.worlds.corridor import ROUNDING, CubeWorld, comes_first, is_in_cube

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad._njit import njit
 from evenroad.space.so3 import SMALL_ANGLE
-from evenroad.world.bisection import next_between
+from evenroad_studies.worlds.bisection import next_between
 from evenroad_studies.worlds.rigid.oriented_box import BoxTable, SolidTables
 
 _ROUNDING = 4e-6

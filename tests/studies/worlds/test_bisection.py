@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from evenroad.world.bisection import between_endpoints, next_between
+from evenroad.world.bisection import between_endpoints
+from evenroad_studies.worlds.bisection import next_between
 
 
 @pytest.mark.parametrize("segments", [0, 1, 2, 3, 4, 5, 7, 8, 9, 31, 100, 1023])
