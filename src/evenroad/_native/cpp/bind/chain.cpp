@@ -81,7 +81,7 @@ nb::object tip_poses(const Chain& chain, nb::handle q) {
 
 /// Return configurations moved, and what each lacks, squared.
 nb::tuple reach(const Chain& chain, nb::handle q, nb::handle task, nb::handle limits, int steps, std::size_t enough) {
-  const Array<const double, 2> given(q, "q"), bounds(limits, "limits");
+  const Array<const double, 2> given(q, "q"), bounds(limits, "limits", Entries::ANY);
   const std::size_t rows = given.shape(0);
   given.of_shape({rows, dim(chain)});
   const robot::PoseTask wanted = task_of(task);
@@ -96,7 +96,7 @@ nb::tuple reach(const Chain& chain, nb::handle q, nb::handle task, nb::handle li
 nb::object follow(const Chain& chain, nb::handle q, nb::handle task, nb::handle positions, nb::handle limits, int steps,
                   double longest) {
   const Array<const double, 1> begin(q, "q");
-  const Array<const double, 2> places(positions, "positions"), bounds(limits, "limits");
+  const Array<const double, 2> places(positions, "positions"), bounds(limits, "limits", Entries::ANY);
   begin.of_shape({dim(chain)});
   places.of_shape({places.shape(0), 3});
   const robot::PoseTask wanted = task_of(task);
