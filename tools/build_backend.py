@@ -63,7 +63,7 @@ def prepare_metadata_for_build_wheel(metadata_directory: str, config_settings: S
     """Write the metadata alone."""
     from scikit_build_core import build
 
-    return build.prepare_metadata_for_build_wheel(metadata_directory, config_settings)
+    return build.prepare_metadata_for_build_wheel(metadata_directory, {**tags(), **(config_settings or {})})
 
 
 def prepare_metadata_for_build_editable(metadata_directory: str, config_settings: Settings = None) -> str:
@@ -86,14 +86,12 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
 
     announce()
     defined = definitions()
-    settings: dict[str, Any] = {f"cmake.define.{name}": value for name, value in defined.items()}
+    settings: dict[str, Any] = {**tags(), **{f"cmake.define.{name}": value for name, value in defined.items()}}
     # Of the modules that an editable install left beside the Python files, only those that are built anew stay.
     own = defined.get("EVENROAD_SOABI", sysconfig.get_config_var("SOABI"))
     native = "evenroad/_native"
     modules = [f"{native}/*.so", f"!{native}/*.{own}.so", f"{native}/_sanitized*"]
     settings["wheel.exclude"] = [*modules, f"{native}/CMakeLists.txt", f"{native}/cpp/**", "__pycache__"]
-    if not os.environ.get("CXX") and sys.platform == "linux":
-        settings["wheel.tags"] = [wheel_tag(target())]
     return build.build_wheel(wheel_directory, {**settings, **(config_settings or {})}, metadata_directory)
 
 
@@ -164,13 +162,14 @@ def target() -> str:
     return os.environ.get("EVENROAD_TARGET") or f"{platform.machine()}-linux-{library}"
 
 
-def wheel_tag(target: str) -> str:
-    """Return for which Pythons and machines a wheel is: `cp311-cp311-manylinux_2_28_x86_64`."""
-    from packaging import tags
+def tags() -> dict[str, list[str]]:
+    """Return for which Pythons and machines a wheel is, if clang decides that: `cp311-cp311-manylinux_2_28_x86_64`."""
+    if os.environ.get("CXX") or sys.platform != "linux":
+        return {}
+    from packaging.tags import cpython_tags
 
-    machine, _, library = target.split("-")
-    python = next(tags.cpython_tags(platforms=[f"{LIBRARIES[library][1]}_{machine}"]))
-    return str(python)
+    machine, _, library = target().split("-")
+    return {"wheel.tags": [str(next(cpython_tags(platforms=[f"{LIBRARIES[library][1]}_{machine}"])))]}
 
 
 def announce() -> None:
