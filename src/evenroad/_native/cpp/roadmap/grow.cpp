@@ -78,7 +78,7 @@ Offers best_offers(const Rows& rows, std::int32_t node, std::span<const std::int
     std::int64_t least = 0;
     for (const auto [candidate, edge] : rows[arc.to]) {
       if (stage[candidate] != OPEN) continue;
-      const std::int64_t reached = cost[candidate] + weights[edge];
+      const std::int64_t reached = extended(cost[candidate], weights[edge]);
       if (best < 0 || reached < least || (reached == least && candidate < giver)) {
         best = edge, least = reached, giver = candidate;
       }

@@ -100,10 +100,10 @@ Path shortest_path(const Graph& graph, const Costs& costs, const States& states,
     for (const Rows* rows : {&graph.fixed(), &graph.links()}) {
       for (const auto [neighbour, edge] : (*rows)[node]) {
         if (states.edges[edge] == BLOCKED || states.nodes[neighbour] == BLOCKED) continue;
-        const std::int64_t through = cost[node] + costs.weights[edge];
+        const std::int64_t through = extended(cost[node], costs.weights[edge]);
         if (through < cost[neighbour]) {
           cost[neighbour] = through, reached[neighbour] = {node, edge};
-          open.put(neighbour, through + costs.bounds[neighbour]);
+          open.put(neighbour, extended(through, costs.bounds[neighbour], 0));
         } else if (through == cost[neighbour] && node < reached[neighbour].node) {
           reached[neighbour] = {node, edge};
         }

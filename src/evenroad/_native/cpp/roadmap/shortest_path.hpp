@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "roadmap/graph.hpp"
@@ -21,6 +22,15 @@ struct Costs {
 struct States {
   std::span<const std::int8_t> edges, nodes;
 };
+
+/// Return the length of a path and an edge together, refusing what would not be a 64-bit integer in the end.
+inline std::int64_t extended(std::int64_t path, std::int64_t edge, std::int64_t least = 1) {
+  constexpr std::int64_t MOST = std::int64_t{1} << 61;
+  if (path < 0 || path > 2 * MOST || edge < least || edge > MOST) {
+    throw std::invalid_argument("weights must be from 1, and bounds and paths from 0, to 2^61");
+  }
+  return path + edge;
+}
 
 /// The nodes of a path, start first, and its edges; both empty where there is none.
 struct Path {
