@@ -19,11 +19,9 @@ ROOT = Path(__file__).parents[1]
 DATA = ROOT / "src" / "evenroad" / "robot" / "data"
 
 MAPS = """
-import numpy as np, shutil
+import numpy as np
 from pathlib import Path
 from PIL import Image
-from evenroad.world.gridmap.load import load_maze
-shutil.copy(load_maze(3).path, "maze.png")
 Image.fromarray(np.full((200, 200), 254, dtype=np.uint8)).save("office.pgm")
 Path("office.yaml").write_text(
     "image: office.pgm\\nresolution: 0.05\\norigin: [0, 0, 0]\\n"

@@ -11,9 +11,6 @@ are not solved are left out of the figures and named.
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
-import tempfile
 import time
 from collections import defaultdict
 from collections.abc import Callable
@@ -37,19 +34,6 @@ Path = npt.NDArray[np.float64]
 
 REPEATS = 5
 MOST_MOTIONS = 200_000
-FIRST_PLAN = """
-import time
-begin = time.perf_counter()
-from studies.benchmarks.arm_planner import first_problem
-from evenroad.planning.arm_trees import connect, shorten
-world, start, goals = first_problem()
-world.valid(goals), world.motion_valid(goals, goals)
-before = time.perf_counter()
-path = connect(world, start, goals).path
-between = time.perf_counter()
-shorten(world, path)
-print(before - begin, between - before, time.perf_counter() - between)
-"""
 
 
 def best_time(task: Callable[[], Any]) -> tuple[Any, float]:
@@ -115,43 +99,13 @@ def report(title: str, rows: list[dict[str, float]]) -> None:
     )
 
 
-def first_problem() -> tuple[ArmWorld, Path, Path]:
-    """Return a world, a start and goals that need more than a straight motion."""
-    from studies.benchmarks.arm_speed import ur5_world
-
-    world = ur5_world("box-reach")
-    goals = np.array([[-0.1216, -0.6993, 1.2160, -2.1070, 2.3023]])
-    return world, np.array([0.0, -0.5 * np.pi, 0.0, -0.5 * np.pi, 0.0]), goals
-
-
-def measure_compilation() -> None:
-    """Print how long it takes to load the world, and until the first path and the first shortened one."""
-    with tempfile.TemporaryDirectory() as folder:
-        for state in ("empty", "full"):
-            run = subprocess.run(
-                [sys.executable, "-c", FIRST_PLAN],
-                env={**os.environ, "NUMBA_CACHE_DIR": folder},
-                capture_output=True,
-                text=True,
-                check=True,
-            )
-            load, path, short = map(float, run.stdout.split())
-            print(
-                f"{state} cache: world with its first checks {load:.2f} s, then first path {path:.2f} s,"
-                f" first shortening {short:.2f} s"
-            )
-
-
 def main() -> None:
     parser = parser_of(__doc__)
     parser.add_argument("--count", type=int, default=100, help="problems of each kind, at most 100")
     parser.add_argument("--arms", nargs="*", default=["ur5", "arm7"])
     parser.add_argument("--tuning", action="store_true", help="the problems that constants are chosen on")
-    parser.add_argument("--compilation", action="store_true", help="how long first use takes")
     options = parser.parse_args()
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
-    if options.compilation:
-        measure_compilation()
     for name in options.arms:
         pool = Pool(arm_named(name))
         rows: dict[str, list[dict[str, float]]] = defaultdict(list)
