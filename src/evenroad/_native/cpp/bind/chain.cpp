@@ -12,7 +12,7 @@ namespace {
 
 using robot::Chain;
 
-constexpr std::size_t POSE = 12, JOINT = POSE + 2, TASK = POSE + 3 + 3 + 4;
+constexpr std::size_t POSE = 12, JOINT = POSE + 2, TASK = POSE + 3 + 3 + 4, MOST_COORDINATES = 65536;
 
 robot::Pose pose_of(const double* numbers) {
   robot::Pose pose;
@@ -28,6 +28,7 @@ void make_chain(Chain* self, nb::handle coordinates, nb::handle slides, nb::hand
   const Array<const double, 2> numbers(rows, "rows");
   sliding.of_shape({of.size()});
   numbers.of_shape({of.size() + 1, JOINT});
+  require(dim <= MOST_COORDINATES, "dim must be at most 65536");
   require_below(of.span(), dim, "coordinates");
   Chain chain{static_cast<int>(dim), {}, pose_of(numbers.matrix()[of.size()].data())};
   for (std::size_t i = 0; i < of.size(); i++) {

@@ -41,7 +41,8 @@ Joints joints_of(nb::tuple given, std::size_t dim) {
     const Joint joint{limits.matrix()(0, k), limits.matrix()(1, k), middle.span()[k], is_counted,
                       endless.span()[k] && !is_counted};
     constexpr double FARTHEST = (robot_roadmap::MOST_TURNS + 1) * robot_roadmap::TURN;
-    require(!is_counted || (joint.middle - joint.low <= FARTHEST && joint.high - joint.middle <= FARTHEST),
+    require(!is_counted ||
+                (std::abs(joint.middle - joint.low) <= FARTHEST && std::abs(joint.high - joint.middle) <= FARTHEST),
             "limits must be few turns from the middle");
     joints.push_back(joint);
   }
@@ -71,6 +72,11 @@ void make_scene_graph(SceneGraph* self, nb::handle milestones, nb::handle edges,
 SceneGraph within(const SceneGraph& graph, nb::handle low, nb::handle high) {
   const Floats lower(low, "low", Entries::ANY), upper(high, "high", Entries::ANY);
   lower.of_shape({graph.joints.size()}), upper.of_shape({graph.joints.size()});
+  for (std::size_t k = 0; k < graph.joints.size(); k++) {
+    const Joint& joint = graph.joints[k];
+    require(!joint.multi_turn || (lower.span()[k] <= joint.high && joint.low <= upper.span()[k]),
+            "low and high must meet the ranges of joints that have several turns");
+  }
   return graph.within(lower.span(), upper.span());
 }
 
