@@ -9,7 +9,14 @@ Arrays = Mapping[str, npt.NDArray[np.generic]]
 
 class Robot:
     def __init__(
-        self, frames: Arrays, bodies: Arrays, capsules: Arrays, pairs: Arrays, hulls: Arrays, limits: Arrays
+        self,
+        frames: Arrays,
+        bodies: Arrays,
+        capsules: Arrays,
+        pairs: Arrays,
+        hulls: Arrays,
+        shapes: Arrays,
+        limits: Arrays,
     ) -> None: ...
 
 class HullTree:

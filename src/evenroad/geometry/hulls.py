@@ -72,7 +72,7 @@ def hull_around(points: Floats, radius: float, link: str, *, solid: bool = False
     return Hull(points, radius + _ROUNDING * (1.0 + float(np.abs(points).max())), link, solid)
 
 
-def _thinned(corners: Floats, little: float) -> tuple[Floats, float]:
+def thinned(corners: Floats, little: float) -> tuple[Floats, float]:
     """Return some of a hull's corners, (n, 3), and an upper bound of the distance of the others from their hull [m].
 
     No other is beyond one of its sides by more than `little` [m].
@@ -150,7 +150,7 @@ def piece_of(shape: Shape) -> Piece:
     elif isinstance(shape, Mesh):
         mesh = shape.triangles
         piece = _piece_around(shape.pose.apply(mesh.vertices)[mesh.triangles], shape.link)
-        if not _is_convex(mesh):
+        if not is_convex(mesh):
             return piece
         # Split, it would lose its inside, and gain nothing.
         hull = replace(piece.hull, solid=_is_on_its_hull(mesh))
@@ -162,7 +162,7 @@ def piece_of(shape: Shape) -> Piece:
     return Piece(hull, shape.pose.apply(points)[np.newaxis], radius)
 
 
-def _is_convex(mesh: TriangleMesh) -> bool:
+def is_convex(mesh: TriangleMesh) -> bool:
     """Return whether a mesh is closed and fills its hull, but for a ten-thousandth of the volume."""
     from scipy.spatial import ConvexHull, QhullError
 
@@ -195,7 +195,7 @@ def halves(piece: Piece) -> tuple[Piece, ...]:
     where neither is possible.
     """
     if len(piece.parts) == 1 and len(piece.hull.points) < len(piece.parts[0]) <= _MOST_CORNERS:
-        points, beyond = _thinned(piece.parts[0], 0.25 * piece.hull.radius)
+        points, beyond = thinned(piece.parts[0], 0.25 * piece.hull.radius)
         hull = hull_around(points, beyond, piece.hull.link, solid=piece.hull.solid)
         return (Piece(hull, piece.parts),)
     corners = divided(piece.parts) if piece.parts.shape[1] == 3 else piece.parts[:0]
@@ -208,7 +208,7 @@ def halves(piece: Piece) -> tuple[Piece, ...]:
 def _piece_around(corners: Floats, link: str) -> Piece:
     points, beyond = extreme(corners.reshape(-1, 3)), 0.0
     if len(points) > _FEW:
-        points, beyond = _thinned(points, max(_THINNED, _SHARE * float(np.ptp(points, axis=0).max())))
+        points, beyond = thinned(points, max(_THINNED, _SHARE * float(np.ptp(points, axis=0).max())))
     return Piece(hull_around(points, beyond, link), corners)
 
 

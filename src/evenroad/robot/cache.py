@@ -5,6 +5,7 @@ A digest seals each file, as a flipped bit is as likely in a radius as in a brac
 
 from __future__ import annotations
 
+import base64
 import hashlib
 import json
 import os
@@ -19,12 +20,14 @@ from typing import Any
 import numpy as np
 
 from evenroad import __version__
+from evenroad._arrays import Floats
 from evenroad._files import atomic_write, cache_folder
 from evenroad._fingerprint import fingerprint_of
 from evenroad._seal import read_sealed, sealed
 from evenroad.errors import BrokenFile
 from evenroad.geometry.hulls import Hull
 from evenroad.geometry.mesh import TriangleMesh
+from evenroad.geometry.parts import Parts
 from evenroad.geometry.shapes import Capsule, Mesh, Shape
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.planes import Plane
@@ -32,7 +35,7 @@ from evenroad.robot.robot import Robot
 from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.urdf import Urdf
 
-_FORMAT = 19
+_FORMAT = 20
 """Version of the cache: it counts up when the same files give another robot, or the format changes."""
 
 
@@ -78,7 +81,19 @@ def keep(key: str, model: RobotModel) -> None:
     with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
         with atomic_write(file) as stream:
-            stream.write(sealed(json.dumps(asdict(model), default=np.ndarray.tolist).encode(), key))
+            stream.write(sealed(json.dumps(asdict(model), default=written).encode(), key))
+
+
+def written(array: Floats) -> list[Any] | dict[str, Any]:
+    """Return what JSON has of an array: of one of triangles its bytes, which are sooner read."""
+    if array.ndim < 3:
+        return array.tolist()
+    return {"shape": array.shape, "bytes": base64.b64encode(array.tobytes()).decode()}
+
+
+def _triangles(record: Any) -> Floats:
+    """Return an array that was `written`."""
+    return np.frombuffer(base64.b64decode(record["bytes"])).reshape(record["shape"])
 
 
 _known: dict[object, tuple[dict[Path, tuple[int, ...]], RobotModel, RobotModel]] = {}
@@ -142,11 +157,13 @@ def robot_of(record: dict[str, Any]) -> Robot:
     planes = [Plane(**_with_tuples(each)) for each in record.pop("planes", ())]
     # Where a file does not say what lies within the shapes, nothing does.
     inner = record.pop("inner", [])
+    shapes = [Parts(**each | {"corners": _triangles(each["corners"])}) for each in record.pop("shapes", ())]
     return Robot(
         joints=tuple(Joint(**_with_tuples(joint)) for joint in joints),
         capsules=_capsules(record.pop("capsules")),
         hulls=tuple(hulls),
         planes=tuple(planes),
+        shapes=tuple(shapes),
         inner=None if inner is None else _capsules(inner),
         **_with_tuples(record),
     )

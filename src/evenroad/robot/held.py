@@ -10,6 +10,7 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.hulls import Hull, piece_of
 from evenroad.geometry.inner import inner_of
+from evenroad.geometry.parts import Parts, parts_of
 from evenroad.geometry.pose import IDENTITY
 from evenroad.geometry.shapes import Capsule, Shape
 from evenroad.robot.joint import Joint
@@ -56,6 +57,7 @@ class HeldParts(NamedTuple):
     hull: Hull
     pairs: tuple[tuple[str, str], ...]
     inner: tuple[Capsule, ...] | None
+    shapes: tuple[Parts, ...]
 
 
 def held_parts(robot: KinematicTree, held: HeldObject, *, neighbours: bool) -> HeldParts:
@@ -80,7 +82,7 @@ def held_parts(robot: KinematicTree, held: HeldObject, *, neighbours: bool) -> H
         if joints == 1:
             spared.add(above)
     pairs = tuple((link, held.name) for link in robot.links if link in bodied - spared)
-    return HeldParts(joint, fit_capsules(body), piece_of(body).hull, pairs, inner_of([body]))
+    return HeldParts(joint, fit_capsules(body), piece_of(body).hull, pairs, inner_of([body]), parts_of([body]))
 
 
 def same_bodies(robot: KinematicTree, held: HeldObject) -> bool:

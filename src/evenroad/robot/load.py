@@ -18,6 +18,7 @@ from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.inner import inner_of
 from evenroad.geometry.kept import is_new
 from evenroad.geometry.mesh import TriangleMesh
+from evenroad.geometry.parts import parts_of
 from evenroad.geometry.shapes import Capsule, Mesh, Shape
 from evenroad.robot.apart import held_apart
 from evenroad.robot.cache import cached, keep, key_of, know, known, stamps
@@ -33,6 +34,8 @@ from evenroad.robot.urdf_xml import RobotFile, outermost
 DATA = Path(__file__).parent / "data"
 ROBOTS = ("arm7", "ur5")
 """Names of the shipped robots."""
+SHAPES = "shapes"
+"""What `bodies` is where the maker's shapes decide as soon as fitted capsules touch an obstacle."""
 PathLike = str | os.PathLike[str]
 
 
@@ -126,7 +129,9 @@ def load_model(
         SRDF's only group, or the longest chain among several, else every joint that moves and is no mimic, in the order
         of the file.
     bodies : str or path-like, optional
-        YAML file of capsules and spheres, in place of those fitted (see :func:`read_bodies`).
+        ``shapes``: where the capsules fitted to a link touch an obstacle, the shapes of the file decide; a plan then
+        takes up to twenty times as long.  Or a YAML file of capsules and spheres, in place of those fitted (see
+        :func:`read_bodies`).
     use_visuals : bool
         Links without collision geometry use their visuals.
     packages : mapping of str to path-like, optional
@@ -149,19 +154,22 @@ def load_model(
         tuple(sorted((arguments or {}).items())),
     )
     srdf_path = own_srdf if srdf is None else Path(srdf)
-    bodies_path = None if bodies is None else Path(bodies)
-    asked = file, srdf_path, bodies_path, str(group)
+    with_shapes = bodies is not None and os.fspath(bodies) == SHAPES
+    bodies_path = None if bodies is None or with_shapes else Path(bodies)
+    asked = file, srdf_path, bodies_path, str(group), with_shapes
     model = known(asked)
     if model is not None:
         return model
     before = stamps((path, srdf_path, bodies_path))
     urdf = read_robot(file)
     before |= stamps(shape.source for shape in urdf.shapes if isinstance(shape, Mesh))
-    others = (("SRDF", srdf_path), ("file of bodies", bodies_path))
+    others = [("SRDF", srdf_path), ("file of bodies", bodies_path)]
+    if with_shapes:
+        others.append((SHAPES, None))
     key = key_of(urdf, others, group)
     model = cached(key)
     if model is None:
-        model = _build(file, urdf, srdf_path, bodies_path, group, progress)
+        model = _build(file, urdf, srdf_path, bodies_path, group, progress, with_shapes)
         # Files may have been saved while they were read: the robot may then mix two versions.
         if key_of(urdf, others, group) == key:
             keep(key, model)
@@ -199,6 +207,7 @@ def _build(
     bodies_path: Path | None,
     group: str | Sequence[str] | None,
     progress: Callable[[int, int, str], None] | None,
+    with_shapes: bool,
 ) -> RobotModel:
     srdf = None if srdf_path is None else read_srdf(srdf_path, urdf)
     chosen = choose_group(urdf, srdf, group)
@@ -219,6 +228,7 @@ def _build(
         planes=urdf.planes,
         # Capsules that the user gives replace a link's shapes as they are.
         inner=inner_of(_shapes(urdf, given)),
+        shapes=parts_of(_shapes(urdf, given)) if with_shapes else (),
     )
     # Of those that a robot's own file lets touch, each has its reason; those of an SRDF have one for all.
     untested = {frozenset((a, b)): why for a, b, why in urdf.untested or ()}

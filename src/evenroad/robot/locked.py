@@ -149,6 +149,7 @@ def first_links(robot: Robot, joints: int) -> Robot:
         hulls=(),
         resting=(),
         inner=None,
+        shapes=(),
     )
 
 

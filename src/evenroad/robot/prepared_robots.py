@@ -91,4 +91,4 @@ def _kept(values: tuple[Any, ...], held: tuple[tuple[str, float], ...]) -> Prepa
     low, high, tables = np.array(space.low), np.array(space.high), robot_tables(robot)
     bounds = np.stack([low, high, space.flat.period])
     bounds.setflags(write=False)
-    return Prepared(space, float(np.linalg.norm(high - low)), tables, bounds, native_robot(tables, bounds))
+    return Prepared(space, float(np.linalg.norm(high - low)), tables, bounds, native_robot(robot, tables, bounds))

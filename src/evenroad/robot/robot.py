@@ -15,6 +15,7 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.hulls import Hull, Piece, piece_of
 from evenroad.geometry.inner import inner_of
+from evenroad.geometry.parts import Parts, parts_of
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
 from evenroad.robot.held import HeldObject, held_parts, inner_of_both, same_bodies
@@ -52,6 +53,8 @@ class Robot(RobotMethods):
     inner : tuple of Capsule or None
         Capsules within the links' true shapes: proofs that there is no path are about them.  None: `capsules` are
         the true shapes.
+    shapes : tuple of Parts
+        The links' true shapes: where capsules touch an obstacle, these decide.  A link without any is its capsules.
 
     Examples
     --------
@@ -74,6 +77,7 @@ class Robot(RobotMethods):
     holds: tuple[str, ...] = ()
     planes: tuple[Plane, ...] = ()
     inner: tuple[Capsule, ...] | None = None
+    shapes: tuple[Parts, ...] = ()
 
     def __post_init__(self) -> None:
         # The kernel takes endpoints: those of a capsule with a pose are transformed to its link's frame.
@@ -81,8 +85,14 @@ class Robot(RobotMethods):
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of all that decides checks; the names of the robot and its states do not."""
-        # Planes only where there are any: robots without keep the fingerprints that they always had.
-        left_out = {"name", "states", "holds", "inner", *(() if self.planes else ("planes",))}
+        # Planes and shapes only where there are any: robots without keep the fingerprints that they always had.
+        left_out = {
+            "name",
+            "states",
+            "holds",
+            "inner",
+            *(each for each in ("planes", "shapes") if not getattr(self, each)),
+        }
         return fingerprint_of(*(getattr(self, each.name) for each in fields(self) if each.name not in left_out))
 
     def with_tool(self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = "") -> Robot:
@@ -127,7 +137,17 @@ class Robot(RobotMethods):
             capsules = tuple(capsule for shape in shapes for capsule in fit_capsules(shape))
             hulls = tuple(piece_of(shape).hull for shape in shapes)
             inner = inner_of(shapes)
-            tool = Robot("tool", ("tool",), (), capsules, (), (), hulls=hulls, inner=inner)
+            tool = Robot(
+                "tool",
+                ("tool",),
+                (),
+                capsules,
+                (),
+                (),
+                hulls=hulls,
+                inner=inner,
+                shapes=parts_of(shapes) if self.shapes else (),
+            )
         if not tool.capsules:
             raise InvalidValue(f"tool {tool.name!r} must have a body: without one it would never collide")
         tool = replace(tool, group=(), states={})
@@ -151,6 +171,7 @@ class Robot(RobotMethods):
             hulls=(*self.hulls, *tool.hulls),
             resting=(*self.resting, *tool.resting),
             inner=inner_of_both(self.inner, self.capsules, tool.inner, tool.capsules),
+            shapes=(*self.shapes, *tool.shapes) if self.shapes else (),
         )
         between = tuple(
             pair
@@ -208,6 +229,7 @@ class Robot(RobotMethods):
             hulls=(*self.hulls, *hulls),
             holds=(*self.holds, held.name),
             inner=inner_of_both(self.inner, self.capsules, parts.inner, parts.capsules),
+            shapes=(*self.shapes, *parts.shapes) if self.shapes else (),
         )
 
     def empty_handed(self) -> Robot:
@@ -226,6 +248,7 @@ class Robot(RobotMethods):
             hulls=tuple(hull for hull in self.hulls if hull.link not in held),
             holds=(),
             inner=None if inner == capsules else inner,
+            shapes=tuple(each for each in self.shapes if each.link not in held),
         )
 
 
@@ -258,6 +281,7 @@ def _renamed(robot: Robot, prefix: str) -> Robot:
         hulls=tuple(replace(hull, link=prefix + hull.link) for hull in robot.hulls),
         resting=tuple((prefix + first, prefix + second) for first, second in robot.resting),
         inner=robot.inner and tuple(replace(each, link=prefix + each.link) for each in robot.inner),
+        shapes=tuple(replace(each, link=prefix + each.link) for each in robot.shapes),
     )
 
 

@@ -79,10 +79,10 @@ def apart(
     bodies, others = outer_bodies(world), False
     names: tuple[str, ...] = ()
     if robot.inner is not None:
-        inner = Bodies(replace(robot, capsules=robot.inner, inner=None), world.with_bodies, world.margin)
+        inner = Bodies(replace(robot, capsules=robot.inner, inner=None, shapes=()), world.with_bodies, world.margin)
         names, others = shown_by(inner, start, goals, tasks, tries)
     truly = bool(names) or robot.inner is None
-    if not names:
+    if not names and not robot.shapes:
         names, others = shown_by(bodies, start, goals, tasks, tries)
     if not names:
         return None

@@ -17,7 +17,7 @@ from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
 from evenroad.roadmap.npz import OF_ALL, point_roadmap, read_roadmap, write_roadmap
 from evenroad.roadmap.point_roadmap import Roadmap
 from evenroad.robot import Obstacle, Scene
-from evenroad.robot.cache import robot_of
+from evenroad.robot.cache import robot_of, written
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap, read_only
 from evenroad.robot_roadmap.turns import TURN
@@ -35,7 +35,7 @@ def save_arm_roadmap(path: Path, roadmap: ArmRoadmap) -> None:
     """Write an arm's roadmap with its robot and its static scene."""
     settings = {name: getattr(roadmap, name) for name in _SETTINGS}
     arrays: Arrays = dict(
-        robot=np.array(json.dumps(asdict(roadmap.robot), default=np.ndarray.tolist)),
+        robot=np.array(json.dumps(asdict(roadmap.robot), default=written)),
         scene=np.array(json.dumps(_scene_record(roadmap.scene))),
         settings=np.array(json.dumps(settings)),
         **_surfaces(roadmap.scene),

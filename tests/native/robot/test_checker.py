@@ -29,7 +29,7 @@ def fork_arm(tmp_path_factory):
 def arrays_of(robot):
     """The arrays that a native robot is made of, to be changed at will."""
     made = prepared(robot)
-    given = robot_arrays(made.tables, made.bounds)
+    given = robot_arrays(robot, made.tables, made.bounds)
     return {part: {name: array.copy() for name, array in arrays.items()} for part, arrays in given.items()}
 
 
@@ -133,7 +133,7 @@ def test_every_build_gives_the_same_verdicts(variant, arm, fork_arm, monkeypatch
     free = world.valid(q)
     assert 0.02 < free.mean() < 0.98
     made = prepared(world.robot)
-    theirs = other.Robot(**robot_arrays(made.tables, made.bounds))
+    theirs = other.Robot(**robot_arrays(world.robot, made.tables, made.bounds))
     monkeypatch.setattr("evenroad.robot.kernel.native_scene.native", other)
     scene = native_scene(theirs, made.tables, world.robot.links, world.scene, 0.0)
     checker = other.Checker(theirs, scene, world.resolution, 0.0, False)

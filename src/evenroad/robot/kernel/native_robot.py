@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints
 from evenroad._native import robot as native
+from evenroad.geometry.parts import Parts, spread
 from evenroad.robot.kernel.hull_trees import hull_trees
-from evenroad.robot.kernel.placed_capsules import PlacedCapsule
+from evenroad.robot.kernel.moving_tree import MovingTree
+from evenroad.robot.kernel.placed_capsules import PlacedCapsule, PlacedHulls, speed_bounds
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
+from evenroad.robot.robot import Robot
 
 
-def native_robot(tables: RobotTables, bounds: Floats) -> native.Robot:
+def native_robot(robot: Robot, tables: RobotTables, bounds: Floats) -> native.Robot:
     """Return a robot; `bounds`, (3, dim), are low, high and period of each coordinate."""
-    return native.Robot(**robot_arrays(tables, bounds))
+    return native.Robot(**robot_arrays(robot, tables, bounds))
 
 
-def robot_arrays(tables: RobotTables, bounds: Floats) -> dict[str, dict[str, npt.NDArray[np.generic]]]:
+def robot_arrays(robot: Robot, tables: RobotTables, bounds: Floats) -> dict[str, dict[str, npt.NDArray[np.generic]]]:
     """Return the arrays that a native robot is made of."""
     frames, capsules = tables.tree.frames, tables.capsules
     bodies = list(dict.fromkeys(capsule.link for capsule in capsules))
@@ -51,11 +55,52 @@ def robot_arrays(tables: RobotTables, bounds: Floats) -> dict[str, dict[str, npt
             "boxes": trees.boxes,
             "points": trees.points,
         },
+        "shapes": _shapes(robot, tables.tree, number),
         "limits": {
             "bounds": np.ascontiguousarray(bounds),
             "padding": np.array([PADDING * max(1.0, tables.reach)]),
             "reach": np.array([tables.reach]),
         },
+    }
+
+
+@dataclass(frozen=True)
+class _PlacedParts:
+    """The parts of one shape in the moving frame that it is fixed to."""
+
+    parts: Parts
+    rotation: Floats
+    translation: Floats
+    frame: int
+
+    @property
+    def endpoints(self) -> Floats:
+        """Points, (n, 3), in whose hull the parts lie that are not widened by the radius."""
+        return spread(self.parts) @ self.rotation.T + self.translation
+
+
+def _shapes(robot: Robot, tree: MovingTree, number: dict[str, int]) -> dict[str, npt.NDArray[np.generic]]:
+    """Return the parts of all true shapes, body by body, and how fast each coordinate moves those of each body."""
+    placed = []
+    for parts in sorted((each for each in robot.shapes if each.link in number), key=lambda each: number[each.link]):
+        at = tree.links[parts.link]
+        placed.append(_PlacedParts(parts, at.rotation, at.translation, at.frame))
+    speeds = np.zeros((len(number), len(robot.group)))
+    hulls = [PlacedHulls(each.frame, ((each.endpoints[np.newaxis], 0.0),)) for each in placed]
+    for each, row in zip(placed, speed_bounds(tree, hulls, [], robot)[0], strict=True):
+        body = number[each.parts.link]
+        speeds[body] = np.maximum(speeds[body], row)
+    counts = [each.parts.corners.shape[:2] for each in placed]
+    of_part = np.repeat(np.arange(len(placed)), [parts for parts, _ in counts])
+    corners = [each.parts.corners.reshape(-1, 3) @ each.rotation.T + each.translation for each in placed]
+    return {
+        "body": np.array([number[each.parts.link] for each in placed], dtype=np.int64)[of_part],
+        "first_point": _ints([0, *np.cumsum([many for parts, many in counts for _ in range(parts)])]),
+        "points": np.concatenate([np.zeros((0, 3)), *corners]),
+        "widths": np.array([each.parts.radius for each in placed])[of_part],
+        "discs": np.array([each.rotation @ each.parts.disc for each in placed]).reshape(-1, 3)[of_part],
+        "enclosing": np.array([each.parts.closed for each in placed], dtype=np.bool_)[of_part],
+        "speeds": np.ascontiguousarray(speeds.T),
     }
 
 

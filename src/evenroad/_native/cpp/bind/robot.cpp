@@ -49,9 +49,10 @@ class Named {
 };
 
 void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle capsules, nb::handle pairs,
-                nb::handle hulls, nb::handle limits) {
+                nb::handle hulls, nb::handle shapes, nb::handle limits) {
   const Named of_frames(frames, "frames"), of_bodies(bodies, "bodies"), of_capsules(capsules, "capsules");
-  const Named of_pairs(pairs, "pairs"), of_hulls(hulls, "hulls"), of_limits(limits, "limits");
+  const Named of_pairs(pairs, "pairs"), of_hulls(hulls, "hulls"), of_shapes(shapes, "shapes");
+  const Named of_limits(limits, "limits");
   robot::GivenRobot given;
   given.frames = {of_frames.span<std::int64_t>("parent"),  of_frames.span<std::int64_t>("coordinate"),
                   of_frames.span<bool>("slides"),          of_frames.span<double>("multiplier"),
@@ -67,7 +68,12 @@ void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle ca
   given.pairs = {of_pairs.span<std::int64_t, 2>("bodies"), by_hulls[0]};
   given.hulls = {of_hulls.span<std::int64_t, 2>("children"), of_hulls.span<std::int64_t, 2>("spans"),
                  of_hulls.span<double, 2>("boxes"), of_hulls.span<double, 2>("points")};
-  given.arms = {of_capsules.span<double, 2>("speeds"), of_pairs.span<double, 2>("speeds")};
+  given.shapes = {
+      of_shapes.span<std::int64_t>("body"),
+      {of_shapes.span<std::int64_t>("first_point"), of_shapes.span<double, 2>("points"),
+       of_shapes.span<double>("widths"), of_shapes.span<double, 2>("discs"), of_shapes.span<bool>("enclosing")}};
+  given.arms = {of_capsules.span<double, 2>("speeds"), of_pairs.span<double, 2>("speeds"),
+                of_shapes.span<double, 2>("speeds")};
   given.bounds = of_limits.span<double, 2>("bounds");
   const std::size_t dim = given.bounds.size() / 3;
   for (std::size_t k = 0; 3 * dim == given.bounds.size() && k < dim; k++) {
@@ -266,7 +272,7 @@ void add_robot(nb::module_& module) {
   nb::module_ part = module.def_submodule("robot", "Checks of a robot's configurations and motions.");
   nb::class_<Robot>(part, "Robot")
       .def("__init__", &make_robot, nb::arg("frames"), nb::arg("bodies"), nb::arg("capsules"), nb::arg("pairs"),
-           nb::arg("hulls"), nb::arg("limits"));
+           nb::arg("hulls"), nb::arg("shapes"), nb::arg("limits"));
   nb::class_<HullTree<double>>(part, "HullTree")
       .def("__init__", &make_hull_tree, nb::arg("children"), nb::arg("spans"), nb::arg("boxes"), nb::arg("points"))
       .def("contacts", &hull_contacts, nb::arg("first"), nb::arg("second"), nb::arg("poses"));

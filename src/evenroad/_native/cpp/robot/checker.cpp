@@ -63,7 +63,8 @@ Workspace::Workspace(const Checker& checker)
       motion(checker.robot().dim()),
       waiting(MOST_WAITING),
       speeds(checker.robot().arms.columns),
-      pair_speeds(checker.robot().pair_arms.columns) {}
+      pair_speeds(checker.robot().pair_arms.columns),
+      shape_speeds(checker.robot().bodies.size()) {}
 
 void Workspace::set(int lane, std::span<const double> q) {
   for (std::size_t k = 0; k < states.size(); k++) states[k][lane] = q[k];

@@ -94,7 +94,8 @@ struct Workspace {
   Lengths enlarged;  // that decide stretches of a motion in a proof
   Motion motion;
   std::vector<Stretch> waiting;
-  std::vector<double> speeds, pair_speeds;  // how far a motion moves each capsule, and each pair, at most [m]
+  // How far a motion moves each capsule, each pair, and the true shape of each body, at most [m].
+  std::vector<double> speeds, pair_speeds, shape_speeds;
   Counts counts;
 };
 

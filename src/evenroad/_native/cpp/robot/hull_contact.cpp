@@ -1,12 +1,10 @@
-// Contact of two bodies of convex hulls at sixteen configurations.
-//
 // Boxes and planes in single precision rule out nearly all pairs of hulls, for all lanes at once and by more than
 // rounding can be; of what is left `leaves_near` decides, lane by lane in double precision.  So the answer for a lane
 // does not depend on its neighbours.
+#include "robot/hull_contact.hpp"
+
 #include <bit>
 #include <cmath>
-
-#include "robot/self_contact.hpp"
 
 namespace evenroad::robot {
 
@@ -95,14 +93,21 @@ struct Farthest {
   Vec3x16 corner;
 };
 
-/// Return how far a hull reaches along directions, and its farthest corners.
-EVENROAD_INLINE Farthest farthest(Vec3x16 direction, std::span<const HullPoint<float>> points) {
+/// Return how far a leaf's hull and disc reach along unit directions, and their farthest points.
+EVENROAD_INLINE Farthest farthest(Vec3x16 direction, const HullTree<float>& tree, const Node& leaf) {
   Farthest most{spread(-FAR), {Floats16{}, Floats16{}, Floats16{}}};
-  for (const auto& [x, y, z] : points) {
+  for (int i = leaf.points.first; i < leaf.points.end; i++) {
+    const auto& [x, y, z] = tree.points[i];
     const Vec3x16 point = spread(Vec3{x, y, z});
     const Floats16 here = dot(direction, point);
     most.corner = where_less(most.along, here, point, most.corner);
     most.along = max(here, most.along);
+  }
+  if (leaf.disc > 0) {
+    const Vec3x16 axis = spread3(leaf.axis), aside = minus(direction, axis, dot(direction, axis));
+    const Floats16 squared = dot(aside, aside), length = sqrt(squared);
+    most.corner = plus(most.corner, aside, leaf.disc / max(length, spread(LEAST_SQUARE)));
+    most.along = fma(length, spread(leaf.disc), most.along);
   }
   return most;
 }
@@ -127,12 +132,9 @@ EVENROAD_INLINE Vec3x16 nearest_of_three(Vec3x16 a, Vec3x16 b, Vec3x16 c) {
   return where_less(Floats16{}, inside, a + plus(f * t, e, s), nearest);
 }
 
-/// Return the mask of those lanes asked for in which none of some planes separates the hulls of two leaves.
-Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const Node& a, const Node& b, Floats16 near,
-               Mask asked) {
-  const std::span<const HullPoint<float>> all = tree.points;
-  const auto points = all.subspan(a.points.first, a.points.size());
-  const auto other_points = all.subspan(b.points.first, b.points.size());
+/// Return the mask of those lanes asked for in which none of some planes separates two leaves.
+Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const Node& a, const HullTree<float>& other,
+               const Node& b, Floats16 near, Mask asked) {
   near = near + (a.width + b.width);
   const Floats16 near_squared = near * near;
   const Boxes boxes = boxes_of(pose, a, b);
@@ -145,7 +147,7 @@ Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const No
   Mask meeting = 0;
   for (int step = 0; step < PLANES; step++) {
     const Vec3x16 along = way * (1.0F / sqrt(max(dot(way, way), spread(LEAST_SQUARE))));
-    const Farthest back = farthest(-along, points), on = farthest(pose.turned_back(along), other_points);
+    const Farthest back = farthest(-along, tree, a), on = farthest(pose.turned_back(along), other, b);
     asked &= ~below_zero(near + (back.along + on.along + dot(along, pose.translation)));
     if (asked == 0) break;
     // On from the way between these corners; then from what of the last two and the way so far is nearest to 0.
@@ -162,33 +164,30 @@ Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const No
 
 }  // namespace
 
-Mask hulls_meeting(const Robot& robot, const Places& places, const BodyPair& pair, float margin, Mask asked,
-                   Wanted wanted) {
-  const Body &first = robot.bodies[pair.first], &second = robot.bodies[pair.second];
-  const PlacedFrame &frame = places.frames[first.frame], &other_frame = places.frames[second.frame];
-  const HullTree<float>& tree = robot.hulls;
-  const RelativePose16 pose = relative_pose(frame, other_frame);
-  const Vec3x16 apart = abs(other_frame.origin - frame.origin);
-  const float size = reach_of(tree.nodes[first.hulls]) + reach_of(tree.nodes[second.hulls]);
+Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked, Wanted wanted) {
+  const HullTree<float>&tree = first.tree, &other = second.tree;
+  const RelativePose16 pose = relative_pose(first.frame, second.frame);
+  const Vec3x16 apart = abs(second.frame.origin - first.frame.origin);
+  const float size = reach_of(tree.nodes[first.root]) + reach_of(other.nodes[second.root]);
   // How near is wrong by no more than single precision loses of the lengths that it comes of.
   const Floats16 near = spread(margin) + (apart.x + apart.y + apart.z + size) * SLACK;
   struct Waiting {
     int a, b;
     Mask lanes;
   } waiting[DEEPEST];
-  waiting[0] = {first.hulls, second.hulls, asked};
+  waiting[0] = {first.root, second.root, asked};
   Mask meeting = 0;
   for (int count = 1; count > 0;) {
     const auto [a, b, lanes] = waiting[--count];
     Mask left = lanes & ~meeting;
     if (left == 0) continue;
-    const Node &p = tree.nodes[a], &q = tree.nodes[b];
+    const Node &p = tree.nodes[a], &q = other.nodes[b];
     left &= boxes_near(pose, p, q, near);
     if (left == 0) continue;
     if (p.is_leaf() && q.is_leaf()) {
-      for (left = not_apart(pose, tree, p, q, near, left); left != 0; left &= left - 1) {
+      for (left = not_apart(pose, tree, p, other, q, near, left); left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left);
-        if (!leaves_near(tree, a, b, relative_pose(frame, other_frame, lane), margin)) continue;
+        if (!leaves_near(tree, a, other, b, relative_pose(first.frame, second.frame, lane), margin)) continue;
         meeting |= 1U << lane;
         if (wanted == Wanted::FIRST) return meeting;
       }

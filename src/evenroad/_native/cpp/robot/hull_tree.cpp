@@ -110,50 +110,32 @@ Vector way_between(const HullNode<T>& a, const HullNode<T>& b, const RelativePos
   return way;
 }
 
-/// Return a corner of the first body as seen from one of the second.
-template <class T>
-Vector difference(const HullPoint<T>& p, const HullPoint<T>& q, const RelativePose& pose) {
-  const double corner[3] = {p.x, p.y, p.z};
-  Vector apart;
-  for (int axis = 0; axis < 3; axis++) {
-    const double* row = pose.rotation + 3 * axis;
-    const double turned = row[0] * q.x + row[1] * q.y + row[2] * q.z;
-    apart[axis] = corner[axis] - turned - pose.translation[axis];
-  }
-  return apart;
-}
+/// How far a leaf's hull and disc reach along a direction, and the point that is farthest.
+struct Farthest {
+  double along;
+  Vector place;
+};
 
-/// Return whether two hulls come within `margin`; `way`, not of length 0, is the direction that the search begins with.
 template <class T>
-bool hulls_near(std::span<const HullPoint<T>> p, std::span<const HullPoint<T>> q, Vector way, const RelativePose& pose,
-                double margin) {
-  Simplex simplex;
-  const double* m = pose.rotation;
-  double length = std::sqrt(squared_length(way));
-  double x = way[0] / length, y = way[1] / length, z = way[2] / length;
-  std::size_t corner = 0, other = 0;
-  for (int step = 0; step < MOST_STEPS; step++) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (std::size_t i = 0; i < p.size(); i++) {
-      const double along = p[i].x * x + p[i].y * y + p[i].z * z;
-      if (along < least) least = along, corner = i;
-    }
-    const double u = m[0] * x + m[3] * y + m[6] * z, w = m[1] * x + m[4] * y + m[7] * z;
-    const double t = m[2] * x + m[5] * y + m[8] * z;
-    for (std::size_t i = 0; i < q.size(); i++) {
-      const double along = q[i].x * u + q[i].y * w + q[i].z * t;
-      if (along > most) most = along, other = i;
-    }
-    const double gap = least - most - (pose.translation[0] * x + pose.translation[1] * y + pose.translation[2] * z);
-    if (gap > margin) return false;
-    if (simplex.size > 0 && length - gap < 1e-6 * length + SAME) return true;
-    simplex.corners[simplex.size++] = difference(p[corner], q[other], pose);
-    nearest(simplex, way);
-    length = std::sqrt(squared_length(way));
-    if (simplex.size == 0 || length <= std::max(margin, SAME)) return true;
-    x = way[0] / length, y = way[1] / length, z = way[2] / length;
+Farthest farthest(const HullTree<T>& tree, const HullNode<T>& leaf, const Vector& way) {
+  double most = -std::numeric_limits<double>::infinity();
+  int corner = leaf.points.first;
+  for (int i = leaf.points.first; i < leaf.points.end; i++) {
+    const auto& [x, y, z] = tree.points[i];
+    const double along = x * way[0] + y * way[1] + z * way[2];
+    if (along > most) most = along, corner = i;
   }
-  return true;
+  const auto& [x, y, z] = tree.points[corner];
+  Farthest found{most, {x, y, z}};
+  if (leaf.disc > 0) {
+    const double upright = leaf.axis[0] * way[0] + leaf.axis[1] * way[1] + leaf.axis[2] * way[2];
+    Vector aside;
+    for (int axis = 0; axis < 3; axis++) aside[axis] = way[axis] - upright * leaf.axis[axis];
+    const double length = std::sqrt(squared_length(aside)), share = length > 0.0 ? leaf.disc / length : 0.0;
+    found.along += leaf.disc * length;
+    for (int axis = 0; axis < 3; axis++) found.place[axis] += share * aside[axis];
+  }
+  return found;
 }
 
 /// Return how deep the tree below each node is, leaves 1; children come after their parents.
@@ -199,7 +181,10 @@ HullTree<T> make_hull_tree(const GivenHulls& given) {
                      {},
                      {},
                      static_cast<T>(box[6]),
-                     static_cast<T>(box[7])};
+                     static_cast<T>(box[7]),
+                     0,
+                     {},
+                     false};
     for (int axis = 0; axis < 3; axis++) node.centre[axis] = static_cast<T>(box[axis]);
     for (int axis = 0; axis < 3; axis++) node.half[axis] = static_cast<T>(box[3 + axis]);
     tree.nodes.push_back(node);
@@ -229,7 +214,7 @@ HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, co
     }
     if (aside > other_near * other_near || other_aside > near * near) continue;
     if (p.is_leaf() && q.is_leaf()) {
-      if (leaves_near(tree, a, b, pose, margin)) return {a, b};
+      if (leaves_near(tree, a, tree, b, pose, margin)) return {a, b};
     } else if (q.is_leaf() || (!p.is_leaf() && p.radius >= q.radius)) {
       for (int child : p.children) waiting[count++] = {child, b};
     } else {
@@ -240,19 +225,42 @@ HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, co
 }
 
 template <class T>
-bool leaves_near(const HullTree<T>& tree, int first, int second, const RelativePose& pose, double margin) {
-  const HullNode<T>&a = tree.nodes[first], &b = tree.nodes[second];
-  const Vector way = way_between(a, b, pose);
-  if (squared_length(way) == 0.0) return true;
-  const std::span<const HullPoint<T>> all = tree.points;
-  return hulls_near(all.subspan(a.points.first, a.points.size()), all.subspan(b.points.first, b.points.size()), way,
-                    pose, (a.width + b.width) + margin);
+bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, int second, const RelativePose& pose,
+                 double margin) {
+  const HullNode<T>&a = tree.nodes[first], &b = other.nodes[second];
+  const double* m = pose.rotation;
+  Simplex simplex;
+  // The search begins with the way between the middles.
+  Vector way = way_between(a, b, pose);
+  double length = std::sqrt(squared_length(way));
+  if (length == 0.0) return true;
+  margin += a.width + b.width;
+  for (int step = 0; step < MOST_STEPS; step++) {
+    const double x = way[0] / length, y = way[1] / length, z = way[2] / length;
+    const Farthest p = farthest(tree, a, {-x, -y, -z});
+    const Farthest q = farthest(
+        other, b, {m[0] * x + m[3] * y + m[6] * z, m[1] * x + m[4] * y + m[7] * z, m[2] * x + m[5] * y + m[8] * z});
+    const double gap =
+        -p.along - q.along - (pose.translation[0] * x + pose.translation[1] * y + pose.translation[2] * z);
+    if (gap > margin) return false;
+    if (simplex.size > 0 && length - gap < 1e-6 * length + SAME) return true;
+    Vector& apart = simplex.corners[simplex.size++];
+    for (int axis = 0; axis < 3; axis++) {
+      const double* row = m + 3 * axis;
+      const double turned = row[0] * q.place[0] + row[1] * q.place[1] + row[2] * q.place[2];
+      apart[axis] = p.place[axis] - turned - pose.translation[axis];
+    }
+    nearest(simplex, way);
+    length = std::sqrt(squared_length(way));
+    if (simplex.size == 0 || length <= std::max(margin, SAME)) return true;
+  }
+  return true;
 }
 
 #define EVENROAD_HULLS_OF(T)                                                                         \
   template HullTree<T> make_hull_tree(const GivenHulls&);                                            \
   template HullContact find_hull_contact(const HullTree<T>&, int, int, const RelativePose&, double); \
-  template bool leaves_near(const HullTree<T>&, int, int, const RelativePose&, double);
+  template bool leaves_near(const HullTree<T>&, int, const HullTree<T>&, int, const RelativePose&, double);
 EVENROAD_HULLS_OF(float)
 EVENROAD_HULLS_OF(double)
 

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "common/float16.hpp"
+
 namespace evenroad::robot {
 
 /// From a first to one before an end.
@@ -24,8 +26,10 @@ struct HullNode {
   int children[2];  // -1 twice for a leaf
   Range points;     // of a leaf's hull
   T centre[3], half[3];
-  T radius;  // of a ball about the same centre
-  T width;   // by how much a leaf's hull is widened
+  T radius;         // of a ball about the same centre
+  T width;          // by how much a leaf's hull is widened
+  T disc, axis[3];  // a leaf's hull is widened by a disc of this radius across an axis, too: so a segment is a cylinder
+  bool encloses;    // whether a leaf is a triangle of a closed surface, which has its inside to the left of its turn
   bool is_leaf() const { return children[0] < 0; }
 };
 
@@ -42,6 +46,15 @@ struct GivenHulls {
   std::span<const double> points;                 // (points, 3)
 };
 
+/// Convex parts as Python names them: a part is what is round about the hull of its points, by a ball and by a disc.
+struct GivenParts {
+  std::span<const std::int64_t> first_point;  // of each part, then the number of points
+  std::span<const double> points;             // (points, 3)
+  std::span<const double> widths;             // of the balls
+  std::span<const double> discs;              // (parts, 3): the axis, as long as the disc's radius
+  std::span<const bool> enclosing;            // whether it is a triangle of a closed surface
+};
+
 /// Pairs of nodes that may wait: at most the depths of both trees together.
 constexpr int DEEPEST = 96;
 
@@ -49,6 +62,16 @@ constexpr int DEEPEST = 96;
 /// DEEPEST.
 template <class T>
 HullTree<T> make_hull_tree(const GivenHulls& given);
+
+/// Add a tree over some parts, and return its root; std::invalid_argument if sizes do not fit, or there are none.
+template <class T>
+int add_parts(HullTree<T>& tree, const GivenParts& given, Range parts);
+
+/// Return a point of every leaf below a root, but one alone of those that share corners.
+std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root);
+
+/// Return whether closed surfaces below a root go around a place in the body's frame, or it is not told that none does.
+bool encloses(const HullTree<float>& tree, int root, const double (&place)[3]);
 
 /// The pose of one body in the frame of another: rotation row by row, translation.
 struct RelativePose {
@@ -64,8 +87,9 @@ struct HullContact {
 template <class T>
 HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, const RelativePose& pose, double margin);
 
-/// Return whether the hulls of two leaves come within a margin; apart is only what a plane separates.
+/// Return whether two leaves, each of a tree, come within a margin; apart is only what a plane separates.
 template <class T>
-bool leaves_near(const HullTree<T>& tree, int first, int second, const RelativePose& pose, double margin);
+bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, int second, const RelativePose& pose,
+                 double margin);
 
 }  // namespace evenroad::robot

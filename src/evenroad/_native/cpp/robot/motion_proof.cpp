@@ -43,6 +43,7 @@ void enlarge(Workspace& workspace, double half) {
   for (std::size_t i = 0; i < from.capsules.size(); i++) into.capsules[i] = wider(from.capsules[i], half * speeds[i]);
   // What is around a body moves no farther than the fastest of its capsules.
   for (std::size_t b = 0; b < robot.bodies.size(); b++) {
+    into.shapes[b] = wider(from.shapes[b], half * workspace.shape_speeds[b]);
     const double margin = half * largest(speeds, robot.bodies[b].capsules);
     const auto& [radius, extents] = from.bodies[b];
     into.bodies[b] = {wider(radius, margin),
@@ -68,8 +69,9 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
   Motion& motion = workspace.motion;
   motion.span(a, b, robot.bounds, workspace.checker.resolution());
   workspace.counts.motions++;
-  const double fastest = std::max(write_speeds(robot.arms, motion.way, workspace.speeds),
-                                  write_speeds(robot.pair_arms, motion.way, workspace.pair_speeds));
+  const double fastest = std::max({write_speeds(robot.arms, motion.way, workspace.speeds),
+                                   write_speeds(robot.pair_arms, motion.way, workspace.pair_speeds),
+                                   write_speeds(robot.shape_arms, motion.way, workspace.shape_speeds)});
   std::vector<Stretch>& waiting = workspace.waiting;
   int count = LANES, enlarged_for = -1;
   // The first stretch is the last to be pushed and the first to be looked at.

@@ -2,6 +2,7 @@
 // of a capsule; those that are near one by one.
 #include "robot/obstacle_contact.hpp"
 
+#include <algorithm>
 #include <bit>
 
 namespace evenroad::robot {
@@ -61,6 +62,32 @@ Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, f
 
 }  // namespace
 
+Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body, Vec3x16 place, Mask asked) {
+  if (!body.encloses) return 0;
+  const PlacedFrame& frame = places.frames[body.frame];
+  const Vec3x16 from = place - frame.origin;
+  const Vec3x16 here = combine(frame.rows[0], from.x, frame.rows[1], from.y, frame.rows[2], from.z);
+  Mask inside = 0;
+  for (; asked != 0; asked &= asked - 1) {
+    const int lane = std::countr_zero(asked);
+    if (encloses(robot.shapes, body.shape, {here.x[lane], here.y[lane], here.z[lane]})) inside |= 1U << lane;
+  }
+  return inside;
+}
+
+Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Scene& scene, int number,
+                   float near, Mask asked, Wanted wanted) {
+  const Obstacle& obstacle = scene.obstacles[number];
+  const PlacedFrame there = placed(obstacle);
+  const Mask meeting = hulls_meeting({robot.shapes, body.shape, places.frames[body.frame]},
+                                     {scene.hulls, number, there}, near, asked, wanted);
+  if (meeting != 0 && wanted == Wanted::FIRST) return meeting;
+  // Only what is smaller than the body can be inside.
+  const HullNode<float>& root = robot.shapes.nodes[body.shape];
+  if (std::max({obstacle.half.x, obstacle.half.y, obstacle.half.z}) > root.radius) return meeting;
+  return meeting | shape_enclosing(robot, places, body, there.origin, asked & ~meeting);
+}
+
 Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Wanted wanted,
                        Contact* found) {
   Mask blocked = 0;
@@ -69,7 +96,7 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
   // From the outermost bodies inwards: those meet obstacles most often.
   for (int b = static_cast<int>(robot.bodies.size()) - 1; b >= robot.fixed_bodies; b--) {
     const Range capsules = robot.bodies[b].capsules;
-    const bool many = capsules.size() > FEW;
+    const bool many = capsules.size() > FEW, shaped = robot.bodies[b].shape >= 0;
     for (int number = 0; number < blocks; number++) {
       const Block& block = scene.blocks[number];
       Mask near_body = ALL_LANES;
@@ -83,6 +110,9 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
         }
         if (near_body == 0) continue;
       }
+      // By obstacles: lanes that the true shape is to decide, and the first capsule that touches.
+      Mask open[LANES], opened = 0;
+      int first[LANES];
       for (int i = capsules.end - 1; i >= capsules.first; i--) {
         const float radius = lengths.capsules[i];
         PlacedCapsule& capsule = places.capsules[i];
@@ -92,14 +122,34 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
         }
         for (; near != 0; near &= near - 1) {
           const int k = std::countr_zero(near);
-          if ((near_one(capsule, radius, block, k) & ~blocked) == 0) continue;
+          const bool again = (opened >> k & 1) != 0;
+          if ((near_one(capsule, radius, block, k) & ~(again ? blocked | open[k] : blocked)) == 0) continue;
           const Obstacle& obstacle = scene.obstacles[number * LANES + k];
           const Range of = robot.capsules[i].samples;
           const Mask meeting = meeting_one(capsule, samples.subspan(of.first, of.size()), radius, obstacle);
+          if (shaped) {
+            if (meeting == 0) continue;
+            if (!again) open[k] = 0, first[k] = i, opened |= 1U << k;
+            open[k] |= meeting;
+            continue;
+          }
           if (found != nullptr && blocked == 0 && meeting != 0) *found = {Contact::With::OBSTACLE, i, obstacle.number};
           blocked |= meeting;
           if (is_enough(blocked, wanted)) return blocked;
         }
+      }
+      for (; opened != 0; opened &= opened - 1) {
+        const int k = std::countr_zero(opened);
+        const Mask asked = open[k] & ~blocked;
+        if (asked == 0) continue;
+        const int obstacle = number * LANES + k;
+        const Mask meeting =
+            shape_meeting(robot, places, robot.bodies[b], scene, obstacle, lengths.shapes[b], asked, wanted);
+        if (found != nullptr && blocked == 0 && meeting != 0) {
+          *found = {Contact::With::OBSTACLE, first[k], scene.obstacles[obstacle].number};
+        }
+        blocked |= meeting;
+        if (is_enough(blocked, wanted)) return blocked;
       }
     }
   }

@@ -5,15 +5,10 @@
 // answer for a lane does not depend on its neighbours.
 #pragma once
 
-#include "robot/places.hpp"
+#include "robot/hull_contact.hpp"
 #include "robot/scene.hpp"
 
 namespace evenroad::robot {
-
-using Mask = std::uint32_t;
-
-/// How many blocked lanes are asked for.
-enum class Wanted : std::uint8_t { FIRST, ALL };
 
 inline bool is_enough(Mask blocked, Wanted wanted) {
   return blocked == ALL_LANES || (blocked != 0 && wanted == Wanted::FIRST);
@@ -25,8 +20,16 @@ struct Contact {
   int capsule = -1, other = -1;
 };
 
-/// Return the mask of lanes in which a capsule meets an obstacle; `found`, where it is given, is the first contact.
+/// Return the mask of lanes in which a body meets an obstacle: a capsule of it, and its true shape where that is known.
+/// `found`, where it is given, is the first contact.
 Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Wanted wanted,
                        Contact* found = nullptr);
+
+/// Return the mask of those lanes asked for in which the true shape of a body comes within `near` of an obstacle.
+Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Scene& scene, int number,
+                   float near, Mask asked, Wanted wanted);
+
+/// Return the mask of those lanes asked for in which a surface of a body's true shape goes around a place of the scene.
+Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body, Vec3x16 place, Mask asked);
 
 }  // namespace evenroad::robot

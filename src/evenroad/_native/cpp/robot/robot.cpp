@@ -124,8 +124,9 @@ void add_capsules(Robot& robot, const GivenRobot& given) {
             "capsules.first_sample must rise, within capsules.samples");
     const Vec3 half = single(from.half.data() + 3 * i);
     const double length = norm(from.half.data() + 3 * i);
-    robot.capsules.push_back({single(from.centre.data() + 3 * i), half, half.x == 0 && half.y == 0 && half.z == 0,
-                              Shapes{given}.samples(static_cast<int>(i)), static_cast<float>(length),
+    robot.capsules.push_back({static_cast<int>(from.body[i]), single(from.centre.data() + 3 * i), half,
+                              half.x == 0 && half.y == 0 && half.z == 0, Shapes{given}.samples(static_cast<int>(i)),
+                              static_cast<float>(length),
                               static_cast<float>(1.0 / std::max(length * length, LEAST_SQUARE)),
                               static_cast<float>(from.covering[i] - from.radius[i])});
     robot.lengths.capsules.push_back(static_cast<float>(from.covering[i] + given.padding));
@@ -151,7 +152,13 @@ std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
   std::vector<Ball> balls;
   int capsule = 0;
   for (std::size_t b = 0; b < count; b++) {
-    Body body{index(given.bodies.frame[b], robot.frames.size() + 1, "bodies.frame"), {capsule, capsule}, {}, -1};
+    Body body{index(given.bodies.frame[b], robot.frames.size() + 1, "bodies.frame"),
+              {capsule, capsule},
+              {},
+              -1,
+              -1,
+              false,
+              {}};
     if (given.bodies.hulls[b] >= 0) body.hulls = index(given.bodies.hulls[b], nodes, "bodies.hulls");
     const auto& owner = given.capsules.body;
     while (capsule < static_cast<int>(owner.size()) && owner[capsule] == static_cast<std::int64_t>(b)) capsule++;
@@ -170,6 +177,22 @@ std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
   }
   require(capsule == static_cast<int>(given.capsules.body.size()), "capsules.body must name bodies");
   return balls;
+}
+
+void add_shapes(Robot& robot, const GivenRobot& given) {
+  const auto& [owner, parts] = given.shapes;
+  require(owner.size() == parts.widths.size(), "shapes.body must be as long as shapes.widths");
+  for (int first = 0, end = 0; first < static_cast<int>(owner.size()); first = end) {
+    Body& body = robot.bodies[index(owner[first], robot.bodies.size(), "shapes.body")];
+    while (end < static_cast<int>(owner.size()) && owner[end] == owner[first]) {
+      body.encloses |= parts.enclosing[end];
+      end++;
+    }
+    require(body.shape < 0, "shapes.body must rise");
+    body.shape = add_parts(robot.shapes, parts, {first, end});
+    body.points = points_of_parts(robot.shapes, body.shape);
+  }
+  robot.lengths.shapes.assign(robot.bodies.size(), static_cast<float>(given.padding));
 }
 
 void add_pairs(Robot& robot, const GivenRobot& given, const std::vector<Ball>& balls) {
@@ -214,6 +237,7 @@ OwnMatrix<double> matrix(std::span<const double> from, std::size_t rows, std::si
 Lengths Lengths::enlarged(float margin) const {
   Lengths more = *this;
   for (float& radius : more.capsules) radius += margin;
+  for (float& near : more.shapes) near += margin;
   for (BodyLengths& body : more.bodies) {
     for (float* length : {&body.radius, &body.half.x, &body.half.y, &body.half.z}) *length += margin;
   }
@@ -234,9 +258,11 @@ Robot make_robot(const GivenRobot& given) {
   robot.hulls = make_hull_tree<float>(given.hulls);
   add_capsules(robot, given);
   add_pairs(robot, given, add_bodies(robot, given));
+  add_shapes(robot, given);
   add_fixed_spheres(robot, given);
   const std::size_t pairs = robot.pairs.size() + robot.hull_pairs;
   robot.arms = matrix(given.arms.capsules, dim, robot.capsules.size(), "arms.capsules must be (dim, capsules)");
+  robot.shape_arms = matrix(given.arms.shapes, dim, robot.bodies.size(), "arms.shapes must be (dim, bodies)");
   robot.pair_arms = matrix(given.arms.pairs, dim, pairs, "arms.pairs must be (dim, pairs of capsules and by hulls)");
   return robot;
 }

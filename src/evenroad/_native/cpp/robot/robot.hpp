@@ -1,7 +1,8 @@
 // A robot as its checks read it: frames that joints move, bodies of capsules on them, pairs that may touch, and hulls.
 //
 // Frame 0 is the root link's, which does not move; every other turns about, or slides along, its own z axis.  A body is
-// a link with capsules.  Bodies of frame 0 come first, and the capsules of a body follow each other.
+// a link with capsules.  Bodies of frame 0 come first, and the capsules of a body follow each other.  Where a capsule
+// touches an obstacle the true shape of its body decides, if it is known.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +24,7 @@ struct Frame {
 };
 
 struct Capsule {
+  int body;
   Vec3 centre, half;  // middle of its segment, and from there to an end
   bool is_ball;
   Range samples;                      // of the spheres that cover it, in Robot::samples
@@ -33,8 +35,11 @@ struct Capsule {
 struct Body {
   int frame;
   Range capsules;
-  Vec3 centre;  // of a ball and of a box around its capsules
-  int hulls;    // root of its tree of hulls, or -1
+  Vec3 centre;               // of a ball and of a box around its capsules
+  int hulls;                 // root of its tree of hulls, or -1
+  int shape;                 // root of the parts of its true shape, or -1: its capsules are
+  bool encloses;             // whether surfaces of the shape have an inside
+  std::vector<Vec3> points;  // one of each part of the shape that hangs together
 };
 
 struct CapsulePair {
@@ -64,6 +69,7 @@ struct Lengths {
   std::vector<PairLengths> pairs;
   std::vector<float> body_pairs;    // centres of balls around bodies farther apart than this: none of them touch
   std::vector<float> hull_margins;  // hulls nearer than this count as touching
+  std::vector<float> shapes;        // of bodies: true shapes nearer than this to an obstacle touch it
 
   /// Bodies larger by a margin where obstacles are concerned; they may be as near to each other as before.
   Lengths enlarged(float margin) const;
@@ -88,10 +94,11 @@ struct Robot {
   std::vector<Body> bodies;
   std::vector<BodyPair> body_pairs;  // the last ones are decided by hulls
   std::vector<CapsulePair> pairs;
-  HullTree<float> hulls;
+  HullTree<float> hulls, shapes;
   Lengths lengths;
-  OwnMatrix<double> arms{0, 0};       // (dim, capsules): how fast a coordinate moves a capsule at most [m/rad]
-  OwnMatrix<double> pair_arms{0, 0};  // (dim, pairs, then pairs by hulls): the two against each other
+  OwnMatrix<double> arms{0, 0};        // (dim, capsules): how fast a coordinate moves a capsule at most [m/rad]
+  OwnMatrix<double> pair_arms{0, 0};   // (dim, pairs, then pairs by hulls): the two against each other
+  OwnMatrix<double> shape_arms{0, 0};  // (dim, bodies): the farthest corner of a true shape
   std::vector<FixedSphere> fixed_spheres;
   int fixed_bodies = 0;
   int hull_pairs = 0;
@@ -123,7 +130,11 @@ struct GivenRobot {
   } pairs;
   GivenHulls hulls;
   struct {
-    std::span<const double> capsules, pairs;
+    std::span<const std::int64_t> body;  // of each part, rising
+    GivenParts parts;
+  } shapes;
+  struct {
+    std::span<const double> capsules, pairs, shapes;
   } arms;
   std::span<const double> bounds;  // low, high, period
   double padding = 0, reach = 0;

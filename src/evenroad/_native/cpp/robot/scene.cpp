@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "robot/obstacle_contact.hpp"
+
 namespace evenroad::robot {
 
 namespace {
@@ -108,6 +110,27 @@ void put(Vec3x16& where, int lane, float x, float y, float z) {
   where.x[lane] = x, where.y[lane] = y, where.z[lane] = z;
 }
 
+/// Add the leaf of an obstacle in its own frame, widened by `width`: its corners, or the ends of its axis.
+void add_leaf(Scene& scene, const Exact& o, double width) {
+  std::vector<double> points;
+  const bool round = o.form == Form::CYLINDER;
+  for (int corner = 0; corner < 8; corner++) {
+    double point[3];
+    bool again = false;
+    for (int axis = 0; axis < 3; axis++) {
+      const double half = round && axis < 2 ? 0.0 : o.half[axis];
+      const bool high = (corner >> axis & 1) != 0;
+      point[axis] = high ? half : -half;
+      again |= high && half == 0.0;
+    }
+    if (!again) points.insert(points.end(), point, point + 3);
+  }
+  const std::int64_t spans[2] = {0, static_cast<std::int64_t>(points.size() / 3)};
+  const double disc[3] = {0, 0, round ? o.half[0] : 0.0};
+  const bool encloses = false;
+  add_parts(scene.hulls, {spans, points, {&width, 1}, disc, {&encloses, 1}}, {0, 1});
+}
+
 /// Add an obstacle, larger by what single precision loses, and return by how much.
 double add(Scene& scene, const Exact& o, int number) {
   double extents[3], squared = 0;
@@ -133,10 +156,17 @@ double add(Scene& scene, const Exact& o, int number) {
   put(scene.blocks.back().centre, lane, obstacle.centre.x, obstacle.centre.y, obstacle.centre.z);
   put(scene.blocks.back().half, lane, half.x, half.y, half.z);
   scene.obstacles.push_back(obstacle);
+  add_leaf(scene, o, rounding);
   return rounding - o.rounding;
 }
 
 }  // namespace
+
+PlacedFrame placed(const Obstacle& obstacle) {
+  const float* r = obstacle.rotation;
+  return {{spread(Vec3{r[0], r[1], r[2]}), spread(Vec3{r[3], r[4], r[5]}), spread(Vec3{r[6], r[7], r[8]})},
+          spread(obstacle.centre)};
+}
 
 Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, Matrix<const bool> tested,
                  double clearance) {
@@ -164,11 +194,16 @@ Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, M
       }
     }
   }
+  const Places places(robot);
   for (const FixedSphere& sphere : robot.fixed_spheres) {
     for (std::size_t k = 0; k < kept.size() && scene.fixed_contact.first < 0; k++) {
       const double near = sphere.radius + clearance + kept[k].rounding;
       if (!tested(sphere.capsule, scene.obstacles[k].number)) continue;
-      if (squared_distance(kept[k], sphere.centre) < near * near) {
+      const Capsule& capsule = robot.capsules[sphere.capsule];
+      if (squared_distance(kept[k], sphere.centre) < near * near &&
+          (robot.bodies[capsule.body].shape < 0 ||
+           shape_meeting(robot, places, robot.bodies[capsule.body], scene, static_cast<int>(k),
+                         static_cast<float>(clearance), 1, Wanted::FIRST) != 0)) {
         scene.fixed_contact = {sphere.capsule, scene.obstacles[k].number};
       }
     }

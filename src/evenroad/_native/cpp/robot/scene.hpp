@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "robot/robot.hpp"
+#include "robot/hull_contact.hpp"
 #include "robot/surface.hpp"
 
 namespace evenroad::robot {
@@ -23,6 +23,9 @@ struct Obstacle {
   float rotation[9];  // to the root's frame
   float rounding;
 };
+
+/// Return where an obstacle's frame is: the same in all lanes.
+PlacedFrame placed(const Obstacle& obstacle);
 
 /// Boxes around sixteen obstacles.
 struct Block {
@@ -46,6 +49,7 @@ struct SurfaceObstacle {
 
 struct Scene {
   std::vector<Obstacle> obstacles;  // those that the robot can reach
+  HullTree<float> hulls;            // of each a leaf, in its own frame
   std::vector<Block> blocks;
   OwnMatrix<std::uint16_t> tested{0, 0};  // (capsules, blocks): bits of obstacles that a capsule is tested against
   std::vector<SurfaceObstacle> surfaces;

@@ -72,7 +72,9 @@ Mask meeting_itself(const Robot& robot, const Lengths& lengths, const Places& pl
     undecided &= ~blocked;
     if (undecided == 0) continue;
     const float margin = lengths.hull_margins[p - by_hulls];
-    const Mask meeting = hulls_meeting(robot, places, robot.body_pairs[p], margin, undecided, wanted);
+    const Mask meeting = hulls_meeting({robot.hulls, robot.bodies[a].hulls, places.frames[robot.bodies[a].frame]},
+                                       {robot.hulls, robot.bodies[b].hulls, places.frames[robot.bodies[b].frame]},
+                                       margin, undecided, wanted);
     if (found != nullptr && blocked == 0 && meeting != 0) *found = {Contact::With::ITSELF, -1, first_undecided};
     blocked |= meeting;
     if (is_enough(blocked, wanted)) return blocked;

@@ -9,10 +9,6 @@ namespace evenroad::robot {
 Mask meeting_itself(const Robot& robot, const Lengths& lengths, const Places& places, Mask blocked, Wanted wanted,
                     Contact* found = nullptr);
 
-/// Return the mask of those lanes asked for in which hulls of a pair of bodies come within a margin.
-Mask hulls_meeting(const Robot& robot, const Places& places, const BodyPair& pair, float margin, Mask asked,
-                   Wanted wanted);
-
 /// Return the mask of lanes in which two capsules touch whose segments are nearer to each other than `reach`.
 Mask capsules_touching(const PlacedCapsule& a, const PlacedCapsule& b, const CapsulePair& pair, float reach);
 

@@ -191,6 +191,19 @@ void add_grid(Surface& surface, const GivenSurface& given) {
   surface.grid = make_grid(place, told, distances_to(place, marked));
 }
 
+/// Add the tree of a mesh's triangles, or of a cloud one point at its origin.
+void add_hulls(Surface& surface, const GivenSurface& given) {
+  const std::size_t count = given.triangles ? given.corners.size() / 9 : 1;
+  std::vector<std::int64_t> first(count + 1);
+  for (std::size_t i = 0; i <= count; i++) first[i] = static_cast<std::int64_t>(given.triangles ? 3 * i : i);
+  const std::vector<double> widths(count, given.radius), discs(3 * count);
+  const auto enclosing = std::make_unique<bool[]>(count);
+  const double origin[3] = {0, 0, 0};
+  const std::span<const double> points = given.triangles ? given.corners : std::span<const double>(origin);
+  add_parts(surface.hulls, {first, points, widths, discs, {enclosing.get(), count}}, {0, static_cast<int>(count)});
+  surface.parts = points_of_parts(surface.hulls, 0);
+}
+
 }  // namespace
 
 Surface make_surface(const GivenSurface& given) {
@@ -209,6 +222,7 @@ Surface make_surface(const GivenSurface& given) {
   Surface surface;
   surface.radius = static_cast<float>(given.radius);
   add_grid(surface, given);
+  add_hulls(surface, given);
   std::vector<Place> middles(count);
   double largest = 0;
   for (std::size_t i = 0; i < count; i++) {

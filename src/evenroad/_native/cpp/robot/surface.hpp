@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/float16.hpp"
+#include "robot/hull_tree.hpp"
 #include "robot/surface_grid.hpp"
 
 namespace evenroad::robot {
@@ -36,6 +37,8 @@ struct Surface {
   float radius = 0;               // by which points, or triangles, are widened
   std::vector<PointLeaf> points;  // of a cloud
   std::vector<TriangleLeaf> triangles;           // of a mesh
+  HullTree<float> hulls;                         // of a mesh its triangles again, one by one; of a cloud a point
+  std::vector<Vec3> parts;                       // of a mesh a corner of each part that hangs together
   std::vector<std::vector<SurfaceNode>> levels;  // from that above the leaves to that of the root
 };
 

@@ -86,6 +86,14 @@ bool reaches(const Surface& surface, const PlacedCapsule& capsule, float reach) 
   return Walk(surface).next(near) >= 0;
 }
 
+/// Return which points touch a capsule.
+Mask near_points(Vec3x16 points, const CapsuleAt& capsule) {
+  const Vec3x16 along = spread(capsule.half);
+  Vec3x16 apart = points - spread(capsule.centre);
+  apart = minus(apart, along, clamp(dot(apart, along) * capsule.one_by_squared, spread(-1), spread(1)));
+  return below_zero(dot(apart, apart) - capsule.reach * capsule.reach);
+}
+
 /// Return whether a point or triangle touches a capsule.
 bool touches(const Surface& surface, const CapsuleAt& capsule) {
   const bool is_mesh = !surface.triangles.empty();
@@ -95,15 +103,47 @@ bool touches(const Surface& surface, const CapsuleAt& capsule) {
       if (near_triangles(surface.triangles[leaf], capsule) != 0) return true;
       continue;
     }
-    const Vec3x16 along = spread(capsule.half);
-    Vec3x16 apart = surface.points[leaf].points - spread(capsule.centre);
-    apart = minus(apart, along, clamp(dot(apart, along) * capsule.one_by_squared, spread(-1), spread(1)));
-    if (below_zero(dot(apart, apart) - capsule.reach * capsule.reach) != 0) return true;
+    if (near_points(surface.points[leaf].points, capsule) != 0) return true;
   }
   return false;
 }
 
 Vec3 lane_of(const Vec3x16& v, int lane) { return {v.x[lane], v.y[lane], v.z[lane]}; }
+
+Vec3x16 all_lanes(const Vec3x16& v, int lane) { return spread(lane_of(v, lane)); }
+
+/// Where points of the scene, one a lane, have their frames.
+PlacedFrame placed_at(Vec3x16 origins) {
+  const Floats16 one = spread(1.0F), zero{};
+  return {{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}, origins};
+}
+
+/// Return whether a point of a cloud that is near a capsule touches the body: sixteen points at one configuration.
+bool cloud_touches(const ShapeNear& of, const Surface& cloud, const CapsuleAt& capsule, int lane) {
+  const PlacedFrame& frame = of.places.frames[of.body.frame];
+  const PlacedFrame here = {
+      {all_lanes(frame.rows[0], lane), all_lanes(frame.rows[1], lane), all_lanes(frame.rows[2], lane)},
+      all_lanes(frame.origin, lane)};
+  Walk walk(cloud);
+  for (int leaf = 0; (leaf = walk.next([&](const SurfaceNode& node) { return near_nodes(node, capsule); })) >= 0;) {
+    const Vec3x16 points = cloud.points[leaf].points;
+    const Mask near = near_points(points, capsule);
+    if (near == 0) continue;
+    const PlacedFrame there = placed_at(points);
+    if (hulls_meeting({of.robot.shapes, of.body.shape, here}, {cloud.hulls, 0, there}, of.near, near, Wanted::FIRST)) {
+      return true;
+    }
+    if (of.body.encloses) {
+      const Vec3x16 from = points - here.origin;
+      const Vec3x16 seen = combine(here.rows[0], from.x, here.rows[1], from.y, here.rows[2], from.z);
+      for (Mask left = near; left != 0; left &= left - 1) {
+        const int k = std::countr_zero(left);
+        if (encloses(of.robot.shapes, of.body.shape, {seen.x[k], seen.y[k], seen.z[k]})) return true;
+      }
+    }
+  }
+  return false;
+}
 
 /// Return the first of some lanes in which a capsule touches a surface or is inside; all of them where all are wanted.
 Mask touching_lanes(const Surface& surface, const Asked& of, float one_by_squared, Mask near, Wanted wanted) {
@@ -126,6 +166,37 @@ Mask touching_lanes(const Surface& surface, const Asked& of, float one_by_square
 
 }  // namespace
 
+Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Mask asked) {
+  Mask meeting = 0;
+  if (surface.triangles.empty()) {
+    const Capsule& capsule = of.robot.capsules[of.capsule];
+    const PlacedCapsule& there = of.places.capsules[of.capsule];
+    for (; asked != 0; asked &= asked - 1) {
+      const int lane = std::countr_zero(asked);
+      const CapsuleAt at{lane_of(there.centre, lane), lane_of(there.half, lane), capsule.one_by_squared, reach};
+      if (cloud_touches(of, surface, at, lane)) meeting |= 1U << lane;
+    }
+    return meeting;
+  }
+  const PlacedFrame &frame = of.places.frames[of.body.frame], there = placed_at({Floats16{}, Floats16{}, Floats16{}});
+  meeting =
+      hulls_meeting({of.robot.shapes, of.body.shape, frame}, {surface.hulls, 0, there}, of.near, asked, Wanted::ALL);
+  // What touches no triangle may be inside of the other as a whole.
+  for (const Vec3& part : surface.parts) {
+    meeting |= shape_enclosing(of.robot, of.places, of.body, spread(part), asked & ~meeting);
+  }
+  if (surface.windings.empty()) return meeting;
+  for (const Vec3& point : of.body.points) {
+    const Vec3x16 p = spread(point);
+    const Vec3x16 place = frame.origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
+    for (Mask left = asked & ~meeting; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      if (is_inside(surface, lane_of(place, lane))) meeting |= 1U << lane;
+    }
+  }
+  return meeting;
+}
+
 Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& scene, const Places& places,
                       Mask blocked, Wanted wanted, Contact* found) {
   const std::span<const float> samples = robot.samples;
@@ -135,6 +206,8 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
   for (int i = static_cast<int>(robot.capsules.size()) - 1; i >= robot.fixed_capsules(); i--) {
     if (scene.surfaces_tested[i] == 0) continue;
     const Capsule& capsule = robot.capsules[i];
+    const Body& body = robot.bodies[capsule.body];
+    const bool shaped = body.shape >= 0;
     const Asked of{places.capsules[i], samples.subspan(capsule.samples.first, capsule.samples.size()),
                    capsule.half_length, lengths.capsules[i], capsule.slack};
     Mask open = ALL_LANES;
@@ -149,10 +222,11 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
       if (many && (beside(surface.grid, of.capsule.centre, of.half + reach) & open) == 0) continue;
       const NearAndSure told = ask(surface, of);
       Mask here = told.sure & ~blocked;
-      if ((meeting | here) == 0 || wanted == Wanted::ALL) {
+      if ((meeting | here) == 0 || wanted == Wanted::ALL || shaped) {
         const Mask near = told.near & open & ~(blocked | meeting | told.sure);
-        here |= touching_lanes(surface, of, capsule.one_by_squared, near, wanted);
+        here |= touching_lanes(surface, of, capsule.one_by_squared, near, shaped ? Wanted::ALL : wanted);
       }
+      if (shaped) here = shape_touching({robot, places, body, i, lengths.shapes[capsule.body]}, surface, reach, here);
       if (found != nullptr && (meeting & ~blocked) == 0 && here != 0) *found = {Contact::With::SURFACE, i, each.number};
       meeting |= here;
       if (meeting != 0 && wanted == Wanted::FIRST) return meeting;
@@ -172,7 +246,10 @@ Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Plac
       // As it is: what does not move is placed without rounding, and may stand on what it touches nearly.
       const auto radius = static_cast<float>(robot.lengths.capsules[i] - robot.padding - capsule.slack + clearance);
       const CapsuleAt at{centre, lane_of(places.capsules[i].half, 0), capsule.one_by_squared, radius + surface.radius};
-      if (touches(surface, at) || (!surface.windings.empty() && is_inside(surface, centre))) {
+      const Body& body = robot.bodies[capsule.body];
+      const ShapeNear shape{robot, places, body, i, static_cast<float>(clearance)};
+      if ((touches(surface, at) || (!surface.windings.empty() && is_inside(surface, centre))) &&
+          (body.shape < 0 || shape_touching(shape, surface, at.reach, 1) != 0)) {
         return {Contact::With::SURFACE, i, each.number};
       }
     }

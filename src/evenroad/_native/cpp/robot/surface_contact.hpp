@@ -29,6 +29,19 @@ Mask near_triangles(const TriangleLeaf& leaf, const CapsuleAt& capsule);
 /// Return which of a node's boxes meet that around a capsule, and with their balls the capsule itself.
 Mask near_nodes(const SurfaceNode& node, const CapsuleAt& capsule);
 
+/// What of a body comes near a surface in some lanes, as its capsule there has told.
+struct ShapeNear {
+  const Robot& robot;
+  const Places& places;
+  const Body& body;
+  int capsule;
+  float near;  // shapes nearer than this touch [m]
+};
+
+/// Return the mask of those lanes asked for in which the true shape of a body touches a surface, where its capsule
+/// does.
+Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Mask asked);
+
 /// Return whether a place that touches no triangle is inside of a closed mesh.
 bool is_inside(const Surface& mesh, Vec3 place);
 

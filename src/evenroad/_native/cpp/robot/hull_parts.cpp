@@ -1,0 +1,218 @@
+// Trees over the convex parts of true shapes: how they are made, and whether closed surfaces go around a place.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+
+#include "robot/hull_tree.hpp"
+
+namespace evenroad::robot {
+
+namespace {
+
+constexpr double ROUNDING = 1e-12;  // boxes are larger by that [m]
+/// So small a volume, of the line's unit and two corners, leaves open on which side of a triangle's side it passes
+/// [m^2].
+constexpr double UNSURE = 1e-14;
+
+struct Box {
+  double low[3], high[3];
+};
+
+/// Makes a tree from its root down: boxes are halved by place along their longest side.
+template <class T>
+struct Builder {
+  HullTree<T>& tree;
+  const GivenParts& given;
+  std::vector<Box> boxes;       // around parts
+  std::vector<double> reaches;  // of parts, from the middles of their boxes
+  std::vector<int> order;
+
+  void measure(int part) {
+    Box& box = boxes[part];
+    const double width = given.widths[part], *disc = given.discs.data() + 3 * part;
+    const double radius = std::hypot(disc[0], disc[1], disc[2]);
+    const std::int64_t first = given.first_point[part], end = given.first_point[part + 1];
+    double wide[3];
+    for (int k = 0; k < 3; k++) {
+      wide[k] = width + std::sqrt(std::max(radius * radius - disc[k] * disc[k], 0.0));
+      box.low[k] = std::numeric_limits<double>::infinity(), box.high[k] = -box.low[k];
+      for (std::int64_t i = first; i < end; i++) {
+        box.low[k] = std::min(box.low[k], given.points[3 * i + k] - wide[k]);
+        box.high[k] = std::max(box.high[k], given.points[3 * i + k] + wide[k]);
+      }
+    }
+    for (std::int64_t i = first; i < end; i++) {
+      double away[3];
+      for (int k = 0; k < 3; k++) away[k] = given.points[3 * i + k] - 0.5 * (box.low[k] + box.high[k]);
+      reaches[part] = std::max(reaches[part], std::hypot(away[0], away[1], away[2]) + width + radius);
+    }
+  }
+
+  double middle(int part, int axis) const { return 0.5 * (boxes[part].low[axis] + boxes[part].high[axis]); }
+
+  /// Write the node of the parts from a first to one before an end in the order.
+  void fill(int number, int first, int end) {
+    HullNode<T> node{{-1, -1}, {}, {}, {}, 0, 0, 0, {}, false};
+    double centre[3], half[3], radius = 0;
+    for (int k = 0; k < 3; k++) {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (int i = first; i < end; i++) {
+        low = std::min(low, boxes[order[i]].low[k]), high = std::max(high, boxes[order[i]].high[k]);
+      }
+      centre[k] = 0.5 * (low + high), half[k] = 0.5 * (high - low);
+      node.centre[k] = static_cast<T>(centre[k]);
+      // Also for the rounding of single precision.
+      node.half[k] = static_cast<T>(half[k] + std::abs(centre[k] - node.centre[k]) + 1e-7 * half[k] + ROUNDING);
+    }
+    for (int i = first; i < end; i++) {
+      double away[3];
+      for (int k = 0; k < 3; k++) away[k] = middle(order[i], k) - node.centre[k];
+      radius = std::max(radius, std::hypot(away[0], away[1], away[2]) + reaches[order[i]]);
+    }
+    node.radius = static_cast<T>(radius * (1.0 + 1e-7) + ROUNDING);
+    if (end - first == 1) {
+      const int part = order[first];
+      const double* disc = given.discs.data() + 3 * part;
+      const double length = std::hypot(disc[0], disc[1], disc[2]);
+      node.width = static_cast<T>(given.widths[part]), node.disc = static_cast<T>(length);
+      for (int k = 0; k < 3 && length > 0; k++) node.axis[k] = static_cast<T>(disc[k] / length);
+      node.encloses = given.enclosing[part];
+      node.points = {static_cast<int>(tree.points.size()), 0};
+      for (std::int64_t i = given.first_point[part]; i < given.first_point[part + 1]; i++) {
+        const double* p = given.points.data() + 3 * i;
+        tree.points.push_back({static_cast<T>(p[0]), static_cast<T>(p[1]), static_cast<T>(p[2])});
+      }
+      node.points.end = static_cast<int>(tree.points.size());
+    } else {
+      const int axis = static_cast<int>(std::max_element(half, half + 3) - half), halfway = (first + end) / 2;
+      std::nth_element(order.begin() + first, order.begin() + halfway, order.begin() + end, [&](int a, int b) {
+        const double x = middle(a, axis), y = middle(b, axis);
+        return x != y ? x < y : a < b;
+      });
+      const int below = static_cast<int>(tree.nodes.size());
+      tree.nodes.resize(tree.nodes.size() + 2);
+      fill(below, first, halfway), fill(below + 1, halfway, end);
+      node.children[0] = below, node.children[1] = below + 1;
+    }
+    tree.nodes[number] = node;
+  }
+};
+
+/// Return how a line along `way` from a place crosses a triangle ahead of the place: 0, or 1 along the triangle's
+/// normal and -1 against it; nothing where that cannot be told.
+std::optional<int> crossing(const HullPoint<float>* corners, const double (&place)[3], const double (&way)[3]) {
+  double p[3][3], sides[3];
+  for (int i = 0; i < 3; i++) {
+    p[i][0] = corners[i].x - place[0], p[i][1] = corners[i].y - place[1], p[i][2] = corners[i].z - place[2];
+  }
+  const auto volume = [](const double* a, const double* b, const double* c) {
+    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+  };
+  for (int i = 0; i < 3; i++) sides[i] = volume(way, p[i], p[(i + 1) % 3]);
+  const double least = std::min({sides[0], sides[1], sides[2]}), most = std::max({sides[0], sides[1], sides[2]});
+  if (least < -UNSURE && most > UNSURE) return 0;
+  if (least < UNSURE && most > -UNSURE) return std::nullopt;
+  // The triangle's volume with the place tells on which side of it that is.
+  const double ahead = volume(p[0], p[1], p[2]);
+  return (ahead > 0) == (least > 0) ? (least > 0 ? 1 : -1) : 0;
+}
+
+/// Return how often surfaces below a root wind around a place, seen along a way, or nothing where that is not told.
+std::optional<int> windings(const HullTree<float>& tree, int root, const double (&place)[3], const double (&way)[3]) {
+  int waiting[DEEPEST], count = 1, times = 0;
+  waiting[0] = root;
+  while (count > 0) {
+    const HullNode<float>& node = tree.nodes[waiting[--count]];
+    if (node.is_leaf()) {
+      if (!node.encloses) continue;
+      const auto crossed = crossing(tree.points.data() + node.points.first, place, way);
+      if (!crossed) return std::nullopt;
+      times += *crossed;
+      continue;
+    }
+    // Whether the half line ahead meets the box.
+    double enter = 0, leave = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; k++) {
+      const double from = node.centre[k] - place[k], half = node.half[k] + UNSURE;
+      const double one = (from - half) / way[k], other = (from + half) / way[k];
+      enter = std::max(enter, std::min(one, other)), leave = std::min(leave, std::max(one, other));
+    }
+    if (enter > leave) continue;
+    for (const int child : node.children) waiting[count++] = child;
+  }
+  return times;
+}
+
+}  // namespace
+
+template <class T>
+int add_parts(HullTree<T>& tree, const GivenParts& given, Range parts) {
+  const std::size_t count = given.widths.size();
+  if (given.first_point.size() != count + 1 || given.discs.size() != 3 * count || given.enclosing.size() != count ||
+      parts.size() < 1 || parts.first < 0 || parts.end > static_cast<int>(count)) {
+    throw std::invalid_argument("arrays of parts must be equally long");
+  }
+  for (int part = parts.first; part < parts.end; part++) {
+    const std::int64_t first = given.first_point[part], end = given.first_point[part + 1];
+    if (first < 0 || first >= end || 3 * end > static_cast<std::int64_t>(given.points.size()) ||
+        (given.enclosing[part] && end - first != 3)) {
+      throw std::invalid_argument("parts.first_point must rise, within parts.points");
+    }
+  }
+  Builder<T> builder{tree, given, std::vector<Box>(count), std::vector<double>(count), std::vector<int>(parts.size())};
+  std::iota(builder.order.begin(), builder.order.end(), parts.first);
+  for (const int part : builder.order) builder.measure(part);
+  const int root = static_cast<int>(tree.nodes.size());
+  tree.nodes.emplace_back();
+  builder.fill(root, 0, parts.size());
+  return root;
+}
+
+template int add_parts(HullTree<float>&, const GivenParts&, Range);
+
+std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root) {
+  std::map<std::array<float, 3>, int> numbers;  // of corners
+  std::vector<int> above;                       // of a corner another one of the same part, or itself
+  std::vector<Vec3> points, found;
+  const auto first_of = [&](int corner) {
+    while (above[corner] != corner) corner = above[corner] = above[above[corner]];
+    return corner;
+  };
+  std::vector<int> waiting{root};
+  while (!waiting.empty()) {
+    const HullNode<float>& node = tree.nodes[waiting.back()];
+    waiting.pop_back();
+    if (!node.is_leaf()) {
+      for (const int child : node.children) waiting.push_back(child);
+      continue;
+    }
+    int first = -1;
+    for (int i = node.points.first; i < node.points.end; i++) {
+      const auto [x, y, z] = tree.points[i];
+      const auto [place, added] = numbers.try_emplace({x, y, z}, static_cast<int>(above.size()));
+      if (added) above.push_back(place->second), points.push_back({x, y, z});
+      if (first < 0) first = place->second;
+      above[first_of(place->second)] = first_of(first);
+    }
+  }
+  for (int corner = 0; corner < static_cast<int>(above.size()); corner++) {
+    if (above[corner] == corner) found.push_back(points[corner]);
+  }
+  return found;
+}
+
+bool encloses(const HullTree<float>& tree, int root, const double (&place)[3]) {
+  // Lines along no usual axis; where one passes through a side of a triangle, the next is taken.
+  constexpr double WAYS[3][3] = {{0.3826, 0.5113, 0.7695}, {-0.6711, 0.4127, 0.6159}, {0.5217, -0.7723, 0.3624}};
+  for (const auto& way : WAYS) {
+    if (const auto times = windings(tree, root, place, way)) return *times != 0;
+  }
+  return true;
+}
+
+}  // namespace evenroad::robot

@@ -1,0 +1,106 @@
+"""Parts: a link's true shape as convex parts, which decide where its capsules touch an obstacle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from evenroad._arrays import Floats, set_fields
+from evenroad.geometry.fit import extreme
+from evenroad.geometry.hulls import is_convex, piece_of, thinned
+from evenroad.geometry.mesh import closed_parts
+from evenroad.geometry.pose import Vector
+from evenroad.geometry.shapes import Capsule, Cylinder, Mesh, Shape, Sphere
+
+LITTLE = 1e-4
+"""Largest height of a corner that a convex mesh loses, for speed [m]; its hull is widened by what that leaves out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """All points within `radius`, and within a disc, of the convex hull of each part's corners; equal by value.
+
+    `corners`, (parts, corners, 3), are in the frame of the link [m].  The disc is across its axis, whose length is the
+    disc's radius: so a segment is a cylinder.  `of` says what they are parts of: the kind of a shape, ``hull`` of a
+    convex mesh, ``mesh`` of any other, whose triangles they are.  Surfaces that are `closed` have an inside.
+    """
+
+    corners: Floats
+    link: str
+    of: str
+    radius: float = 0.0
+    disc: Vector = (0.0, 0.0, 0.0)
+    closed: bool = False
+
+    def __post_init__(self) -> None:
+        set_fields(self, corners=np.array(self.corners, dtype=np.float64), disc=tuple(self.disc))
+
+    @cached_property
+    def _key(self) -> tuple[object, ...]:
+        return self.corners.shape, self.corners.tobytes(), self.link, self.of, self.radius, self.disc, self.closed
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash(self._key)
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __eq__(self, other: object) -> bool:
+        return NotImplemented if not isinstance(other, Parts) else self is other or self._key == other._key
+
+
+def parts_of(shapes: Iterable[Shape]) -> tuple[Parts, ...]:
+    """Return the parts of shapes, of the links whose capsules are not these shapes."""
+    every = tuple(shapes)
+    sharp = {shape.link for shape in every if not isinstance(shape, Sphere | Capsule)}
+    return tuple(parts for shape in every if shape.link in sharp for parts in _parts(shape))
+
+
+def _parts(shape: Shape) -> tuple[Parts, ...]:
+    if isinstance(shape, Cylinder):
+        axis = shape.pose.rotation_matrix[:, 2]
+        endpoints = np.array(shape.pose.xyz) + np.outer((-0.5 * shape.length, 0.5 * shape.length), axis)
+        x, y, z = (shape.radius * axis).tolist()
+        return (Parts(endpoints[np.newaxis], shape.link, shape.kind, disc=(x, y, z)),)
+    if not isinstance(shape, Mesh):
+        piece = piece_of(shape)
+        return (Parts(piece.parts, shape.link, shape.kind, piece.radius),)
+    mesh = shape.triangles
+    corners = shape.pose.apply(mesh.vertices)[mesh.triangles]
+    if is_convex(mesh):
+        points, beyond = thinned(extreme(corners.reshape(-1, 3)), LITTLE)
+        return (Parts(points[np.newaxis], shape.link, "hull", beyond),)
+    closed, turned = closed_parts(mesh)
+    # Where sides do not tell inside from outside nobody knows what is solid.
+    closed &= turned
+    return tuple(
+        Parts(_single(corners[these]), shape.link, "mesh", closed=bool(inside))
+        for these, inside in ((closed, True), (~closed, False))
+        if these.any()
+    )
+
+
+def _single(corners: Floats) -> Floats:
+    """Return corners as single precision has them: the native kernel's."""
+    return corners.astype(np.float32).astype(np.float64)
+
+
+def spread(parts: Parts) -> Floats:
+    """Return points, (n, 3), in whose hull all parts lie that are not widened by the radius."""
+    points, axis = parts.corners.reshape(-1, 3), np.array(parts.disc)
+    radius = float(np.linalg.norm(axis))
+    if radius == 0.0:
+        return points
+    # Eight corners around the disc.
+    across = np.linalg.svd(axis[np.newaxis])[2][1:]
+    turn = np.arange(8) * (np.pi / 4.0)
+    ring = (
+        radius
+        / np.cos(np.pi / 8.0)
+        * (np.cos(turn)[:, np.newaxis] * across[0] + np.sin(turn)[:, np.newaxis] * across[1])
+    )
+    return (points[:, np.newaxis] + ring).reshape(-1, 3)
