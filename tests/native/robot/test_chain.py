@@ -128,6 +128,13 @@ def test_what_is_reached_is_reached_and_nothing_goes_on_when_enough_are():
         np.testing.assert_allclose(place(chain, row)[1], origin, atol=1e-9)
 
 
+def test_a_goal_whose_distance_has_no_square_ends_the_search_at_once():
+    chain, unlimited = Chain(*random_chain(1), DIM), np.array([[-np.inf] * DIM, [np.inf] * DIM])
+    task = PoseTask().row
+    task[9:12] = 1e300
+    assert np.isinf(chain.reach(np.zeros((1, DIM)), task, unlimited, 2**31 - 1, 1)[1]).all()
+
+
 def test_a_line_is_followed_until_a_joint_would_jump():
     chain, unlimited = random_chain(2), np.array([[-np.inf] * DIM, [np.inf] * DIM])
     native, q = Chain(*chain, DIM), np.random.default_rng(2).uniform(-1, 1, DIM)
@@ -152,6 +159,8 @@ def test_chains_and_tasks_that_do_not_fit_are_refused():
         chain.reach(np.zeros((1, 4)), task, limits, 1, 1)
     with pytest.raises(InvalidValue, match=r"limits must have shape \(2, 5\)"):
         chain.reach(np.zeros((1, DIM)), task, np.zeros((2, 4)), 1, 1)
+    with pytest.raises(InvalidValue, match="limits must be lows and highs"):
+        chain.reach(np.zeros((1, DIM)), task, np.full((2, DIM), np.nan), 1, 1)
     with pytest.raises(InvalidValue, match=r"task must have shape \(22,\)"):
         chain.follow(np.zeros(DIM), task[:4].copy(), np.zeros((2, 3)), limits, 1, 0.1)
     with pytest.raises(InvalidValue, match="the turn of a task must be 0, 1 or 2"):

@@ -60,7 +60,9 @@ robot::PoseTask task_of(nb::handle given) {
 /// Limits are rows of lows and highs, (2, dim); both may be infinite.
 robot::Limits limits_of(const Array<const double, 2>& given, std::size_t dim) {
   given.of_shape({2, dim});
-  return {given.matrix()[0], given.matrix()[1]};
+  const robot::Limits limits{given.matrix()[0], given.matrix()[1]};
+  for (std::size_t k = 0; k < dim; k++) require(limits.low[k] <= limits.high[k], "limits must be lows and highs");
+  return limits;
 }
 
 std::size_t dim(const Chain& chain) { return static_cast<std::size_t>(chain.dim); }

@@ -112,8 +112,8 @@ class Solver {
       const double missing = uncovered(error, task);
       if (missing == 0.0 || count == steps) return missing;
       if (count % LOOK == 0) {
-        // An error that is no number ends, too.
-        if (!(missing <= 0.25 * before)) return missing;
+        // An error that is infinite or no number ends, too.
+        if (!(missing < 0.25 * before)) return missing;
         before = missing;
       }
       write_jacobian(tip, task);
