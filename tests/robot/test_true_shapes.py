@@ -170,8 +170,8 @@ def test_a_flat_link_passes_a_slot_with_12_mm_on_both_sides(tmp_path):
         link("base", ""),
         link("rail", ""),
         link("plate", "<collision><geometry><box size='0.2 0.3 0.02'/></geometry></collision>"),
-        joint("along", "base", "rail", "prismatic", "<limit lower='-1' upper='1' velocity='1' effort='1'/>", "0 0 0.5", "1 0 0"),
-        joint("up", "rail", "plate", "prismatic", "<limit lower='-0.3' upper='0.3' velocity='1' effort='1'/>", "0 0 0", "0 0 1"),
+        joint("along", "base", "rail", "prismatic", WIDE, "0 0 0.5", "1 0 0"),
+        joint("up", "rail", "plate", "prismatic", WIDE, "0 0 0", "0 0 1"),
         name="plate",
     )  # fmt: skip
     (tmp_path / "plate.urdf").write_text(text)

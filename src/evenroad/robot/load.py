@@ -35,7 +35,7 @@ DATA = Path(__file__).parent / "data"
 ROBOTS = ("arm7", "ur5")
 """Names of the shipped robots."""
 SHAPES = "shapes"
-"""What `bodies` is where the maker's shapes decide as soon as fitted capsules touch an obstacle."""
+"""`bodies` where the maker's shapes decide once capsules touch an obstacle."""
 PathLike = str | os.PathLike[str]
 
 
@@ -129,9 +129,8 @@ def load_model(
         SRDF's only group, or the longest chain among several, else every joint that moves and is no mimic, in the order
         of the file.
     bodies : str or path-like, optional
-        ``shapes``: where the capsules fitted to a link touch an obstacle, the shapes of the file decide; a plan then
-        takes up to twenty times as long.  Or a YAML file of capsules and spheres, in place of those fitted (see
-        :func:`read_bodies`).
+        ``shapes``: where capsules touch an obstacle the file's shapes decide, and a plan takes up to twenty times as
+        long.  Or a YAML file of capsules and spheres, in place of those fitted (see :func:`read_bodies`).
     use_visuals : bool
         Links without collision geometry use their visuals.
     packages : mapping of str to path-like, optional
@@ -163,9 +162,7 @@ def load_model(
     before = stamps((path, srdf_path, bodies_path))
     urdf = read_robot(file)
     before |= stamps(shape.source for shape in urdf.shapes if isinstance(shape, Mesh))
-    others = [("SRDF", srdf_path), ("file of bodies", bodies_path)]
-    if with_shapes:
-        others.append((SHAPES, None))
+    others = [("SRDF", srdf_path), ("file of bodies", bodies_path), *([(SHAPES, None)] if with_shapes else [])]
     key = key_of(urdf, others, group)
     model = cached(key)
     if model is None:

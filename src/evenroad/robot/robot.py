@@ -86,13 +86,8 @@ class Robot(RobotMethods):
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of all that decides checks; the names of the robot and its states do not."""
         # Planes and shapes only where there are any: robots without keep the fingerprints that they always had.
-        left_out = {
-            "name",
-            "states",
-            "holds",
-            "inner",
-            *(each for each in ("planes", "shapes") if not getattr(self, each)),
-        }
+        left_out = {"name", "states", "holds", "inner"}
+        left_out |= {each for each in ("planes", "shapes") if not getattr(self, each)}
         return fingerprint_of(*(getattr(self, each.name) for each in fields(self) if each.name not in left_out))
 
     def with_tool(self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = "") -> Robot:
@@ -136,18 +131,8 @@ class Robot(RobotMethods):
             shapes = [replace(shape, link="tool") for shape in tool]
             capsules = tuple(capsule for shape in shapes for capsule in fit_capsules(shape))
             hulls = tuple(piece_of(shape).hull for shape in shapes)
-            inner = inner_of(shapes)
-            tool = Robot(
-                "tool",
-                ("tool",),
-                (),
-                capsules,
-                (),
-                (),
-                hulls=hulls,
-                inner=inner,
-                shapes=parts_of(shapes) if self.shapes else (),
-            )
+            more = dict(hulls=hulls, inner=inner_of(shapes), shapes=parts_of(shapes) if self.shapes else ())
+            tool = Robot("tool", ("tool",), (), capsules, (), (), **more)  # type: ignore[arg-type]
         if not tool.capsules:
             raise InvalidValue(f"tool {tool.name!r} must have a body: without one it would never collide")
         tool = replace(tool, group=(), states={})
