@@ -90,11 +90,9 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     model = load_model(source, **options)
     if model.always_touching:
         pairs = ", ".join(f"{first} and {second}" for first, second in model.always_touching)
-        warnings.warn(
-            f"{model.robot.name!r} is in collision in every sampled configuration: {pairs}; disable these pairs in the"
-            " SRDF, or give smaller bodies",
-            stacklevel=2,
-        )
+        advice = "disable these pairs in the SRDF, or give smaller bodies"
+        always = f"{model.robot.name!r} is in collision in every sampled configuration"
+        warnings.warn(f"{always}: {pairs}; {advice}", stacklevel=2)
     elif model.never_free:
         warnings.warn(f"{model.robot.name!r}: {model.never_free}", stacklevel=2)
     return model.robot

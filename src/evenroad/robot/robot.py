@@ -307,10 +307,8 @@ def in_scene(robot: Robot, scene: Scene) -> Robot:
     for held in scene.attached:
         if held.name in robot.holds:
             if not same_bodies(robot, held):
-                raise InvalidValue(
-                    f"{held.name!r} is attached twice: scene {scene.name!r} and robot {robot.name!r} have two bodies"
-                    " of that name"
-                )
+                both = f"scene {scene.name!r} and robot {robot.name!r}"
+                raise InvalidValue(f"{held.name!r} is attached twice: {both} have two bodies of that name")
             continue
         robot = robot.holding(held)
     return within_scene(robot, scene)
@@ -342,14 +340,11 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
     for name, (lower, upper) in limits.items():
         require_known("joint", name, names)
         if not lower < upper:
-            got = f"got {lower!r}, {upper!r}"
-            raise InvalidValue(f"limits of joint {name!r} must satisfy lower < upper, {got}")
-    joints = []
-    for joint in robot.joints:
+            raise InvalidValue(f"limits of joint {name!r} must satisfy lower < upper, got {lower!r}, {upper!r}")
+    joints = list(robot.joints)
+    for i, joint in enumerate(joints):
         if joint.name in limits:
             lower, upper = map(float, limits[joint.name])
-            kind = "revolute" if joint.kind == "continuous" else joint.kind
-            joint = replace(joint, kind=kind, lower=lower, upper=upper)
-        joints.append(joint)
-    # A leader's range is limited by its mimics.
+            turns = joint.kind == "continuous"
+            joints[i] = replace(joint, kind="revolute" if turns else joint.kind, lower=lower, upper=upper)
     return replace(robot, joints=tuple(within_limits_of_mimics(joints)))
