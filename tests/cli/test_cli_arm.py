@@ -53,7 +53,7 @@ def test_without_a_number_of_points_trees_plan_and_say_what_is_proved(answer, tm
     assert (record["planner"], record["proof"], record["rule"]) == ("trees", "certified", "none")
     assert record["counts"]["nodes"] > 2
     assert f"trees: {record['counts']['nodes']} nodes, {record['counts']['edges_checked']} motions" in shown
-    assert "certified: the robot's capsules touch nothing anywhere along the" in shown
+    assert "certified: the robot's bodies touch nothing anywhere along the" in shown
     assert "milestones" not in shown
     # More time gives a path that is no longer, the same command the same files.
     best, shown = answer(*arm_arguments(time=0.2), "--improve", out="best")

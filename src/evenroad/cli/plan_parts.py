@@ -29,7 +29,7 @@ DEFAULT_N = 512
 
 PROOFS = {
     "exact": "exact: no motion touches anything, up to rounding",
-    "certified": "certified: the robot's capsules touch nothing anywhere along the path",
+    "certified": "certified: the robot's bodies touch nothing anywhere along the path",
     "resolution": "resolution: motions are free at states close together; what lies between them is not seen",
 }
 
