@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 import trimesh
 
+from evenroad.errors import InvalidValue
 from evenroad.geometry import Box, Capsule, Cylinder, Mesh, PointCloud, Sphere, TriangleMesh
 from evenroad.planning import plan
 from evenroad.robot import load_robot
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.scene import Obstacle, Scene
+from evenroad.robot_roadmap.static_scene import require_same_robot
+from tests.refused import refused
 from tests.robot.kernel_arms import edge, proof_edge, random_rotation, states_along
 from tests.robot.mesh_arms import fork, write_fork_arm
 from tests.robot.shape_oracle import shape_clearance
@@ -160,6 +163,8 @@ def test_shapes_decide_where_they_are_asked_for_and_only_there(tmp_path):
     assert {each.of for each in shaped.shapes} == {"box", "cylinder", "mesh"}
     assert capsules == replace(shaped, shapes=())
     assert shaped.fingerprint() != capsules.fingerprint()
+    for one, other in ((shaped, capsules), (capsules, shaped)):
+        refused(InvalidValue, "shapes that decide", require_same_robot, one, Scene(()), other)
     held = Box((0.1, 0.1, 0.1), xyz=(0, 0, 0.1))
     assert shaped.holding(held, shaped.links[-1]).shapes[-1].of == "box"
     assert capsules.holding(held, capsules.links[-1]).shapes == load_robot("ur5", bodies="shapes").shapes == ()

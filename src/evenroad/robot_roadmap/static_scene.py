@@ -139,6 +139,8 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
     ours, theirs = map(tuple, pairs)
     if ours != theirs:
         yield _lists("tested pairs", ours, theirs)
+    if made.shapes != given.shapes:
+        yield "the shapes that decide where its capsules touch an obstacle differ: read both with the same bodies"
     held = held_values(given)
     for name, value in held_values(made).items():
         if held.get(name) != value:
