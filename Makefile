@@ -99,7 +99,7 @@ bank: $(VENV)/.dev $(VENV)/.native
 mazes: $(VENV)/.dev $(VENV)/.native
 	$(BIN)/python studies/tools/draw_mazes.py
 
-# Wheels of this Python for x86_64 and aarch64, glibc and musl, from any Linux.
+# Wheels of this Python for x86_64 and aarch64 with glibc, from any Linux.
 wheels: $(VENV)/.tools
 	rm -rf out/wheels
 	$(PIP) ziglang

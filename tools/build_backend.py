@@ -38,8 +38,8 @@ SOURCES = ROOT / "src" / "evenroad" / "_native"
 ZIG = "ziglang>=0.17,<0.18"
 LIBRARIES = {"gnu": ("gnu.2.28", "manylinux_2_28"), "musl": ("musl", "musllinux_1_2")}
 """The oldest C library that a wheel built by `ziglang` runs with, in clang's words and in a wheel's name."""
-TARGETS = tuple(f"{machine}-linux-{library}" for library in LIBRARIES for machine in ("x86_64", "aarch64"))
-"""What `make wheels` builds for."""
+TARGETS = ("x86_64-linux-gnu", "aarch64-linux-gnu")
+"""What `make wheels` builds for: with musl, pip compiles."""
 
 Settings = dict[str, Any] | None
 
