@@ -7,7 +7,6 @@ import os
 import platform
 from collections.abc import Sequence
 from dataclasses import asdict
-from importlib import metadata
 from typing import Any
 
 import numpy as np
@@ -183,8 +182,11 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
 
 def versions() -> dict[str, str]:
     """Return the versions of evenroad, Python and the numerical libraries."""
-    libraries = {name: metadata.version(name) for name in ("numpy", "scipy")}
-    return {"evenroad": __version__, "python": platform.python_version(), **libraries}
+    # Imported late: a plan of an arm needs SciPy for its version alone.
+    import scipy
+
+    python = platform.python_version()
+    return {"evenroad": __version__, "python": python, "numpy": np.__version__, "scipy": scipy.__version__}
 
 
 def save_json(path: str | os.PathLike[str], record: dict[str, Any]) -> None:

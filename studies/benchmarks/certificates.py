@@ -32,7 +32,8 @@ from tests.clear_paths import DiscWorld, Plane
 from evenroad._arrays import Floats
 from evenroad.planning import PRM, plan
 from evenroad.points import PointSet, draw
-from evenroad.roadmap import Budget, KNearest, Radius, Rule, certify
+from evenroad.roadmap import Budget, KNearest, Radius, Rule
+from evenroad.roadmap.certify import certify
 from evenroad.space import BoxSpace
 
 SETS = {2: 256, 3: 512, 4: 512}

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from evenroad.points import draw, save_points
-from evenroad.roadmap import KNearest, Radius, certify
+from evenroad.roadmap import KNearest, Radius
+from evenroad.roadmap.certify import certify
 from evenroad.space import BoxSpace
 
 

@@ -15,7 +15,8 @@ from evenroad._terminal import print_table
 from evenroad.cli.sampler import chosen_rule
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.npz import load_points
-from evenroad.roadmap import Certificate, certify, default_rule
+from evenroad.roadmap import Certificate, default_rule
+from evenroad.roadmap.certify import certify
 from evenroad.space import BoxSpace
 
 FACTORS = (3.0, 2.0, 1.5, 1.2)

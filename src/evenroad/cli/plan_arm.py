@@ -13,11 +13,9 @@ from evenroad.cli.plan_parts import (
     chosen_planner,
     common_query,
     finish,
-    load_compiled_code,
     output_files,
     wants_points,
 )
-from evenroad.cli.roadmap import kept_roadmap
 from evenroad.cli.robot import bodiless_rows
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
@@ -31,7 +29,6 @@ from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.constraint import Constraint
 from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
-from evenroad.robot_roadmap.static_scene import joined_scenes
 
 
 def plan_arm(plan: PlanArm) -> int:
@@ -43,12 +40,18 @@ def plan_arm(plan: PlanArm) -> int:
     inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
-    kept = None if plan.roadmap is None else kept_roadmap(plan)
+    kept = None
+    if plan.roadmap is not None:
+        from evenroad.cli.roadmap import kept_roadmap
+        from evenroad.robot_roadmap.static_scene import joined_scenes
+
+        kept = kept_roadmap(plan)
+        scene = joined_scenes(kept.scene, scene)
     robot = kept.robot if kept is not None and plan.robot is None else plan.robot
     assert robot is not None
     request = arm_request(
         robot,
-        scene if kept is None else joined_scenes(kept.scene, scene),
+        scene,
         " ".join(plan.start),
         goals,
         Reading(plan.deg, plan.tip, plan.frame),
@@ -58,7 +61,6 @@ def plan_arm(plan: PlanArm) -> int:
     )
     world = request.world
     planner = chosen_planner(plan, request) if kept is None else kept.within(world)
-    load_compiled_code(request, planner)
 
     options = Options(budget, not plan.raw, plan.seed, plan.certified, constraints)
     # An orientation constraint has a world of its own kind, with its own planner.

@@ -8,14 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad.cli.certify import guarantee_rows, guarantees
 from evenroad.cli.plan import PlanDisk
 from evenroad.cli.plan_parts import (
     chosen_budget,
     chosen_planner,
     common_query,
     finish,
-    load_compiled_code,
     output_files,
     wants_points,
 )
@@ -55,7 +53,6 @@ def plan_disk(plan: PlanDisk) -> int:
     request = read_request(world, start, goals, Reading())
     of_roadmap = dict(search="full", certify=plan.guarantees) if wants_points(plan) else {}
     planner = chosen_planner(plan, request, **of_roadmap)
-    load_compiled_code(request, planner)
     options = Options(budget, smooth=not plan.raw, certified=plan.certified)
     result, _ = finished(request, solve(request, planner, options), certified=plan.certified)
     query = {
@@ -73,6 +70,8 @@ def plan_disk(plan: PlanDisk) -> int:
 
     record, more = plan_record(result, query), []
     if result.certificate is not None:
+        from evenroad.cli.certify import guarantee_rows, guarantees
+
         record["certificate"] = guarantees(result.certificate)
         more = guarantee_rows(result.certificate)
     if "png" in files and find_spec("matplotlib") is None:

@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
@@ -15,15 +13,11 @@ from evenroad.cli.plan import PlanOptions
 from evenroad.cli.sampler import chosen_rule, chosen_sampler, draw_points, require_seed, speaks_of_points
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
-from evenroad.planning.connectors import connector_of
-from evenroad.planning.plan import Options, solve
-from evenroad.planning.prm import PRM, rule_of
+from evenroad.planning.prm import PRM
 from evenroad.planning.request import Request
 from evenroad.planning.trees import RRTConnect, default_planner
-from evenroad.points import PointSet
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.problem import Planner
-from evenroad.world import ValidatesPaths
 
 DEFAULT_N = 512
 
@@ -32,9 +26,6 @@ PROOFS = {
     "certified": "certified: the robot's bodies touch nothing anywhere along the path",
     "resolution": "resolution: motions are free at states close together; what lies between them is not seen",
 }
-
-_FEW = 16
-"""Number of points of a plan that only loads compiled code."""
 
 
 def chosen_planner(plan: PlanOptions, request: Request, **of_prm: Any) -> Planner:
@@ -65,23 +56,6 @@ def chosen_budget(plan: PlanOptions) -> Budget:
 
 def _n(plan: PlanOptions) -> int:
     return DEFAULT_N if plan.n is None else plan.n
-
-
-def load_compiled_code(request: Request, planner: Planner) -> None:
-    """Plan once with a few of the points, so that times do not include loading of compiled code."""
-    world = request.world
-    if not isinstance(planner, PRM):
-        stay = Request(world, request.start, request.start[np.newaxis])
-        solve(stay, None, Options(Budget(samples=1)))
-        return
-    assert isinstance(planner.points, PointSet)
-    few = PRM(PointSet(planner.points.points[:_FEW]), rule=rule_of(planner, world.space), search=planner.search)
-    solve(Request(world, request.start, request.goals), few, Options(Budget()))
-    still = np.stack([request.start, request.start])
-    if isinstance(world, ValidatesPaths):
-        world.validate(still)
-        if (connector := connector_of(world)) is not None:
-            connector.smooth(world, still)
 
 
 def output_files(plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[str], what: str) -> dict[str, Path]:

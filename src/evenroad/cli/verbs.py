@@ -5,12 +5,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from importlib.metadata import entry_points
 from textwrap import fill
+from typing import TYPE_CHECKING
 
 from evenroad import __version__
 from evenroad._terminal import leave_output, table_width
 from evenroad.errors import EvenroadError, NotAvailable, UnknownName, in_one_line
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoints
 
 DONE = 0
 BAD_INPUT = 2
@@ -112,14 +115,22 @@ def _print_surroundings() -> None:
 
 def _installed() -> list[str]:
     """Return the installed verbs, with those of the studies if they are."""
-    there = entry_points(group=ENTRY_POINTS).names
+    there = {found.name for found in _entry_points()}
     return [name for name in ABOUT if name in VERBS or name in there]
 
 
+def _entry_points() -> EntryPoints:
+    # Imported late: it takes longer to load than most of evenroad, for verbs of another package.
+    from importlib.metadata import entry_points
+
+    return entry_points(group=ENTRY_POINTS)
+
+
 def _kind_of_studies(verb: str) -> type:
-    for found in entry_points(group=ENTRY_POINTS, name=verb):
-        kind: type = found.load()
-        return kind
+    for found in _entry_points():
+        if found.name == verb:
+            kind: type = found.load()
+            return kind
     raise NotAvailable(
         f"evenroad {verb} comes with the package evenroad-studies, which is not installed:"
         " pip install evenroad-studies, in a clone ./studies"

@@ -139,7 +139,7 @@ def piece_of(shape: Shape) -> Piece:
     if isinstance(shape, Sphere):
         points, radius = np.zeros((1, 3)), shape.radius
     elif isinstance(shape, Capsule):
-        points, radius = np.unique([shape.a, shape.b], axis=0), shape.radius
+        points, radius = np.array(sorted({shape.a, shape.b})), shape.radius
     elif isinstance(shape, Box):
         points = 0.5 * np.array(shape.size) * np.array(list(itertools.product((-1, 1), repeat=3)))
     elif isinstance(shape, Cylinder):

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 import numpy.typing as npt
@@ -299,6 +298,8 @@ def _announced_by_gltf(content: bytes) -> int:
 
 def _nodes_of_collada(content: bytes) -> int:
     """Return the number of nodes after all instances are expanded."""
+    from xml.etree import ElementTree
+
     root = ElementTree.fromstring(content)
     nodes = [each for each in root.iter() if each.tag.endswith("}node")]
     named = {each.get("id", ""): each for each in nodes}

@@ -1,10 +1,6 @@
 """Planning: ``er.plan``, and planners as values."""
 
-from evenroad.planning.growing import GrowingPRM as GrowingPRM
+from evenroad._lazy import names_on_use
 from evenroad.planning.plan import plan as plan
-from evenroad.planning.prm import FMT as FMT
-from evenroad.planning.prm import PRM as PRM
-from evenroad.planning.trees import GridSearch as GridSearch
-from evenroad.planning.trees import RRTConnect as RRTConnect
-from evenroad.roadmap.problem import Planner as Planner
-from evenroad.roadmap.problem import Problem as Problem
+
+__all__, __getattr__, __dir__ = names_on_use(__name__, __file__)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, replace
 from time import perf_counter as now
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,6 @@ from evenroad._checks import require_count, require_known
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import connector_of
 from evenroad.points.pointset import PointSet
-from evenroad.points.samplers import Sampler, make_sampler
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.points_of import as_points
@@ -23,6 +22,9 @@ from evenroad.roadmap.query import LINKS, EdgeCost, Query
 from evenroad.roadmap.result import PlanResult, Stage
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily
+
+if TYPE_CHECKING:
+    from evenroad.points.samplers import Sampler
 
 UNTIL = ("solved", "settled", "budget")
 GROWING = 5
@@ -87,6 +89,8 @@ class GrowingPRM:
         )
         sampler = self.sampler
         if sampler is None:
+            from evenroad.points.samplers import make_sampler
+
             # By name: the module of Sobol's points imports scipy.stats, half a second that nobody else needs.
             sampler = make_sampler("growing" if world.space.cube_dim <= GROWING else "sobol")
         points = _draw(sampler, min(self.first, budget.samples), problem, None)

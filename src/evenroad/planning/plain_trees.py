@@ -12,7 +12,6 @@ from time import perf_counter as now
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
-from evenroad.points.samplers import make_sampler
 from evenroad.roadmap.connector import Connection
 from evenroad.world import World
 
@@ -89,6 +88,8 @@ def grow_trees(
 
 def _samples(world: World, n: int, variant: int) -> Floats:
     """Return n configurations, (n, dim); fewer of them are the first of more."""
+    from evenroad.points.samplers import make_sampler
+
     return world.space.from_cube(make_sampler("sobol").draw(n, world.space.cube_dim, rng=variant).points)
 
 

@@ -35,7 +35,7 @@ from evenroad.robot.reference.validate import MeshCheck, has_meshes, unseen_pair
 from evenroad.robot.robot import with_group
 from evenroad.robot.scan import allowed_near_ends, open_everywhere
 from evenroad.robot.states import as_configuration
-from evenroad.world import GridMap, load_map
+from evenroad.world import GridMap
 
 OF_MAP = ("radius", "clearance", "unknown_is_free")
 OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
@@ -53,6 +53,9 @@ def read_request(
     if isinstance(world, str | os.PathLike):
         # The radius distinguishes a map from a scene, whose names and suffixes are the same.
         if "radius" in of_world:
+            # Imported late: a plan of an arm reads no image.
+            from evenroad.world import load_map
+
             world = load_map(world, unknown_is_free=of_world.pop("unknown_is_free", False))
         elif "robot" not in of_world:
             raise InvalidValue(

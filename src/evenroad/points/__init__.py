@@ -1,10 +1,5 @@
 """Point sets of the unit cube: values, samplers, measures. Knows nothing of robots."""
 
-from evenroad.points.npz import load_points as load_points
-from evenroad.points.npz import save_points as save_points
-from evenroad.points.pointset import Origin as Origin
-from evenroad.points.pointset import PointSet as PointSet
-from evenroad.points.samplers import SAMPLERS as SAMPLERS
-from evenroad.points.samplers import Sampler as Sampler
-from evenroad.points.samplers import draw as draw
-from evenroad.points.samplers import make_sampler as make_sampler
+from evenroad._lazy import names_on_use
+
+__all__, __getattr__, __dir__ = names_on_use(__name__, __file__)

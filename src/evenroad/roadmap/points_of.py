@@ -8,8 +8,6 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
-from evenroad.points.samplers import make_sampler
-from evenroad.points.samplers.even import CONTRACTED_FROM, Sliced, contracted
 from evenroad.roadmap.rules import Rule
 from evenroad.space import SO3, BoxSpace, Product, Space
 
@@ -37,6 +35,10 @@ def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike 
     points.  In a box of seven or more dimensions, for a rule of at most 6 neighbours, they are contracted to the
     middle.
     """
+    # Imported late: most plans draw no points.
+    from evenroad.points.samplers import make_sampler
+    from evenroad.points.samplers.even import CONTRACTED_FROM, Sliced, contracted
+
     d = space.cube_dim
     k = None if rule is None else rule.reach(n, space).k
     sparse = k is not None and k <= SPARSE

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -228,6 +227,8 @@ _COLOURS = ("#1b9e5a", "#2f5fd0", "#d1343b", "#e6a23c", "#6b8aa8", "#3b3f46", "#
 
 def as_html(rows: dict[str, str], path: Floats | None) -> str:
     """Return a table of rows, and a drawing of the coordinates of a path, (p, dim), over its length."""
+    from html import escape
+
     cells = "".join(
         f'<tr><th style="text-align:left">{escape(name)}</th><td style="text-align:left">{escape(text)}</td></tr>'
         for name, text in rows.items()

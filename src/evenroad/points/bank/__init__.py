@@ -1,7 +1,5 @@
 """Trained point sets: those that ship, with an index of their hashes and measures."""
 
-from evenroad.points.bank.bank import TRAINED_FAMILIES as TRAINED_FAMILIES
-from evenroad.points.bank.bank import Bank as Bank
-from evenroad.points.bank.bank import Cell as Cell
-from evenroad.points.bank.bank import Trained as Trained
-from evenroad.points.bank.bank import has_large_sets as has_large_sets
+from evenroad._lazy import names_on_use
+
+__all__, __getattr__, __dir__ = names_on_use(__name__, __file__)

@@ -1,8 +1,5 @@
 """Grid maps: images and ROS maps, and the exact world of a disk robot on them."""
 
-from evenroad.world.gridmap.frame import MapFrame as MapFrame
-from evenroad.world.gridmap.gridmap import DiskWorld as DiskWorld
-from evenroad.world.gridmap.gridmap import GridMap as GridMap
-from evenroad.world.gridmap.load import load_image as load_image
-from evenroad.world.gridmap.load import load_map as load_map
-from evenroad.world.gridmap.load import load_ros_map as load_ros_map
+from evenroad._lazy import names_on_use
+
+__all__, __getattr__, __dir__ = names_on_use(__name__, __file__)

@@ -1,0 +1,34 @@
+"""Names of a package that are loaded when they are first used, so that importing one part does not load them all."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable
+from typing import Any
+
+
+def names_on_use(package: str, file: str) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
+    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package that takes each name where its stub says.
+
+    The stub beside the package's file has lines ``from MODULE import X as NAME``; type checkers read it as it is.
+    """
+    with open(f"{file.removesuffix('.py')}.pyi", encoding="utf-8") as stub:
+        words = [line.split() for line in stub if line.startswith("from ")]
+    homes = {name: (module, there) for _, module, _, there, _, name, *_ in words}
+
+    def load(name: str) -> Any:
+        if name not in homes:
+            from difflib import get_close_matches
+
+            near = get_close_matches(name, homes, 1)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            raise AttributeError(f"module {package!r} has no attribute {name!r}{hint}")
+        home, there = homes[name]
+        if home == package:
+            return importlib.import_module(f"{package}.{there}")
+        value = getattr(importlib.import_module(home), there)
+        setattr(sys.modules[package], name, value)
+        return value
+
+    return list(homes), load, lambda: sorted(homes)

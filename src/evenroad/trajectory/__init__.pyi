@@ -1,0 +1,9 @@
+from evenroad.trajectory.arm import arm_trajectory as arm_trajectory
+from evenroad.trajectory.arm import controller_joints as controller_joints
+from evenroad.trajectory.files import format_of as format_of
+from evenroad.trajectory.files import load_trajectory as load_trajectory
+from evenroad.trajectory.files import save_trajectory as save_trajectory
+from evenroad.trajectory.limits import Limits as Limits
+from evenroad.trajectory.limits import limits_of as limits_of
+from evenroad.trajectory.trajectory import Trajectory as Trajectory
+from evenroad.trajectory.trajectory import make_trajectory as make_trajectory
