@@ -10,7 +10,7 @@ from evenroad.cli import verbs
 
 @pytest.fixture
 def _without_the_studies(monkeypatch):
-    monkeypatch.setattr(verbs, "entry_points", lambda **selected: EntryPoints(()))
+    monkeypatch.setattr("importlib.metadata.entry_points", lambda **selected: EntryPoints(()))
 
 
 @pytest.mark.usefixtures("_without_the_studies")
