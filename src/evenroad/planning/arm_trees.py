@@ -14,7 +14,7 @@ from evenroad._native import planning
 from evenroad._native.robot import Checker
 from evenroad.errors import InvalidValue
 from evenroad.roadmap.connector import Connection
-from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs, sphere_points
+from evenroad.robot.tree_sequences import PAIRS, ball_points, cube_points, native_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 
@@ -60,11 +60,18 @@ def connect(
     dim = world.space.dim
     limit = require_positive("seconds", seconds)
     most = require_count("most_motions", most_motions)
-    first, others = _start_and_goals(start, goals, dim)
-    samples = cube_points(dim) if sequence is None else _as_sequence(sequence, dim)
+    terminals = _start_and_goals(start, goals, dim)
+    samples = native_points(cube_points, dim) if sequence is None else _as_sequence(sequence, dim)
+    return joined(world, terminals, samples, most, limit)
+
+
+def joined(
+    world: PlansWithTrees, terminals: Floats, samples: planning.Points, most_motions: int, seconds: float
+) -> Connection:
+    """Do as `connect`, for a start and goals in one array, (1 + g, dim)."""
     if world.fixed_contact is not None:
-        return Connection(np.empty((0, dim)), -1, 0, 0, 0)
-    return _grown(world, first, others, samples, most, limit)[0]
+        return Connection(np.empty((0, terminals.shape[1])), -1, 0, 0, 0)
+    return _grown(world, terminals, samples, most_motions, seconds)[0]
 
 
 def grown_trees(
@@ -76,10 +83,10 @@ def grown_trees(
     """
     dim = world.space.dim
     limit = require_positive("seconds", seconds)
-    first, others = _start_and_goals(start, goals, dim)
+    terminals = _start_and_goals(start, goals, dim)
     if world.fixed_contact is not None:
         return np.empty((0, dim)), np.empty((0, 2), dtype=np.int64)
-    _, trees = _grown(world, first, others, cube_points(dim), MOST_MOTIONS, limit)
+    _, trees = _grown(world, terminals, native_points(cube_points, dim), MOST_MOTIONS, limit)
     vertices, edges, before = [], [], 0
     for nodes, parents in trees.trees:
         # A root has no parent: a negative number.
@@ -94,7 +101,7 @@ def shorten(
     world: PlansWithTrees,
     path: npt.ArrayLike,
     *,
-    pairs: int = 1 << 30,
+    pairs: int = PAIRS,
     shortcuts: int = 64,
 ) -> tuple[Floats, int]:
     """Return a path, (p, dim), that is not longer, and the number of motions checked.
@@ -103,7 +110,8 @@ def shorten(
     was found, proved or not: :meth:`CertifiedWorld.motion_valid` says which.  At most `pairs` motions between points
     along the path are tried, and at most `shortcuts` corners.  InvalidValue if `path` is no such array.
     """
-    return planning.shorten(checks_of(world), _as_path(world, path), share_pairs()[:pairs], shortcuts)
+    shares = native_points(share_pairs, min(pairs, PAIRS))
+    return planning.shorten(checks_of(world), _as_path(world, path), shares, shortcuts)
 
 
 def smooth(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: bool = True) -> tuple[Floats, int]:
@@ -118,8 +126,8 @@ def smooth(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: 
     `proved` says whether the given path is; a single motion has to be.  Where neither the given, nor the shortened, nor
     the smoothed path is proved, there are no waypoints: (0, dim).  InvalidValue if `path` is no such array.
     """
-    guides = share_pairs(), sphere_points(world.space.dim)
-    smoothed, motions = planning.smooth(checks_of(world), _as_path(world, path), guides, batches, proved)
+    guides = native_points(share_pairs, PAIRS), native_points(sphere_points, world.space.dim)
+    smoothed, motions = planning.smooth(checks_of(world), _as_path(world, path), *guides, batches, proved)
     return np.empty((0, world.space.dim)) if smoothed is None else smoothed, motions
 
 
@@ -137,27 +145,28 @@ def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:
 
 
 def _grown(
-    world: PlansWithTrees, first: Floats, goals: Floats, samples: Floats, most: int, seconds: float
+    world: PlansWithTrees, terminals: Floats, samples: planning.Points, most: int, seconds: float
 ) -> tuple[Connection, planning.Trees]:
     """Return what two trees found, and the trees."""
-    order = np.arange(len(goals))
-    if len(goals) > 1:
+    order = range(len(terminals) - 1)
+    if len(order) > 1:
         # The nearest goals are tried first.
-        distances = world.space.distance(np.broadcast_to(first, goals.shape), goals)
-        order = np.argsort(distances, kind="stable")
-    start_and_goals = np.concatenate([first[np.newaxis], goals[order]])
+        goals = terminals[1:]
+        distances = world.space.distance(np.broadcast_to(terminals[0], goals.shape), goals)
+        order = np.argsort(distances, kind="stable").tolist()
+        terminals = np.concatenate([terminals[:1], goals[order]])
     checks = checks_of(world)
-    trees = planning.Trees(checks, start_and_goals, samples, ball_points(len(first)))
+    trees = planning.Trees(checks, terminals, samples, native_points(ball_points, terminals.shape[1]))
     deadline = now() + seconds
     while trees.grow(most, _SLICE) == "paused" and now() < deadline:
         continue
     motions, configurations, _ = checks.counts
-    goal = int(order[trees.goal]) if trees.goal >= 0 else -1
+    goal = order[trees.goal] if trees.goal >= 0 else -1
     return Connection(trees.path, goal, sum(trees.sizes), configurations, motions), trees
 
 
-def _start_and_goals(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> tuple[Floats, Floats]:
-    """Return start, (dim,), and goals, (g, dim)."""
+def _start_and_goals(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> Floats:
+    """Return a start, (dim,), and goals, (g, dim), in one array, (1 + g, dim)."""
     try:
         first, others = np.asarray(start, dtype=np.float64), np.asarray(goals, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -166,12 +175,11 @@ def _start_and_goals(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> tu
         raise InvalidValue(f"start must have shape ({dim},), got {first.shape}")
     if others.ndim != 2 or others.shape[1] != dim or len(others) == 0:
         raise InvalidValue(f"goals must have shape (g, {dim}), g >= 1, got {others.shape}")
-    as_batch("start and goals", np.concatenate([first[np.newaxis], others]), dim)
-    return first, others
+    return as_batch("start and goals", np.concatenate([first[np.newaxis], others]), dim)
 
 
-def _as_sequence(sequence: npt.ArrayLike, dim: int) -> Floats:
+def _as_sequence(sequence: npt.ArrayLike, dim: int) -> planning.Points:
     points = as_batch("sequence", sequence, dim)
     if len(points) == 0 or points.min() < 0.0 or points.max() > 1.0:
         raise InvalidValue(f"sequence must be points of the unit cube, one or more, got {sequence!r}")
-    return points
+    return planning.Points(points)

@@ -8,12 +8,13 @@ from typing import Any, ClassVar
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._native.planning import Points
 from evenroad.planning import arm_trees
 from evenroad.planning.plain_trees import grow_trees
 from evenroad.roadmap.connector import Connection, Connector
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.robot import ArmWorld
-from evenroad.robot.tree_sequences import shifted_cube_points
+from evenroad.robot.tree_sequences import cube_points, native_points, shifted_cube_points
 from evenroad.space.batch import as_batch
 from evenroad.world import World
 from evenroad.world.gridmap.gridmap import DiskWorld
@@ -54,12 +55,16 @@ class ArmTrees:
         seconds: float,
     ) -> Connection:
         """See :func:`evenroad.planning.arm_trees.connect`; each variant >= 1 is driven by another even sequence."""
-        sequence = shifted_cube_points(world.space.dim, variant) if variant else None
-        limits = dict(most_motions=most_motions, seconds=seconds)
-        return arm_trees.connect(self.inside or world, start, goals, sequence=sequence, **limits)  # type: ignore[arg-type]
+        inside, terminals = self.inside or world, np.concatenate([start[np.newaxis], goals])
+        dim = len(start)
+        samples = Points(shifted_cube_points(dim, variant)) if variant else native_points(cube_points, dim)
+        return arm_trees.joined(inside, terminals, samples, most_motions, seconds)
 
     def smooth(self, world: ArmWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """See :func:`evenroad.planning.arm_trees.smooth`; quickly by its :func:`shorten`."""
+        if len(path) == 2:
+            # One motion is as short as can be.
+            return path, 0
         inside = self.inside or world
         return arm_trees.shorten(inside, path) if quick else arm_trees.smooth(inside, path, batches=SMOOTHING)
 

@@ -10,6 +10,7 @@ from typing import Any, cast
 from evenroad._above import above
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
+from evenroad._shared import once
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.enclosed import with_reasons
@@ -122,29 +123,41 @@ def plan(
     >>> er.plan("box-reach", "home", "inside", robot="ur5").status
     <Status.SOLVED: 'solved'>
     """
+    given = None if planner is None else _as_planner(planner)
+    request = read_request(world, start, goal, Reading(degrees, tip, frame), given, **of_world)
+    within = None if given is None else _within(given, request.world)
+    options = Options(budget_of(within, seconds, limits), smooth, rng, certified, constraints)
+    return finished(request, solve(request, within, options), certified=certified)[0]
+
+
+def _as_planner(planner: object) -> Planner | Roadmap:
+    """Return the planner, or the roadmap, that a value, a name or a file stands for."""
     if isinstance(planner, str) and planner.lower() in PLANNERS:
-        planner = PLANNERS[planner.lower()]()
-    elif isinstance(planner, str | os.PathLike):
-        planner = cast(Roadmap, above("plan.planner")(planner))
+        return PLANNERS[planner.lower()]()
+    if isinstance(planner, str | os.PathLike):
+        return cast(Roadmap, above("plan.planner")(planner))
     if isinstance(planner, PointSet):
-        planner = PRM(planner)
-    if planner is not None and not isinstance(planner, Planner | Roadmap):
+        return PRM(planner)
+    if not isinstance(planner, Planner | Roadmap):
         raise InvalidValue(
             f"planner must be a planner, such as er.RRTConnect(), er.PRM(512) or a roadmap, got {shown(planner)}"
         )
-    reading = Reading(degrees, tip, frame)
-    request = read_request(world, start, goal, reading, planner, **of_world)
+    return planner
+
+
+def _within(planner: Planner | Roadmap, world: World) -> Planner:
+    """Return the planner in a world: a roadmap within it."""
     if isinstance(planner, Roadmap):
-        planner = planner.within(request.world)
-    elif isinstance(planner, WorldRoadmap) and planner.world is not request.world:
-        raise InvalidValue(f"a roadmap plans in its own world: give er.plan its .world, got {request.world!r}")
-    budget = budget_of(planner, seconds, limits)
-    options = Options(budget, smooth, rng, certified, constraints)
-    return finished(request, solve(request, planner, options), certified=certified)[0]
+        return planner.within(world)
+    if isinstance(planner, WorldRoadmap) and planner.world is not world:
+        raise InvalidValue(f"a roadmap plans in its own world: give er.plan its .world, got {world!r}")
+    return planner
 
 
 def budget_of(planner: Planner | None, seconds: float | None, limits: Budget | Mapping[str, int] | None) -> Budget:
     """Return a planner's budget: the given limits, else its own."""
+    if seconds is None and limits is None:
+        return _default_budget(getattr(planner, "seconds", RRTConnect.seconds))
     if isinstance(limits, Budget):
         if seconds is not None:
             raise InvalidValue("give seconds, or limits that are a Budget, not both")
@@ -157,12 +170,19 @@ def budget_of(planner: Planner | None, seconds: float | None, limits: Budget | M
         raise InvalidValue(f"limits must be of motions, samples or rounds, got {shown(limits)}") from None
 
 
+@once
+def _default_budget(seconds: float) -> Budget:
+    """Return the budget of a planner that is given no limits."""
+    return Budget(seconds=seconds)
+
+
 def solve(request: Request, planner: Planner | None, options: Options) -> PlanResult:
     """Plan a request; the path is free in its world."""
-    motion, given = TipMotion.of(options.constraints), request.given
+    given, motion = request.given, None if options.constraints is None else TipMotion.of(options.constraints)
     if (result := unreached(request)) is not None:
         return result
-    apart = None if given is None else given.apart(request.world, straight=motion.line is not None)
+    straight = motion is not None and motion.line is not None
+    apart = None if given is None else given.apart(request.world, straight=straight)
 
     def plan_once(world: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
         budget, connector = options.budget, connector_of(world)
@@ -170,7 +190,7 @@ def solve(request: Request, planner: Planner | None, options: Options) -> PlanRe
         problem = Problem(world, start, goals, **how)  # type: ignore[arg-type]
         return with_reasons(world, (default_planner(world) if planner is None else planner).solve(problem))
 
-    if options.constraints is None:
+    if motion is None:
         return plan_once(request.world, request.start, request.goals, options.smooth)
     return motion.plan(request, plan_once, options.smooth)
 

@@ -50,6 +50,8 @@ def read_request(
     **of_world: Any,
 ) -> Request:
     """Return world, start and goals, as far as they can be read; parameters and errors as :func:`evenroad.plan`."""
+    if isinstance(world, ArmWorld) and not of_world:
+        return request_in(world, start, goal, reading)
     if isinstance(world, str | os.PathLike):
         # The radius distinguishes a map from a scene, whose names and suffixes are the same.
         if "radius" in of_world:
@@ -74,8 +76,6 @@ def read_request(
     if of_world:
         unknown = f"unknown keyword of plan in {shown(world)}: {next(iter(of_world))!r}"
         raise InvalidValue(f"{unknown}; the time limit is seconds=5, others are limits={{'motions': 1000}}")
-    if isinstance(world, ArmWorld):
-        return request_in(world, start, goal, reading)
     if not hasattr(world, "motion_valid"):
         raise InvalidValue(
             "world must be a World, a GridMap with radius=, or a Scene with robot=; or the name or file of one, got"
@@ -141,7 +141,6 @@ def request_in(world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[
     """Read start and goals of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
     goals = _goal_list(goal)
     first = _configuration(world.robot, world.scene, "start", start, reading)
-    _refuse_what_is_none(world.robot, world.scene, goals, reading)
     given = _goals_in(world, first, goals, reading)
     return Request(world, first, given.configurations, given)
 
@@ -173,10 +172,10 @@ def _refuse_what_is_none(robot: Robot, scene: Scene, goals: list[Goal], reading:
 
 
 def _goal_list(goal: Goal | Sequence[Goal]) -> list[Goal]:
-    if isinstance(goal, str | Mapping | Pose | PoseGoal):
-        return [goal]
     if isinstance(goal, np.ndarray):
         return list(goal) if goal.ndim == 2 else [goal]
+    if isinstance(goal, str | Mapping | Pose | PoseGoal):
+        return [goal]
     several = isinstance(goal, Sequence) and any(
         isinstance(each, str | Mapping | Pose | PoseGoal) or np.ndim(each) > 0 for each in goal
     )

@@ -141,15 +141,18 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
 
 def _variant(rng: RngLike) -> int:
     """Return the variant of the sequence that drives the trees: 0 is the tuned one, and each seed has another."""
+    if type(rng) is int and rng >= 0:
+        # Making its generator takes as long as a short plan.
+        return rng
     seed, drawn = seed_of(rng), generator(rng)
     return int(drawn.integers(1, 2**31)) if seed is None else seed
 
 
 def _connection(attempt: Attempt, connector: Connector, most: int, variant: int) -> Connection:
     """Join the start to a goal, first by trees to the nearest one: trees to many may meet a far one."""
-    start, goals = attempt.query.start, attempt.query.goals[attempt.goals]
-    if len(goals) == 1 or not connector.varies:
+    if len(attempt.goals) == 1 or not connector.varies:
         return attempt.connect(connector, variant, most)
+    start, goals = attempt.query.start, attempt.free_goals
     nearest = int(np.argmin(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals)))
     near = attempt.connect(connector, variant, min(most, TO_NEAREST), nearest)
     if near.goal >= 0 or attempt.left() is None:
@@ -210,7 +213,7 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
 
 def _goes_on(attempt: Attempt, best: PlanResult, number: int) -> bool:
     """Return whether the budget allows this round and the path exceeds the distance to the nearest goal."""
-    budget, start, goals = attempt.query.budget, attempt.query.start, attempt.query.goals[attempt.goals]
+    budget, start, goals = attempt.query.budget, attempt.query.start, attempt.free_goals
     least = float(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals).min())
     return (
         now() < attempt.deadline

@@ -140,8 +140,9 @@ def _with_path(
                 path, counts["shortcut_motions"] = query.connector.smooth(world, raw, quick=query.smooth == "quick")
             else:
                 path, counts["shortcut_motions"] = shortcut(world, raw, cost, attempt.deadline)
-            measure = world.space.distance if cost is None else cost
-            length = float(np.sum(measure(path[:-1], path[1:])))
+            if path is not raw:
+                measure = world.space.distance if cost is None else cost
+                length = float(np.sum(measure(path[:-1], path[1:])))
     named = "length" if cost is None else "cost"
     to = f" to goal {goal}" if len(query.goals) > 1 else ""
     return _result(
@@ -219,14 +220,14 @@ def _axis_scales(space: Space) -> Floats | None:
 
 def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> PlanResult:
     query = attempt.query
-    named = dict(
+    more.update(
         origin=attempt.origin,
         rule=attempt.rule,
         links=query.links,
         planner=attempt.planner,
         timings=attempt.watch.seconds,
     )
-    return make_result(attempt.world, query.start, query.goals, status, message, **named, **more)
+    return make_result(attempt.world, query.start, query.goals, status, message, **more)
 
 
 def _searched_graph(states: EdgeStates, terminals: int) -> SearchedGraph:

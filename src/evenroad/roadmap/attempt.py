@@ -71,6 +71,12 @@ class Attempt:
         self.goals = np.arange(len(self.query.goals))
 
     @property
+    def free_goals(self) -> Floats:
+        """The goals that are not known to be blocked, (g, dim)."""
+        all_goals = self.query.goals
+        return all_goals if len(self.goals) == len(all_goals) else all_goals[self.goals]
+
+    @property
     def start_and_goals(self) -> Floats:
         """The start, then the goals that are free, (1 + g, dim)."""
         return self.query.start_and_goals[np.append(0, 1 + self.goals)]
@@ -81,7 +87,7 @@ class Attempt:
         with self.watch("validity"):
             free = self.world.valid(terminals)
         self.checked += len(terminals)
-        self.goals = np.flatnonzero(free[1:])
+        (self.goals,) = free[1:].nonzero()
         return free
 
     def valid(self, samples: Floats) -> Bools:
@@ -141,7 +147,7 @@ class Attempt:
 
         A variant >= 1 searches differently, where the connector `varies`.  It stops after `most` motions.
         """
-        start, goals, motions = self.query.start, self.query.goals[self.goals], self.query.budget.motions
+        start, goals, motions = self.query.start, self.free_goals, self.query.budget.motions
         goals = goals if goal is None else goals[goal : goal + 1]
         if motions is not None:
             most = min(most, max(motions - self.motions_checked, 1))

@@ -123,17 +123,14 @@ class Stopwatch:
         return self
 
     def __enter__(self) -> None:
-        self._turn()
+        began = now()
+        if self._running:
+            self.seconds[self._running[-1]] += began - self._since
         self._running.append(self._next)
         self.seconds.setdefault(self._next, 0.0)
+        self._since = began
 
     def __exit__(self, *error: object) -> None:
-        self._turn()
-        self._running.pop()
-
-    def _turn(self) -> None:
-        """Add the time since the last change to the phase that was running."""
-        turned = now()
-        if self._running:
-            self.seconds[self._running[-1]] += turned - self._since
-        self._since = turned
+        ended = now()
+        self.seconds[self._running.pop()] += ended - self._since
+        self._since = ended

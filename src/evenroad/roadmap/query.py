@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -69,10 +70,12 @@ class Query:
         for array in (self.start, self.goals):
             array.setflags(write=False)
 
-    @property
+    @cached_property
     def start_and_goals(self) -> Floats:
         """The start, then the goals, (1 + g, dim)."""
-        return np.concatenate([self.start[np.newaxis], self.goals])
+        terminals = np.concatenate([self.start[np.newaxis], self.goals])
+        terminals.setflags(write=False)
+        return terminals
 
     def links_among(self, milestones: int) -> int:
         """Return the number of milestones that start and goals are linked to besides those of the rule."""

@@ -193,8 +193,9 @@ def make_result(
 
     `more` are attributes of the result; by default there are no points, no rule and no planner.
     """
-    named: dict[str, Any] = {"origin": NO_POINTS, "rule": "none", "planner": "none"} | more
-    result = PlanResult(status=status, message=message, start=start, goals=goals, world=world, **named)
+    for name, value in (("origin", NO_POINTS), ("rule", "none"), ("planner", "none")):
+        more.setdefault(name, value)
+    result = PlanResult(status=status, message=message, start=start, goals=goals, world=world, **more)
     return result if world is None else require_start_and_goal(world.space, result)
 
 
@@ -204,7 +205,7 @@ def require_start_and_goal(space: Space, result: PlanResult) -> PlanResult:
     Coordinates that wrap may differ by whole turns.  AssertionError for anything else, which is a bug of evenroad: no
     robot must drive such a path.
     """
-    for path in (result.path, result.milestone_path):
+    for path in (result.path, result.milestone_path if result.milestone_path is not result.path else None):
         if path is None:
             continue
         for name, configuration, wanted in (("start", path[0], result.start), ("end", path[-1], result.goal)):

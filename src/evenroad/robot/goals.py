@@ -102,7 +102,7 @@ def goals_of(
     if not names:
         rows = [reached.nearest[np.newaxis] for _, reached in poses]
     took = now() - began if poses else 0.0
-    return Goals(np.concatenate(rows), tuple(names), tuple(poses), took)
+    return Goals(rows[0] if len(rows) == 1 else np.concatenate(rows), tuple(names), tuple(poses), took)
 
 
 def _record(world: Checks, goal: PoseGoal, reached: Reached, end: Floats | None) -> dict[str, Any]:

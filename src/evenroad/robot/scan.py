@@ -127,8 +127,12 @@ def open_everywhere(scene: Scene) -> Scene:
 
 def allowed_everywhere(robot: Robot, scene: Scene) -> list[tuple[str, str]]:
     """Return which moving links may touch which whole clouds."""
-    rigid = rigid_links(robot)
+    if not scene.allowed:
+        return []
     clouds = {each.name for each in scene.obstacles if isinstance(each.body, PointCloud) and _OPEN not in each.name}
+    if not clouds:
+        return []
+    rigid = rigid_links(robot)
     moving = {each.link for each in robot.capsules if rigid[each.link] != rigid[robot.links[0]]}
     return sorted((link, name) for link, name in scene.allowed if link in moving and name in clouds)
 

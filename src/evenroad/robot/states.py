@@ -141,7 +141,7 @@ def as_configuration(
     require_robot(robot)
     if isinstance(q, str):
         return configuration(robot, q, scene)
-    if isinstance(q, Mapping):
+    if not isinstance(q, np.ndarray) and isinstance(q, Mapping):
         neutral = {joint.name: joint.neutral for joint in robot.joints if joint.name in robot.group}
         return _in_order(robot, name, {**neutral, **{str(joint): _number(name, q, joint) for joint in q}})
     dim = len(robot.group)
@@ -149,7 +149,7 @@ def as_configuration(
         row = np.array(q, dtype=np.float64)
     except (TypeError, ValueError):
         row = np.empty(0)
-    if row.shape != (dim,) or not np.isfinite(row).all():
+    if row.shape != (dim,) or not all(map(math.isfinite, row.tolist())):
         several = f"; of {len(row)} rows give one" if row.ndim == 2 and row.shape[1:] == (dim,) else ""
         raise InvalidValue(f"{name} must be {dim} finite numbers, {','.join(robot.group)}, got {shown(q)}{several}")
     return row

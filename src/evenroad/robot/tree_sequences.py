@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._native.planning import Points
 from evenroad._shared import once
 
 Floats = npt.NDArray[np.float64]
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97)
 _SAMPLES = 2048
 _STEPS = 2048
-_PAIRS = 96
+PAIRS = 96
+"""Number of pairs of places that shortening joins."""
 _MANY = 8
 """Dimension from which nearly all of a ball lies at its surface, and lengths are spread otherwise."""
 _SHORTEST = 0.1
 """Of these lengths, as a share of the radius."""
+
+
+@once
+def native_points(points: Callable[[int], Floats], number: int) -> Points:
+    """Return the points that one of these functions gives for a number, as the native kernel takes them.
+
+    They are checked once, which takes longer than a short plan.
+    """
+    return Points(points(number))
 
 
 @once
@@ -60,9 +73,9 @@ def sphere_points(dim: int) -> Floats:
 
 
 @once
-def share_pairs() -> Floats:
-    """Return the pairs of places, shares of a path's length, that shortening joins, (96, 2)."""
-    return _read_only(reversed_halton(_PAIRS, 2))
+def share_pairs(most: int = PAIRS) -> Floats:
+    """Return the pairs of places, shares of a path's length, that shortening joins, (most, 2)."""
+    return _read_only(reversed_halton(most, 2))
 
 
 def reversed_halton(count: int, dim: int) -> Floats:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, set_fields
-from evenroad._native.space import flat_distances
+from evenroad._native.space import flat_distances, row_distances
 from evenroad.errors import InvalidValue
 
 
@@ -22,6 +22,8 @@ class FlatMetric:
 
     scale: Floats
     period: Floats
+    wraps: bool = field(init=False, repr=False)
+    """Whether any coordinate wraps."""
     _turning: tuple[int, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -38,7 +40,7 @@ class FlatMetric:
         if len(self.scale) != len(self.period):
             lengths = f"{len(self.scale)} and {len(self.period)}"
             raise InvalidValue(f"scale and period must have one length, got {lengths}")
-        set_fields(self, _turning=tuple(np.flatnonzero(self.wrapping).tolist()))
+        set_fields(self, _turning=tuple(np.flatnonzero(self.wrapping).tolist()), wraps=bool(self.wrapping.any()))
 
     @property
     def dim(self) -> int:
@@ -49,11 +51,6 @@ class FlatMetric:
     def wrapping(self) -> Bools:
         """Which coordinates wrap, (dim,)."""
         return np.isfinite(self.period)
-
-    @property
-    def wraps(self) -> bool:
-        """Whether any coordinate does."""
-        return len(self._turning) > 0
 
     def difference(self, a: Floats, b: Floats) -> Floats:
         """Return ``b - a`` in the shorter direction, not scaled, for two (n, dim) arrays as (n, dim).
@@ -69,12 +66,7 @@ class FlatMetric:
 
     def distance(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of the rows of two float64 arrays, (n, dim), as (n,)."""
-        scaled = self.difference(a, b) * self.scale
-        # Column by column: the sum of a row then never depends on how long the batch is, nor does it overflow.
-        total = np.abs(scaled[:, 0])
-        for k in range(1, self.dim):
-            total = np.hypot(total, scaled[:, k])
-        return total
+        return row_distances(np.ascontiguousarray(a), np.ascontiguousarray(b), self.scale, self.period)
 
     def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows of two float64 arrays, (n, dim) and (m, dim), as (n, m)."""

@@ -11,6 +11,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import counted
+from evenroad._native.space import row_distances
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_bounds, as_cube_batch, as_fractions, as_weights
 from evenroad.space.flat import FlatMetric
@@ -61,6 +62,13 @@ class FlatSpace(Space):
 
     def distance(self, a: Floats, b: Floats) -> Floats:
         """Return ``sqrt(sum_k (weight_k difference_k)^2)``, shorter on wrapping axes: (n, dim) twice -> (n,)."""
+        flat = self._flat
+        if not flat.wraps and type(a) is type(b) is np.ndarray:
+            try:
+                return row_distances(a, b, flat.scale, flat.period)
+            except InvalidValue:
+                # No sound arrays, as the kernel takes them: they are read, or refused by `as_batch`.
+                pass
         first, second = as_batch_pair(a, b, self.dim)
         return self._flat.distance(self._canonical(first), self._canonical(second))
 

@@ -18,7 +18,7 @@ def motion_lengths(path: Floats, space: Space) -> Floats:
 
 def path_length(path: Floats, space: Space) -> float:
     """Return the length of a path in the metric of the space; 0 for one waypoint."""
-    return float(np.sum(motion_lengths(path, space)))
+    return float(np.add.reduce(space.distance(path[:-1], path[1:])))
 
 
 def subdivide(path: Floats, space: Space, segments: npt.NDArray[np.integer]) -> tuple[Floats, Ints]:

@@ -1,6 +1,8 @@
 // evenroad._native.planning: trees and smoothing of arms.
 #include <nanobind/stl/shared_ptr.h>
 
+#include <algorithm>
+
 #include "bind/arrays.hpp"
 #include "planning/native_checks.hpp"
 #include "planning/path_proof.hpp"
@@ -30,29 +32,39 @@ const char* in_words(planning::Growth growth) {
   return "";
 }
 
-/// Where trees grow, and what drives them: arrays that Python keeps.
-struct Problem {
-  FloatRows ends, samples, steps;
+/// Points of an even sequence, (n, d) from -1 to 1: checked once, for all queries that they drive.
+struct Points {
+  FloatRows rows;
+  bool is_in_unit_cube;
 
-  Problem(nb::handle given_ends, nb::handle given_samples, nb::handle given_steps, std::size_t dim)
-      : ends(given_ends, "ends"), samples(given_samples, "samples"), steps(given_steps, "steps") {
-    for (const auto* each : {&ends, &samples, &steps}) each->of_shape({each->shape(0), dim});
-    require(ends.shape(0) >= 2, "ends must be a start and one goal or more");
-    require(samples.shape(0) >= 1 && steps.shape(0) >= 1, "samples and steps must not be empty");
-    require_within(samples.span(), 0.0, 1.0, "samples"), require_within(steps.span(), -1.0, 1.0, "steps");
+  explicit Points(nb::handle given) : rows(given, "points") {
+    require(rows.shape(0) >= 1, "points must not be empty");
+    require_within(rows.span(), -1.0, 1.0, "points");
+    is_in_unit_cube = std::ranges::all_of(rows.span(), [](double entry) { return entry >= 0.0; });
+  }
+
+  /// Return them; refuse others than those of this many columns, in the unit cube where they have to be.
+  Matrix<const double> of(std::size_t columns, bool of_unit_cube, const char* name) const {
+    require(rows.shape(1) == columns && (is_in_unit_cube || !of_unit_cube),
+            std::string(name) + " must be points of " + std::to_string(columns) + " dimensions" +
+                (of_unit_cube ? ", in the unit cube" : ""));
+    return rows.matrix();
   }
 };
 
 /// A planner with the arrays that it reads.
 struct Trees {
-  Problem problem;
+  FloatRows ends;
   TreePlanner planner;
 
-  Trees(NativeChecks& checks, nb::handle ends, nb::handle samples, nb::handle steps)
-      : problem(ends, samples, steps, checks.joints.size()),
-        planner(problem.ends.matrix(), {problem.samples.matrix(), problem.steps.matrix()}, checks) {}
+  Trees(NativeChecks& checks, nb::handle given_ends, const Points& samples, const Points& steps)
+      : ends(given_ends, "ends"),
+        planner(ends.of_shape({ends.shape(0), checks.joints.size()}).matrix(),
+                {samples.of(dim(), true, "samples"), steps.of(dim(), false, "steps")}, checks) {
+    require(ends.shape(0) >= 2, "ends must be a start and one goal or more");
+  }
 
-  std::size_t dim() const { return problem.ends.shape(1); }
+  std::size_t dim() const { return ends.shape(1); }
 };
 
 nb::object path_of(const Trees& trees) {
@@ -91,36 +103,31 @@ nb::object points_of(const Path& path) {
   return as_numpy(std::move(points), {size, path.points().size() / size});
 }
 
-nb::tuple shorten(NativeChecks& checks, nb::handle path, nb::handle pairs, std::int64_t most_shortcuts) {
-  const FloatRows points(path, "path"), shares(pairs, "pairs");
-  shares.of_shape({shares.shape(0), 2});
-  require_within(shares.span(), 0.0, 1.0, "pairs");
+nb::tuple shorten(NativeChecks& checks, nb::handle path, const Points& pairs, std::int64_t most_shortcuts) {
+  const FloatRows points(path, "path");
+  const Matrix<const double> shares = pairs.of(2, true, "pairs");
   Path shorter = path_from(points, checks);
-  without_gil([&] { planning::shorten(shorter, shares.matrix(), most_shortcuts, checks); });
+  without_gil([&] { planning::shorten(shorter, shares, most_shortcuts, checks); });
   return nb::make_tuple(points_of(shorter), checks.counts.motions);
 }
 
-nb::tuple smooth(NativeChecks& checks, nb::handle path, nb::tuple guides, std::int64_t most_batches, bool proved) {
-  require(guides.size() == 2, "guides must be (pairs, directions)");
-  const FloatRows points(path, "path"), shares(guides[0], "pairs"), sphere(guides[1], "directions");
-  shares.of_shape({shares.shape(0), 2}), sphere.of_shape({sphere.shape(0), checks.joints.size()});
-  require(shares.shape(0) >= 1 && sphere.shape(0) >= 1, "pairs and directions must not be empty");
-  require_within(shares.span(), 0.0, 1.0, "pairs"), require_within(sphere.span(), -1.0, 1.0, "directions");
+nb::tuple smooth(NativeChecks& checks, nb::handle path, const Points& pairs, const Points& directions,
+                 std::int64_t most_batches, bool proved) {
+  const FloatRows points(path, "path");
+  const planning::Guides by{pairs.of(2, true, "pairs"), directions.of(checks.joints.size(), false, "directions")};
   require_budget(most_batches, "most_batches");
   Path smoothed = path_from(points, checks);
-  const planning::Guides by{shares.matrix(), sphere.matrix()};
   const bool is_proved = without_gil([&] { return planning::smooth(smoothed, by, most_batches, proved, checks); });
   const nb::object found = is_proved ? points_of(smoothed) : nb::none();
   return nb::make_tuple(found, checks.counts.motions);
 }
 
-nb::object prove_or_bend(NativeChecks& checks, nb::handle path, double margin, nb::handle directions) {
-  const FloatRows points(path, "path"), sphere(directions, "directions");
-  sphere.of_shape({sphere.shape(0), checks.joints.size()});
-  require(sphere.shape(0) >= 1 && margin >= 0.0 && margin <= 1.0, "directions must not be empty, margin from 0 to 1");
-  require_within(sphere.span(), -1.0, 1.0, "directions");
+nb::object prove_or_bend(NativeChecks& checks, nb::handle path, double margin, const Points& directions) {
+  const FloatRows points(path, "path");
+  const Matrix<const double> sphere = directions.of(checks.joints.size(), false, "directions");
+  require(margin >= 0.0 && margin <= 1.0, "margin must be from 0 to 1");
   Path bent = path_from(points, checks);
-  const bool is_proved = without_gil([&] { return planning::prove_or_bend(bent, margin, sphere.matrix(), checks); });
+  const bool is_proved = without_gil([&] { return planning::prove_or_bend(bent, margin, sphere, checks); });
   return is_proved ? points_of(bent) : nb::none();
 }
 
@@ -165,8 +172,10 @@ void add_planning(nb::module_& module) {
       .def("__init__",
            [](NativeChecks* checks, std::shared_ptr<robot::Checker> of) { new (checks) NativeChecks(std::move(of)); })
       .def_prop_ro("counts", [](const NativeChecks& checks) { return counts_of(checks.counts); });
+  nb::class_<Points>(part, "Points").def(nb::init<nb::handle>());
   nb::class_<Trees>(part, "Trees")
-      .def(nb::init<NativeChecks&, nb::handle, nb::handle, nb::handle>(), nb::keep_alive<1, 2>())
+      .def(nb::init<NativeChecks&, nb::handle, const Points&, const Points&>(), nb::keep_alive<1, 2>(),
+           nb::keep_alive<1, 4>(), nb::keep_alive<1, 5>())
       .def("grow",
            [](Trees& trees, std::int64_t most_motions, std::int64_t batches) {
              require_budget(most_motions, "most_motions"), require_budget(batches, "batches");

@@ -26,6 +26,20 @@ OwnMatrix<double> flat_distances(Matrix<const double> a, Matrix<const double> b,
   return distances;
 }
 
+std::vector<double> row_distances(Matrix<const double> a, Matrix<const double> b, std::span<const double> scale,
+                                  std::span<const double> period) {
+  std::vector<double> distances(a.rows, 0.0);
+  for (std::size_t row = 0; row < a.rows; row++) {
+    for (std::size_t k = 0; k < scale.size(); k++) {
+      double difference = b(row, k) - a(row, k);
+      if (std::isfinite(period[k])) difference -= period[k] * std::rint(difference / period[k]);
+      // Large numbers have squares that overflow.
+      distances[row] = std::hypot(distances[row], difference * scale[k]);
+    }
+  }
+  return distances;
+}
+
 OwnMatrix<double> quaternion_angles(Matrix<const double> a, Matrix<const double> b) {
   OwnMatrix<double> angles(a.rows, b.rows);
   for (std::size_t i = 0; i < a.rows; i++) {
