@@ -290,3 +290,38 @@ def test_capsules_meshes_and_scenes_are_made_of_what_people_have_and_show_themse
     assert repr(Sphere(0.1)) == "Sphere(radius=0.1)"
     assert repr(Scene([TABLE])) == "Scene('scene', 1 obstacle: table)"
     assert repr(PointCloud(np.zeros((9, 3)), 0.1)) == "PointCloud(9 points, radius=0.1)"
+
+
+def test_boxes_given_as_arrays_are_the_boxes_that_objects_make():
+    rng = np.random.default_rng(5)
+    size, xyz, xyzw = rng.uniform(0.05, 0.3, (9, 3)), rng.uniform(-0.8, 0.8, (9, 3)), rng.normal(size=(9, 4))
+    objects = [Box(*each, xyz=place) for each, place in zip(size[:, None], xyz, strict=True)]
+    assert Scene.of_boxes(size, xyz) == Scene(objects)
+    turned = Scene.of_boxes(size, xyz, xyzw=xyzw, names=[f"b{i}" for i in range(9)], allowed={("base_link", "b3")})
+    for i, each in enumerate(turned.obstacles):
+        assert each.name == f"b{i}"
+        assert each.size == tuple(size[i])
+        np.testing.assert_allclose(each.rotation, Pose(xyzw=xyzw[i]).rotation, atol=1e-15)
+    again = Scene(turned.obstacles, allowed=turned.allowed)
+    assert turned.fingerprint() == again.fingerprint()
+    robot = load_robot("ur5")
+    q = ArmWorld(robot, turned).space.from_cube(rng.random((2000, 6)))
+    assert 0 < np.count_nonzero(ArmWorld(robot, turned).valid(q)) < 2000
+    np.testing.assert_array_equal(ArmWorld(robot, turned).valid(q), ArmWorld(robot, again).valid(q))
+
+
+@pytest.mark.parametrize(
+    ("says", "arrays", "more"),
+    [
+        (r"size must have shape \(n, 3\)", ([1.0, 1.0, 1.0], [(0, 0, 0)]), {}),
+        ("one row a box, got 1 and 2", ([(1, 1, 1)], [(0, 0, 0), (1, 1, 1)]), {}),
+        ("size must be > 0", ([(1, 0, 1)], [(0, 0, 0)]), {}),
+        ("xyz must be finite", ([(1, 1, 1)], [(0, np.nan, 0)]), {}),
+        ("xyz must lie between", ([(1, 1, 1)], [(0, -1e12, 0)]), {}),
+        ("one quaternion a box", ([(1, 1, 1)], [(0, 0, 0)]), {"xyzw": [(0, 0, 0, 0)]}),
+        ("names must be 1", ([(1, 1, 1)], [(0, 0, 0)]), {"names": ["a", "b"]}),
+        ("twice: .'a'", ([(1, 1, 1)] * 2, [(0, 0, 0)] * 2), {"names": ["a", "a"]}),
+    ],
+)
+def test_boxes_given_as_arrays_are_refused_where_they_are_none(says, arrays, more):
+    refused(InvalidValue, says, Scene.of_boxes, *arrays, **more)

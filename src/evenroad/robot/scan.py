@@ -129,7 +129,7 @@ def allowed_everywhere(robot: Robot, scene: Scene) -> list[tuple[str, str]]:
     """Return which moving links may touch which whole clouds."""
     if not scene.allowed:
         return []
-    clouds = {each.name for each in scene.obstacles if isinstance(each.body, PointCloud) and _OPEN not in each.name}
+    clouds = {each.name for _, each in scene.surfaces if isinstance(each.body, PointCloud) and _OPEN not in each.name}
     if not clouds:
         return []
     rigid = rigid_links(robot)

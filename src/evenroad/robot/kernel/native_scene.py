@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Bools
 from evenroad._native import robot as native
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.shapes import Mesh, PointCloud
@@ -25,32 +25,24 @@ def native_scene(
     is so far, or so large, that too few digits are left.
     """
     tested = tested_contacts(tables.capsules, links, scene)
-    solid = np.array([bool(obstacle.row) for obstacle in scene.obstacles], dtype=np.bool_)
     reach = tables.reach + clearance
     surfaces, bodies = [], []
-    for number, obstacle in enumerate(scene.obstacles):
+    for number, obstacle in scene.surfaces:
         body = obstacle.body
-        if not isinstance(body, PointCloud | Mesh) or not tested[:, number].any():
+        assert isinstance(body, PointCloud | Mesh)  # all others have rows
+        if not tested[:, number].any():
             continue
         if (surface := surface_of(body, reach)) is not None:
             surfaces.append((surface, number, np.ascontiguousarray(tested[:, number])))
             bodies.append(body)
     around = surfaces_around(tuple(bodies), reach) if len(bodies) >= MANY else None
-    made = native.Scene(
-        robot, obstacle_rows(scene), np.ascontiguousarray(tested[:, solid]), surfaces, around, clearance
-    )
+    solid = tested if not scene.surfaces else np.delete(tested, [number for number, _ in scene.surfaces], axis=1)
+    made = native.Scene(robot, scene.rows, np.ascontiguousarray(solid), surfaces, around, clearance)
     if made.too_far >= 0:
         # Boxes along the axes are never too far: they are cut off where the robot never comes.
         far = [obstacle for obstacle in scene.obstacles if obstacle.row][made.too_far]
         raise InvalidValue(f"obstacle {far.name!r} must be within {FARTHEST:g} m, got size {far.size!r} at {far.xyz!r}")
     return made
-
-
-def obstacle_rows(scene: Scene) -> Floats:
-    """Return the obstacles of a scene but clouds and meshes, (n, 16): kind; full extents of a box, or radius and length
-    without caps, and zeros [m]; rotation to the root link's frame, row by row; centre in that frame [m].
-    """
-    return np.frombuffer(b"".join([obstacle.row for obstacle in scene.obstacles])).reshape(-1, 16)
 
 
 def tested_contacts(capsules: Sequence[PlacedCapsule], links: Sequence[str], scene: Scene) -> Bools:
@@ -59,16 +51,16 @@ def tested_contacts(capsules: Sequence[PlacedCapsule], links: Sequence[str], sce
     Raises UnknownName if an allowed contact names a link or an obstacle that is not there.
     """
     # Bytes, of which each is soon set.
-    count = len(scene.obstacles)
+    count = len(scene.names)
     tested = bytearray(b"\1") * (len(capsules) * count)
     if scene.allowed:
         bodied = [each.link for each in capsules]
         for link, name in scene.allowed:
             if link not in links:
                 raise UnknownName.among("link", link, links)
-            index = next((k for k, each in enumerate(scene.obstacles) if each.name == name), -1)
-            if index < 0:
-                raise UnknownName.among("obstacle", name, [each.name for each in scene.obstacles])
+            if name not in scene.names:
+                raise UnknownName.among("obstacle", name, scene.names)
+            index = scene.names.index(name)
             for other in bodied:
                 if other == link:
                     tested[index] = 0

@@ -1,0 +1,172 @@
+"""Obstacle: a body around a robot that does not move, by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from struct import Struct
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Floats, set_fields
+from evenroad._checks import FARTHEST, as_batch, require_positive
+from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.pose import Pose, Vector
+from evenroad.geometry.rotation import NO_ROTATION, rotations_from_quaternions
+from evenroad.geometry.shapes import PRIMITIVES, Box, Capsule, Mesh, PointCloud, Shape, along_z, shape_of
+
+MARGIN = 0.02
+"""Default distance from the robot up to which points of a scan belong to it [m]."""
+
+
+_ROW = Struct("16d")
+_NUMBERS = {kind: number for number, kind in enumerate(PRIMITIVES)}
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Configuration of a robot when a cloud was recorded, as :func:`evenroad.robot.configuration` takes it, and a
+    margin [m].
+
+    Balls of the cloud within the margin of its bodies belong to the robot; :func:`evenroad.robot.without_robot` removes
+    them.
+    """
+
+    at: str
+    margin: float = MARGIN
+
+    def __post_init__(self) -> None:
+        require_positive("the margin of a scan", self.margin, or_zero=True)
+
+
+@dataclass(frozen=True)
+class Cut:
+    """An attached object that is removed from a cloud, since the camera saw it where it is grasped.
+
+    Balls of the cloud whose centres come within `grow` [m], >= 0, of the `attached` object of that name are removed,
+    with the robot standing `at`, as :func:`evenroad.robot.configuration` takes it.
+    """
+
+    attached: str
+    at: str
+    grow: float = MARGIN
+
+    def __post_init__(self) -> None:
+        require_positive("by how much a cut grows", self.grow, or_zero=True)
+
+
+@dataclass(frozen=True, repr=False)
+class Obstacle:
+    """A body that does not move, by a name that is unique in its scene.
+
+    `body` is a box, sphere, cylinder, capsule, mesh, or cloud of radius > 0, with its pose in the frame of the robot's
+    root link; others, and what is fixed to a link, are refused (InvalidValue).  `cell` says whether it is part of the
+    fixed cell, the same for every task of this installation; `seen`, where the robot stands that is in a cloud itself;
+    `cuts`, what else is taken out of the cloud.
+    """
+
+    name: str
+    body: Shape
+    cell: bool = False
+    seen: Seen | None = None
+    cuts: tuple[Cut, ...] = ()
+    row: bytes = field(init=False, repr=False, compare=False)
+    """Sixteen doubles for native code, see ``kernel/native_scene.py``; none for clouds and meshes."""
+
+    def __post_init__(self) -> None:
+        body = along_z(self.body) if isinstance(self.body, Capsule) else self.body
+        kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind)
+        if getattr(body, "kind", None) not in kinds:
+            raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(kinds)}, got a {body}")
+        if isinstance(body, Mesh):
+            # Read now: a file may change, or be gone, before its triangles are used.
+            body = replace(body, source=body.triangles, scale=(1.0, 1.0, 1.0))
+        if body.link:
+            raise InvalidValue(f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}")
+        # Now rather than for every world: an obstacle is in many scenes.
+        size, row = (*body.size, 0.0, 0.0)[:3], b""
+        if body.kind in PRIMITIVES:
+            row = _ROW.pack(_NUMBERS[body.kind], *size, *body.pose.rotation, *body.pose.xyz)
+        set_fields(self, body=body, row=row)
+
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        kind: str,
+        size: Sequence[float],
+        xyz: Sequence[float] = (0.0, 0.0, 0.0),
+        rotation: Sequence[float] = NO_ROTATION,
+        cell: bool = False,
+    ) -> Obstacle:
+        """Return an obstacle by its dimensions (:func:`evenroad.geometry.shape_of`), origin [m] and rotation (9,).
+
+        Raises UnknownName if there is no such shape; InvalidValue, which names the obstacle, if a dimension is not a
+        finite number > 0, or the rotation is none.
+        """
+        try:
+            return cls(name, shape_of(kind, size, Pose(xyz, rotation)), cell)
+        except InvalidValue as error:
+            raise InvalidValue(f"obstacle {name!r}: {error}") from None
+
+    def __repr__(self) -> str:
+        return f"Obstacle({self.name!r}, {self.body!r})"
+
+    def at(self, pose: Pose) -> Obstacle:
+        """Return the obstacle in another pose."""
+        return replace(self, body=replace(self.body, pose=pose))
+
+    @property
+    def shape(self) -> str:
+        """Kind of its body: ``box``, ``sphere``, ``cylinder``, ``capsule``, ``cloud`` or ``mesh``."""
+        return self.body.kind
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """Dimensions of its body, as :func:`evenroad.geometry.shape_of` takes them [m]."""
+        return self.body.size
+
+    @property
+    def xyz(self) -> Vector:
+        """Its middle in the frame of the robot's root link [m]."""
+        return self.body.pose.xyz
+
+    @property
+    def rotation(self) -> tuple[float, ...]:
+        """From the body's frame to that of the robot's root link, (9,) row by row."""
+        return self.body.pose.rotation
+
+
+def box_rows(size: npt.ArrayLike, xyz: npt.ArrayLike, xyzw: npt.ArrayLike | None) -> Floats:
+    """Return the rows of boxes of these full extents, centres and quaternions, (n, 16); see :attr:`Scene.rows`.
+
+    Raises InvalidValue for arrays of other shapes, or with entries that are not allowed.
+    """
+    extents, centres = as_batch("size", size, 3), as_batch("xyz", xyz, 3)
+    if len(extents) != len(centres):
+        raise InvalidValue(f"size and xyz must have one row a box, got {len(extents)} and {len(centres)}")
+    rows = np.zeros((len(extents), 16))
+    rows[:, 1:4], rows[:, 13:] = extents, centres
+    if len(rows) and not (extents.min() > 0.0 and extents.max() <= FARTHEST):
+        raise InvalidValue(f"size must be > 0 and at most {FARTHEST:g}, got from {extents.min()} to {extents.max()}")
+    if len(rows) and not np.abs(centres).max() <= FARTHEST:
+        raise InvalidValue(
+            f"xyz must lie between -{FARTHEST:g} and {FARTHEST:g}, got {centres.flat[np.abs(centres).argmax()]}"
+        )
+    if xyzw is None:
+        rows[:, 4:13] = NO_ROTATION
+        return rows
+    turns = as_batch("xyzw", xyzw, 4)
+    if len(turns) != len(rows) or not turns.any(axis=1).all():
+        raise InvalidValue(f"xyzw must be one quaternion a box, of a norm > 0, got {shown(xyzw)}")
+    rows[:, 4:13] = rotations_from_quaternions(turns[:, [3, 0, 1, 2]]).reshape(-1, 9)
+    return rows
+
+
+def boxes_of(rows: Floats, names: Sequence[str]) -> tuple[Obstacle, ...]:
+    """Return the boxes of rows, (n, 16), as obstacles of these names."""
+    return tuple(
+        Obstacle.of(name, Box.kind, row[1:4], row[13:], row[4:13])
+        for name, row in zip(names, rows.tolist(), strict=True)
+    )
