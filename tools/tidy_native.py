@@ -30,7 +30,12 @@ OPTIONS = [
         "-nostdlibinc",
         "-nostdinc++",
     ),
-    *("-D__GLIBC_MINOR__=28", "-D_LIBCPP_HARDENING_MODE=_LIBCPP_HARDENING_MODE_NONE"),
+    *(
+        "-D__GLIBC_MINOR__=28",
+        "-D_LIBCPP_HAS_THREADS=1",
+        "-D_LIBCPP_HAS_MONOTONIC_CLOCK=1",
+        "-D_LIBCPP_HARDENING_MODE=_LIBCPP_HARDENING_MODE_NONE",
+    ),
     "-D_LIBCPP_ASSERTION_SEMANTIC_DEFAULT=_LIBCPP_ASSERTION_SEMANTIC_IGNORE",
     *(word for folder in HEADERS for word in ("-isystem", str(LIBRARY / folder))),
 ]

@@ -252,7 +252,7 @@ bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, i
     }
     nearest(simplex, way);
     length = std::sqrt(squared_length(way));
-    if (simplex.size == 0 || length <= std::max(margin, SAME)) return true;
+    if (simplex.size <= 0 || length <= std::max(margin, SAME)) return true;
   }
   return true;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,7 +15,7 @@
 namespace evenroad::robot {
 
 /// What counts of a rotation: nothing, where one axis points, or all.
-enum class Turn { NOT, BY_AXIS, ALL };
+enum class Turn : std::uint8_t { NOT, BY_AXIS, ALL };
 
 /// Where a tip is wanted, in the root's frame.
 struct PoseTask {

@@ -18,7 +18,8 @@ bool are_free(Workspace& workspace, int first, int last, bool sixteen_do) {
   double numbers[LANES];
   if (rest > 0) {
     for (int lane = 0; lane < LANES; lane++) {
-      numbers[lane] = static_cast<double>(first + static_cast<std::int64_t>(lane) * (count - 1) / (LANES - 1));
+      const std::int64_t along = static_cast<std::int64_t>(lane) * (count - 1) / (LANES - 1);
+      numbers[lane] = static_cast<double>(first + along);
     }
   } else {
     for (int lane = 0; lane < LANES; lane++) numbers[lane] = first + std::min(lane, count - 1);
