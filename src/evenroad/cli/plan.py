@@ -152,11 +152,11 @@ class PlanArm(PlanOptions, RobotOptions):
     planner = "evenroad.cli.plan_arm:plan_arm"
 
     world: tyro.conf.Positional[Path]
-    """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml, empty.yaml)."""
+    """A scene (.yaml; shipped: shelf.yaml, box-reach.yaml, box-reach-narrow.yaml, empty.yaml)."""
     start: tuple[str, ...]
     """One number per joint, separated by commas, name=value,..., or a named state."""
     robot: str | None = None
-    """Plan for this arm: a URDF, xacro or MJCF file, or the name of a shipped one (ur5, arm7)."""
+    """Plan for this arm: a URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others."""
     roadmap: Path | None = None
     """Plan along this roadmap, made by ``evenroad roadmap``, which holds its arm and its cell; if you give --robot
     too, it has to be that arm."""

@@ -32,7 +32,7 @@ class MakeRoadmap(RobotOptions):
     """
 
     robot: tyro.conf.Positional[str]
-    """A URDF, xacro or MJCF file, or the name of a shipped robot (ur5, arm7)."""
+    """A URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others."""
     cell: Path | None = None
     """A scene (.yaml) of all that never moves: mount, fence, walls; and the ranges to plan in.  Default: nothing."""
     n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024

@@ -34,7 +34,7 @@ class Robot(RobotOptions):
     """Show the joints, limits, bodies and self-collision pairs of an arm, and checks per second."""
 
     robot: tyro.conf.Positional[str]
-    """A URDF, xacro or MJCF file, or the name of a shipped robot (ur5, arm7)."""
+    """A URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others."""
     scene: Path | None = None
     """Count checks per second in this scene (a file or box-reach.yaml) instead of in empty space."""
     write_srdf: Path | None = None

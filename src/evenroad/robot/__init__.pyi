@@ -9,7 +9,7 @@ from evenroad.robot.kinematics import held_values as held_values
 from evenroad.robot.kinematics import joint_values as joint_values
 from evenroad.robot.kinematics import link_poses as link_poses
 from evenroad.robot.kinematics import tip_links as tip_links
-from evenroad.robot.load import find_robot as find_robot
+from evenroad.robot.find import find_robot as find_robot
 from evenroad.robot.load import load_model as load_model
 from evenroad.robot.load import load_robot as load_robot
 from evenroad.robot.orientation_constraint import OrientationConstraint as OrientationConstraint

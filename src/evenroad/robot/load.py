@@ -22,6 +22,7 @@ from evenroad.geometry.parts import parts_of
 from evenroad.geometry.shapes import Capsule, Mesh, Shape
 from evenroad.robot.apart import held_apart
 from evenroad.robot.cache import cached, keep, key_of, know, known, stamps
+from evenroad.robot.find import find_robot
 from evenroad.robot.groups import choose_group, chosen_states, group_notes, held_states
 from evenroad.robot.mjcf import read_mjcf
 from evenroad.robot.pairs import pairs_of, self_pairs
@@ -31,9 +32,6 @@ from evenroad.robot.srdf import read_srdf
 from evenroad.robot.urdf import Urdf, read_urdf
 from evenroad.robot.urdf_xml import RobotFile, outermost
 
-DATA = Path(__file__).parent / "data"
-ROBOTS = ("arm7", "ur5")
-"""Names of the shipped robots."""
 SHAPES = "shapes"
 """`bodies` where the maker's shapes decide once capsules touch an obstacle."""
 PathLike = str | os.PathLike[str]
@@ -119,9 +117,9 @@ def load_model(
     ----------
     source : str or path-like
         A URDF, xacro (extra ``[xacro]``) or MJCF (extra ``[mjcf]``); or, where there is no such file, the name of a
-        shipped robot: ``ur5``, ``arm7``.
+        shipped robot: ``ur5``, ``arm7``; with the extra ``[robots]`` also ``panda`` and others.
     srdf : str or path-like, optional
-        Its SRDF: groups, named states, pairs that need no test.  ``ur5`` has one of its own.
+        Its SRDF: groups, named states, pairs that need no test.  Robots by name have one of their own.
     group : str or sequence of str, optional
         Groups of the SRDF and joints (one text: with commas), which are planned for in this order.  Default: the
         SRDF's only group, or the longest chain among several, else every joint that moves and is no mimic, in the order
@@ -177,22 +175,6 @@ def read_robot(file: RobotFile) -> Urdf:
     """Return what the file of a robot says: an MJCF with the suffix ``.xml`` or ``.mjcf``, else a URDF or xacro."""
     is_mjcf = file.path.suffix in (".xml", ".mjcf") and outermost(file.path) != "robot"
     return read_mjcf(file) if is_mjcf else read_urdf(file)
-
-
-def find_robot(source: PathLike) -> tuple[Path, Path | None]:
-    """Return the file, and for a shipped robot its SRDF if it has one.
-
-    Raises UnknownName if there is neither such a file nor such a robot.
-    """
-    path = as_file("a robot", source, "a URDF, xacro or MJCF, or the name of a shipped robot")
-    if path.is_file() or path.suffix or len(path.parts) > 1:
-        return path, None
-    if str(source) not in ROBOTS:
-        raise UnknownName(
-            f"there is no robot file {str(source)!r}, and none of this name is shipped; shipped: {', '.join(ROBOTS)}"
-        )
-    own = DATA / f"{path}.srdf"
-    return DATA / f"{path}.urdf", own if own.exists() else None
 
 
 def _build(
