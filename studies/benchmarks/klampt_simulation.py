@@ -28,7 +28,7 @@ from evenroad.planning.read_request import arm_request
 from evenroad.robot import Scene
 from evenroad.robot.kinematics import joint_values
 from evenroad.trajectory import Trajectory, limits_of, make_trajectory
-from evenroad.viz.arm import draw_arm_plan
+from evenroad.viz.solid import ArmScene
 
 MASSES = {
     "shoulder_link": 3.7,
@@ -195,7 +195,8 @@ def main() -> None:
     )
     shown = replace(result, path=seen, message=f"as driven in Klamp't, {numbers['largest_error']:.4f} rad off at most")
     rows = [seen[round(share * (np.sum(driving) - 1))] for share in np.linspace(0.0, 1.0, PICTURES)]
-    frames = [draw_arm_plan(shown, arm, now=q).reduce(2) for q in rows]
+    scene = ArmScene.of(shown, arm)
+    frames = [scene.picture(q) for q in rows]
     sheet = Image.new("RGB", (2 * frames[0].width, (PICTURES + 1) // 2 * frames[0].height), "white")
     for i, frame in enumerate(frames):
         sheet.paste(frame, (i % 2 * frame.width, i // 2 * frame.height))

@@ -69,7 +69,7 @@ class View(RobotOptions):
             require_writable_folder(self.gif)
         request, result = self.request()
         if self.gif is not None:
-            from evenroad.viz.arm import save_arm_gif
+            from evenroad.viz.solid import save_arm_gif
 
             save_arm_gif(self.gif, result, request.world)
             print(f"wrote {self.gif}")

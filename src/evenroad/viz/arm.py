@@ -13,7 +13,7 @@ from evenroad._files import atomic_write
 from evenroad.geometry.shapes import Mesh, PointCloud
 from evenroad.roadmap import PlanResult, Status
 from evenroad.robot.kinematics import capsule_endpoints, link_poses, tip_links
-from evenroad.space.path import configuration_at, resample
+from evenroad.space.path import resample
 from evenroad.viz import style
 from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
 from evenroad.viz.sheet import Colour, Faint, Sheet, View
@@ -28,8 +28,6 @@ SIZE = (1920, 744)
 _AXES = "xyz"
 _TOWARDS = (1.0, -1.0, 1.0)
 """Signs of the directions towards the viewer along x, y and z, if the other two axes point right and up."""
-_FRAMES, _FRAME, _PAUSE = 48, 60, 800
-"""Number of frames of a moving picture, and milliseconds of each, and of the first and the last."""
 _BETWEEN = 7
 """Number of configurations between start and goal at which the arm is shown."""
 _STEP = 0.05
@@ -44,25 +42,11 @@ def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: Ar
         picture.save(file, format="png", compress_level=1)
 
 
-def save_arm_gif(path: str | os.PathLike[str], result: PlanResult, world: ArmWorld) -> None:
-    """Save an animation of the arm on its path as GIF, atomically; without a path of start and goal."""
-    if result.path is None:
-        configurations = np.stack([result.start, result.goal])
-    else:
-        # For an arm that does not move all frames are equal.
-        times = np.linspace(0.0, 1.0, _FRAMES if result.cost else 2)
-        configurations = configuration_at(result.path, world.space, times)
-    frames = [draw_arm_plan(result, world, now=q).reduce(2).quantize(160) for q in configurations]
-    pauses = [_PAUSE, *(len(frames) - 2) * [_FRAME], _PAUSE]
-    with atomic_write(path) as file:
-        frames[0].save(file, format="gif", save_all=True, append_images=frames[1:], duration=pauses, loop=0)
-
-
-def draw_arm_plan(result: PlanResult, world: ArmWorld, *, now: Floats | None = None) -> Image.Image:
+def draw_arm_plan(result: PlanResult, world: ArmWorld) -> Image.Image:
     """Return a picture of a plan of an arm: from above, from the side and from the front, to one scale.
 
-    The start is green, the goal blue, with the arm along the path between them, or at the configuration `now`, (dim,).
-    Paths of tips and bodies in collision are red.
+    The start is green, the goal blue, with the arm along the path between them.  Paths of tips and bodies in
+    collision are red.
     """
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
     sheet = Sheet(SIZE, len(VIEWS), title)
@@ -70,28 +54,22 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, *, now: Floats | None = N
     scale = min(float(np.min(np.array(sheet.available) / (high - low)[list(pair)])) for _, pair in VIEWS)
     for i, (name, pair) in enumerate(VIEWS):
         view = View(low[list(pair)], high[list(pair)], scale)
-        draw_arm_view(view, result, world, pair, now=now)
+        draw_arm_view(view, result, world, pair)
         first, second = (_AXES[axis] for axis in pair)
         sheet.add(view, i, f"{name} ({first}, {second})", (f"{first} [m]", f"{second} [m]"))
     sheet.legend(_legend(result, world))
     return sheet.image
 
 
-def draw_arm_view(
-    view: View, result: PlanResult, world: ArmWorld, pair: tuple[int, int], *, now: Floats | None = None
-) -> None:
+def draw_arm_view(view: View, result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> None:
     """Draw the projection to two of the axes x, y, z, from far to near."""
     shown = _shown(result, world)
     last = len(shown) - 1
     arms = [(i / last, endpoints) for i, endpoints in enumerate(capsule_endpoints(world.robot, shown))]
-    between = arms[1:-1]
-    if now is not None:
-        between = [(0.5, capsule_endpoints(world.robot, now[np.newaxis])[0])]
     axis, towards = next((k, _TOWARDS[k]) for k in range(3) if k not in pair)
     things: list[tuple[float, Floats, Colour, Colour, float]] = []
-    for share, endpoints in [*between, arms[0], arms[-1]]:
-        # In a still picture configurations between start and goal are faint, in an animation start and goal.
-        faint = (share in (0.0, 1.0)) == (now is not None)
+    for share, endpoints in [*arms[1:-1], arms[0], arms[-1]]:
+        faint = share not in (0.0, 1.0)
         fill, edge = _tint(share, 0.25 if faint else 0.55), _tint(share, 0.45 if faint else 1.0)
         for body, outline in zip(endpoints, _bodies(world.robot, endpoints, pair), strict=True):
             depth = -np.inf if faint else towards * float(body[:, axis].mean())
