@@ -15,6 +15,8 @@ from typing import NamedTuple
 
 import yaml
 
+from evenroad.robot.find import example_robots
+
 ROOT = Path(__file__).parents[1]
 DATA = ROOT / "src" / "evenroad" / "robot" / "data"
 
@@ -54,7 +56,6 @@ trimesh.creation.box((100, 100, 100)).export("shelf.stl")
 """
 TRAJECTORY = "from evenroad.trajectory import arm_trajectory, save_trajectory\n"
 PREPARED = {
-    "README.md": MAPS,
     "guarantees.md": MAPS + SQUARE,
     "pose-goals.md": ARM,
     "arm-planning.md": ARM,
@@ -106,10 +107,6 @@ INSTEAD = {
         "an hour",
     ),
     "evenroad roadmap my_arm.urdf --cell cell.yaml -n 1024 *": Instead(None, "half a minute: tests/cli runs such"),
-    "evenroad train -n 50 -d 3 *": Instead(
-        'evenroad train -n 50 -d 3 --objective "hickernell+10*riesz" --sets 2 --steps 50 --jobs 1 -o sets/',
-        "two processes that start for it",
-    ),
     "evenroad view box-reach.json --gif *": Instead(None, "seconds of drawing: an example and tests/cli do"),
     "evenroad view box-reach.json": Instead(None, "serves a page until it is stopped (extra [view])"),
     "evenroad robot duo.urdf *": Instead(None, "a robot of two arms that does not ship"),
@@ -123,6 +120,11 @@ SMALLER = {
     "world, runs = maze.world(), 100": "world, runs = maze.world(), 5",
 }
 """Python that takes long -> what is run in its place."""
+
+
+if not example_robots():
+    for each in ("evenroad robot panda", "evenroad plan shelf.yaml --robot panda *"):
+        INSTEAD[each] = Instead(None, "needs the extra [robots]")
 
 
 class Block(NamedTuple):

@@ -1,4 +1,4 @@
-"""evenroad: point sets that make sampling-based motion planners need fewer samples.
+"""evenroad: paths proved free for robot arms and for disks on maps, and even point sets for sampling planners.
 
 The public names are those of ``__init__.pyi``, which type checkers and editors read as it is.  Here, as in each part,
 they are loaded on first use, so that ``import evenroad`` costs milliseconds.

@@ -46,7 +46,7 @@ ABOUT = {name: about for name, (_, about) in VERBS.items()} | OF_STUDIES
 
 DESCRIPTION = f"""usage: evenroad [-h] [--version [-v]] [--tyro-print-completion {{bash,zsh,fish}}] VERB ...
 
-evenroad {__version__}: point sets that make sampling-based motion planners need fewer samples.
+evenroad {__version__}: paths proved free for robot arms and for disks on maps, and even point sets.
 
 Exit codes: 0 solved / done, 1 any other answer (no path), 2 bad input, 70 internal error, 130 interrupted.
 

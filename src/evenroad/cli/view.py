@@ -47,7 +47,8 @@ class View(RobotOptions):
     world: tyro.conf.Positional[Path]
     """A plan of evenroad plan --robot (.json); or a scene (.yaml), with --robot."""
     robot: str | None = None
-    """A URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others.  Default: that of the plan."""
+    """A URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others.
+    Default: that of the plan."""
     start: str = "home"
     """With a scene: one number per joint, separated by commas, name=value,..., or a named state."""
     goal: str | None = None

@@ -1,6 +1,7 @@
 from evenroad.geometry.shapes import Capsule as Capsule
 from evenroad.robot.arm_world import ArmWorld as ArmWorld
 from evenroad.robot.cartesian_line import CartesianLine as CartesianLine
+from evenroad.robot.find import find_robot as find_robot
 from evenroad.robot.held import HeldObject as HeldObject
 from evenroad.robot.joint import Joint as Joint
 from evenroad.robot.joint import Mimic as Mimic
@@ -9,7 +10,6 @@ from evenroad.robot.kinematics import held_values as held_values
 from evenroad.robot.kinematics import joint_values as joint_values
 from evenroad.robot.kinematics import link_poses as link_poses
 from evenroad.robot.kinematics import tip_links as tip_links
-from evenroad.robot.find import find_robot as find_robot
 from evenroad.robot.load import load_model as load_model
 from evenroad.robot.load import load_robot as load_robot
 from evenroad.robot.orientation_constraint import OrientationConstraint as OrientationConstraint

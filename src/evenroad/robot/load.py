@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TypedDict, Unpack
 
 from evenroad._call import explains_calls
-from evenroad._checks import as_file, require_known, require_positive
+from evenroad._checks import require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.fit import fit_capsules, union_volume
 from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.inner import inner_of

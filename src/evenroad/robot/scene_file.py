@@ -15,8 +15,8 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName, shown
 from evenroad.geometry.cloud_file import load_cloud
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import CLOUD_RADIUS, PRIMITIVES, Mesh, PointCloud, Shape, shape_of
-from evenroad.robot.held import HeldObject
 from evenroad.robot.find import DATA
+from evenroad.robot.held import HeldObject
 from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
 from evenroad.robot.scan import allowed_within, without_shapes
 from evenroad.robot.scene import MARGIN, Cut, Obstacle, Scene, Seen

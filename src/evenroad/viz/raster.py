@@ -192,7 +192,12 @@ def nearest(flat: Floats, depth: Floats) -> tuple[Ints, Ints]:
 def _covered(flat: Floats, width: int, height: int) -> tuple[Ints, Ints, Floats]:
     """Return pixel, triangle and 1 / depth of each pixel whose centre a triangle covers."""
     low, high = flat[..., :2].min(axis=1), flat[..., :2].max(axis=1)
-    inside = (high > 0.0).all(axis=1) & (low[:, 0] < width) & (low[:, 1] < height) & (np.abs(flat[..., 2]) < 900.0).all(axis=1)
+    inside = (
+        (high > 0.0).all(axis=1)
+        & (low[:, 0] < width)
+        & (low[:, 1] < height)
+        & (np.abs(flat[..., 2]) < 900.0).all(axis=1)
+    )
     first = np.ceil(np.clip(low[:, 1], 0, height) - 0.5).astype(int)
     last = np.ceil(np.clip(high[:, 1], 0, height) - 0.5).astype(int)
     rows = np.where(inside, last - first, 0)
@@ -220,7 +225,9 @@ def _slopes(flat: Floats) -> Floats:
     u, v = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
     area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
     area = np.where(np.abs(area) < 1e-12, np.inf, area)
-    return np.stack([u[:, 2] * v[:, 1] - u[:, 1] * v[:, 2], u[:, 0] * v[:, 2] - u[:, 2] * v[:, 0]], axis=1) / area[:, None]
+    return (
+        np.stack([u[:, 2] * v[:, 1] - u[:, 1] * v[:, 2], u[:, 0] * v[:, 2] - u[:, 2] * v[:, 0]], axis=1) / area[:, None]
+    )
 
 
 def _barycentric(flat: Floats, x: Floats, y: Floats) -> Floats:

@@ -79,7 +79,9 @@ class ArmScene:
         parts = [*self._posed(self.world, self.links, q), *self.still]
         for ghost, colour in ghosts:
             arm = self._posed(self.world, self.links, ghost)
-            corners, normals = (np.concatenate([getattr(part, name) for part in arm]) for name in ("corners", "normals"))
+            corners, normals = (
+                np.concatenate([getattr(part, name) for part in arm]) for name in ("corners", "normals")
+            )
             parts.append(Part(corners, normals, ImageColor.getrgb(colour)[:3], _GHOST))
         return self.stage.picture(parts)
 
@@ -128,7 +130,9 @@ def _trail(result: PlanResult, world: ArmWorld) -> Part:
     angle = np.linspace(0.0, 2.0 * np.pi, 9)[:-1, np.newaxis, np.newaxis]
     rings = points + _THICK * (np.cos(angle) * aside + np.sin(angle) * np.cross(along, aside))
     ring, place = (each.reshape(-1) for each in np.mgrid[0:8, 0 : _SAMPLES - 1])
-    corner = [(r % 8) * _SAMPLES + p for r, p in ((ring, place), (ring + 1, place), (ring + 1, place + 1), (ring, place + 1))]
+    corner = [
+        (r % 8) * _SAMPLES + p for r, p in ((ring, place), (ring + 1, place), (ring + 1, place + 1), (ring, place + 1))
+    ]
     triangles = np.concatenate([np.stack([corner[i] for i in each], axis=1) for each in ((0, 1, 2), (0, 2, 3))])
     return part_of((rings.reshape(-1, 3), triangles), ImageColor.getrgb(style.PATH)[:3])
 

@@ -17,8 +17,8 @@ from evenroad._checks import require_extra
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Capsule, Mesh, PointCloud, Shape, along_z
-from evenroad.robot.kinematics import link_poses
 from evenroad.robot.find import find_robot
+from evenroad.robot.kinematics import link_poses
 from evenroad.robot.load import read_robot
 from evenroad.robot.planes import with_planes
 from evenroad.robot.prepared_robots import joint_space

@@ -1,0 +1,37 @@
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.robot.kinematics import capsule_endpoints
+from evenroad.viz import solid
+
+
+@pytest.fixture(scope="module")
+def reach():
+    return er.plan("box-reach", "home", "inside", robot="ur5")
+
+
+def test_the_camera_sees_the_whole_arm_and_nothing_stands_before_most_of_it(reach):
+    scene = solid.ArmScene.of(reach, reach.world)
+    camera = scene.stage._camera
+    seen = camera.pixels(capsule_endpoints(reach.world.robot, reach.path).reshape(-1, 3))
+    assert (seen[:, :2] > 0).all()
+    assert (seen[:, :2] < camera.size).all()
+    with_boxes = np.asarray(scene.picture(reach.start)).astype(int)
+    other = np.asarray(scene.picture(reach.goal)).astype(int)
+    assert np.count_nonzero(np.abs(with_boxes - other).max(axis=2) > 30) > 3000
+
+
+def test_a_plan_without_a_path_shows_start_and_goal(reach):
+    none = er.plan("box-reach", "home", "inside", robot="ur5", limits={"motions": 1})
+    assert none.path is None
+    picture = solid.draw_arm(none, none.world)
+    assert picture.size == solid.SIZE
+
+
+def test_clouds_are_drawn_as_cubes_of_their_points():
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    vertices, triangles = solid._cubes(points, 0.1)
+    assert vertices.shape == (16, 3)
+    assert triangles.shape == (24, 3)
+    np.testing.assert_allclose(np.abs(vertices[8:] - points[1]).max(), 0.1)
