@@ -270,12 +270,12 @@ class _Shadow:
 
     def light_at(self, seen: Floats) -> Floats:
         """Return the share of the light, 0 to 1, that reaches points along the axes of the light, (p, 3)."""
-        places = (seen[:, :2] - self._low) * self._scale
-        near = np.flatnonzero((np.abs(places - 0.5 * _SHADOW) < 0.5 * _SHADOW - 2.0).all(axis=1))
-        places, height, reached = places[near], seen[near, 2] + _BIAS, np.ones(len(seen))
+        positions = (seen[:, :2] - self._low) * self._scale
+        near = np.flatnonzero((np.abs(positions - 0.5 * _SHADOW) < 0.5 * _SHADOW - 2.0).all(axis=1))
+        positions, height, reached = positions[near], seen[near, 2] + _BIAS, np.ones(len(seen))
         lit = np.ones(len(near))
         for tap in _TAPS:
-            column, row = (places + tap).astype(int).T
+            column, row = (positions + tap).astype(int).T
             lit -= (self._depth[row, column] > height) / len(_TAPS)
         reached[near] = lit
         return reached

@@ -129,9 +129,9 @@ def _trail(result: PlanResult, world: ArmWorld) -> Part:
     aside /= np.maximum(np.linalg.norm(aside, axis=1, keepdims=True), 1e-12)
     angle = np.linspace(0.0, 2.0 * np.pi, 9)[:-1, np.newaxis, np.newaxis]
     rings = points + _THICK * (np.cos(angle) * aside + np.sin(angle) * np.cross(along, aside))
-    ring, place = (each.reshape(-1) for each in np.mgrid[0:8, 0 : _SAMPLES - 1])
+    ring, step = (each.reshape(-1) for each in np.mgrid[0:8, 0 : _SAMPLES - 1])
     corner = [
-        (r % 8) * _SAMPLES + p for r, p in ((ring, place), (ring + 1, place), (ring + 1, place + 1), (ring, place + 1))
+        (r % 8) * _SAMPLES + p for r, p in ((ring, step), (ring + 1, step), (ring + 1, step + 1), (ring, step + 1))
     ]
     triangles = np.concatenate([np.stack([corner[i] for i in each], axis=1) for each in ((0, 1, 2), (0, 2, 3))])
     return part_of((rings.reshape(-1, 3), triangles), ImageColor.getrgb(style.PATH)[:3])
