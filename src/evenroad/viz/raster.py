@@ -19,7 +19,7 @@ FINER = 2
 _SHADOW = 900
 """Side of the square picture that the light sees [pixels]."""
 _TAPS = ((-0.4, -1.1), (1.1, -0.4), (0.4, 1.1), (-1.1, 0.4))
-"""Pixels of it beside a point that are asked, so that edges of shadows are soft."""
+"""Offsets of the pixels that a point is compared with, so that edges of shadows are soft."""
 _BIAS = 0.006
 """Depth below a surface that is in its own shadow for sure [m]."""
 _CREASE = 0.75
