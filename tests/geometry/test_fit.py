@@ -16,7 +16,7 @@ from evenroad.geometry.fit import (
     union_volume,
     volume,
 )
-from evenroad.geometry.mesh import load_mesh
+from evenroad.geometry.mesh_file import load_mesh
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.rotation import rotation_from_rpy
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Sphere

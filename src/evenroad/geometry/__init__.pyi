@@ -4,7 +4,7 @@ from evenroad.geometry.fit import fit_capsules as fit_capsules
 from evenroad.geometry.fit import union_volume as union_volume
 from evenroad.geometry.mesh import TriangleMesh as TriangleMesh
 from evenroad.geometry.mesh import height_map as height_map
-from evenroad.geometry.mesh import load_mesh as load_mesh
+from evenroad.geometry.mesh_file import load_mesh as load_mesh
 from evenroad.geometry.pose import IDENTITY as IDENTITY
 from evenroad.geometry.pose import Pose as Pose
 from evenroad.geometry.rotation import rotation_from_heading as rotation_from_heading

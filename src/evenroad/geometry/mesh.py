@@ -1,26 +1,20 @@
-"""Meshes: surfaces of triangles, as values and from files."""
+"""Meshes: surfaces of triangles, as values."""
 
 from __future__ import annotations
 
 import itertools
-import json
-import math
-import os
-import zipfile
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_batch, as_row, require_positive
-from evenroad._npz import require_unpackable
-from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
+from evenroad.errors import InvalidValue
 
 _FLAT = 5e-7
 """Half of the thickness that a flat mesh gets for its hull [m]."""
@@ -184,134 +178,3 @@ def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
     is_open, unturned = (np.unique(part[a[bad[side]]]) for bad in (times % 2 != 0, turns != 0.0))
     closed = ~np.isin(part, is_open)
     return closed[faces[:, 0]], not (closed[faces[:, 0]] & np.isin(part, unturned)[faces[:, 0]]).any()
-
-
-def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMesh:
-    """Read a mesh from a file: .stl, .obj, .dae, .ply and other formats of trimesh.
-
-    Coordinates become metres if the file names its unit (COLLADA and 3MF), else they stay as they are.
-
-    Parameters
-    ----------
-    path : str or path
-        A scene of several meshes becomes one mesh.
-    scale : float
-        Factor of the coordinates, > 0: 0.001 for an .stl in millimetres.
-
-    Raises
-    ------
-    NotAvailable
-        If a package that reads such files is not installed.
-    BrokenFile
-        If the file is missing, is no mesh, has no triangles, or has an unknown unit.
-    InvalidValue
-        If `scale` is not such a number.
-    """
-    factor = require_positive("scale", scale)
-    file = Path(path)
-    if not file.is_file():
-        raise BrokenFile(f"the mesh {file} is missing")
-    if file.suffix.lower() == ".bt":
-        from evenroad.geometry.octomap import read_octomap
-
-        vertices, triangles = read_octomap(file)
-        return TriangleMesh(factor * vertices, triangles, file.name)
-    try:
-        import trimesh
-
-        require_bounded(file)
-        mesh = trimesh.load_mesh(file, process=False)
-        unit = 1.0 if mesh.units is None else trimesh.units.unit_conversion(mesh.units, "meters")
-        if isinstance(mesh, trimesh.Scene):
-            parts = [mesh.graph[node][1] for node in mesh.graph.nodes_geometry]
-            require_few_triangles(sum(len(mesh.geometry[part].faces) for part in parts), file.stat().st_size)
-            mesh = mesh.to_mesh()
-        vertices, triangles = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
-    except ImportError as error:
-        raise NotAvailable(f"reading {file} needs the extra: pip install 'evenroad[dae]' ({error})") from error
-    except BrokenFile:
-        raise
-    # trimesh's readers raise whatever their parsers do, down to struct.error and KeyError.
-    except Exception as error:
-        raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
-    if len(triangles) == 0:
-        raise BrokenFile(f"the mesh {file} is empty or cut off: a body without triangles would never collide")
-    if file.suffix.lower() == ".ply" and _is_cut_off(file.read_bytes(), len(triangles)):
-        raise BrokenFile(f"the mesh {file} is cut off, or its header does not announce what there is")
-    if not (math.isfinite(unit) and unit > 0.0):
-        raise BrokenFile(f"the mesh {file} must have a unit of a finite length > 0, got {unit:g} m")
-    try:
-        return TriangleMesh(factor * unit * vertices, triangles, file.name)
-    except InvalidValue as error:
-        raise BrokenFile(f"the mesh {file} is broken: {error}") from error
-
-
-def _is_cut_off(ply: bytes, triangles: int) -> bool:
-    """Return whether an ascii .ply has other rows than its header announces; trimesh checks binary ones only."""
-    header, _, rows = ply.partition(b"end_header")
-    words = [line.split() for line in header.splitlines()]
-    if [b"format", b"ascii"] not in [row[:2] for row in words]:
-        return False
-    counts = {row[1]: int(row[2]) for row in words if row[:1] == [b"element"]}
-    there = sum(bool(row.strip()) for row in rows.splitlines())
-    return there != sum(counts.values()) or triangles < counts.get(b"face", 0)
-
-
-_PACKED = (".gz", ".tgz", ".bz2", ".xz", ".zst")
-_MOST_TIMES = 10
-"""Largest number of entries and triangles per byte of a file; files that people make have less than one."""
-_FEW_TRIANGLES = 1_000_000
-_FEW_INSTANCES = 20
-"""Number of instances up to which the parts of a COLLADA file cannot multiply."""
-
-
-def require_bounded(file: Path) -> None:
-    """Raise BrokenFile or ValueError if a file announces far more than it holds."""
-    suffix, size = file.suffix.lower(), file.stat().st_size
-    if suffix in _PACKED:
-        raise BrokenFile(f"the mesh {file} is packed: unpack it first")
-    if zipfile.is_zipfile(file):
-        with zipfile.ZipFile(file) as archive:
-            require_unpackable(file, archive)
-    elif suffix == ".glb":
-        announced = _announced_by_gltf(file.read_bytes())
-        if announced > _MOST_TIMES * size:
-            raise ValueError(f"it announces {announced} entries in {size} bytes")
-    elif suffix == ".dae":
-        content = file.read_bytes()
-        if content.count(b"instance_node") > _FEW_INSTANCES:
-            require_few_triangles(_nodes_of_collada(content), size)
-
-
-def require_few_triangles(count: int, size: int) -> None:
-    """Raise ValueError for too many triangles, repetitions included, for the size of a file."""
-    if count > max(_FEW_TRIANGLES, _MOST_TIMES * size):
-        raise ValueError(f"with its repetitions it has {count} parts, in {size} bytes")
-
-
-def _announced_by_gltf(content: bytes) -> int:
-    """Return the number of entries of all accessors of a .glb; an accessor without data stands for zeros."""
-    length = int.from_bytes(content[12:16], "little")
-    record = json.loads(content[20 : 20 + length])
-    return sum(int(each["count"]) for each in record.get("accessors", []))
-
-
-def _nodes_of_collada(content: bytes) -> int:
-    """Return the number of nodes after all instances are expanded."""
-    from xml.etree import ElementTree
-
-    root = ElementTree.fromstring(content)
-    nodes = [each for each in root.iter() if each.tag.endswith("}node")]
-    named = {each.get("id", ""): each for each in nodes}
-    known: dict[int, int] = {}
-
-    def count(node: ElementTree.Element) -> int:
-        if id(node) not in known:
-            # The reader refuses a node inside itself.
-            known[id(node)] = 1
-            inside = [each for each in node if each.tag.endswith("}node")]
-            meant = [named.get(each.get("url", "")[1:]) for each in node if each.tag.endswith("}instance_node")]
-            known[id(node)] += sum(count(each) for each in (*inside, *meant) if each is not None)
-        return known[id(node)]
-
-    return max(map(count, nodes), default=0)

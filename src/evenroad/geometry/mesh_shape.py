@@ -18,7 +18,8 @@ from evenroad._call import explains_calls
 from evenroad._checks import FARTHEST, as_batch, as_row, require_positive
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.cloud_file import load_cloud
-from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
+from evenroad.geometry.mesh import TriangleMesh, scaled, volume_of
+from evenroad.geometry.mesh_file import load_mesh
 from evenroad.geometry.pose import Vector
 from evenroad.geometry.shape import Placed, Shape
 

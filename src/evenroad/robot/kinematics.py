@@ -14,13 +14,18 @@ from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint
 
 
-class KinematicTree(Protocol):
-    """What kinematics needs of a robot; the attributes are those of :class:`evenroad.robot.Robot`."""
+class Tree(Protocol):
+    """Links, the root first, and joints, of which the i-th carries link i + 1: of a robot or of what a URDF says."""
 
     @property
     def links(self) -> tuple[str, ...]: ...  # noqa: D102
     @property
     def joints(self) -> tuple[Joint, ...]: ...  # noqa: D102
+
+
+class KinematicTree(Tree, Protocol):
+    """What kinematics needs of a robot; the attributes are those of :class:`evenroad.robot.Robot`."""
+
     @property
     def capsules(self) -> tuple[Capsule, ...]: ...  # noqa: D102
     @property
@@ -43,7 +48,7 @@ def joint_values(robot: KinematicTree, q: npt.ArrayLike) -> dict[str, Floats]:
     return with_mimics(robot, values)
 
 
-def with_mimics(robot: KinematicTree, values: Mapping[str, Floats]) -> dict[str, Floats]:
+def with_mimics(robot: Tree, values: Mapping[str, Floats]) -> dict[str, Floats]:
     """Return values, joint -> (n,), of all movable joints from those of the joints that move by themselves."""
     all_values = dict(values)
     for joint in robot.joints:
@@ -91,7 +96,7 @@ def link_poses(robot: KinematicTree, q: npt.ArrayLike) -> Floats:
     return poses_at(robot, joint_values(robot, q), len(np.asarray(q)))
 
 
-def poses_at(robot: KinematicTree, values: Mapping[str, Floats], count: int) -> Floats:
+def poses_at(robot: Tree, values: Mapping[str, Floats], count: int) -> Floats:
     """Return the frames of all links, (count, links, 4, 4), for the values, (count,), of all movable joints."""
     poses = np.zeros((count, len(robot.links), 4, 4))
     poses[:, 0] = np.eye(4)

@@ -11,26 +11,24 @@ from typing import Any
 from evenroad._call import explains_calls
 from evenroad._checks import as_file, require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName, shown
-from evenroad.geometry.cloud_file import load_cloud
-from evenroad.geometry.pose import Pose
-from evenroad.geometry.shapes import CLOUD_RADIUS, PRIMITIVES, Mesh, PointCloud, Shape, shape_of
+from evenroad.errors import BrokenFile, InvalidValue, shown
+from evenroad.geometry.shapes import PRIMITIVES, PointCloud
 from evenroad.robot.find import DATA
 from evenroad.robot.held import HeldObject
 from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
-from evenroad.robot.scan import allowed_within, without_shapes
-from evenroad.robot.scene import MARGIN, Cut, Obstacle, Scene, Seen
+from evenroad.robot.scan import allowed_within
+from evenroad.robot.scene import Obstacle, Scene
+from evenroad.robot.scene_entries import mapping_of, obstacle_of, obstacles_of, region_of
+from evenroad.robot.scene_objects import OBJECT_FILES, objects_of
 
 SCENES = ("box-reach", "box-reach-narrow", "empty", "shelf")
 """Names of the shipped scenes."""
 _SECTIONS = ("name", "allowed", "states", "limits", "attach")
-_OPTIONAL = ("xyz", "rpy", "xyzw", "cell")
-_OF_A_CLOUD = ("seen_at", "margin", "cut")
 
 
 def is_scene(path: str | os.PathLike[str]) -> bool:
-    """Return whether a file is a scene and no map: a ``.scene``, or YAML with the key ``obstacles`` or ``world``."""
-    if Path(path).suffix == ".scene":
+    """Return whether a file is a scene and no map: by its suffix, or YAML with the key ``obstacles`` or ``world``."""
+    if Path(path).suffix.lower() in (".scene", *OBJECT_FILES):
         return True
     try:
         return not {"obstacles", "world"}.isdisjoint(read_mapping(find_scene(path), "scene"))
@@ -57,7 +55,11 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
           ball: {shape: sphere, radius: 0.1, xyz: [0.5, 0, 0.5]}
           post: {shape: cylinder, radius: 0.05, length: 1.0, xyz: [0, 0.6, 0.5]}   # along z; so is a capsule
           scan: {shape: cloud, file: scan.ply, radius: 0.01, seen_at: home, margin: 0.02}
-          shelf: {shape: mesh, file: shelf.stl, scale: 0.001, xyz: [0.8, 0, 0]}    # also .obj, .ply, .dae
+          shelf: {shape: mesh, file: shelf.stl, scale: 0.001, xyz: [0.8, 0, 0]}    # convex: true: its convex hull
+          floor: {shape: plane, xyz: [0, 0, -0.8]}                                 # all that is below its x-y plane
+          ground: {shape: height_map, file: ground.npy, spacing: 0.05}             # (x, y) heights
+          kitchen: {include: kitchen.glb, xyz: [1, 0, 0]}                          # its objects: kitchen/table, ...
+          fridge: {include: fridge.urdf, joints: {door: 1.2}, xyz: [0, 1, 0]}      # its links: fridge/door, ...
         allowed:                                  # contacts that are not tested
           table: [base_link]
           scan:                                   # of a cloud: near the start and the goal, and within a region [m]
@@ -82,7 +84,8 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     Parameters
     ----------
     source : str or path-like
-        A ``.yaml`` as above, a scene of MoveIt, or ``box-reach``, ``box-reach-narrow`` or ``empty``.
+        A ``.yaml`` as above, a scene of MoveIt, a URDF or glTF whose bodies become obstacles, or ``box-reach``,
+        ``box-reach-narrow`` or ``empty``.
 
     Returns
     -------
@@ -108,6 +111,9 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         raise BrokenFile(f"there is no scene file {path}; shipped: {', '.join(f'{name}.yaml' for name in SCENES)}")
     if path.suffix == ".scene":
         return read_scene_text(path)
+    if path.suffix.lower() in OBJECT_FILES:
+        bodies = objects_of(path, {})
+        return Scene([Obstacle(name, body) for name, body in bodies.items()], name=path.stem)
     document = read_mapping(path, "scene")
     return _of_document(document, path)
 
@@ -126,29 +132,31 @@ def scene_of(document: Mapping[str, Any], name: str) -> Scene:
 def _scene(document: dict[str, Any], path: Path) -> Scene:
     require_keys(document, ("obstacles",), _SECTIONS, f"the scene {path}")
     entries = _entries(document["obstacles"], path)
-    obstacles = tuple(_obstacle(name, entry, path) for name, entry in entries.items())
+    groups = {name: obstacles_of(name, entry, path) for name, entry in entries.items()}
+    obstacles = tuple(each for group in groups.values() for each in group)
+    groups |= {each.name: (each,) for each in obstacles}
     allowed: set[tuple[str, str]] = set()
     parts: list[tuple[str, str, dict[str, Any]]] = []
-    for obstacle, links in _mapping(document.get("allowed"), f"allowed in {path}").items():
-        require_known(f"obstacle in 'allowed' of {path}:", obstacle, entries)
+    for obstacle, links in mapping_of(document.get("allowed"), f"allowed in {path}").items():
+        require_known(f"obstacle in 'allowed' of {path}:", obstacle, groups)
         if not isinstance(links, list) or not all(isinstance(link, str | dict) for link in links):
             raise InvalidValue(f"allowed contacts of {obstacle!r} in {path} must be a list of links, got {links!r}")
-        allowed.update((link, obstacle) for link in links if isinstance(link, str))
+        allowed.update((link, each.name) for link in links if isinstance(link, str) for each in groups[obstacle])
         parts += [_part(obstacle, each, path) for each in links if isinstance(each, dict)]
     states: dict[str, dict[str, float]] = {}
-    for name, values in _mapping(document.get("states"), f"states in {path}").items():
+    for name, values in mapping_of(document.get("states"), f"states in {path}").items():
         states[name] = {}
-        for joint, value in _mapping(values, f"state {name!r} in {path}").items():
+        for joint, value in mapping_of(values, f"state {name!r} in {path}").items():
             (states[name][joint],) = numbers(value, 1, f"joint {joint!r} of state {name!r} in {path}")
     limits = {
         joint: _range(value, f"limits of joint {joint!r} in {path}")
-        for joint, value in _mapping(document.get("limits"), f"limits in {path}").items()
+        for joint, value in mapping_of(document.get("limits"), f"limits in {path}").items()
     }
     attached = []
-    for name, entry in _mapping(document.get("attach"), f"attach in {path}").items():
-        held, obstacles_touched = _attached(name, _mapping(entry, f"attached {name!r} in {path}"), path, entries)
+    for name, entry in mapping_of(document.get("attach"), f"attach in {path}").items():
+        held, obstacles_touched = _attached(name, mapping_of(entry, f"attached {name!r} in {path}"), path, groups)
         attached.append(held)
-        allowed.update((name, obstacle) for obstacle in obstacles_touched)
+        allowed.update((name, each.name) for obstacle in obstacles_touched for each in groups[obstacle])
     name = str(document.get("name", path.stem))
     scene = Scene(
         obstacles,
@@ -164,12 +172,13 @@ def _scene(document: dict[str, Any], path: Path) -> Scene:
 def _entries(obstacles: object, path: Path) -> dict[str, dict[str, Any]]:
     """Return name -> entry of the obstacles of a file: a mapping, or a list whose entries say their own names."""
     if not isinstance(obstacles, list | tuple):
-        named = _mapping(obstacles, f"obstacles in {path}")
+        named = mapping_of(obstacles, f"obstacles in {path}")
         return {name: _in_full(entry, f"obstacle {name!r} in {path}") for name, entry in named.items()}
     entries: dict[str, dict[str, Any]] = {}
     for i, each in enumerate(obstacles):
         entry = _in_full(each, f"obstacle {i} in {path}")
-        name = str(entry.pop("name", f"{entry.get('shape')} {i}"))
+        kind = entry.get("shape") or Path(str(entry.get("include"))).stem
+        name = str(entry.pop("name", f"{kind} {i}"))
         if name in entries:
             raise InvalidValue(f"obstacles in {path} must have names of their own, twice: {name!r}")
         entries[name] = entry
@@ -178,14 +187,14 @@ def _entries(obstacles: object, path: Path) -> dict[str, dict[str, Any]]:
 
 def _in_full(value: object, where: str) -> dict[str, Any]:
     """Return an entry as ``shape: box, size: ...``; ``box: {size: ...}`` and ``sphere: 0.1`` say the same."""
-    entry = _mapping(value, where)
+    entry = mapping_of(value, where)
     kinds = [key for key in entry if key in PRIMITIVES]
     if "shape" in entry or len(kinds) != 1:
         return entry
     given, dimensions = entry.pop(kinds[0]), PRIMITIVES[kinds[0]].dimensions
     if not isinstance(given, Mapping) and len(dimensions) == 1:
         given = {dimensions[0][0]: given}
-    return {"shape": kinds[0], **_mapping(given, f"{kinds[0]} of {where}"), **entry}
+    return {"shape": kinds[0], **mapping_of(given, f"{kinds[0]} of {where}"), **entry}
 
 
 def _part(cloud: str, entry: dict[str, Any], path: Path) -> tuple[str, str, dict[str, Any]]:
@@ -208,16 +217,8 @@ def _with_parts(scene: Scene, parts: list[tuple[str, str, dict[str, Any]]], path
             (distance,) = numbers(entry["near_ends"], 1, f"near_ends of {where}")
             near.add((link, cloud, require_positive(f"near_ends of {where}", distance, or_zero=True)))
         else:
-            scene = allowed_within(scene, link, cloud, *_region(entry["within"], entry, f"within of {where}", path))
+            scene = allowed_within(scene, link, cloud, *region_of(entry["within"], entry, f"within of {where}", path))
     return replace(scene, near_ends=frozenset(near))
-
-
-def _region(entry: object, more: dict[str, Any], where: str, path: Path) -> tuple[Shape, float]:
-    """Return a region, and by how much it grows as `more` says."""
-    region = _mapping(entry, where)
-    require_known(f"shape of {where}:", str(region.get("shape")), PRIMITIVES)
-    (grow,) = numbers(more.get("grow", 0.0), 1, f"grow of {where}")
-    return _obstacle("region", region, path, where).body, require_positive(f"grow of {where}", grow, or_zero=True)
 
 
 def _attached(name: str, entry: dict[str, Any], path: Path, obstacles: Collection[str]) -> tuple[HeldObject, list[str]]:
@@ -228,89 +229,9 @@ def _attached(name: str, entry: dict[str, Any], path: Path, obstacles: Collectio
         raise InvalidValue(f"{where} must have the link that carries it, got link: {link!r}")
     if not isinstance(touches, list) or not all(isinstance(each, str) for each in touches):
         raise InvalidValue(f"touches of {where} must be a list of links and obstacles, got {touches!r}")
-    body = _obstacle(name, entry, path, where).body
+    body = obstacle_of(name, entry, path, where).body
     links = tuple(each for each in touches if each not in obstacles)
     return HeldObject(name, body, link, links), [each for each in touches if each in obstacles]
-
-
-def _obstacle(name: str, entry: dict[str, Any], path: Path, where: str = "") -> Obstacle:
-    where = where or f"obstacle {name!r} in {path}"
-    if "quaternion" in entry:
-        raise UnknownName(f"{where} must have its quaternion as xyzw: [x, y, z, w], in this order, not as quaternion")
-    shape = entry.get("shape")
-    kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind)
-    if not isinstance(shape, str) or shape not in kinds:
-        raise UnknownName.among(f"shape of {where}:", shape, kinds)
-    cell = entry.get("cell", False)
-    if not isinstance(cell, bool):
-        raise InvalidValue(f"cell of {where} must be true or false, got {cell!r}")
-    if shape == PointCloud.kind:
-        return _cloud(name, entry, path, cell)
-    if shape == Mesh.kind:
-        require_keys(entry, ("shape", "file"), (*_OPTIONAL, "scale"), where)
-        scale = entry.get("scale", 1)
-        x, y, z = numbers(scale if isinstance(scale, list) else [scale] * 3, 3, f"scale of {where}")
-        return Obstacle(name, Mesh(_file(entry, path, where), (x, y, z), pose=_pose(entry, where)), cell)
-    dimensions = PRIMITIVES[shape].dimensions
-    require_keys(entry, ("shape", *(key for key, _ in dimensions)), _OPTIONAL, where)
-    size: tuple[float, ...] = ()
-    for key, count in dimensions:
-        size += numbers(entry[key], count, f"{key} of {where}")
-    for value in size:
-        require_positive(f"the size of {where}", value)
-    return Obstacle(name, shape_of(shape, size, _pose(entry, where)), cell)
-
-
-def _cloud(name: str, entry: dict[str, Any], path: Path, cell: bool) -> Obstacle:
-    where = f"obstacle {name!r} in {path}"
-    require_keys(entry, ("shape", "file"), ("radius", *_OPTIONAL, *_OF_A_CLOUD), where)
-    (radius,) = numbers(entry.get("radius", CLOUD_RADIUS), 1, f"radius of {where}")
-    require_positive(f"the radius of {where}", radius)
-    (margin,) = numbers(entry.get("margin", MARGIN), 1, f"margin of {where}")
-    seen_at = entry.get("seen_at")
-    if seen_at is not None and not isinstance(seen_at, str):
-        raise InvalidValue(f"seen_at of {where} must be the name of a state or a text as for --start, got {seen_at!r}")
-    if seen_at is None and "margin" in entry:
-        raise InvalidValue(f"margin of {where} goes with seen_at: where the robot stood")
-    seen = None if seen_at is None else Seen(seen_at, margin)
-    body = PointCloud(load_cloud(_file(entry, path, where)), radius, pose=_pose(entry, where))
-    cuts, rows = [], entry.get("cut", [])
-    if not isinstance(rows, list):
-        raise InvalidValue(f"cut of {where} must be a list of what is taken out, got {shown(rows)}")
-    for row in rows:
-        cut = _mapping(row, f"cut of {where}")
-        if "attached" in cut:
-            require_keys(cut, ("attached", "at"), ("grow",), f"cut of {where}")
-            (grow,) = numbers(cut.get("grow", MARGIN), 1, f"grow in cut of {where}")
-            cuts.append(Cut(str(cut["attached"]), str(cut["at"]), grow))
-            continue
-        shape, grow = _region({key: cut[key] for key in cut if key != "grow"}, cut, f"cut of {where}", path)
-        left = without_shapes(body, [shape], grow)
-        if left is None:
-            raise InvalidValue(f"cut of {where} leaves nothing of the cloud")
-        body = left
-    return Obstacle(name, body, cell, seen, tuple(cuts))
-
-
-def _file(entry: dict[str, Any], path: Path, where: str) -> Path:
-    """Return the file that an entry names, beside the scene."""
-    if not isinstance(entry["file"], str):
-        raise InvalidValue(f"file of {where} must be the name of a file, got {entry['file']!r}")
-    return path.parent / entry["file"]
-
-
-def _pose(entry: dict[str, Any], where: str) -> Pose:
-    """Return the pose that an entry has."""
-    xyz = numbers(entry.get("xyz", [0, 0, 0]), 3, f"xyz of {where}")
-    if "rpy" in entry and "xyzw" in entry:
-        raise InvalidValue(f"{where} must have one of rpy and xyzw, got both")
-    if "xyzw" in entry:
-        quaternion = numbers(entry["xyzw"], 4, f"the quaternion xyzw of {where}")
-        try:
-            return Pose.from_quaternion(xyz, xyzw=quaternion)
-        except InvalidValue as error:
-            raise InvalidValue(f"{where}: {error}") from None
-    return Pose.from_rpy(xyz, numbers(entry.get("rpy", [0, 0, 0]), 3, f"rpy of {where}"))
 
 
 def _range(value: object, what: str) -> tuple[float, float]:
@@ -318,11 +239,3 @@ def _range(value: object, what: str) -> tuple[float, float]:
     if not lower < upper:
         raise InvalidValue(f"{what} must satisfy lower < upper, got {value!r}")
     return lower, upper
-
-
-def _mapping(value: object, where: str) -> dict[str, Any]:
-    if value is None:
-        return {}
-    if not isinstance(value, Mapping):
-        raise BrokenFile(f"{where} must consist of 'key: value' entries, got {value!r}")
-    return {str(key): entry for key, entry in value.items()}

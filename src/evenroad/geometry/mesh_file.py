@@ -1,0 +1,166 @@
+"""Meshes from files: .stl, .obj, .ply, .dae, glTF and other formats of trimesh, and OctoMap's .bt."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from evenroad._arrays import Floats, Ints
+from evenroad._checks import require_positive
+from evenroad._npz import require_unpackable
+from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
+from evenroad.geometry.mesh import TriangleMesh, merged
+
+
+def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMesh:
+    """Read a mesh from a file: .stl, .obj, .dae, .ply and other formats of trimesh.
+
+    Coordinates become metres if the file names its unit (COLLADA and 3MF), else they stay as they are.
+
+    Parameters
+    ----------
+    path : str or path
+        A scene of several meshes becomes one mesh.
+    scale : float
+        Factor of the coordinates, > 0: 0.001 for an .stl in millimetres.
+
+    Raises
+    ------
+    NotAvailable
+        If a package that reads such files is not installed.
+    BrokenFile
+        If the file is missing, is no mesh, has no triangles, or has an unknown unit.
+    InvalidValue
+        If `scale` is not such a number.
+    """
+    meshes = tuple(mesh for _, mesh in load_objects(path, scale=scale))
+    return meshes[0] if len(meshes) == 1 else replace(merged(meshes), name=meshes[0].name)
+
+
+def load_objects(path: str | os.PathLike[str], *, scale: float = 1.0) -> list[tuple[str, TriangleMesh]]:
+    """Read the objects of a file, each with its name, where its scene has it; parameters and errors as `load_mesh`."""
+    factor = require_positive("scale", scale)
+    file = Path(path)
+    if not file.is_file():
+        raise BrokenFile(f"the mesh {file} is missing")
+    if file.suffix.lower() == ".bt":
+        from evenroad.geometry.octomap import read_octomap
+
+        vertices, triangles = read_octomap(file)
+        return [(file.stem, TriangleMesh(factor * vertices, triangles, file.name))]
+    unit, parts = _parts(file)
+    if not any(len(triangles) for _, _, triangles in parts):
+        raise BrokenFile(f"the mesh {file} is empty or cut off: a body without triangles would never collide")
+    if file.suffix.lower() == ".ply" and _is_cut_off(file.read_bytes(), len(parts[0][2])):
+        raise BrokenFile(f"the mesh {file} is cut off, or its header does not announce what there is")
+    if not (math.isfinite(unit) and unit > 0.0):
+        raise BrokenFile(f"the mesh {file} must have a unit of a finite length > 0, got {unit:g} m")
+    try:
+        return [
+            (name, TriangleMesh(factor * unit * vertices, triangles, file.name))
+            for name, vertices, triangles in parts
+            if len(triangles)
+        ]
+    except InvalidValue as error:
+        raise BrokenFile(f"the mesh {file} is broken: {error}") from error
+
+
+def _parts(file: Path) -> tuple[float, list[tuple[str, Floats, Ints]]]:
+    """Return a file's unit [m], and name, vertices and triangles of each of its objects."""
+    try:
+        import trimesh
+
+        require_bounded(file)
+        scene = trimesh.load_scene(file, process=False)
+        unit = 1.0 if scene.units is None else trimesh.units.unit_conversion(scene.units, "meters")
+        keys = [scene.graph[node][1] for node in scene.graph.nodes_geometry]
+        require_few_triangles(sum(len(getattr(scene.geometry[key], "faces", ())) for key in keys), file.stat().st_size)
+        solid = [each for each in scene.dump() if isinstance(each, trimesh.Trimesh)]
+        return unit, [
+            (str(each.metadata["node"]), np.array(each.vertices, dtype=float), np.array(each.faces, dtype=np.int64))
+            for each in solid
+        ]
+    except ImportError as error:
+        raise NotAvailable(f"reading {file} needs the extra: pip install 'evenroad[dae]' ({error})") from error
+    except BrokenFile:
+        raise
+    # trimesh's readers raise whatever their parsers do, down to struct.error and KeyError.
+    except Exception as error:
+        raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
+
+
+def _is_cut_off(ply: bytes, triangles: int) -> bool:
+    """Return whether an ascii .ply has other rows than its header announces; trimesh checks binary ones only."""
+    header, _, rows = ply.partition(b"end_header")
+    words = [line.split() for line in header.splitlines()]
+    if [b"format", b"ascii"] not in [row[:2] for row in words]:
+        return False
+    counts = {row[1]: int(row[2]) for row in words if row[:1] == [b"element"]}
+    there = sum(bool(row.strip()) for row in rows.splitlines())
+    return there != sum(counts.values()) or triangles < counts.get(b"face", 0)
+
+
+_PACKED = (".gz", ".tgz", ".bz2", ".xz", ".zst")
+_MOST_TIMES = 10
+"""Largest number of entries and triangles per byte of a file; files that people make have less than one."""
+_FEW_TRIANGLES = 1_000_000
+_FEW_INSTANCES = 20
+"""Number of instances up to which the parts of a COLLADA file cannot multiply."""
+
+
+def require_bounded(file: Path) -> None:
+    """Raise BrokenFile or ValueError if a file announces far more than it holds."""
+    suffix, size = file.suffix.lower(), file.stat().st_size
+    if suffix in _PACKED:
+        raise BrokenFile(f"the mesh {file} is packed: unpack it first")
+    if zipfile.is_zipfile(file):
+        with zipfile.ZipFile(file) as archive:
+            require_unpackable(file, archive)
+    elif suffix == ".glb":
+        announced = _announced_by_gltf(file.read_bytes())
+        if announced > _MOST_TIMES * size:
+            raise ValueError(f"it announces {announced} entries in {size} bytes")
+    elif suffix == ".dae":
+        content = file.read_bytes()
+        if content.count(b"instance_node") > _FEW_INSTANCES:
+            require_few_triangles(_nodes_of_collada(content), size)
+
+
+def require_few_triangles(count: int, size: int) -> None:
+    """Raise ValueError for too many triangles, repetitions included, for the size of a file."""
+    if count > max(_FEW_TRIANGLES, _MOST_TIMES * size):
+        raise ValueError(f"with its repetitions it has {count} parts, in {size} bytes")
+
+
+def _announced_by_gltf(content: bytes) -> int:
+    """Return the number of entries of all accessors of a .glb; an accessor without data stands for zeros."""
+    length = int.from_bytes(content[12:16], "little")
+    record = json.loads(content[20 : 20 + length])
+    return sum(int(each["count"]) for each in record.get("accessors", []))
+
+
+def _nodes_of_collada(content: bytes) -> int:
+    """Return the number of nodes after all instances are expanded."""
+    from xml.etree import ElementTree
+
+    root = ElementTree.fromstring(content)
+    nodes = [each for each in root.iter() if each.tag.endswith("}node")]
+    named = {each.get("id", ""): each for each in nodes}
+    known: dict[int, int] = {}
+
+    def count(node: ElementTree.Element) -> int:
+        if id(node) not in known:
+            # The reader refuses a node inside itself.
+            known[id(node)] = 1
+            inside = [each for each in node if each.tag.endswith("}node")]
+            meant = [named.get(each.get("url", "")[1:]) for each in node if each.tag.endswith("}instance_node")]
+            known[id(node)] += sum(count(each) for each in (*inside, *meant) if each is not None)
+        return known[id(node)]
+
+    return max(map(count, nodes), default=0)
