@@ -19,6 +19,7 @@ from evenroad._native.robot import Scene as NativeScene
 from evenroad._shared import once_property
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import PointCloud
+from evenroad.robot.distance import MOST, WITH, Distance
 from evenroad.robot.given import as_robot, as_scene
 from evenroad.robot.kernel.native_scene import native_scene
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
@@ -33,7 +34,7 @@ from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import SLACK
 from evenroad.world.bisection import require_few_segments
 from evenroad.world.clearance import largest_kept
-from evenroad.world.one_or_many import OneOrMany, one_or_many
+from evenroad.world.one_or_many import OneOrMany, is_one, one_or_many
 from evenroad.world.protocol import Apart
 
 MOST_CLEARANCE = 1.0
@@ -156,7 +157,11 @@ class ArmWorld(OneOrMany):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy is made of: it makes checks of its own."""
-        return {name: value for name, value in self.__dict__.items() if name not in ("native_scene", "checker")}
+        return {
+            name: value
+            for name, value in self.__dict__.items()
+            if name not in ("native_scene", "checker", "_measuring")
+        }
 
     def valid(self, q: Any) -> Any:
         """Return which configurations, (n, dim), are within the limits, up to 1e-5, and touch nothing: (n,).
@@ -184,6 +189,48 @@ class ArmWorld(OneOrMany):
     @one_or_many
     def _read_and_motion_valid(self, a: Floats, b: Floats) -> Bools:
         return self.checker.motion_valid(*as_batch_pair(a, b, self._space.dim))
+
+    @once_property
+    def _measuring(self) -> Checker:
+        """The native checks of this world as it is without a clearance, with the obstacles up to 1 m farther."""
+        made = prepared(self.robot)
+        scene = native_scene(made.native, made.tables, self.robot.links, self.scene, MOST)
+        return Checker(made.native, scene, self.resolution, 0.0, False)
+
+    def distance(self, q: Any) -> Distance:
+        """Return how far the robot is from contact, and which two bodies are nearest.
+
+        Bodies are those that the world plans with, without its clearance: capsules, against obstacles the spheres that
+        cover them, or what decides in their place.  The distance is never larger than theirs, and some micrometres
+        smaller at most.  Pairs that may touch do not count, nor what no joint moves.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, dim) or (dim,), mapping or str
+            Configurations within the limits; a mapping or a named state is one.
+
+        Returns
+        -------
+        Distance
+            ``metres`` and ``pair``, of one configuration or of each.
+
+        Raises
+        ------
+        InvalidValue
+            As `valid`, or if a configuration is outside of the limits.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.ArmWorld("ur5", "box-reach").distance("home").pair
+        ('forearm_link', 'wrist_2_link')
+        """
+        batch = as_batch("q", self._row(q)[np.newaxis] if is_one(q) else q, self._space.dim)
+        metres, nearest = self._measuring.distances(batch, MOST)
+        if (outside := np.flatnonzero(np.isnan(metres))).size:
+            raise InvalidValue(f"q has no distance in row {outside[0]}: {self.explain(batch[outside[0]])}")
+        pairs = [self._names(WITH[kind], *numbers) if kind else None for kind, *numbers in nearest.tolist()]
+        return Distance(float(metres[0]), pairs[0]) if is_one(q) else Distance(metres, pairs)
 
     @property
     def proof(self) -> str:
@@ -290,10 +337,10 @@ class ArmWorld(OneOrMany):
 
     def _names(self, kind: str, capsule: int, other: int) -> tuple[str, str]:
         """Return the names of two bodies that touch, as native checks number them."""
-        capsules, obstacles = self.robot_tables.capsules, self.scene.obstacles
+        capsules, names = self.robot_tables.capsules, self.scene.names
         if kind == "itself":
             first, second = self.robot_tables.capsule_pairs[other]
             return capsules[first].link, capsules[second].link
-        if kind == "obstacle":
-            obstacles = tuple(obstacle for obstacle in obstacles if obstacle.row)
-        return capsules[capsule].link, obstacles[other].name
+        if kind == "obstacle" and self.scene.surfaces:
+            names = tuple(obstacle.name for obstacle in self.scene.obstacles if obstacle.row)
+        return capsules[capsule].link, names[other]

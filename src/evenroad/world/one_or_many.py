@@ -119,7 +119,7 @@ def one_or_many(check: Check) -> Check:
 
     @wraps(check)
     def checked(self: OneOrMany, *q: Any, **named: Any) -> Any:
-        if not (q and all(map(_is_one, q))):
+        if not (q and all(map(is_one, q))):
             return check(self, *q, **named)
         rows = [self._row(each)[np.newaxis] for each in q]
         return check(self, *rows, **named)[0].item()
@@ -127,7 +127,8 @@ def one_or_many(check: Check) -> Check:
     return checked  # type: ignore[return-value]
 
 
-def _is_one(q: Any) -> bool:
+def is_one(q: Any) -> bool:
+    """Return whether this is one configuration, and not many."""
     if isinstance(q, np.ndarray):
         return q.ndim == 1
     if isinstance(q, list | tuple):

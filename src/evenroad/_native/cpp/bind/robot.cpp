@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bind/arrays.hpp"
+#include "robot/distance.hpp"
 #include "robot/motion_check.hpp"
 
 namespace evenroad::bind {
@@ -258,6 +259,22 @@ nb::tuple in_words(const robot::Contact& contact) {
   return nb::make_tuple(WITH[static_cast<int>(contact.with)], contact.capsule, contact.other);
 }
 
+/// Return the least distances of configurations, (n, dim), and of what they are, (n, 3): the kind, a capsule, and the
+/// number of an obstacle or of a pair.
+nb::tuple distances(const Checker& checker, nb::handle q, double most) {
+  const FloatRows given(q, "q");
+  const Matrix<const double> rows = given.of_shape({given.shape(0), dim(checker)}).matrix();
+  require_within({&most, 1}, 0.0, FARTHEST, "most");
+  std::vector<double> metres(rows.rows);
+  std::vector<robot::Contact> nearest(rows.rows);
+  without_gil([&] { robot::write_distances(checker, rows, most, metres, nearest); });
+  std::vector<std::int64_t> numbers;
+  for (const robot::Contact& each : nearest) {
+    numbers.insert(numbers.end(), {static_cast<std::int64_t>(each.with), each.capsule, each.other});
+  }
+  return nb::make_tuple(as_numpy(std::move(metres), {rows.rows}), as_numpy(std::move(numbers), {rows.rows, 3}));
+}
+
 nb::tuple find_contact(const Checker& checker, nb::handle q) {
   const Floats given(q, "q");
   given.of_shape({dim(checker)});
@@ -290,6 +307,7 @@ void add_robot(nb::module_& module) {
       .def("__init__", &make_checker)
       .def("valid", &valid, nb::arg("q").none())
       .def("motion_valid", &motion_valid, nb::arg("a").none(), nb::arg("b").none(), nb::arg("tolerance") = 0.0)
+      .def("distances", &distances)
       .def("find_contact", &find_contact)
       .def_prop_ro("fixed_contact", [](const Checker& checker) { return in_words(checker.fixed_contact()); });
   add_chain(part);

@@ -99,10 +99,8 @@ Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted) {
 
 Mask blocked(Workspace& workspace, Wanted wanted) { return blocked(workspace, *workspace.lengths, wanted); }
 
-namespace {
-
 /// Write sixteen configurations, and return the mask of those that are out of bounds.
-Mask take(Workspace& workspace, Matrix<const double> rows, std::size_t first, std::size_t count) {
+Mask take_rows(Workspace& workspace, Matrix<const double> rows, std::size_t first, std::size_t count) {
   const Bounds& bounds = workspace.checker.robot().bounds;
   Mask outside = 0;
   for (std::size_t k = 0; k < rows.columns; k++) {
@@ -121,8 +119,6 @@ Mask take(Workspace& workspace, Matrix<const double> rows, std::size_t first, st
   return outside;
 }
 
-}  // namespace
-
 void configurations_free(const Checker& checker, Matrix<const double> rows, std::span<bool> free) {
   if (rows.rows == 0 || checker.is_never_free()) {
     std::fill(free.begin(), free.end(), false);
@@ -131,7 +127,7 @@ void configurations_free(const Checker& checker, Matrix<const double> rows, std:
   const Borrowed workspace = checker.borrow();
   for (std::size_t first = 0; first < rows.rows; first += LANES) {
     const std::size_t count = std::min<std::size_t>(LANES, rows.rows - first);
-    Mask taken = take(*workspace, rows, first, count);
+    Mask taken = take_rows(*workspace, rows, first, count);
     taken |= blocked(*workspace, Wanted::ALL);
     for (std::size_t lane = 0; lane < count; lane++) free[first + lane] = (taken >> lane & 1) == 0;
   }

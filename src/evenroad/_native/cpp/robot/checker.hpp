@@ -99,6 +99,10 @@ struct Workspace {
   Counts counts;
 };
 
+/// Write rows, (n, dim), from number `first` on into the lanes, and return the mask of those that are out of bounds:
+/// these are brought within.
+Mask take_rows(Workspace& workspace, Matrix<const double> rows, std::size_t first, std::size_t count);
+
 /// Return the mask of the sixteen states that touch something; with Wanted::FIRST of some of them.
 Mask blocked(Workspace& workspace, Wanted wanted);
 Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted);

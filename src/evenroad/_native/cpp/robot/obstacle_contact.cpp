@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "robot/obstacle_distance.hpp"
+
 namespace evenroad::robot {
 
 namespace {
@@ -30,28 +32,9 @@ EVENROAD_INLINE Mask near_one(const Placed& placed, float radius, const Block& b
   return below_zero(largest(abs(placed.centre - centre) - abs(placed.half) - half));
 }
 
-/// Return the squared distances of points, as an obstacle sees them, from it without the rounding of its edges.
-EVENROAD_INLINE Floats16 squared_distance(const Obstacle& obstacle, Vec3x16 point) {
-  const Floats16 zero{}, z = max(abs(point.z) - obstacle.half.z, zero);
-  if (obstacle.form == Form::CYLINDER) {
-    const Floats16 aside = max(sqrt(fma(point.x, point.x, point.y * point.y)) - obstacle.half.x, zero);
-    return fma(aside, aside, z * z);
-  }
-  const Vec3x16 gap = {max(abs(point.x) - obstacle.half.x, zero), max(abs(point.y) - obstacle.half.y, zero), z};
-  return dot(gap, gap);
-}
-
 /// Return the mask of lanes in which a sphere along a capsule reaches into an obstacle.
 Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, float radius, const Obstacle& obstacle) {
-  // Centre and half segment as the obstacle sees them.
-  Vec3x16 centre = capsule.centre - spread(obstacle.centre), half = capsule.half;
-  if (obstacle.form != Form::ALIGNED) {
-    const float* r = obstacle.rotation;
-    const Vec3x16 x = spread(Vec3{r[0], r[3], r[6]}), y = spread(Vec3{r[1], r[4], r[7]});
-    const Vec3x16 z = spread(Vec3{r[2], r[5], r[8]});
-    centre = {dot(centre, x), dot(centre, y), dot(centre, z)};
-    half = {dot(half, x), dot(half, y), dot(half, z)};
-  }
+  const auto [centre, half] = seen_from(obstacle, capsule);
   const float reach = radius + obstacle.rounding;
   Mask meeting = 0;
   for (const float along : samples) {

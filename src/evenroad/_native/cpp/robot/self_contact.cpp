@@ -22,7 +22,7 @@ EVENROAD_INLINE Floats16 cut(Floats16 place) { return clamp(place, spread(-1), s
 // cut (after V. Lumelsky, 1985, and C. Ericson, Real-Time Collision Detection, 2005, section 5.1.9).  The first t is
 // that of the parts across the first segment.  Written with products of lengths alone, as usual, it loses twice the
 // digits where segments are nearly parallel; so, the distance errs by about the rounding of the half lengths.
-Mask capsules_touching(const PlacedCapsule& a, const PlacedCapsule& b, const CapsulePair& pair, float reach) {
+Floats16 squared_distance(const PlacedCapsule& a, const PlacedCapsule& b, const CapsulePair& pair) {
   const Vec3x16 r = a.centre - b.centre, e = a.half, f = b.half;
   const Floats16 ef = dot(e, f), er = dot(e, r), fr = dot(f, r);
   const Floats16 along_f = ef * pair.one_by_ee, along_r = er * pair.one_by_ee;
@@ -31,7 +31,11 @@ Mask capsules_touching(const PlacedCapsule& a, const PlacedCapsule& b, const Cap
   const Floats16 s = cut(fma(along_f, t, -along_r));
   t = cut(fma(ef, s, fr) * pair.one_by_ff);
   const Vec3x16 apart = minus(plus(r, e, s), f, t);
-  return below_zero(dot(apart, apart) - reach * reach);
+  return dot(apart, apart);
+}
+
+Mask capsules_touching(const PlacedCapsule& a, const PlacedCapsule& b, const CapsulePair& pair, float reach) {
+  return below_zero(squared_distance(a, b, pair) - reach * reach);
 }
 
 Mask meeting_itself(const Robot& robot, const Lengths& lengths, const Places& places, Mask blocked, Wanted wanted,

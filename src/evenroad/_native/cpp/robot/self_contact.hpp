@@ -9,6 +9,9 @@ namespace evenroad::robot {
 Mask meeting_itself(const Robot& robot, const Lengths& lengths, const Places& places, Mask blocked, Wanted wanted,
                     Contact* found = nullptr);
 
+/// Return the squared distances of the segments of two capsules.
+Floats16 squared_distance(const PlacedCapsule& a, const PlacedCapsule& b, const CapsulePair& pair);
+
 /// Return the mask of lanes in which two capsules touch whose segments are nearer to each other than `reach`.
 Mask capsules_touching(const PlacedCapsule& a, const PlacedCapsule& b, const CapsulePair& pair, float reach);
 

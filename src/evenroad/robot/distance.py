@@ -1,0 +1,27 @@
+"""Distance: how far a robot is from contact, and which two bodies are nearest."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+
+class Distance(NamedTuple):
+    """The least distance of a robot's bodies from obstacles and from each other.
+
+    Attributes
+    ----------
+    metres : float, or float64 ndarray, shape (n,)
+        0.0 where two touch, or are nearer than some micrometres; 1.0 where all are that far, or farther.
+    pair : (str, str) or None, or list of n such
+        Which two: a link and an obstacle, or two links; None where nothing is nearer than 1 m.
+    """
+
+    metres: Any
+    pair: Any
+
+
+MOST = 1.0
+"""Distance from which on all is the same [m]."""
+
+WITH = ("nothing", "obstacle", "surface", "itself")
+"""With what something is in contact, as the native kernel numbers it."""
