@@ -9,13 +9,10 @@ import pytest
 from evenroad.planning.plan import plan as find_path
 from evenroad.planning.read_request import arm_request
 from evenroad.robot.kinematics import link_poses
+from tests_peers.chromium import opened
 
 viser = pytest.importorskip("viser")
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
-
-CHROMIUM = "/usr/bin/chromium"
-FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-FLAGS += ["--disable-background-networking", "--no-first-run"]
 
 
 @pytest.fixture(scope="module")
@@ -34,16 +31,7 @@ def page():
 
 
 def test_the_slider_moves_the_arm_and_the_browser_shows_it(page, tmp_path):
-    playwright = pytest.importorskip("playwright.sync_api")
-    with playwright.sync_playwright() as browsers:
-        try:
-            browser = browsers.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        except playwright.Error as error:
-            pytest.skip(f"no Chromium: {error}")
-        tab = browser.new_page(viewport={"width": 900, "height": 700})
-        asked = []
-        tab.on("request", lambda request: asked.append(request.url))
-        tab.goto(page.address)
+    with opened(page.address, 900, 700) as tab:
         tab.wait_for_selector("canvas", timeout=60_000)
         tab.get_by_text("solved").wait_for(timeout=60_000)
         time.sleep(6.0)
@@ -53,7 +41,7 @@ def test_the_slider_moves_the_arm_and_the_browser_shows_it(page, tmp_path):
         box.press("Enter")
         time.sleep(4.0)
         after = tab.screenshot(path=tmp_path / "after.png")
-        browser.close()
+        asked = tab.requests
     assert page.slider.value == 100.0
     assert before != after
     goal = link_poses(page.world.robot, page.result.goal[np.newaxis])[0]

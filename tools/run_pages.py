@@ -109,6 +109,7 @@ INSTEAD = {
     "evenroad roadmap my_arm.urdf --cell cell.yaml -n 1024 *": Instead(None, "half a minute: tests/cli runs such"),
     "evenroad view box-reach.json --gif *": Instead(None, "seconds of drawing: an example and tests/cli do"),
     "evenroad view box-reach.json": Instead(None, "serves a page until it is stopped (extra [view])"),
+    "evenroad send box-reach.json --host *": Instead(None, "needs an arm: tests_peers has one on loopback"),
     "evenroad robot duo.urdf *": Instead(None, "a robot of two arms that does not ship"),
     "evenroad robot arm.urdf.xacro *": Instead(None, "needs the extra [xacro] and a package of ROS"),
     "evenroad plan docs/data/humanoid_table.yaml *": Instead(None, "a humanoid that does not ship"),

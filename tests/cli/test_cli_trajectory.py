@@ -44,7 +44,7 @@ def test_a_fifth_of_the_speed_takes_five_times_as_long(run):
 
 
 @pytest.mark.parametrize(("words", "said"), [
-    (["--speed", "0.5"], "--speed goes with --trajectory only"),
+    (["--speed", "0.5"], "--speed goes with --trajectory or --timed only"),
     (["--trajectory", "t.txt"], "unknown format of a trajectory '.txt'"),
     (["--trajectory", "t.json", "--speed", "2"], "speed must be at most 1"),
     (["--trajectory", "t.json", "--limits", "none.yaml"], "none.yaml"),

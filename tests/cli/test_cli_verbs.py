@@ -35,3 +35,19 @@ def test_the_help_names_the_verbs_of_the_studies(run):
     code, out, _ = run("--help")
     assert code == 0
     assert all(f"\n  {verb:8} " in out for verb in verbs.ABOUT)
+
+
+@pytest.mark.parametrize("words", [example for _, examples in verbs.GROUPS.values() for example in examples[:1]])
+def test_examples_of_the_help_are_known_commands(run, words):
+    """Asked for help with all that the example says: its options are known."""
+    from evenroad.cli.options import given_options, option_names
+
+    verb, *rest = words.split()[1:]
+    assert given_options(rest) <= option_names(verbs._kind(verb, rest))
+    assert {name for names, _ in verbs.GROUPS.values() for name in names} == set(verbs.ABOUT)
+
+
+def test_help_comes_whatever_else_is_unfinished(run):
+    code, out, error = run("plan", "--robot", "--help")
+    assert (code, error) == (0, "")
+    assert "--goal-pose" in out

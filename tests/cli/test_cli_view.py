@@ -40,13 +40,14 @@ def test_bad_input_is_one_line(refuse, tmp_path, words, said):
     assert said in refuse("view", *words)
 
 
-def test_a_plan_of_no_arm_and_a_damaged_plan_are_one_line(run, refuse, tmp_path):
-    run("demo", "--level", 1, "--out", "disk")
-    assert "not the plan of an arm" in refuse("view", "disk.json")
+def test_a_damaged_plan_is_one_line(run, refuse, tmp_path):
     run(*REACH)
     file = tmp_path / "box-reach.json"
     whole = json.loads(file.read_text())
     for change, said in (
+        ({"query": {"scene": None}}, "names neither a robot and its scene nor a map"),
+        ({"query": {"map": 5}}, "damaged plan: of its map"),
+        ({"trajectory": {"states": {"format": 5}}}, "is not a trajectory"),
         ({"goal_index": 9}, "goal_index"),
         ({"query": {"joints": None}}, "damaged plan"),
         ({"query": {"held": {"a": "b"}}}, "damaged plan"),
@@ -65,8 +66,8 @@ def test_joints_that_were_held_are_where_the_plan_held_them(run, tmp_path):
         *("--goal", "0.2,0.1,-1.5"),
     )
     assert code == 0, err
-    query, _ = View(world=tmp_path / "box-reach.json").request()
-    held = held_values(query.world.robot)
+    query = View(world=tmp_path / "box-reach.json").plan_file()
+    held = held_values(query.request.world.robot)
     assert held["shoulder_lift_joint"] == pytest.approx(-np.pi / 2)
 
 
@@ -84,8 +85,8 @@ def test_a_plan_knows_where_the_packages_of_its_robot_are(run, tmp_path):
     made = ("--robot", "pole.urdf", "--package", f"ours_desc={folder.parent}", "--use-visuals")
     code, _, err = run("plan", "nothing.yaml", *made, "--start", "-0.5", "--goal", "0.5", "--no-picture")
     assert code == 0, err
-    query, _ = View(world=tmp_path / "nothing.json").request()
-    assert "pole" in {capsule.link for capsule in query.world.robot.capsules}
+    query = View(world=tmp_path / "nothing.json").plan_file()
+    assert "pole" in {capsule.link for capsule in query.request.world.robot.capsules}
 
 
 def test_a_plan_along_a_roadmap_is_shown_with_its_arm_and_its_cell(run, tmp_path):
@@ -98,6 +99,6 @@ def test_a_plan_along_a_roadmap_is_shown_with_its_arm_and_its_cell(run, tmp_path
     ends = ("--start", "0,-1.5,0,-1.5,0,0", "--goal", "0.3,-1.5,0,-1.5,0,0")
     code, _, err = run("plan", "day.yaml", "--roadmap", "a.roadmap", *ends, "--no-picture")
     assert code == 0, err
-    query, result = View(world=tmp_path / "day.json").request()
-    assert {each.name for each in query.world.scene.obstacles} == {"fence", "ball"}
-    assert result.solved
+    query = View(world=tmp_path / "day.json").plan_file()
+    assert {each.name for each in query.request.world.scene.obstacles} == {"fence", "ball"}
+    assert query.result.solved

@@ -31,7 +31,7 @@ def test_a_plan_without_a_path_shows_start_and_goal(reach):
 
 def test_clouds_are_drawn_as_cubes_of_their_points():
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
-    vertices, triangles = solid._cubes(points, 0.1)
+    vertices, triangles = solid.cubes(points, 0.1)
     assert vertices.shape == (16, 3)
     assert triangles.shape == (24, 3)
     np.testing.assert_allclose(np.abs(vertices[8:] - points[1]).max(), 0.1)

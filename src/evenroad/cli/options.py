@@ -48,6 +48,9 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     Raises InvalidValue or UnknownName for wrong or missing options, and SystemExit after printing help.
     """
     known, program = option_names(kind), f"evenroad {verb}"
+    if not HELP.isdisjoint(words):
+        # Whoever wants help need not have finished the other options.
+        words = ["--help"]
     words = [current_option(word, known) for word in words]
     for name in sorted(given_options(words) - known - HELP):
         raise UnknownName.among(f"option of {program}:", name, known)

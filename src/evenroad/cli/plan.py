@@ -193,16 +193,18 @@ class PlanArm(PlanOptions, RobotOptions):
     trajectory: tyro.conf.UseAppendAction[tuple[Path, ...]] = ()
     """Write a trajectory: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a bag), .script (URScript,
     by the clock) or .movej.script (waypoint by waypoint).  You can give several."""
+    timed: bool = False
+    """Give the path its times, which OUT.json keeps for evenroad view and evenroad send; so does --trajectory."""
     speed: float = 1.0
-    """With --trajectory: share of full speed, > 0 and at most 1."""
+    """With times: share of full speed, > 0 and at most 1."""
     limits: Path | None = None
-    """With --trajectory: a MoveIt joint_limits.yaml.  Default: velocities of the URDF, full speed after 0.5 s."""
+    """With times: a MoveIt joint_limits.yaml.  Default: velocities of the URDF, full speed after 0.5 s."""
     deviation: float = 0.05
-    """With --trajectory: largest deviation at a rounded corner, >= 0, in radians."""
+    """With times: largest deviation at a rounded corner, >= 0, in radians."""
     step: float = 0.008
-    """With --trajectory: time between two states in seconds, > 0; 0.002 for a UR of the e-Series."""
+    """With times: time between two states in seconds, > 0; 0.002 for a UR of the e-Series."""
     controller_joints: str | None = None
-    """With --trajectory: all joints of the controller, in its order, separated by commas."""
+    """With times: all joints of the controller, in its order, separated by commas."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,6 +13,7 @@ from evenroad.cli.plan_parts import (
     chosen_planner,
     common_query,
     finish,
+    made_of,
     output_files,
     wants_points,
 )
@@ -71,6 +72,7 @@ def plan_arm(plan: PlanArm) -> int:
         "no_body": [] if request.model is None else list(request.model.bodiless),
         "drawn_only": [] if request.model is None else list(request.model.drawn_only),
         "trajectory": trajectory,
+        "made_of": made_of(world, robot=plan.robot, scene=str(plan.world)),
         "meshes": None if meshes is None else asdict(meshes),
     }
     rows = [*_rows(request), *([] if meshes is None else [("meshes", str(meshes))]), *more_rows]

@@ -14,6 +14,7 @@ from evenroad.cli.plan_parts import (
     chosen_planner,
     common_query,
     finish,
+    made_of,
     output_files,
     wants_points,
 )
@@ -46,6 +47,7 @@ def plan_disk(plan: PlanDisk) -> int:
     files = output_files(plan, map_files(plan.world), suffixes, "map")
     for name, value in (("start", start), *(("goal", goal) for goal in goals)):
         _require_on_map(gridmap, name, value)
+    made = made_of(gridmap.world(plan.robot_radius, clearance=plan.clearance), map=str(plan.world))
     if wants_points(plan) and gridmap.unknown.any():
         # Points are drawn over the rectangle, most of which may be unknown.
         gridmap = gridmap.cropped()
@@ -68,7 +70,7 @@ def plan_disk(plan: PlanDisk) -> int:
 
         save_plan_picture(file, result, world)
 
-    record, more = plan_record(result, query), []
+    record, more = plan_record(result, query) | {"made_of": made}, []
     if result.certificate is not None:
         from evenroad.cli.certify import guarantee_rows, guarantees
 

@@ -88,6 +88,12 @@ def common_query(plan: PlanOptions) -> dict[str, Any]:
     return {name: getattr(plan, name) for name in names} | {"time": chosen_budget(plan).seconds}
 
 
+def made_of(world: Any, **names: str | None) -> dict[str, Any]:
+    """Return the record of what a plan was made in: the name of each file, and the SHA-256 of what was read of it."""
+    values = {"robot": world.robot, "scene": world.scene} if hasattr(world, "robot") else {"map": world}
+    return {name: {"name": names.get(name), "sha256": value.fingerprint()} for name, value in values.items()}
+
+
 def finish(
     files: dict[str, Path],
     result: PlanResult,
@@ -97,6 +103,7 @@ def finish(
     more: Sequence[tuple[str, str]] = (),
 ) -> int:
     """Write record and path, print, draw the picture; return 0 when solved, else 1."""
+    before = {path for path in files.values() if path.exists()}
     save_json(files["json"], record)
     if "csv" in files:
         # The path of an earlier run, or one in collision, must not pass for this one.
@@ -105,14 +112,14 @@ def finish(
             del files["csv"]
         else:
             save_path_csv(files["csv"], result.path, columns)
-    print_plan(result, files.values(), more)
+    print_plan(result, [f"{path} (replaced)" if path in before else str(path) for path in files.values()], more)
     if "png" in files:
         # Last, since it loads and takes longest.
         draw(files["png"])
     return 0 if result.solved else 1
 
 
-def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[str, str]] = ()) -> None:
+def print_plan(result: PlanResult, files: Iterable[str], more: Sequence[tuple[str, str]] = ()) -> None:
     """Print a plan as a table of two columns, with `more` rows."""
     rows = [("status", f"{result.status}: {result.message}")]
     counts = result.counts
@@ -144,5 +151,5 @@ def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[s
     if times:
         spent = ", ".join(f"{phase} {ms:.{int(ms < 10)}f}" for phase, ms in times.items())
         rows.append(("time [ms]", spent))
-    rows += [*more, ("files", ", ".join(map(str, files)))]
+    rows += [*more, ("files", ", ".join(files))]
     print_table(rows, first="green" if result.solved else "red")

@@ -22,10 +22,10 @@ _MOVEJ = ".movej.script"
 
 def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
     """Raise InvalidValue for options that would fail after planning, or overwrite an input or another result."""
-    if not plan.trajectory:
+    if not (plan.trajectory or plan.timed):
         for option in ("speed", "limits", "deviation", "step", "controller_joints"):
             if getattr(plan, option) != type(plan).__dataclass_fields__[option].default:
-                raise InvalidValue(f"--{option.replace('_', '-')} goes with --trajectory only")
+                raise InvalidValue(f"--{option.replace('_', '-')} goes with --trajectory or --timed only")
         return
     # Imported late: plans without times do not need SciPy's linear algebra.
     from evenroad.trajectory import format_of
@@ -58,14 +58,14 @@ def trajectory_rows(
     constraints: Constraint | None,
 ) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:
     """Write the trajectory of a solved plan; return rows for the table, and its record."""
-    if not plan.trajectory:
+    if not (plan.trajectory or plan.timed):
         return [], None
     stays = result.path is not None and bool(np.all(result.path == result.path[0]))
     if not result.solved or result.path is None or stays:
         _remove_earlier(plan)
         return [("trajectory", "none: the start is the goal")] if stays else [], None
     from evenroad.trajectory import arm_trajectory, limits_of
-    from evenroad.trajectory.files import save_trajectories
+    from evenroad.trajectory.files import save_trajectories, trajectory_record
 
     world = request.world
     joints = plan.controller_joints
@@ -102,5 +102,7 @@ def trajectory_rows(
         "files": [str(file) for file in plan.trajectory],
         **{name: getattr(trajectory, name) for name in ("duration", "deviation", "stops", "proof")},
         "highest": dict(trajectory.highest),
+        "states": trajectory_record(trajectory, order),
     }
-    return [("trajectory", about), ("", ", ".join(map(str, plan.trajectory)))], record
+    files = [("", ", ".join(map(str, plan.trajectory)))] if plan.trajectory else []
+    return [("trajectory", about), *files], record

@@ -21,8 +21,8 @@ BAD_INPUT = 2
 VERBS = {
     "plan": ("evenroad.cli.plan:PlanDisk", "a path for a disk on a map, or for an arm in a scene (--robot)"),
     "roadmap": ("evenroad.cli.roadmap:MakeRoadmap", "a roadmap for one arm in its cell, good for every scene"),
-    "view": ("evenroad.cli.view:View", "an arm, its scene and its path in the browser, or as a GIF"),
-    "send": ("evenroad.cli.send:Send", "a trajectory to a UR arm; a dry run without --go"),
+    "view": ("evenroad.cli.view:View", "a plan in the browser, as one HTML file that plays offline, or as a GIF"),
+    "send": ("evenroad.cli.send:Send", "a plan to a UR arm, checked; a dry run without --go"),
     "points": ("evenroad.cli.points:Points", "write a point set: shipped or constructed"),
     "measure": ("evenroad.cli.measure:Measure", "print every measure of a point set"),
     "certify": ("evenroad.cli.certify:Certify", "what a roadmap guarantees in every world, in every dimension"),
@@ -41,6 +41,25 @@ OF_STUDIES = {
 ENTRY_POINTS = "evenroad.verbs"
 """Group of entry points of verbs of another package."""
 
+GROUPS = {
+    "a path, from the plan to the robot": (
+        ("plan", "view", "send", "roadmap", "robot", "demo"),
+        (
+            "evenroad plan box-reach.yaml --robot ur5 --start home --goal inside",
+            "evenroad view box-reach.json --html reach.html",
+        ),
+    ),
+    "points": (
+        ("points", "measure", "certify"),
+        ("evenroad points -n 512 -d 6 -o set.npy", "evenroad measure set.npy"),
+    ),
+    "studies, of the package evenroad-studies": (
+        tuple(OF_STUDIES),
+        ("evenroad bench paper --quick --only maze-1 --store results.db",),
+    ),
+}
+"""Title of a group of verbs -> its verbs, and examples that run as they stand."""
+
 ABOUT = {name: about for name, (_, about) in VERBS.items()} | OF_STUDIES
 """Name of every verb -> its description."""
 
@@ -49,8 +68,7 @@ DESCRIPTION = f"""usage: evenroad [-h] [--version [-v]] [--tyro-print-completion
 evenroad {__version__}: paths proved free for robot arms and for disks on maps, and even point sets.
 
 Exit codes: 0 solved / done, 1 any other answer (no path), 2 bad input, 70 internal error, 130 interrupted.
-
-verbs (evenroad VERB --help lists its options):
+Options: evenroad VERB --help
 """
 
 
@@ -80,8 +98,11 @@ def _run(arguments: list[str]) -> int:
         return DONE
     if verb in ("-h", "--help"):
         print(DESCRIPTION, end="")
-        for name, about in ABOUT.items():
-            print(fill(f"  {name:8} {about}", table_width(), subsequent_indent=" " * 11))
+        for title, (names, examples) in GROUPS.items():
+            print(f"\n{title}:")
+            for name in names:
+                print(fill(f"  {name:8} {ABOUT[name]}", table_width(), subsequent_indent=" " * 11))
+            print("".join(f"    $ {example}\n" for example in examples), end="")
         return DONE
     # Imported late: version and help need neither numpy nor tyro.
     from evenroad._checks import require_known

@@ -75,7 +75,11 @@ def format_of(path: str | os.PathLike[str]) -> str:
 
 def load_trajectory(path: str | os.PathLike[str]) -> Trajectory:
     """Read a trajectory from the JSON of :func:`save_trajectory`; BrokenFile if its numbers do not fit together."""
-    record = read_json_file(path, "trajectory")
+    return trajectory_of(read_json_file(path, "trajectory"), path)
+
+
+def trajectory_of(record: Any, path: str | os.PathLike[str]) -> Trajectory:
+    """Return the trajectory of a JSON record of a file; BrokenFile if its numbers do not fit together."""
     if not isinstance(record, dict) or record.get("format") != FORMAT:
         wrote = "as `evenroad plan --trajectory` writes it"
         raise BrokenFile(f"{path} is not a trajectory: its 'format' must be {FORMAT!r}, {wrote}")
@@ -129,12 +133,13 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
     )
 
 
-def _json(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
+def trajectory_record(trajectory: Trajectory, order: Sequence[str] | None = None) -> dict[str, Any]:
+    """Return a trajectory as plain JSON values, as :func:`load_trajectory` reads them."""
     limits = {kind: getattr(trajectory.limits, kind) for kind in ("velocity", "acceleration", "jerk")}
-    record = {
+    return {
         "format": FORMAT,
         "units": {"time": "s", "angle": "rad", "length": "m"},
-        "joint_names": trajectory.names,
+        "joint_names": list(trajectory.names),
         "held": dict(trajectory.held),
         "controller": trajectory.columns(order)[0],
         "limits": limits,
@@ -148,7 +153,10 @@ def _json(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
         "times": trajectory.times.tolist(),
         **{name: getattr(trajectory, name).tolist() for name in _TABLES},
     }
-    return (json.dumps(record, allow_nan=False) + "\n").encode()
+
+
+def _json(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
+    return (json.dumps(trajectory_record(trajectory, order), allow_nan=False) + "\n").encode()
 
 
 def _csv(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:

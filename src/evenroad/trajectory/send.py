@@ -81,17 +81,7 @@ def send_trajectory(
     NotAvailable
         If ur_rtde is not installed, the connection fails or is lost, the arm leaves the trajectory, or it was stopped.
     """
-    limit = require_positive("fastest", fastest)
-    names, (positions, velocities, _) = columns_of_ur(trajectory, order)
-    cycle = float(trajectory.times[1])
-    if not np.isclose(cycle, CYCLES).any():
-        raise InvalidValue(f"a controller takes a state every 0.008 s or 0.002 s, these are {cycle:g} s apart")
-    # Also the speeds between states as sent.
-    driven = np.abs(np.diff(positions, axis=0)) / cycle
-    speeds = np.maximum(np.abs(velocities).max(axis=0), driven.max(axis=0))
-    if speeds.max() > limit * (1.0 + 1e-9):
-        name = names[int(np.argmax(speeds))]
-        raise InvalidValue(f"{name} moves at up to {speeds.max():.3g} rad/s, faster than the {limit:g} rad/s allowed")
+    names, positions, cycle = checked_states(trajectory, fastest, order)
     spawned = multiprocessing.get_context("spawn")
     ours, theirs = spawned.Pipe()
     talk = (theirs, host, names, positions, cycle, model, go)
@@ -106,6 +96,27 @@ def send_trajectory(
         process.join(_PATIENCE)
         process.kill()
         process.join()
+
+
+def checked_states(
+    trajectory: Trajectory, fastest: float, order: Sequence[str] | None = None
+) -> tuple[Sequence[str], Floats, float]:
+    """Return joints, positions, (n, joints), and cycle [s] as they are sent.
+
+    Parameters and errors as :func:`send_trajectory`.
+    """
+    limit = require_positive("fastest", fastest)
+    names, (positions, velocities, _) = columns_of_ur(trajectory, order)
+    cycle = float(trajectory.times[1])
+    if not np.isclose(cycle, CYCLES).any():
+        raise InvalidValue(f"a controller takes a state every 0.008 s or 0.002 s, these are {cycle:g} s apart")
+    # Also the speeds between states as sent.
+    driven = np.abs(np.diff(positions, axis=0)) / cycle
+    speeds = np.maximum(np.abs(velocities).max(axis=0), driven.max(axis=0))
+    if speeds.max() > limit * (1.0 + 1e-9):
+        name = names[int(np.argmax(speeds))]
+        raise InvalidValue(f"{name} moves at up to {speeds.max():.3g} rad/s, faster than the {limit:g} rad/s allowed")
+    return names, positions, cycle
 
 
 def _listened(pipe: Any, host: str, progress: Callable[[int, int], None] | None) -> Sent:

@@ -11,10 +11,11 @@ from PIL import Image, ImageColor
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
-from evenroad.geometry.shapes import PointCloud
+from evenroad.geometry.shapes import Box, PointCloud
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld, tip_links
 from evenroad.robot.kinematics import capsule_endpoints, link_poses
+from evenroad.robot.scene import Obstacle
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import configuration_at
 from evenroad.viz import style
@@ -51,39 +52,55 @@ class ArmScene:
         """Return what is drawn of a plan; with the robot's file its visual geometry, else its capsules."""
         links: dict[str, Part] = {}
         for i, (link, surface) in enumerate(link_surfaces(world.robot, file).items()):
-            part = part_of(surface, _ARM[i % 2])
+            part = part_of(surface, link_colour(i))
             # Bodies of neighbours often share a surface: one of them is a little smaller.
             links[link] = replace(part, corners=part.corners - 0.001 * (i % 2) * part.normals)
-        obstacles = [
-            part_of(surface_of(each.body), _CELL if each.cell else _OBSTACLE)
-            for each in world.scene.obstacles
-            if not isinstance(each.body, PointCloud)
-        ]
-        clouds = [each.body for each in world.scene.obstacles if isinstance(each.body, PointCloud)]
-        obstacles += [part_of(_cubes(each.pose.apply(each.points), each.radius), _OBSTACLE) for each in clouds]
-        shown = np.stack([result.start, result.goal]) if result.path is None else _along(result, world, 9)
-        low, high = _bounds(world, shown)
-        arms = [cls._posed(world, links, q) for q in shown[1:]]
-        camera = _best_camera(arms, obstacles, low, high)
+        obstacles = [part_of(obstacle_surface(each), obstacle_colour(each)) for each in world.scene.obstacles]
+        camera, lowest = chosen_camera(result, world, links, obstacles)
         trail = [] if result.path is None else [_trail(result, world)]
-        lowest = min([low[2], *(float(part.corners[..., 2].min()) for part in obstacles)]) - 0.005
         return cls(world, links, (*obstacles, *trail), Stage(camera, lowest))
-
-    @staticmethod
-    def _posed(world: ArmWorld, links: dict[str, Part], q: Floats) -> list[Part]:
-        poses = link_poses(world.robot, q[np.newaxis])[0]
-        return [part.moved(poses[world.robot.links.index(link)]) for link, part in links.items()]
 
     def picture(self, q: Floats, ghosts: Sequence[tuple[Floats, str]] = ()) -> Image.Image:
         """Return a picture of the arm at a configuration, (dim,), with faint arms at others, each of a colour."""
-        parts = [*self._posed(self.world, self.links, q), *self.still]
+        parts = [*_posed(self.world, self.links, q), *self.still]
         for ghost, colour in ghosts:
-            arm = self._posed(self.world, self.links, ghost)
+            arm = _posed(self.world, self.links, ghost)
             corners, normals = (
                 np.concatenate([getattr(part, name) for part in arm]) for name in ("corners", "normals")
             )
             parts.append(Part(corners, normals, ImageColor.getrgb(colour)[:3], _GHOST))
         return self.stage.picture(parts)
+
+
+def chosen_camera(
+    result: PlanResult, world: ArmWorld, links: dict[str, Part], obstacles: Sequence[Part]
+) -> tuple[Camera, float]:
+    """Return the camera that sees the arm along its path, and the height of a floor below all bodies."""
+    shown = np.stack([result.start, result.goal]) if result.path is None else _along(result, world, 9)
+    low, high = _bounds(world, shown)
+    camera = _best_camera([_posed(world, links, q) for q in shown[1::3]], obstacles, low, high)
+    return camera, min([low[2], *(float(part.corners[..., 2].min()) for part in obstacles)]) - 0.005
+
+
+def _posed(world: ArmWorld, links: dict[str, Part], q: Floats) -> list[Part]:
+    poses = link_poses(world.robot, q[np.newaxis])[0]
+    return [part.moved(poses[world.robot.links.index(link)]) for link, part in links.items()]
+
+
+def link_colour(number: int) -> tuple[int, int, int]:
+    """Return the colour of a link by its number: neighbours differ."""
+    return _ARM[number % 2]
+
+
+def obstacle_surface(obstacle: Obstacle) -> Surface:
+    """Return the surface of an obstacle; a cloud's is cubes at its points."""
+    body = obstacle.body
+    return cubes(body.pose.apply(body.points), body.radius) if isinstance(body, PointCloud) else surface_of(body)
+
+
+def obstacle_colour(obstacle: Obstacle) -> tuple[int, int, int]:
+    """Return the colour of an obstacle: what belongs to the cell is grey."""
+    return _CELL if obstacle.cell else _OBSTACLE
 
 
 def draw_arm(result: PlanResult, world: ArmWorld, file: RobotFile | None = None) -> Image.Image:
@@ -137,22 +154,15 @@ def _trail(result: PlanResult, world: ArmWorld) -> Part:
     return part_of((rings.reshape(-1, 3), triangles), ImageColor.getrgb(style.PATH)[:3])
 
 
-def _cubes(points: Floats, radius: float) -> Surface:
+def cubes(points: Floats, radius: float) -> Surface:
     """Return a cube for each of at most 20 000 points of a cloud."""
     points = points[:: len(points) // 20_000 + 1]
-    vertices, triangles = surface_of_cube(max(radius, 0.004))
+    vertices, triangles = surface_of(Box(3 * (2.0 * max(radius, 0.004),)))
     count = len(vertices)
     return (
         (points[:, np.newaxis] + vertices).reshape(-1, 3),
         (triangles + count * np.arange(len(points))[:, np.newaxis, np.newaxis]).reshape(-1, 3),
     )
-
-
-def surface_of_cube(half: float) -> Surface:
-    """Return the surface of a cube around the origin, with this half side."""
-    from evenroad.geometry.shapes import Box
-
-    return surface_of(Box((2 * half, 2 * half, 2 * half)))
 
 
 def _bounds(world: ArmWorld, shown: Floats) -> tuple[Floats, Floats]:

@@ -54,9 +54,9 @@ def link_surfaces(robot: Robot, file: RobotFile | None) -> dict[str, Surface]:
 
     A drawing that cannot be read is no reason to show nothing: its link is shown as its capsules.
     """
-    surfaces = _by_link(robot.capsules)
+    surfaces = surfaces_by_link(robot.capsules)
     if file is not None:
-        surfaces |= _by_link(_drawn(file))
+        surfaces |= surfaces_by_link(_drawn(file))
     return {link: surface for link, surface in surfaces.items() if link in robot.links}
 
 
@@ -67,7 +67,8 @@ def _drawn(file: RobotFile) -> tuple[Shape, ...]:
         return ()
 
 
-def _by_link(shapes: Iterable[Shape]) -> dict[str, Surface]:
+def surfaces_by_link(shapes: Iterable[Shape]) -> dict[str, Surface]:
+    """Return link -> surface of the shapes that it carries."""
     of_link: dict[str, list[Surface]] = {}
     for shape in shapes:
         try:

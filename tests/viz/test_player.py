@@ -1,0 +1,58 @@
+import base64
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.errors import NotAvailable, UnknownName
+from evenroad.robot import find_robot
+from evenroad.robot.kinematics import joint_values
+from evenroad.robot.urdf_xml import RobotFile
+from evenroad.viz.player import page_of, save_page
+from evenroad.viz.surfaces import surfaces_by_link
+
+
+@pytest.fixture(scope="module")
+def reach():
+    return er.plan("box-reach", "home", "inside", robot="ur5")
+
+
+def _data(text):
+    return json.loads(re.search(r'type="application/json">(.*?)</script>', text, re.DOTALL)[1])
+
+
+def test_a_page_holds_the_joints_along_the_path_and_each_body_once(reach):
+    data = _data(page_of(reach, file=RobotFile(find_robot("ur5")[0])))
+    first, last = ([joint["values"][i] for joint in data["joints"] if joint["values"]] for i in (0, -1))
+    robot = reach.world.robot
+    expected = joint_values(robot, np.stack([reach.start, reach.goal]))
+    moving = [joint.name for joint in robot.joints if joint.kind != "fixed"]
+    np.testing.assert_allclose([first, last], np.transpose([expected[name] for name in moving]), atol=1e-5)
+    assert data["sets"] == ["capsules"]
+    assert [body["name"] for body in data["bodies"] if body["set"] == "scene"] == list(reach.world.scene.names)
+    for link, (vertices, _) in surfaces_by_link(robot.capsules).items():
+        (body,) = [each for each in data["bodies"] if each["name"] == link and each["set"] == "capsules"]
+        kept = np.frombuffer(base64.b64decode(body["v"]), "<f4").reshape(-1, 3)
+        np.testing.assert_allclose([kept.min(0), kept.max(0)], [vertices.min(0), vertices.max(0)], atol=1e-5)
+        triangles = np.frombuffer(base64.b64decode(body["t"]), "<u4")
+        assert triangles.max() == len(kept) - 1
+
+
+def test_a_page_needs_no_network_and_no_text_of_a_plan_ends_its_script(reach):
+    text = page_of(replace(reach, message="</script><script>alert(1)"))
+    assert not re.search(r"https?://", text)
+    assert text.count("</script>") == 2
+    assert _data(text)["title"] == "solved: </script><script>alert(1)"
+
+
+def test_what_cannot_be_played_is_refused(reach, tmp_path):
+    none = er.plan("box-reach", "home", "inside", robot="ur5", limits={"motions": 1})
+    with pytest.raises(NotAvailable, match="no path to play"):
+        page_of(none)
+    with pytest.raises(NotAvailable, match="another world"):
+        page_of(replace(reach, world=None))
+    with pytest.raises(UnknownName, match="html"):
+        save_page(tmp_path / "page.pdf", reach)
