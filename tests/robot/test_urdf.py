@@ -255,8 +255,8 @@ BROKEN = {
     # Joints.
     "no type": (of(more="<joint name='a'><parent link='x'/><child link='y'/></joint>"), BrokenFile,
         "joint 'a' in .*: <joint> lacks 'type'"),
-    "a type that is not supported": (a(kind="floating"), UnknownName,
-        "type of joint 'a' in .*: 'floating'; known: continuous, fixed, prismatic, revolute"),
+    "a type that is not supported": (a(kind="ball"), UnknownName,
+        "type of joint 'a' in .*: 'ball'; known: continuous, fixed, floating, planar, prismatic, revolute"),
     "two origins of a joint": (a(LIMIT + "<origin/>"), BrokenFile, "joint 'a' .*: <joint> has more than one <origin>"),
     "two limits": (a(LIMIT + LIMIT.replace("1", "2")), BrokenFile, "joint 'a' .*: <joint> has more than one <limit>"),
     "no limits": (a(""), BrokenFile,

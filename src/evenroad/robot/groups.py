@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.robot.free_joints import named
 from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import KinematicTree, held_values
 from evenroad.robot.urdf import Urdf
@@ -37,7 +38,8 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
     groups = {} if srdf is None else srdf.groups
     if wanted is not None:
         words = _words(wanted)
-        if groups and words and not set(words) & {*urdf.order, *groups}:
+        owners = {name.rpartition("/")[0] for name in urdf.order}
+        if groups and words and not set(words) & {*urdf.order, *groups, *owners}:
             raise UnknownName.among("group", ",".join(words), groups)
         chosen: list[str] = []
         for word in words:
@@ -45,8 +47,9 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
                 own = _not_empty(groups[word], f"group {word!r}")
                 chosen += [name for name in own if name not in chosen]
             else:
-                _require_movable(urdf, word, chosen)
-                chosen.append(word)
+                for name in named(word, urdf.order) or [word]:
+                    _require_movable(urdf, name, chosen)
+                    chosen.append(name)
         return _not_empty(tuple(chosen), "the group")
     if any(groups.values()):
         return groups[arm_group(urdf, groups)]
@@ -54,7 +57,8 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
         return ()
     free = urdf.free - (frozenset() if srdf is None else srdf.passive)
     said = "".join(f"; {note}" for note in urdf.notes if note.startswith("joint"))
-    return _not_empty(tuple(name for name in urdf.order if name in free), f"robot {urdf.name!r}", said)
+    loose = {joint.name for joint in urdf.joints if joint.loose}
+    return _not_empty(tuple(name for name in urdf.order if name in free - loose), f"robot {urdf.name!r}", said)
 
 
 def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
@@ -182,7 +186,7 @@ def chains(joints: Sequence[Joint]) -> dict[str, list[Joint]]:
     free = {
         joint.child: joint
         for joint in joints
-        if joint.kind != "fixed" and joint.mimic is None and joint.lower < joint.upper
+        if joint.kind != "fixed" and joint.mimic is None and joint.lower < joint.upper and not joint.loose
     }
     parent = {joint.child: joint.parent for joint in joints}
     followers: dict[str | None, list[Joint]] = {}

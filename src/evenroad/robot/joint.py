@@ -12,6 +12,8 @@ from evenroad.geometry.pose import Pose
 from evenroad.space.joints import SLACK
 
 Kind = Literal["revolute", "continuous", "prismatic", "fixed"]
+LOOSE = ("x", "y", "z", "theta", "yaw", "pitch", "roll")
+"""Coordinates of planar and floating joints, called ``base/x``: held, unless they are named."""
 _ROUNDING = 1e-9
 """Movement of a follower up to which limits stay as they are written [rad or m]."""
 
@@ -51,6 +53,12 @@ class Joint:
     def origin(self) -> Pose:
         """The joint's frame in the parent link's."""
         return Pose(self.xyz, self.rotation)
+
+    @property
+    def loose(self) -> bool:
+        """Whether it is a coordinate of a planar or a floating joint."""
+        owner, _, name = self.name.rpartition("/")
+        return bool(owner) and name in LOOSE
 
     @property
     def neutral(self) -> float:

@@ -28,7 +28,7 @@ from evenroad.robot.mjcf import read_mjcf
 from evenroad.robot.pairs import pairs_of, self_pairs
 from evenroad.robot.robot import Robot
 from evenroad.robot.robot_model import LinkBody, RobotModel
-from evenroad.robot.srdf import read_srdf
+from evenroad.robot.srdf import Srdf, read_srdf, with_moving_base
 from evenroad.robot.urdf import Urdf, read_urdf
 from evenroad.robot.urdf_xml import RobotFile, outermost
 
@@ -186,8 +186,7 @@ def _build(
     progress: Callable[[int, int, str], None] | None,
     with_shapes: bool,
 ) -> RobotModel:
-    srdf = None if srdf_path is None else read_srdf(srdf_path, urdf)
-    chosen = choose_group(urdf, srdf, group)
+    urdf, srdf, chosen = _planned(urdf, srdf_path, group)
     given = {} if bodies_path is None else read_bodies(bodies_path, urdf.links)
     urdf = replace(urdf, shapes=_opened(urdf.shapes))
     capsules = _capsules(urdf, given, progress)
@@ -237,6 +236,22 @@ def _build(
             *map(_contained, pairs.contained),
         ),
     )
+
+
+def _planned(
+    urdf: Urdf, srdf_path: Path | None, group: str | Sequence[str] | None
+) -> tuple[Urdf, Srdf | None, tuple[str, ...]]:
+    """Return the robot, its SRDF and the group that is planned for; its base moves if the group says so."""
+    if srdf_path is None:
+        return urdf, None, choose_group(urdf, None, group)
+    if group is not None:
+        moving = with_moving_base(urdf, srdf_path)
+        srdf = read_srdf(srdf_path, moving)
+        chosen = choose_group(moving, srdf, group)
+        if not set(chosen) <= set(urdf.order):
+            return moving, srdf, chosen
+    srdf = read_srdf(srdf_path, urdf)
+    return urdf, srdf, choose_group(urdf, srdf, group)
 
 
 def _contained(pair: tuple[str, str]) -> str:

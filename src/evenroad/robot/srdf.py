@@ -13,6 +13,7 @@ from xml.etree.ElementTree import Element
 from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.robot.apart import bent_posture, held_apart
+from evenroad.robot.free_joints import named, of_planar
 from evenroad.robot.groups import chains, few_of
 from evenroad.robot.joint import Joint
 from evenroad.robot.pairs import TOUCHING
@@ -42,11 +43,11 @@ class Srdf:
 def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     """Read the SRDF that belongs to a URDF; what has to do with neither groups, states nor pairs is skipped.
 
-    Virtual joints, which tie the root to the world, are skipped in groups and states, too: no URDF has them.  So are
-    joints and links that this URDF lacks, as makers write one SRDF for several robots; the notes name them.  Raises
-    BrokenFile if the file is missing, not XML or not an SRDF, an element lacks an attribute, or groups contain each
-    other; UnknownName if it names a group that there is not; InvalidValue if a joint of a state has a value that is not
-    a finite number.
+    Virtual joints, which tie the root to the world, are skipped in groups and states, too, unless the robot has them
+    (:func:`with_moving_base`).  So are joints and links that this URDF lacks, as makers write one SRDF for several
+    robots; the notes name them.  Raises BrokenFile if the file is missing, not XML or not an SRDF, an element lacks an
+    attribute, or groups contain each other; UnknownName if it names a group that there is not; InvalidValue if a joint
+    of a state has a value that is not a finite number.
     """
     root = read_xml(path, "SRDF", "an SRDF")
     if root.find("joint") is not None:
@@ -71,6 +72,20 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     pairs = [[_attribute(pair, end, path) for end in ("link1", "link2")] for pair in root.findall("disable_collisions")]
     disabled = frozenset(frozenset(pair) for pair in pairs if known.links(pair))
     return Srdf(groups, states, disabled, passive, known.notes)
+
+
+def with_moving_base(urdf: Urdf, srdf: Path) -> Urdf:
+    """Return a robot whose root moves in the plane, where a virtual joint of its SRDF says so."""
+    root = urdf.links[0]
+    for element in read_xml(srdf, "SRDF", "an SRDF").findall("virtual_joint"):
+        name, frame = element.get("name", ""), element.get("parent_frame", "world")
+        if element.get("type") != "planar" or element.get("child_link") != root or not name:
+            continue
+        joints = of_planar(name, frame if frame not in urdf.links else f"{name}/{frame}", root)
+        links = (joints[0].parent, *(joint.child for joint in joints), *urdf.links[1:])
+        order = (*(joint.name for joint in joints), *urdf.order)
+        return replace(urdf, links=links, joints=(*joints, *urdf.joints), order=order)
+    return urdf
 
 
 _MISSING = {
@@ -128,7 +143,7 @@ class _Groups:
         for part in self.elements[name]:
             if part.tag == "joint":
                 joint = _attribute(part, "name", self.path)
-                found.update([joint] if self.known.joint(joint) else [])
+                found.update(named(joint, self.known.urdf.order) or ([joint] if self.known.joint(joint) else []))
             elif part.tag == "link":
                 link = _attribute(part, "name", self.path)
                 found.update([by_child[link].name] if self.known.links([link]) and link in by_child else [])

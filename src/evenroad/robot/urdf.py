@@ -16,11 +16,12 @@ from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
+from evenroad.robot.free_joints import FAR, coordinates
 from evenroad.robot.joint import Joint, Kind, Mimic, with_direct_mimics, within_limits_of_mimics
 from evenroad.robot.planes import Plane
 from evenroad.robot.urdf_xml import RobotFile, drawn_only, find_mesh, read_urdf_xml
 
-_KINDS = ("revolute", "continuous", "prismatic", "fixed")
+_KINDS = ("revolute", "continuous", "prismatic", "fixed", "planar", "floating")
 _LIMITS = ("lower", "upper", "velocity")
 _ANY = 1000.0
 """A range of more than this is that of a joint without limits [rad or m]."""
@@ -67,15 +68,17 @@ def read_urdf(source: Path | RobotFile) -> Urdf:
 
     Raises BrokenFile if the file is missing, broken or not a URDF, a piece is missing, a mesh is not found, or the
     links do not form a tree; InvalidValue if a number is not one, or out of its range; UnknownName if a joint is of a
-    type that is not supported (floating, planar).
+    type that there is not.
     """
     file = source if isinstance(source, RobotFile) else RobotFile(source)
     root, notes = read_urdf_xml(file)
     links = root.findall("link")
+    joints = [each for joint in root.findall("joint") for each in _joints(joint, file.path, notes)]
+    names = [link.attrib["name"] for link in links]
     return as_tree(
         root.get("name", file.path.stem),
-        [link.attrib["name"] for link in links],
-        [_joint(joint, file.path, notes) for joint in root.findall("joint")],
+        [*names, *(joint.child for joint in joints if joint.loose and joint.child not in names)],
+        joints,
         [_shape(link.attrib["name"], each, file) for link in links for each in link.findall("collision")],
         str(file.path),
         drawn_only(root),
@@ -117,8 +120,22 @@ def _without_end(joint: Joint, notes: list[str]) -> Joint:
     return joint
 
 
-def _joint(element: Element, path: Path, notes: list[str]) -> Joint:
-    name, kind = element.attrib["name"], element.attrib["type"]
+def _joints(element: Element, path: Path, notes: list[str]) -> list[Joint]:
+    """Return the joint of an element, or the coordinates of a planar or floating one."""
+    kind = element.attrib["type"]
+    joint = _joint(element, "fixed" if kind in ("planar", "floating") else kind, path, notes)
+    if kind != joint.kind:
+        plane = (0.0, 0.0, 1.0) if element.find("axis") is None else _axis(element, f"joint {joint.name!r} in {path}")
+        joints = coordinates(kind, replace(joint, axis=plane))
+        names = ", ".join(each.name for each in joints)
+        said = f"joint {joint.name!r} is {kind}: it is held at 0"
+        notes.append(f"{said}; --group {joint.name} plans for {names}, within {FAR:g} m or the limits of a scene")
+        return joints
+    return [joint]
+
+
+def _joint(element: Element, kind: str, path: Path, notes: list[str]) -> Joint:
+    name = element.attrib["name"]
     where = f"joint {name!r} in {path}"
     require_known(f"type of {where}:", kind, _KINDS)
     origin, follows = _pose(element), element.find("mimic")

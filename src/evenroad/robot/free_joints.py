@@ -1,0 +1,65 @@
+"""Joints with several coordinates, planar and floating, as joints with one each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from evenroad.geometry.pose import IDENTITY, Pose
+from evenroad.geometry.rotation import rotation_from_z
+from evenroad.robot.joint import LOOSE, Joint
+
+PLANAR = ("x", "y", "theta")
+"""Coordinates of a planar joint, called as MoveIt does."""
+FAR = 50.0
+"""How far such a joint slides where a scene does not limit it [m]."""
+_FLOATING = ("x", "y", "z", "yaw", "pitch", "roll")
+_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_AXES |= {"theta": _AXES["z"], "yaw": _AXES["z"], "pitch": _AXES["y"], "roll": _AXES["x"]}
+assert set(LOOSE) == set(_AXES)
+
+
+def coordinates(kind: str, joint: Joint) -> list[Joint]:
+    """Return a joint of a URDF, or the joints that stand for it: ``planar`` and ``floating`` ones have several.
+
+    A planar joint moves along x and y of a frame whose z axis is the joint's, and turns about it: ``base/x``,
+    ``base/y``, ``base/theta``.  A floating one moves and turns along all axes: ``base/x`` to ``base/roll``.
+    """
+    if kind not in ("planar", "floating"):
+        return [joint]
+    names = PLANAR if kind == "planar" else _FLOATING
+    turned = Pose((0.0, 0.0, 0.0), tuple(rotation_from_z(joint.axis).ravel().tolist()))
+    # Its axis is z where the file gives none: a URDF's default, x, would let a base climb.
+    frame = joint.origin @ turned if kind == "planar" else joint.origin
+    links = [joint.parent, *(f"{joint.name}/{name}" for name in names[:-1]), joint.child]
+    found = []
+    for number, name in enumerate(names):
+        at = frame if number == 0 else IDENTITY
+        slides = name in ("x", "y", "z")
+        found.append(
+            replace(
+                joint,
+                name=f"{joint.name}/{name}",
+                kind="prismatic" if slides else "continuous",
+                parent=links[number],
+                child=links[number + 1],
+                xyz=at.xyz,
+                rotation=at.rotation,
+                axis=_AXES[name],
+                lower=-FAR if slides else -math.inf,
+                upper=FAR if slides else math.inf,
+            )
+        )
+    return found
+
+
+def of_planar(name: str, parent: str, child: str) -> list[Joint]:
+    """Return the joints of a planar joint in the x-y plane of its parent."""
+    joint = Joint(name, "fixed", parent, child, (0.0, 0.0, 0.0), IDENTITY.rotation)
+    return coordinates("planar", joint)
+
+
+def named(joint: str, order: Sequence[str]) -> list[str]:
+    """Return the coordinates of a joint among the names of a robot's joints; none where it has only itself."""
+    return [name for name in order if name.rpartition("/")[0] == joint and name.rpartition("/")[2] in LOOSE]
