@@ -11,7 +11,7 @@ import pytest
 
 import evenroad as er
 from evenroad._native.planning import CLEARANCES
-from evenroad.planning.arm_trees import connect, shorten, smooth
+from evenroad.planning.arm_trees import connect, shorten, smooth, smooth_apart
 from evenroad.robot import Obstacle, Scene, load_robot
 from evenroad.robot.arm_world import ArmWorld
 from tests.refused import refused
@@ -59,6 +59,33 @@ def test_a_plan_is_drawn_tight_unless_quick_shortcuts_or_no_smoothing_are_wanted
     assert all(proved(world, each.path) for each in plans.values())
     said = "smooth must be True, False or \"quick\", got 'fast'"
     refused(er.errors.InvalidValue, said, er.plan, world, path[0], path[-1], smooth="fast")
+
+
+def test_a_plan_keeps_five_millimetres_off_where_that_costs_two_percent_at_most(paths):
+    world, found = paths
+    kept = 0
+    for path in found:
+        apart, motions = smooth_apart(world, path, batches=500)
+        tight, fewer = smooth(world, path, batches=500)
+        assert proved(world, apart)
+        if np.array_equal(apart, tight):
+            continue
+        kept += 1
+        assert motions > fewer
+        assert length(world, apart) <= 1.02 * length(world, tight)
+        np.testing.assert_array_equal(apart[[0, -1]], path[[0, -1]])
+        # Distances from obstacles: the bodies of one robot may come as near to each other as they touch.
+        alone = replace(world.robot, pairs=())
+        assert clearance(alone, world.scene, dense_states(world, apart, 5)).min() > 0.005
+        assert er.ArmWorld(world.robot, world.scene).path_clearance(apart) >= 0.005
+    assert kept > 0
+
+
+def test_who_improves_wants_the_shortest_path(paths):
+    world, found = paths
+    path = max(found, key=len)
+    one_round = er.plan(world, path[0], path[-1], er.RRTConnect(improve=True), limits={"rounds": 1})
+    assert one_round.cost <= er.plan(world, path[0], path[-1], smooth=True).cost * (1 + 1e-12)
 
 
 def test_few_batches_give_a_free_path_and_more_a_shorter_one(paths):

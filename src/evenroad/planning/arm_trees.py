@@ -14,10 +14,15 @@ from evenroad._native import planning
 from evenroad._native.robot import Checker
 from evenroad.errors import InvalidValue
 from evenroad.roadmap.connector import Connection
+from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.tree_sequences import PAIRS, ball_points, cube_points, native_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
+from evenroad.space.path import path_length
 
+LONGER, APART = 0.02, 0.4
+"""By how much of its length a path may be longer that keeps away from obstacles, and how much of the work goes into it.
+"""
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
 
@@ -129,6 +134,21 @@ def smooth(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: 
     guides = native_points(share_pairs, PAIRS), native_points(sphere_points, world.space.dim)
     smoothed, motions = planning.smooth(checks_of(world), _as_path(world, path), *guides, batches, proved)
     return np.empty((0, world.space.dim)) if smoothed is None else smoothed, motions
+
+
+def smooth_apart(world: ArmWorld, path: Floats, *, batches: int) -> tuple[Floats, int]:
+    """Return a path smoothed as by `smooth`, 5 mm away from obstacles where that costs at most 2 % of its length.
+
+    The shortest paths touch what they pass.  So the path is smoothed once more, in the same world with that much more
+    clearance, where all its motions must be proved.  Where an end is nearer to an obstacle it stays as it is.
+    """
+    shortest, motions = smooth(world, path, batches=batches)
+    roomier = world.roomier
+    if len(path) < 3 or not roomier.valid(path[[0, -1]]).all():
+        return shortest, motions
+    apart, more = smooth(roomier, path, batches=int(APART * batches), proved=False)
+    is_short = len(apart) and path_length(apart, world.space) <= (1.0 + LONGER) * path_length(shortest, world.space)
+    return apart if is_short else shortest, motions + more
 
 
 def checks_of(world: PlansWithTrees) -> planning.Checks:

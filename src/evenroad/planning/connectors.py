@@ -43,6 +43,8 @@ class ArmTrees:
     stages: ClassVar[tuple[tuple[int, bool], ...]] = ((BEFORE_QUICK_PROOF, True), (BEFORE_PROOF, False))
 
     inside: ArmWorld | None = None
+    shortest: bool = False
+    """Whether smoothed paths are the shortest, however near to obstacles."""
 
     def connect(
         self,
@@ -61,12 +63,15 @@ class ArmTrees:
         return arm_trees.joined(inside, terminals, samples, most_motions, seconds)
 
     def smooth(self, world: ArmWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
-        """See :func:`evenroad.planning.arm_trees.smooth`; quickly by its :func:`shorten`."""
+        """See :func:`evenroad.planning.arm_trees.smooth_apart`; quickly by its :func:`shorten`."""
         if len(path) == 2:
             # One motion is as short as can be.
             return path, 0
         inside = self.inside or world
-        return arm_trees.shorten(inside, path) if quick else arm_trees.smooth(inside, path, batches=SMOOTHING)
+        if quick:
+            return arm_trees.shorten(inside, path)
+        smooth = arm_trees.smooth if self.shortest else arm_trees.smooth_apart
+        return smooth(inside, path, batches=SMOOTHING)
 
 
 @dataclass(frozen=True)
@@ -133,6 +138,8 @@ def connector_of(world: Any) -> Connector | None:
     return CELLS if isinstance(world, DiskWorld) else None
 
 
-def trees_for(world: Any) -> Connector:
+def trees_for(world: Any, *, shortest: bool = False) -> Connector:
     """Return the trees for this kind of world: compiled ones for an arm, else plain ones."""
-    return ARM_TREES if isinstance(world, ArmWorld) else PLAIN_TREES
+    if isinstance(world, ArmWorld):
+        return ArmTrees(shortest=True) if shortest else ARM_TREES
+    return PLAIN_TREES

@@ -88,8 +88,9 @@ def plan(
         Other limits: ``motions``, ``samples``, ``rounds``; integers >= 1.  With these the same call gives the same
         answer on every machine, unless the time runs out first.  A :class:`evenroad.roadmap.Budget` says the time, too.
     smooth : bool or "quick"
-        Whether the path is made shorter once it is found.  Waypoints of an arm slide along what they touch;
-        "quick": the path is cut short by straight motions alone, in less time.
+        Whether the path is made shorter once it is found.  Waypoints of an arm slide along what they touch, 5 mm off
+        where that costs at most 2 % of the length; "quick": the path is cut short by straight motions alone, in less
+        time.
     rng : int, SeedSequence or Generator
         Seed of what the planner draws; the same seed gives the same path.
     certified : bool

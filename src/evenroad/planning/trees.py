@@ -63,7 +63,7 @@ class RRTConnect:
 
     def solve(self, problem: Problem) -> PlanResult:
         """Return a path, a proof that there is none, or what was tried; see :class:`RRTConnect`."""
-        return solve_by(problem, trees_for(problem.world), improve=self.improve)
+        return solve_by(problem, trees_for(problem.world, shortest=self.improve), improve=self.improve)
 
 
 @explains_calls
