@@ -200,9 +200,6 @@ def try_all(steps: Steps, work: Path, options: argparse.Namespace) -> None:
     steps.run("second plan", OWN_PLAN.format("second"), says="solved", **here)
     if (desk / "first.csv").read_bytes() != (desk / "second.csv").read_bytes():
         raise SystemExit("first and second plan differ")
-    picture = "evenroad demo --out demo"
-    steps.run("a picture without the extra", picture, says="pip install 'evenroad[pictures]'", **here)
-    steps.run("the extra", f"{pip} 'evenroad[pictures]'", cwd=desk)
     for name, command in README_STEPS.items():
         steps.run(name, command, **here)
     large = "evenroad points -n 512 -d 2 --sampler hickernell -o large.npy"

@@ -77,21 +77,13 @@ def test_the_same_command_gives_the_same_path_and_another_seed_another(answer):
     assert a != c
 
 
-def test_without_a_picture_nothing_is_drawn_and_matplotlib_is_not_even_loaded(tmp_path):
-    code = "import sys; from evenroad.cli import main; main(sys.argv[1:]); print('matplotlib' in sys.modules)"
+def test_without_a_picture_nothing_is_drawn_and_what_draws_is_not_even_loaded(tmp_path):
+    code = "import sys; from evenroad.cli import main; main(sys.argv[1:]); print('evenroad.viz' in sys.modules)"
     line = [sys.executable, "-c", code, *map(str, plan_arguments(out="a")), "--no-picture"]
     done = subprocess.run(line, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "False"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.json"]
     assert "png" not in done.stdout
-
-
-def test_without_matplotlib_the_plan_is_written_and_the_extra_is_named(run, tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    code, out, err = run(*plan_arguments(out="a"), "-n", 256)
-    assert (code, err) == (0, "")
-    assert "pip install 'evenroad[pictures]'" in out
-    assert [path.name for path in tmp_path.iterdir()] == ["a.json"]
 
 
 def test_the_answer_is_there_before_the_picture_is_drawn(run, tmp_path, monkeypatch):

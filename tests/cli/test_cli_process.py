@@ -131,7 +131,7 @@ def test_a_version_says_what_it_runs_on_and_where_things_are_kept(tmp_path):
 
 
 ARM = "plan box-reach --robot ur5 --start home --goal inside"
-MAP = "plan office.yaml --start 1 2 --goal 8.5 3 --robot-radius 0.25 --no-picture"
+MAP = "plan office.yaml --start 1 2 --goal 8.5 3 --robot-radius 0.25"
 HEAVY = {"scipy.linalg", "scipy.ndimage", "scipy.optimize", "scipy.spatial", "scipy.stats", "matplotlib", "trimesh"}
 
 

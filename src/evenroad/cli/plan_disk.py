@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -76,9 +75,6 @@ def plan_disk(plan: PlanDisk) -> int:
 
         record["certificate"] = guarantees(result.certificate)
         more = guarantee_rows(result.certificate)
-    if "png" in files and find_spec("matplotlib") is None:
-        del files["png"]
-        more = [*more, ("picture", "none without the extra: pip install 'evenroad[pictures]'")]
     return finish(files, result, record, ("x", "y"), draw, more)
 
 

@@ -124,8 +124,8 @@ class ResultMethods:
         >>> import numpy as np
         >>> import evenroad as er
         >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
-        >>> er.plan(world, (3, 3), (27, 17)).plot().format
-        'PNG'
+        >>> er.plan(world, (3, 3), (27, 17)).plot().mode
+        'RGB'
         """
         return above("PlanResult.plot")(self, path, world)
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import os
-from io import BytesIO
 from typing import Any
 
 import numpy as np
 from PIL import Image
 
-from evenroad._checks import as_file, require_extra
+from evenroad._checks import as_file
 from evenroad._files import atomic_write
 from evenroad.errors import NotAvailable
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld
 from evenroad.viz.arm import draw_arm_plan
+from evenroad.viz.plan import draw_plan
 from evenroad.world.gridmap import DiskWorld, GridMap
 
 _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 40
@@ -27,11 +27,7 @@ def plot_result(result: PlanResult, path: str | os.PathLike[str] | None = None, 
     """Return what :meth:`PlanResult.plot` does."""
     world = result.world if world is None else world
     if isinstance(world, DiskWorld):
-        file = BytesIO()
-        drawing = require_extra("evenroad.viz.plan", "pictures", "a picture of a plan on a map")
-        drawing.plan_figure(result, world).savefig(file, format="png")
-        picture: Image.Image = Image.open(file)
-        picture.load()
+        picture = draw_plan(result, world)
     elif isinstance(world, ArmWorld):
         picture = draw_arm_plan(result, world)
     else:

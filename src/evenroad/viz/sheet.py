@@ -21,13 +21,13 @@ Colour = tuple[int, int, int] | Faint | str
 
 
 class View:
-    """What is seen along one axis, between the corners `low` and `high`, (2,) each, in metres.
+    """What is seen along one axis, between the corners `low` and `high`, (2,) each, in metres or map units.
 
-    It has `scale` pixels a metre.  Its ``image`` is `FINER` times as large as it is shown.
+    It has `scale` pixels a metre; y points up, or down.  Its ``image`` is `FINER` times as large as it is shown.
     """
 
-    def __init__(self, low: Floats, high: Floats, scale: float) -> None:
-        self.low, self.high = low, high
+    def __init__(self, low: Floats, high: Floats, scale: float, *, up: bool = True) -> None:
+        self.low, self.high, self.up, self.shown_scale = low, high, up, scale
         self.scale = FINER * scale
         width, height = (FINER * max(1, round(side / FINER)) for side in self.scale * (high - low))
         self.image = Image.new("RGB", (width, height), "white")
@@ -39,9 +39,14 @@ class View:
                 self.line(endpoints, GRID, 1)
 
     def pixels(self, points: Floats) -> list[tuple[float, float]]:
-        """Return where points, (n, 2), lie in the image; y points up in metres, down in pixels."""
+        """Return where points, (n, 2), lie in the image, whose y points down."""
         x, y = (self.scale * (points - self.low)).T
-        return list(zip(x.tolist(), (self.image.height - y).tolist(), strict=True))
+        return list(zip(x.tolist(), (self.image.height - y if self.up else y).tolist(), strict=True))
+
+    def positions(self, pixels: Floats) -> Floats:
+        """Return where pixels, (n, 2), of the image lie: the inverse of `pixels`."""
+        x, y = pixels.T
+        return self.low + np.stack([x, self.image.height - y if self.up else y], axis=1) / self.scale
 
     def polygon(self, outline: Floats, fill: Colour, edge: Colour, width: float = 1.0) -> None:
         """Draw an area, (n, 2), with its edge."""
@@ -51,6 +56,13 @@ class View:
     def line(self, points: Floats, colour: Colour, width: float) -> None:
         """Draw a line through points, (n, 2)."""
         self._draw.line(self.pixels(points), fill=colour, width=round(FINER * width), joint="curve")
+
+    def circle(
+        self, centre: Floats, radius: float, fill: Colour | None, edge: Colour | None = None, width: float = 1.0
+    ) -> None:
+        """Draw a disk or its edge, of a radius in metres."""
+        at, most = self.pixels(centre[np.newaxis])[0], self.scale * radius
+        self._draw.circle(at, most, fill, edge, round(FINER * width))
 
     def balls(self, points: Floats, radius: float, fill: Faint, edge: Faint) -> None:
         """Fill all that is within `radius` of points, (n, 2), and mark the points themselves."""
@@ -103,6 +115,12 @@ class Sheet:
         for i, line in enumerate(wrap(title, size[0] // 11)[:3]):
             self._text((size[0] / 2, 20 + 22 * i), line, 18)
 
+    @classmethod
+    def around(cls, view: View, width: int, title: str) -> Sheet:
+        """Return a sheet that has room for one view, and is at least so wide."""
+        across, down = (side // FINER for side in view.image.size)
+        return cls((max(width, across + _LEFT - 60 + _BETWEEN), down + _TOP + _BOTTOM), 1, title)
+
     def add(self, view: View, number: int, title: str, labels: tuple[str, str]) -> None:
         """Paste a view, with frame, ticks and labels."""
         image = view.image.reduce(FINER)
@@ -112,11 +130,12 @@ class Sheet:
         self.image.paste(image, (left, top))
         self._draw.rectangle((left, top, right, bottom), outline=TEXT)
         for tick in ticks(view.low[0], view.high[0]):
-            x = left + view.scale / FINER * (tick - view.low[0])
+            x = left + view.shown_scale * (tick - view.low[0])
             self._draw.line((x, bottom, x, bottom + 5), fill=TEXT)
             self._text((x, bottom + 18), f"{round(tick, 9):g}", 16)
         for tick in ticks(view.low[1], view.high[1]):
-            y = bottom - view.scale / FINER * (tick - view.low[1])
+            away = view.shown_scale * (tick - view.low[1])
+            y = bottom - away if view.up else top + away
             self._draw.line((left - 5, y, left, y), fill=TEXT)
             self._text((left - 9, y), f"{round(tick, 9):g}", 16, "rm")
         self._text(((left + right) / 2, bottom + 42), labels[0], 17)

@@ -14,11 +14,3 @@ START = "#1b9e5a"
 GOAL = "#2f5fd0"
 COLLISION = "#d1343b"
 HALO = "#ffffff"
-
-
-def without_math(text: str) -> str:
-    """Return a text for matplotlib that shows dollars as they are: names from files are no mathematics.
-
-    Escaped, since ``parse_math=False`` is forgotten where a text is wrapped.
-    """
-    return text.replace("$", r"\$")

@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
+from PIL import Image
 
 from evenroad._arrays import Floats
 from evenroad.errors import NotAvailable
@@ -52,20 +53,17 @@ def draw_scene(name: str) -> Figure:
     problem = PROBLEMS[name].make(0)
     match problem.world:
         case DiskWorld():
-            figure = new_figure(8.4, 7.4)
-            draw_plan(figure.add_subplot(), find_path(problem), problem.world)
-            return figure
+            return _figure_of(draw_plan(find_path(problem), problem.world))
         case ChainWorld():
             return draw_chain(problem, problem.world, name)
         case SolidWorld():
             return draw_solids(problem, problem.world, name)
         case ArmWorld():
-            return _draw_arm(problem, problem.world)
+            return _figure_of(draw_arm_plan(find_path(problem), problem.world))
     raise NotAvailable(f"there is no picture of the scene of {name}")
 
 
-def _draw_arm(problem: Problem, world: ArmWorld) -> Figure:
-    picture = draw_arm_plan(find_path(problem), world)
+def _figure_of(picture: Image.Image) -> Figure:
     figure = new_figure(picture.width / DPI, picture.height / DPI, layout=None)
     figure.figimage(np.asarray(picture))
     return figure
