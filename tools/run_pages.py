@@ -68,7 +68,7 @@ PREPARED = {
 NEEDS = {"adapters.md": ("ompl", "klampt")}
 """Page -> packages of extras that its code imports; where they are missing, `make test-peers` runs it."""
 
-ARM_FILES = ("robots.md", "arm.md", "robot-roadmaps.md")
+ARM_FILES = ("robots.md", "arm.md", "robot-roadmaps.md", "ros2.md")
 """Pages that speak of ``my_arm.urdf``, ``cell.yaml`` and ``today.yaml``: files that stand for the reader's own."""
 
 
@@ -141,6 +141,7 @@ def pages() -> list[Path]:
     folder = ROOT / "docs"
     return [
         ROOT / "README.md",
+        ROOT / "AGENTS.md",
         *(each for each in sorted(folder.rglob("*.md")) if "generated" not in each.parts),
         *sorted((ROOT / "studies" / "docs").glob("*.md")),
     ]

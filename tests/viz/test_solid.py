@@ -35,3 +35,17 @@ def test_clouds_are_drawn_as_cubes_of_their_points():
     assert vertices.shape == (16, 3)
     assert triangles.shape == (24, 3)
     np.testing.assert_allclose(np.abs(vertices[8:] - points[1]).max(), 0.1)
+
+
+def test_what_touches_at_a_start_in_collision_is_red(reach):
+    world = reach.world
+    q = reach.goal + np.array([0.35, 0, 0, 0, 0, 0])
+    result = er.plan(world, q, reach.goal)
+    assert result.status == "start_invalid"
+    assert "box left" in world.explain(q)
+
+    def red(picture):
+        shown = np.asarray(picture).astype(int)
+        return np.count_nonzero((shown[..., 0] > 150) & (shown[..., 1:] < 90).all(axis=-1))
+
+    assert red(solid.draw_arm(result, world)) > red(solid.draw_arm(reach, world)) + 400

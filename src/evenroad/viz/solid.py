@@ -12,7 +12,7 @@ from PIL import Image, ImageColor
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad.geometry.shapes import Box, PointCloud
-from evenroad.roadmap import PlanResult
+from evenroad.roadmap import PlanResult, Status
 from evenroad.robot import ArmWorld, tip_links
 from evenroad.robot.kinematics import capsule_endpoints, link_poses
 from evenroad.robot.scene import Obstacle
@@ -104,10 +104,25 @@ def obstacle_colour(obstacle: Obstacle) -> tuple[int, int, int]:
 
 
 def draw_arm(result: PlanResult, world: ArmWorld, file: RobotFile | None = None) -> Image.Image:
-    """Return a picture of a plan: the arm in the middle of its path, start in green, goal in blue."""
+    """Return a picture of a plan: the arm in the middle of its path, start in green, goal in blue.
+
+    Of a start or goal in collision the arm is shown there, with the links and obstacles that touch in red.
+    """
     scene = ArmScene.of(result, world, file)
+    ends = ((result.start, style.START), (result.goal, style.GOAL))
+    if result.status in (Status.START_INVALID, Status.GOAL_INVALID):
+        at, other = ends if result.status is Status.START_INVALID else ends[::-1]
+        reason, red = world.explain(at[0]), ImageColor.getrgb(style.COLLISION)[:3]
+
+        def shown(name: str, part: Part) -> Part:
+            return replace(part, colour=red) if repr(name) in reason else part
+
+        # The scene's obstacles are its first still parts.
+        still = [shown(each.name, part) for each, part in zip(world.scene.obstacles, scene.still, strict=False)]
+        links = {link: shown(link, part) for link, part in scene.links.items()}
+        return replace(scene, links=links, still=tuple(still)).picture(at[0], (other,))
     q = result.start if result.path is None else _along(result, world, 3)[1]
-    return scene.picture(q, ((result.start, style.START), (result.goal, style.GOAL)))
+    return scene.picture(q, ends)
 
 
 def save_arm_gif(
