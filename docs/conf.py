@@ -19,13 +19,14 @@ import evenroad
 project, author, release = "evenroad", "The evenroad authors", evenroad.__version__
 project_copyright = author
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-exclude_patterns = ["data"]
+exclude_patterns = ["data", "notebooks"]
 nitpicky = True
 # Types of others, and texts of ours that stand where a type does: there is no page to lead to.
 nitpick_ignore_regex = [("py:(class|obj)", r"(?!evenroad\.).*"), ("py:class", r"evenroad\._.*")]
 
 html_theme = "furo"
 html_title = f"evenroad {release}"
+html_logo = "static/logo.svg"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_copy_source = html_show_sourcelink = html_show_copyright = False

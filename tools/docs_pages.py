@@ -61,7 +61,7 @@ REFERENCE = {
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
     "pictures": ("Pictures", ("evenroad.viz.show", "evenroad.viz.plan", "evenroad.viz.arm")),
     "mazes": ("Mazes", ("evenroad.world.gridmap.load",)),
-    "adapters": ("Adapters", ("evenroad.adapters.ompl", "evenroad.adapters.klampt")),
+    "adapters": ("Adapters", ("evenroad.adapters.ompl", "evenroad.adapters.klampt", "evenroad.adapters.mujoco")),
     "errors": ("Errors", ("evenroad.errors",)),
 }
 """Page -> its title, and the modules whose public names it holds."""
@@ -78,7 +78,7 @@ MODULES = {
 FOR_THE_COMMAND: dict[str, set[str]] = {}
 """Module -> names that it offers to evenroad's own command and benchmarks, not to users."""
 
-NOT_NEEDED = ["ompl", "klampt"]
+NOT_NEEDED = ["ompl", "klampt", "mujoco"]
 """Packages of extras that modules of the reference import, and that need not be there."""
 
 

@@ -23,7 +23,7 @@ START = {"start_map": ("map.md", "hall-plan.png"), "start_arm": ("arm.md", "desk
 """Picture -> the page below docs/start that draws it, and under which name."""
 WIDTH = 1000
 ANEW = "python tools/run_examples.py keeps it anew"
-COLOURS = 64
+COLOURS = 160
 
 
 def keep(picture: Path, name: str) -> None:

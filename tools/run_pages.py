@@ -65,7 +65,7 @@ PREPARED = {
 }
 """Page -> Python that is run before its first block."""
 
-NEEDS = {"adapters.md": ("ompl", "klampt")}
+NEEDS = {"adapters.md": ("ompl", "klampt", "mujoco")}
 """Page -> packages of extras that its code imports; where they are missing, `make test-peers` runs it."""
 
 ARM_FILES = ("robots.md", "arm.md", "robot-roadmaps.md", "ros2.md")

@@ -18,6 +18,7 @@ FUNCTIONS = {
     "plan.planner": "evenroad.robot_roadmap.file:load_roadmap",
     "PlanResult.save": "evenroad.io:save_result",
     "PlanResult.trajectory": "evenroad.trajectory.arm:trajectory_of",
+    "Trajectory.save": "evenroad.trajectory.files:save_trajectory",
     "PointSet.discrepancy": "scipy.stats.qmc:discrepancy",
     "PointSet.save": "evenroad.points.npz:write_points",
     "Robot.configuration": "evenroad.robot.states:as_configuration",

@@ -7,6 +7,6 @@ from types import ModuleType
 
 
 def __getattr__(name: str) -> ModuleType:
-    if name not in ("klampt", "ompl"):
-        raise AttributeError(f"module 'evenroad.adapters' has no attribute {name!r}; there are klampt and ompl")
+    if name not in ("klampt", "mujoco", "ompl"):
+        raise AttributeError(f"module 'evenroad.adapters' has no attribute {name!r}; there are klampt, mujoco and ompl")
     return import_module(f"evenroad.adapters.{name}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -11,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
+from evenroad._above import above
 from evenroad._arrays import Bools, Floats
 from evenroad._checks import as_batch, counted, require_known, require_positive
 from evenroad.errors import InvalidValue, NotAvailable
@@ -135,6 +137,28 @@ class Trajectory:
             constant = {name: np.full(len(rows), held.get(name, 0.0)) for name in self.held}
             tables.append(np.column_stack([(constant | own)[name] for name in order]))
         return order, (tables[0], tables[1], tables[2])
+
+    def save(self, path: str | os.PathLike[str], order: Sequence[str] | None = None) -> None:
+        """Write it in the format of the file's suffix; see :func:`evenroad.trajectory.save_trajectory`.
+
+        Parameters
+        ----------
+        path : str or path-like
+            A ``.json``, ``.csv``, ``.yaml`` (ROS 2), ``.mcap`` (a bag), ``.script`` or ``.movej.script`` (URScript).
+        order : sequence of str, optional
+            As :meth:`columns`.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> trajectory = er.plan(world, (3, 3), (27, 17)).trajectory(speed=5.0)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     trajectory.save(f"{folder}/go.csv")
+        """
+        above("Trajectory.save")(path, self, order)
 
     def __repr__(self) -> str:
         return f"Trajectory({self.duration:.4g} s, {counted(len(self.names), 'joint')}, {len(self.times)} states)"

@@ -109,9 +109,9 @@ def draw_arm(result: PlanResult, world: ArmWorld, file: RobotFile | None = None)
     Of a start or goal in collision the arm is shown there, with the links and obstacles that touch in red.
     """
     scene = ArmScene.of(result, world, file)
-    ends = ((result.start, style.START), (result.goal, style.GOAL))
+    start_and_goal = ((result.start, style.START), (result.goal, style.GOAL))
     if result.status in (Status.START_INVALID, Status.GOAL_INVALID):
-        at, other = ends if result.status is Status.START_INVALID else ends[::-1]
+        at, other = start_and_goal[:: 1 if result.status is Status.START_INVALID else -1]
         reason, red = world.explain(at[0]), ImageColor.getrgb(style.COLLISION)[:3]
 
         def shown(name: str, part: Part) -> Part:
@@ -122,7 +122,7 @@ def draw_arm(result: PlanResult, world: ArmWorld, file: RobotFile | None = None)
         links = {link: shown(link, part) for link, part in scene.links.items()}
         return replace(scene, links=links, still=tuple(still)).picture(at[0], (other,))
     q = result.start if result.path is None else _along(result, world, 3)[1]
-    return scene.picture(q, ends)
+    return scene.picture(q, start_and_goal)
 
 
 def save_arm_gif(
