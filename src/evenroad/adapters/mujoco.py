@@ -170,7 +170,8 @@ def drive(world: MujocoWorld, trajectory: Trajectory) -> Driven:
     data = mujoco.MjData(model)
     data.qpos[:] = world.qpos
     data.qpos[columns] = trajectory.positions[0]
-    seen, contacts = [], set()
+    seen: list[Floats] = []
+    contacts: set[tuple[str, str]] = set()
     for time in trajectory.times:
         while data.time < time - 0.5 * model.opt.timestep:
             share = [np.interp(data.time, trajectory.times, column) for column in trajectory.positions.T]
@@ -180,7 +181,8 @@ def drive(world: MujocoWorld, trajectory: Trajectory) -> Driven:
             data.qfrc_applied[dofs] = _forces(model, data, dofs, wanted)
             mujoco.mj_step(model, data)
             for pair in touching_pairs(model, data, world._moved):
-                contacts.add(tuple(sorted(_name_of(model, geom) for geom in pair)))
+                one, other = sorted(_name_of(model, geom) for geom in pair)
+                contacts.add((one, other))
         seen.append(data.qpos[columns].copy())
     positions = np.array(seen)
     error = float(np.abs(positions - trajectory.positions).max())
