@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -25,7 +25,8 @@ class Parts:
 
     `corners`, (parts, corners, 3), are in the frame of the link [m].  The disc is across its axis, whose length is the
     disc's radius: so a segment is a cylinder.  `of` says what they are parts of: the kind of a shape, ``hull`` of a
-    convex mesh, ``mesh`` of any other, whose triangles they are.  Surfaces that are `closed` have an inside.
+    convex mesh, ``mesh`` of any other, whose triangles they are.  Surfaces that are `closed` have an inside.  All lies
+    within `beyond` of the hull of the points `around`, (n, 3); of few parts these are their corners.
     """
 
     corners: Floats
@@ -34,9 +35,12 @@ class Parts:
     radius: float = 0.0
     disc: Vector = (0.0, 0.0, 0.0)
     closed: bool = False
+    around: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+    beyond: float = 0.0
 
     def __post_init__(self) -> None:
         set_fields(self, corners=np.array(self.corners, dtype=np.float64), disc=tuple(self.disc))
+        set_fields(self, around=np.array(self.around, dtype=np.float64).reshape(-1, 3))
 
     @cached_property
     def _key(self) -> tuple[object, ...]:
@@ -77,8 +81,9 @@ def _parts(shape: Shape) -> tuple[Parts, ...]:
     closed, turned = closed_parts(mesh)
     # Where sides do not tell inside from outside nobody knows what is solid.
     closed &= turned
+    around, beyond = thinned(extreme(corners.reshape(-1, 3)), LITTLE)
     return tuple(
-        Parts(_single(corners[these]), shape.link, "mesh", closed=bool(inside))
+        Parts(_single(corners[these]), shape.link, "mesh", closed=bool(inside), around=around, beyond=beyond)
         for these, inside in ((closed, True), (~closed, False))
         if these.any()
     )

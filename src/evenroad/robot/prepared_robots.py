@@ -63,7 +63,7 @@ class Prepared(NamedTuple):
 _recent: dict[int, tuple[Robot, dict[str, float], Prepared]] = {}
 """Cache by identity, which is faster than a key of a robot's values; a dictionary is the only part of a robot that can
 change."""
-_FIELDS = tuple(each.name for each in fields(Robot) if each.name not in ("states", "held", "inner"))
+_FIELDS = tuple(each.name for each in fields(Robot) if each.name not in ("states", "held"))
 
 
 def prepared(robot: Robot) -> Prepared:
@@ -71,7 +71,8 @@ def prepared(robot: Robot) -> Prepared:
     recent = _recent.get(id(robot))
     if recent is not None and recent[0] is robot and recent[1] == robot.held:
         return recent[2]
-    values = tuple(getattr(robot, name) for name in _FIELDS)
+    # What lies within the shapes matters where these decide.
+    values = tuple(None if name == "inner" and not robot.shapes else getattr(robot, name) for name in _FIELDS)
     held = tuple(sorted(robot.held.items()))
     try:
         found = _kept(values, held)

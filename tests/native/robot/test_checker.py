@@ -50,6 +50,8 @@ def arrays_of(robot):
         ("hulls", "children", (0, 0), 0, "hulls.children must come after their parents"),
         ("hulls", "children", (0, 1), 10_000, "hulls.children"),
         ("hulls", "spans", (-1, 1), 10_000, "hulls.spans must lie within hulls.points"),
+        ("shapes", "around_first", 1, 10_000, "shapes.around_first must rise"),
+        ("shapes", "inside_first", 0, -1, "shapes.inside_first must rise"),
     ],
 )
 def test_indices_that_point_nowhere_are_refused(fork_arm, part, name, place, value, words):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,6 +17,9 @@ from evenroad.robot.kernel.moving_tree import MovingTree
 from evenroad.robot.kernel.placed_capsules import PlacedCapsule, PlacedHulls, speed_bounds
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
 from evenroad.robot.robot import Robot
+
+MOST_BALLS = 8
+"""Largest number of balls, but for one, that stand for a capsule within a shape."""
 
 
 def native_robot(robot: Robot, tables: RobotTables, bounds: Floats) -> native.Robot:
@@ -78,6 +82,12 @@ class _PlacedParts:
         """Points, (n, 3), in whose hull the parts lie that are not widened by the radius."""
         return spread(self.parts) @ self.rotation.T + self.translation
 
+    @property
+    def around(self) -> Floats:
+        """Points, (n, 3), in whose hull the parts lie but for a width."""
+        around = self.parts.around
+        return around @ self.rotation.T + self.translation if len(around) else self.endpoints
+
 
 def _shapes(robot: Robot, tree: MovingTree, number: dict[str, int]) -> dict[str, npt.NDArray[np.generic]]:
     """Return the parts of all true shapes, body by body, and how fast each coordinate moves those of each body."""
@@ -101,7 +111,37 @@ def _shapes(robot: Robot, tree: MovingTree, number: dict[str, int]) -> dict[str,
         "discs": np.array([each.rotation @ each.parts.disc for each in placed]).reshape(-1, 3)[of_part],
         "enclosing": np.array([each.parts.closed for each in placed], dtype=np.bool_)[of_part],
         "speeds": np.ascontiguousarray(speeds.T),
+        **_around(placed, number),
+        **_inside(robot, tree, number),
     }
+
+
+def _around(placed: Sequence[_PlacedParts], number: dict[str, int]) -> dict[str, npt.NDArray[np.generic]]:
+    """Return, for each body, points in whose hull its shape lies but for a width."""
+    points, counts, widths = [np.zeros((0, 3))], [0], []
+    for link in number:
+        of_link = [each for each in placed if each.parts.link == link]
+        here = [each.around for each in of_link]
+        points += here
+        counts.append(counts[-1] + sum(map(len, here)))
+        widths.append(max((max(each.parts.radius, each.parts.beyond) for each in of_link), default=0.0))
+    return {"around_first": _ints(counts), "around": np.concatenate(points), "around_widths": np.array(widths)}
+
+
+def _inside(robot: Robot, tree: MovingTree, number: dict[str, int]) -> dict[str, npt.NDArray[np.generic]]:
+    """Return, for each body, balls within its shape: those of the capsules that are."""
+    rows, counts = [np.zeros((0, 4))], [0]
+    for link in number:
+        at = tree.links[link]
+        for capsule in robot.inner or ():
+            if capsule.link != link:
+                continue
+            a, b = np.array(capsule.a), np.array(capsule.b)
+            share = np.linspace(0.0, 1.0, 1 + min(math.ceil(np.linalg.norm(b - a) / capsule.radius), MOST_BALLS))
+            centres = (a + share[:, np.newaxis] * (b - a)) @ at.rotation.T + at.translation
+            rows.append(np.c_[centres, np.full(len(centres), capsule.radius)])
+        counts.append(sum(map(len, rows)))
+    return {"inside_first": _ints(counts), "inside": np.concatenate(rows)}
 
 
 def _ints(values: Sequence[object]) -> Ints:

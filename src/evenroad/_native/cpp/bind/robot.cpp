@@ -64,7 +64,7 @@ void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle ca
                     of_capsules.span<double, 2>("centre"),  of_capsules.span<double, 2>("half"),
                     of_capsules.span<double>("radius"),     of_capsules.span<double>("covering"),
                     of_capsules.span<double>("samples")};
-  const auto by_hulls = of_pairs.span<std::int64_t>("by_hulls");
+  const auto by_hulls = of_pairs.span<std::int64_t>("by_hulls"), around = of_shapes.span<std::int64_t>("around_first");
   require(by_hulls.size() == 1, "pairs.by_hulls must be one number");
   given.pairs = {of_pairs.span<std::int64_t, 2>("bodies"), by_hulls[0]};
   given.hulls = {of_hulls.span<std::int64_t, 2>("children"), of_hulls.span<std::int64_t, 2>("spans"),
@@ -72,7 +72,9 @@ void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle ca
   given.shapes = {
       of_shapes.span<std::int64_t>("body"),
       {of_shapes.span<std::int64_t>("first_point"), of_shapes.span<double, 2>("points"),
-       of_shapes.span<double>("widths"), of_shapes.span<double, 2>("discs"), of_shapes.span<bool>("enclosing")}};
+       of_shapes.span<double>("widths"), of_shapes.span<double, 2>("discs"), of_shapes.span<bool>("enclosing")},
+      {around, of_shapes.span<double, 2>("around"), of_shapes.span<double>("around_widths")},
+      {of_shapes.span<std::int64_t>("inside_first"), of_shapes.span<double, 2>("inside")}};
   given.arms = {of_capsules.span<double, 2>("speeds"), of_pairs.span<double, 2>("speeds"),
                 of_shapes.span<double, 2>("speeds")};
   given.bounds = of_limits.span<double, 2>("bounds");

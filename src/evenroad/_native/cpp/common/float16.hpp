@@ -19,6 +19,15 @@ EVENROAD_INLINE Floats16 sqrt(Floats16 a) {
 #endif
 }
 
+/// Return the largest of all lanes.
+EVENROAD_INLINE float largest(Floats16 a) {
+  a = max(a, __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
+  a = max(a, __builtin_shufflevector(a, a, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11));
+  a = max(a, __builtin_shufflevector(a, a, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13));
+  a = max(a, __builtin_shufflevector(a, a, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14));
+  return a[0];
+}
+
 /// Return `place` cut to the range from `least` to `most`.
 EVENROAD_INLINE Floats16 clamp(Floats16 place, Floats16 least, Floats16 most) { return max(min(place, most), least); }
 

@@ -1,6 +1,6 @@
 // Boxes and planes in single precision rule out nearly all pairs of hulls, for all lanes at once and by more than
-// rounding can be; of what is left `leaves_near` decides, lane by lane in double precision.  So the answer for a lane
-// does not depend on its neighbours.
+// rounding can be; of what is left `leaves_near` decides, lane by lane in double precision.  Where few lanes are left
+// of hulls of many corners, it is asked at once.
 #include "robot/hull_contact.hpp"
 
 #include <bit>
@@ -11,6 +11,8 @@ namespace evenroad::robot {
 namespace {
 
 constexpr int PLANES = 12;  // so many are tried for each two hulls before they are left to double precision
+/// Planes for all lanes at once cost as much as a search in one lane for each so many corners, and so many more.
+constexpr int CORNERS_OF_A_LANE = 12, CORNERS_OF_PLANES = 32;
 /// By how much, of the lengths that they come of, single precision may have distances wrong: thirty roundings.
 constexpr float SLACK = 2e-6F;
 constexpr float FAR = 1e30F;
@@ -103,6 +105,11 @@ EVENROAD_INLINE Farthest farthest(Vec3x16 direction, const HullTree<float>& tree
     most.corner = where_less(most.along, here, point, most.corner);
     most.along = max(here, most.along);
   }
+  const auto& [x, y, z] = leaf.extents;
+  const Vec3x16 side = {with_sign_of(spread(x), direction.x), with_sign_of(spread(y), direction.y),
+                        with_sign_of(spread(z), direction.z)};
+  most.corner = most.corner + side;
+  most.along = most.along + dot(side, direction);
   if (leaf.disc > 0) {
     const Vec3x16 axis = spread3(leaf.axis), aside = minus(direction, axis, dot(direction, axis));
     const Floats16 squared = dot(aside, aside), length = sqrt(squared);
@@ -176,6 +183,13 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
     Mask lanes;
   } waiting[DEEPEST];
   waiting[0] = {first.root, second.root, asked};
+  // Of lanes that double precision is asked about, made when they are.
+  RelativePose poses[LANES];
+  Mask placed = 0;
+  const auto leaves_meet = [&](int a, int b, int lane, PlaneNormal& plane) {
+    if ((placed >> lane & 1) == 0) poses[lane] = relative_pose(first.frame, second.frame, lane), placed |= 1U << lane;
+    return leaves_near(tree, a, other, b, poses[lane], margin, plane);
+  };
   Mask meeting = 0;
   for (int count = 1; count > 0;) {
     const auto [a, b, lanes] = waiting[--count];
@@ -184,10 +198,22 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
     const Node &p = tree.nodes[a], &q = other.nodes[b];
     left &= boxes_near(pose, p, q, near);
     if (left == 0) continue;
+    // Of the lane before: often it separates the next one, too.
+    PlaneNormal plane;
+    if (p.points.size() > 0 && !p.is_leaf() && q.points.size() > 0) {
+      // Apart from what is around all of the first.
+      for (Mask all = left; all != 0; all &= all - 1) {
+        const int lane = std::countr_zero(all);
+        if (!leaves_meet(a, b, lane, plane)) left &= ~(1U << lane);
+      }
+      if (left == 0) continue;
+    }
     if (p.is_leaf() && q.is_leaf()) {
-      for (left = not_apart(pose, tree, p, other, q, near, left); left != 0; left &= left - 1) {
+      if (CORNERS_OF_A_LANE * std::popcount(left) >= CORNERS_OF_PLANES + p.points.size() + q.points.size())
+        left = not_apart(pose, tree, p, other, q, near, left);
+      for (; left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left);
-        if (!leaves_near(tree, a, other, b, relative_pose(first.frame, second.frame, lane), margin)) continue;
+        if (!leaves_meet(a, b, lane, plane)) continue;
         meeting |= 1U << lane;
         if (wanted == Wanted::FIRST) return meeting;
       }

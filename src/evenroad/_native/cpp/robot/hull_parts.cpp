@@ -57,7 +57,7 @@ struct Builder {
 
   /// Write the node of the parts from a first to one before an end in the order.
   void fill(int number, int first, int end) {
-    HullNode<T> node{{-1, -1}, {}, {}, {}, 0, 0, 0, {}, false};
+    HullNode<T> node{{-1, -1}, {}, {}, {}, {}, 0, 0, 0, {}, {}, false};
     double centre[3], half[3], radius = 0;
     for (int k = 0; k < 3; k++) {
       double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -82,12 +82,12 @@ struct Builder {
       node.width = static_cast<T>(given.widths[part]), node.disc = static_cast<T>(length);
       for (int k = 0; k < 3 && length > 0; k++) node.axis[k] = static_cast<T>(disc[k] / length);
       node.encloses = given.enclosing[part];
-      node.points = {static_cast<int>(tree.points.size()), 0};
+      const int before = static_cast<int>(tree.points.size());
       for (std::int64_t i = given.first_point[part]; i < given.first_point[part + 1]; i++) {
         const double* p = given.points.data() + 3 * i;
         tree.points.push_back({static_cast<T>(p[0]), static_cast<T>(p[1]), static_cast<T>(p[2])});
       }
-      node.points.end = static_cast<int>(tree.points.size());
+      tree.take_points(node, {before, static_cast<int>(tree.points.size())});
     } else {
       const int axis = static_cast<int>(std::max_element(half, half + 3) - half), halfway = (first + end) / 2;
       std::nth_element(order.begin() + first, order.begin() + halfway, order.begin() + end, [&](int a, int b) {
@@ -174,6 +174,18 @@ int add_parts(HullTree<T>& tree, const GivenParts& given, Range parts) {
 }
 
 template int add_parts(HullTree<float>&, const GivenParts&, Range);
+
+void add_around(HullTree<float>& tree, int root, std::span<const double> points, Range of, double width) {
+  HullNode<float>& node = tree.nodes[root];
+  if (node.is_leaf()) return;
+  const int first = static_cast<int>(tree.points.size());
+  for (int i = of.first; i < of.end; i++) {
+    const double* p = points.data() + 3 * static_cast<std::size_t>(i);
+    tree.points.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  }
+  node.width = static_cast<float>(width);
+  tree.take_points(node, {first, static_cast<int>(tree.points.size())});
+}
 
 std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root) {
   std::map<std::array<float, 3>, int> numbers;  // of corners

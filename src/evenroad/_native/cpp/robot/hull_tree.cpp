@@ -5,9 +5,13 @@
 #include "robot/hull_tree.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
+
+#include "robot/simplex.hpp"
 
 namespace evenroad::robot {
 
@@ -15,89 +19,8 @@ namespace {
 
 constexpr int MOST_STEPS = 40;
 constexpr double SAME = 1e-9;  // lengths that differ by less are one [m]
-
-struct Vector {
-  double at[3];
-  double& operator[](int axis) { return at[axis]; }
-  double operator[](int axis) const { return at[axis]; }
-};
-
-double squared_length(const Vector& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
-
-/// Up to four points of the difference of two hulls.
-struct Simplex {
-  Vector corners[4];
-  int size = 0;
-};
-
-double determinant(const Vector& a, const Vector& b, const Vector& c) {
-  const double x = b[1] * c[2] - b[2] * c[1], y = b[2] * c[0] - b[0] * c[2], z = b[0] * c[1] - b[1] * c[0];
-  return a[0] * x + a[1] * y + a[2] * z;
-}
-
-/// Return whether the origin is inside of four corners: their weights in it, up to a factor, have one sign.
-bool is_inside(const Simplex& s) {
-  const auto& c = s.corners;
-  const double a = determinant(c[1], c[2], c[3]), b = -determinant(c[0], c[2], c[3]);
-  const double d = determinant(c[0], c[1], c[3]), e = -determinant(c[0], c[1], c[2]);
-  return std::min({a, b, d, e}) > 0.0 || std::max({a, b, d, e}) < 0.0;
-}
-
-/// Write the weights of a face's corners, and return whether the origin projects into it; bits say which corners.
-bool projects_into(const Simplex& s, int face, double (&weights)[4]) {
-  int a = -1, b = -1, c = -1;
-  for (int i = 0; i < 4; i++) {
-    if ((face >> i & 1) != 0) (a < 0 ? a : b < 0 ? b : c) = i;
-  }
-  weights[a] = 1.0;
-  if (b < 0) return true;
-  double ee = 0, ef = 0, ff = 0, ae = 0, af = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    const double origin = s.corners[a][axis];
-    const double e = s.corners[b][axis] - origin, f = s.corners[std::max(c, 0)][axis] - origin;
-    ee += e * e, ef += e * f, ff += f * f, ae -= origin * e, af -= origin * f;
-  }
-  if (c < 0) {
-    if (!(0.0 < ae && ae < ee)) return false;
-    weights[b] = ae / ee;
-    weights[a] = 1.0 - weights[b];
-    return true;
-  }
-  const double det = ee * ff - ef * ef, second = ae * ff - af * ef, third = af * ee - ae * ef;
-  if (!(second > 0.0 && third > 0.0 && second + third < det)) return false;
-  weights[b] = second / det, weights[c] = third / det;
-  weights[a] = 1.0 - weights[b] - weights[c];
-  return true;
-}
-
-/// Keep the corners that the nearest point to the origin is between, and write that point; none where it is inside.
-void nearest(Simplex& s, Vector& v) {
-  if (s.size == 4 && is_inside(s)) {
-    s.size = 0;
-    return;
-  }
-  // In a corner, an edge or a side: few enough to try them all.
-  int kept = 0;
-  double least = std::numeric_limits<double>::infinity(), weights[4];
-  for (int face = 1; face < std::min(1 << s.size, 15); face++) {
-    if (!projects_into(s, face, weights)) continue;
-    Vector place;
-    double squared = 0;
-    for (int axis = 0; axis < 3; axis++) {
-      place[axis] = 0;
-      for (int i = 0; i < s.size; i++) {
-        if ((face >> i & 1) != 0) place[axis] += weights[i] * s.corners[i][axis];
-      }
-      squared += place[axis] * place[axis];
-    }
-    if (squared < least) least = squared, kept = face, v = place;
-  }
-  int count = 0;
-  for (int i = 0; i < s.size; i++) {
-    if ((kept >> i & 1) != 0) s.corners[count++] = s.corners[i];
-  }
-  s.size = count;
-}
+constexpr double THIN = 1e-4;  // half extents of boxes are taken for so much more [m]
+constexpr int FEW_POINTS = 4;  // so few are looked at one by one, in double precision
 
 /// Return the way from the middle of the second node to that of the first, in the first's frame.
 template <class T>
@@ -116,17 +39,53 @@ struct Farthest {
   Vector place;
 };
 
+/// Return by how much less than another a point found in single precision may reach along a unit direction: six
+/// roundings of it.
+template <class T>
+double slack_of(const HullNode<T>& leaf) {
+  if (leaf.blocks.size() == 0) return 0.0;
+  return 8e-7 * (std::abs(leaf.centre[0]) + std::abs(leaf.centre[1]) + std::abs(leaf.centre[2]) + leaf.radius);
+}
+
+/// Return the number of a point that is farthest along a unit direction, but for a slack.
+template <class T>
+int farthest_of_many(const HullTree<T>& tree, const HullNode<T>& leaf, const Vector& way) {
+  const Vec3x16 along =
+      spread(Vec3{static_cast<float>(way[0]), static_cast<float>(way[1]), static_cast<float>(way[2])});
+  Floats16 most = dot(tree.blocks[leaf.blocks.first], along);
+  Ints16 block{};
+  for (int i = leaf.blocks.first + 1; i < leaf.blocks.end; i++) {
+    const Floats16 here = dot(tree.blocks[i], along);
+    block = here > most ? Ints16{} + (i - leaf.blocks.first) : block;
+    most = max(here, most);
+  }
+  const std::uint32_t farthest = ~below_zero(most - spread(largest(most))) & ALL_LANES;
+  const int lane = std::countr_zero(farthest);
+  return std::min(leaf.points.first + LANES * block[lane] + lane, leaf.points.end - 1);
+}
+
 template <class T>
 Farthest farthest(const HullTree<T>& tree, const HullNode<T>& leaf, const Vector& way) {
   double most = -std::numeric_limits<double>::infinity();
   int corner = leaf.points.first;
-  for (int i = leaf.points.first; i < leaf.points.end; i++) {
-    const auto& [x, y, z] = tree.points[i];
-    const double along = x * way[0] + y * way[1] + z * way[2];
-    if (along > most) most = along, corner = i;
+  if (leaf.blocks.size() > 0) {
+    corner = farthest_of_many(tree, leaf, way);
+    const auto& [x, y, z] = tree.points[corner];
+    most = x * way[0] + y * way[1] + z * way[2];
+  } else {
+    for (int i = leaf.points.first; i < leaf.points.end; i++) {
+      const auto& [x, y, z] = tree.points[i];
+      const double along = x * way[0] + y * way[1] + z * way[2];
+      corner = along > most ? i : corner, most = std::max(along, most);
+    }
   }
   const auto& [x, y, z] = tree.points[corner];
   Farthest found{most, {x, y, z}};
+  for (int axis = 0; axis < 3; axis++) {
+    const double extent = leaf.extents[axis];
+    found.along += extent * std::abs(way[axis]);
+    found.place[axis] += std::copysign(extent, way[axis]);
+  }
   if (leaf.disc > 0) {
     const double upright = leaf.axis[0] * way[0] + leaf.axis[1] * way[1] + leaf.axis[2] * way[2];
     Vector aside;
@@ -136,6 +95,28 @@ Farthest farthest(const HullTree<T>& tree, const HullNode<T>& leaf, const Vector
     for (int axis = 0; axis < 3; axis++) found.place[axis] += share * aside[axis];
   }
   return found;
+}
+
+/// Return the direction with which a search begins: of a plane, or about across where the boxes of both are thin.
+template <class T>
+Vector first_way(const HullNode<T>& a, const HullNode<T>& b, const RelativePose& pose, const PlaneNormal& plane) {
+  const double *m = pose.rotation, *normal = plane.at;
+  Vector way{};
+  if (normal[0] != 0 || normal[1] != 0 || normal[2] != 0) {
+    for (int axis = 0; axis < 3; axis++, m += 3) way[axis] = m[0] * normal[0] + m[1] * normal[1] + m[2] * normal[2];
+    return way;
+  }
+  const Vector between = way_between(a, b, pose);
+  double most = 0.0;
+  for (int axis = 0; axis < 3; axis++, m += 3) {
+    double thick = a.half[axis] + THIN;
+    for (int entry = 0; entry < 3; entry++) thick += std::abs(m[entry]) * b.half[entry];
+    way[axis] = between[axis] / thick, most = std::max(most, std::abs(way[axis]));
+  }
+  if (most == 0.0) return way;
+  // Cubes of shares of the largest: no number leaves its range.
+  for (int axis = 0; axis < 3; axis++) way[axis] = way[axis] / most * (way[axis] / most) * (way[axis] / most);
+  return way;
 }
 
 /// Return how deep the tree below each node is, leaves 1; children come after their parents.
@@ -152,6 +133,25 @@ int depth_of(const HullTree<T>& tree) {
 }
 
 }  // namespace
+
+template <class T>
+void HullTree<T>::take_points(HullNode<T>& leaf, Range of) {
+  leaf.points = of;
+  if (std::is_same_v<T, double> || leaf.points.size() <= FEW_POINTS) return;
+  leaf.blocks.first = static_cast<int>(blocks.size());
+  for (int i = of.first; i < of.end; i += LANES) {
+    Vec3x16 block{};
+    for (int lane = 0; lane < LANES; lane++) {
+      const auto& [x, y, z] = points[std::min(i + lane, of.end - 1)];
+      block.x[lane] = static_cast<float>(x), block.y[lane] = static_cast<float>(y);
+      block.z[lane] = static_cast<float>(z);
+    }
+    blocks.push_back(block);
+  }
+  leaf.blocks.end = static_cast<int>(blocks.size());
+}
+
+template void HullTree<float>::take_points(HullNode<float>&, Range);
 
 template <class T>
 HullTree<T> make_hull_tree(const GivenHulls& given) {
@@ -177,16 +177,19 @@ HullTree<T> make_hull_tree(const GivenHulls& given) {
     }
     const double* box = given.boxes.data() + 8 * i;
     HullNode<T> node{{static_cast<int>(a), static_cast<int>(b)},
-                     {static_cast<int>(first), static_cast<int>(end)},
+                     {},
+                     {},
                      {},
                      {},
                      static_cast<T>(box[6]),
                      static_cast<T>(box[7]),
                      0,
                      {},
+                     {},
                      false};
     for (int axis = 0; axis < 3; axis++) node.centre[axis] = static_cast<T>(box[axis]);
     for (int axis = 0; axis < 3; axis++) node.half[axis] = static_cast<T>(box[3 + axis]);
+    if (leaf) tree.take_points(node, {static_cast<int>(first), static_cast<int>(end)});
     tree.nodes.push_back(node);
   }
   if (2 * depth_of(tree) > DEEPEST) throw std::invalid_argument("trees of hulls must be less deep");
@@ -214,7 +217,8 @@ HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, co
     }
     if (aside > other_near * other_near || other_aside > near * near) continue;
     if (p.is_leaf() && q.is_leaf()) {
-      if (leaves_near(tree, a, tree, b, pose, margin)) return {a, b};
+      PlaneNormal none;
+      if (leaves_near(tree, a, tree, b, pose, margin, none)) return {a, b};
     } else if (q.is_leaf() || (!p.is_leaf() && p.radius >= q.radius)) {
       for (int child : p.children) waiting[count++] = {child, b};
     } else {
@@ -226,23 +230,25 @@ HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, co
 
 template <class T>
 bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, int second, const RelativePose& pose,
-                 double margin) {
+                 double margin, PlaneNormal& plane) {
   const HullNode<T>&a = tree.nodes[first], &b = other.nodes[second];
   const double* m = pose.rotation;
   Simplex simplex;
-  // The search begins with the way between the middles.
-  Vector way = way_between(a, b, pose);
+  Vector way = first_way(a, b, pose, plane);
   double length = std::sqrt(squared_length(way));
   if (length == 0.0) return true;
-  margin += a.width + b.width;
+  margin += a.width + b.width + slack_of(a) + slack_of(b);
   for (int step = 0; step < MOST_STEPS; step++) {
     const double x = way[0] / length, y = way[1] / length, z = way[2] / length;
-    const Farthest p = farthest(tree, a, {-x, -y, -z});
-    const Farthest q = farthest(
-        other, b, {m[0] * x + m[3] * y + m[6] * z, m[1] * x + m[4] * y + m[7] * z, m[2] * x + m[5] * y + m[8] * z});
+    const Vector turned_back = {m[0] * x + m[3] * y + m[6] * z, m[1] * x + m[4] * y + m[7] * z,
+                                m[2] * x + m[5] * y + m[8] * z};
+    const Farthest p = farthest(tree, a, {-x, -y, -z}), q = farthest(other, b, turned_back);
     const double gap =
         -p.along - q.along - (pose.translation[0] * x + pose.translation[1] * y + pose.translation[2] * z);
-    if (gap > margin) return false;
+    if (gap > margin) {
+      for (int axis = 0; axis < 3; axis++) plane.at[axis] = turned_back[axis];
+      return false;
+    }
     if (simplex.size > 0 && length - gap < 1e-6 * length + SAME) return true;
     Vector& apart = simplex.corners[simplex.size++];
     for (int axis = 0; axis < 3; axis++) {
@@ -257,10 +263,11 @@ bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, i
   return true;
 }
 
-#define EVENROAD_HULLS_OF(T)                                                                         \
-  template HullTree<T> make_hull_tree(const GivenHulls&);                                            \
-  template HullContact find_hull_contact(const HullTree<T>&, int, int, const RelativePose&, double); \
-  template bool leaves_near(const HullTree<T>&, int, const HullTree<T>&, int, const RelativePose&, double);
+#define EVENROAD_HULLS_OF(T)                                                                               \
+  template HullTree<T> make_hull_tree(const GivenHulls&);                                                  \
+  template HullContact find_hull_contact(const HullTree<T>&, int, int, const RelativePose&, double);       \
+  template bool leaves_near(const HullTree<T>&, int, const HullTree<T>&, int, const RelativePose&, double, \
+                            PlaneNormal&);
 EVENROAD_HULLS_OF(float)
 EVENROAD_HULLS_OF(double)
 

@@ -24,11 +24,13 @@ struct HullPoint {
 template <class T>
 struct HullNode {
   int children[2];  // -1 twice for a leaf
-  Range points;     // of a leaf's hull
+  Range points;     // of a leaf's hull; of one around all that is below, if there is one
+  Range blocks;     // of sixteen of these points, if they are many
   T centre[3], half[3];
   T radius;         // of a ball about the same centre
   T width;          // by how much a leaf's hull is widened
   T disc, axis[3];  // a leaf's hull is widened by a disc of this radius across an axis, too: so a segment is a cylinder
+  T extents[3];     // a leaf's hull is widened by a box along the axes, too: an obstacle is a point that is widened
   bool encloses;    // whether a leaf is a triangle of a closed surface, which has its inside to the left of its turn
   bool is_leaf() const { return children[0] < 0; }
 };
@@ -37,6 +39,10 @@ template <class T>
 struct HullTree {
   std::vector<HullNode<T>> nodes;
   std::vector<HullPoint<T>> points;
+  std::vector<Vec3x16> blocks;  // points again, the last of a leaf repeated: of trees in single precision alone
+
+  /// Let a leaf have some of the points.
+  void take_points(HullNode<T>& leaf, Range of);
 };
 
 /// Nodes as Python names them.
@@ -67,6 +73,9 @@ HullTree<T> make_hull_tree(const GivenHulls& given);
 template <class T>
 int add_parts(HullTree<T>& tree, const GivenParts& given, Range parts);
 
+/// Let a root have a hull of some points around it, within whose width all leaves lie.
+void add_around(HullTree<float>& tree, int root, std::span<const double> points, Range of, double width);
+
 /// Return a point of every leaf below a root, but one alone of those that share corners.
 std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root);
 
@@ -87,9 +96,15 @@ struct HullContact {
 template <class T>
 HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, const RelativePose& pose, double margin);
 
-/// Return whether two leaves, each of a tree, come within a margin; apart is only what a plane separates.
+/// The normal of a plane, in the frame of the second body; 0 where none is known.
+struct PlaneNormal {
+  double at[3] = {0, 0, 0};
+};
+
+/// Return whether two leaves, each of a tree, come within a margin; apart is only what a plane separates.  The search
+/// begins with a plane, if one is given, and writes the one that separates them.
 template <class T>
 bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, int second, const RelativePose& pose,
-                 double margin);
+                 double margin, PlaneNormal& plane);
 
 }  // namespace evenroad::robot

@@ -43,6 +43,36 @@ Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, f
   return meeting;
 }
 
+/// Return the mask of lanes in which a ball inside of a body's true shape comes within `near` of an obstacle.
+Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacle& obstacle, float near,
+                    Mask asked) {
+  const PlacedFrame& frame = places.frames[body.frame];
+  const Vec3x16 origin = frame.origin - spread(obstacle.centre);
+  const float* r = obstacle.rotation;
+  Mask meeting = 0;
+  for (int i = body.inside.first; i < body.inside.end; i++) {
+    const auto& [centre, radius] = robot.inside[i];
+    const Vec3x16 p = spread(centre);
+    Vec3x16 here = origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
+    if (obstacle.form != Form::ALIGNED) {
+      here = {dot(here, spread(Vec3{r[0], r[3], r[6]})), dot(here, spread(Vec3{r[1], r[4], r[7]})),
+              dot(here, spread(Vec3{r[2], r[5], r[8]}))};
+    }
+    const float reach = radius + near + obstacle.rounding;
+    meeting |= asked & below_zero(squared_distance(obstacle, here) - reach * reach);
+    if (meeting == asked) break;
+  }
+  return meeting;
+}
+
+constexpr int MOST_OPEN = 64;
+
+/// A body and an obstacle of which true shapes are to decide, in some lanes.
+struct Open {
+  int body, obstacle, capsule;
+  Mask lanes;
+};
+
 }  // namespace
 
 Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body, Vec3x16 place, Mask asked) {
@@ -76,6 +106,23 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
   Mask blocked = 0;
   const int blocks = static_cast<int>(scene.blocks.size());
   const std::span<const float> samples = robot.samples;
+  Open waiting[MOST_OPEN];
+  int count = 0;
+  const auto decide = [&](std::span<const Open> all, Mask blocked) {
+    Mask touching = 0;
+    for (const auto& [b, obstacle, capsule, lanes] : all) {
+      const Mask asked = lanes & ~(blocked | touching);
+      if (asked == 0) continue;
+      const Mask meeting =
+          shape_meeting(robot, places, robot.bodies[b], scene, obstacle, lengths.shapes[b], asked, wanted);
+      if (found != nullptr && (blocked | touching) == 0 && meeting != 0) {
+        *found = {Contact::With::OBSTACLE, capsule, scene.obstacles[obstacle].number};
+      }
+      touching |= meeting;
+      if (is_enough(blocked | touching, wanted)) break;
+    }
+    return touching;
+  };
   // From the outermost bodies inwards: those meet obstacles most often.
   for (int b = static_cast<int>(robot.bodies.size()) - 1; b >= robot.fixed_bodies; b--) {
     const Range capsules = robot.bodies[b].capsules;
@@ -122,21 +169,28 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
         }
       }
       for (; opened != 0; opened &= opened - 1) {
-        const int k = std::countr_zero(opened);
-        const Mask asked = open[k] & ~blocked;
+        const int k = std::countr_zero(opened), obstacle = number * LANES + k;
+        Mask asked = open[k] & ~blocked;
         if (asked == 0) continue;
-        const int obstacle = number * LANES + k;
-        const Mask meeting =
-            shape_meeting(robot, places, robot.bodies[b], scene, obstacle, lengths.shapes[b], asked, wanted);
-        if (found != nullptr && blocked == 0 && meeting != 0) {
+        const Mask surely =
+            inside_meeting(robot, places, robot.bodies[b], scene.obstacles[obstacle], lengths.shapes[b], asked);
+        if (found != nullptr && blocked == 0 && surely != 0) {
           *found = {Contact::With::OBSTACLE, first[k], scene.obstacles[obstacle].number};
         }
-        blocked |= meeting;
+        blocked |= surely;
         if (is_enough(blocked, wanted)) return blocked;
+        asked &= ~surely;
+        if (asked == 0) continue;
+        if (count == MOST_OPEN) {
+          blocked |= decide(waiting, blocked);
+          if (is_enough(blocked, wanted)) return blocked;
+          count = 0;
+        }
+        waiting[count++] = {b, obstacle, first[k], asked};
       }
     }
   }
-  return blocked;
+  return blocked | decide({waiting, static_cast<std::size_t>(count)}, blocked);
 }
 
 }  // namespace evenroad::robot

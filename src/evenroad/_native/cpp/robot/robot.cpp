@@ -22,6 +22,14 @@ int index(std::int64_t value, std::size_t count, const char* name) {
   return static_cast<int>(value);
 }
 
+/// Return which rows belong to a number.
+Range range(std::span<const std::int64_t> first, std::size_t number, std::size_t count, const char* name) {
+  if (first[number] < 0 || first[number] > first[number + 1] || first[number + 1] > static_cast<std::int64_t>(count)) {
+    throw std::invalid_argument(std::string(name) + " must rise, up to " + std::to_string(count));
+  }
+  return {static_cast<int>(first[number]), static_cast<int>(first[number + 1])};
+}
+
 void require(bool holds, const char* text) {
   if (!holds) throw std::invalid_argument(text);
 }
@@ -65,13 +73,13 @@ struct Shapes {
   }
 };
 
-struct Ball {
+struct Around {
   double centre[3], radius;
 };
 
 /// Return a ball that holds capsules: around the middle of their box.
-Ball ball_around(const Shapes& shapes, Range capsules) {
-  Ball ball{};
+Around ball_around(const Shapes& shapes, Range capsules) {
+  Around ball{};
   for (int axis = 0; axis < 3; axis++) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (int i = capsules.first; i < capsules.end; i++) {
@@ -146,10 +154,10 @@ void add_fixed_spheres(Robot& robot, const GivenRobot& given) {
   }
 }
 
-std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
+std::vector<Around> add_bodies(Robot& robot, const GivenRobot& given) {
   const std::size_t count = given.bodies.frame.size(), nodes = robot.hulls.nodes.size();
   require(given.bodies.hulls.size() == count, "bodies.hulls must be as long as bodies.frame");
-  std::vector<Ball> balls;
+  std::vector<Around> balls;
   int capsule = 0;
   for (std::size_t b = 0; b < count; b++) {
     Body body{index(given.bodies.frame[b], robot.frames.size() + 1, "bodies.frame"),
@@ -158,6 +166,7 @@ std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
               -1,
               -1,
               false,
+              {},
               {}};
     if (given.bodies.hulls[b] >= 0) body.hulls = index(given.bodies.hulls[b], nodes, "bodies.hulls");
     const auto& owner = given.capsules.body;
@@ -167,7 +176,7 @@ std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
     const bool fixed = body.frame == 0;
     require(!fixed || robot.fixed_bodies == static_cast<int>(b), "bodies that do not move must come first");
     robot.fixed_bodies += fixed;
-    const Ball ball = ball_around({given}, body.capsules);
+    const Around ball = ball_around({given}, body.capsules);
     body.centre = single(ball.centre);
     // Boxes are wider by twice the padding: they must not miss what the spheres, wider by one, would find.
     robot.lengths.bodies.push_back({static_cast<float>(ball.radius + given.padding),
@@ -180,7 +189,7 @@ std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
 }
 
 void add_shapes(Robot& robot, const GivenRobot& given) {
-  const auto& [owner, parts] = given.shapes;
+  const auto& [owner, parts, around, inside] = given.shapes;
   require(owner.size() == parts.widths.size(), "shapes.body must be as long as shapes.widths");
   for (int first = 0, end = 0; first < static_cast<int>(owner.size()); first = end) {
     Body& body = robot.bodies[index(owner[first], robot.bodies.size(), "shapes.body")];
@@ -192,10 +201,24 @@ void add_shapes(Robot& robot, const GivenRobot& given) {
     body.shape = add_parts(robot.shapes, parts, {first, end});
     body.points = points_of_parts(robot.shapes, body.shape);
   }
+  const std::size_t bodies = robot.bodies.size();
+  require(
+      around.first_point.size() == bodies + 1 && around.widths.size() == bodies && inside.first.size() == bodies + 1,
+      "what is around and inside of shapes must be given for each body");
+  for (std::size_t b = 0; b < bodies; b++) {
+    Body& body = robot.bodies[b];
+    const Range points = range(around.first_point, b, around.points.size() / 3, "shapes.around_first");
+    body.inside = range(inside.first, b, inside.rows.size() / 4, "shapes.inside_first");
+    if (body.shape >= 0 && points.size() > 0)
+      add_around(robot.shapes, body.shape, around.points, points, around.widths[b]);
+  }
+  for (std::size_t i = 0; 4 * i < inside.rows.size(); i++) {
+    robot.inside.push_back({single(inside.rows.data() + 4 * i), static_cast<float>(inside.rows[4 * i + 3])});
+  }
   robot.lengths.shapes.assign(robot.bodies.size(), static_cast<float>(given.padding));
 }
 
-void add_pairs(Robot& robot, const GivenRobot& given, const std::vector<Ball>& balls) {
+void add_pairs(Robot& robot, const GivenRobot& given, const std::vector<Around>& balls) {
   const Shapes shapes{given};
   for (std::size_t p = 0; 2 * p < given.pairs.bodies.size(); p++) {
     const int a = index(given.pairs.bodies[2 * p], balls.size(), "pairs.bodies");

@@ -40,6 +40,13 @@ struct Body {
   int shape;                 // root of the parts of its true shape, or -1: its capsules are
   bool encloses;             // whether surfaces of the shape have an inside
   std::vector<Vec3> points;  // one of each part of the shape that hangs together
+  Range inside;              // of the balls inside of its true shape
+};
+
+/// A ball in the frame of a body.
+struct Ball {
+  Vec3 centre;
+  float radius;
 };
 
 struct CapsulePair {
@@ -95,6 +102,7 @@ struct Robot {
   std::vector<BodyPair> body_pairs;  // the last ones are decided by hulls
   std::vector<CapsulePair> pairs;
   HullTree<float> hulls, shapes;
+  std::vector<Ball> inside;  // of true shapes
   Lengths lengths;
   OwnMatrix<double> arms{0, 0};        // (dim, capsules): how fast a coordinate moves a capsule at most [m/rad]
   OwnMatrix<double> pair_arms{0, 0};   // (dim, pairs, then pairs by hulls): the two against each other
@@ -132,6 +140,14 @@ struct GivenRobot {
   struct {
     std::span<const std::int64_t> body;  // of each part, rising
     GivenParts parts;
+    struct {
+      std::span<const std::int64_t> first_point;  // of each body, then the number of points
+      std::span<const double> points, widths;
+    } around;  // by bodies: all parts lie within a width of the hull of some points, if there are any
+    struct {
+      std::span<const std::int64_t> first;
+      std::span<const double> rows;  // (balls, 4): centre, radius
+    } inside;                        // by bodies: balls that lie within the shape
   } shapes;
   struct {
     std::span<const double> capsules, pairs, shapes;

@@ -110,25 +110,22 @@ void put(Vec3x16& where, int lane, float x, float y, float z) {
   where.x[lane] = x, where.y[lane] = y, where.z[lane] = z;
 }
 
-/// Add the leaf of an obstacle in its own frame, widened by `width`: its corners, or the ends of its axis.
+/// Add the leaf of an obstacle in its own frame: its middle, widened by its extents and by `width`.
 void add_leaf(Scene& scene, const Exact& o, double width) {
-  std::vector<double> points;
+  constexpr double UP = 1.0 + 1e-6;  // for the rounding of single precision
+  if (scene.hulls.points.empty()) scene.hulls.points.push_back({});
+  HullNode<float> leaf{{-1, -1}, {0, 1}, {}, {}, {}, 0, static_cast<float>(width), 0, {}, {}, false};
   const bool round = o.form == Form::CYLINDER;
-  for (int corner = 0; corner < 8; corner++) {
-    double point[3];
-    bool again = false;
-    for (int axis = 0; axis < 3; axis++) {
-      const double half = round && axis < 2 ? 0.0 : o.half[axis];
-      const bool high = (corner >> axis & 1) != 0;
-      point[axis] = high ? half : -half;
-      again |= high && half == 0.0;
-    }
-    if (!again) points.insert(points.end(), point, point + 3);
+  double squared = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    const double reach = (o.half[axis] + width) * UP;
+    squared += reach * reach;
+    leaf.half[axis] = static_cast<float>(reach);
+    leaf.extents[axis] = round && axis < 2 ? 0.0F : static_cast<float>(o.half[axis]);
   }
-  const std::int64_t spans[2] = {0, static_cast<std::int64_t>(points.size() / 3)};
-  const double disc[3] = {0, 0, round ? o.half[0] : 0.0};
-  const bool encloses = false;
-  add_parts(scene.hulls, {spans, points, {&width, 1}, disc, {&encloses, 1}}, {0, 1});
+  leaf.radius = static_cast<float>(std::sqrt(squared) * UP);
+  if (round) leaf.disc = static_cast<float>(o.half[0]), leaf.axis[2] = 1.0F;
+  scene.hulls.nodes.push_back(leaf);
 }
 
 /// Add an obstacle, larger by what single precision loses, and return by how much.
