@@ -11,7 +11,7 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry import Box, Cylinder, Pose, Sphere
 from evenroad.robot import ArmWorld, HeldObject, Obstacle, Scene, in_scene, link_poses, load_robot, load_scene
 from evenroad.robot.certified import CertifiedWorld
-from evenroad.robot.load import DATA
+from evenroad.robot.find import DATA
 from evenroad.robot_roadmap.build import arm_roadmap, build_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.static_scene import joined_scenes
