@@ -220,7 +220,8 @@ def test_checks_run_out_and_come_back(roadmap):
 def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_kept(roadmap, monkeypatch):
     monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.TRIED_MOTIONS", 1)
     known = within(roadmap, box_scene())
-    start, goal = far_apart(known)
+    ways = hard(known, 1.5 * TURN)
+    start, goal = next(ends for ends in ways if within(roadmap, box_scene()).connect(*ends).motions > 10)
     first = known.plan(start, goal[0], smooth=False)
     assert first.planner == "roadmap, then trees"
     assert known.world.validate(first.path).all()

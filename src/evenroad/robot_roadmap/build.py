@@ -55,7 +55,7 @@ def build_roadmap(
     world : World
         For an arm: the robot with all that never moves (mount, fence, walls, a scan) and the ranges to plan in.
     points : int or PointSet
-        The milestones, or their number.  For an arm they are chosen from scrambled Sobol points, each as far as
+        The milestones, or their number.  For an arm they are chosen from Halton's points, each as far as
         possible from the earlier ones in the metric of displacement.  They are denser where random scenes leave the arm
         free and around narrow passages.  In other worlds they are even points.
     rule : Rule, optional

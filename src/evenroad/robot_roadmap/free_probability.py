@@ -10,7 +10,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._threads import in_order
-from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
+from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.kinematics import capsule_endpoints, link_poses
 
 BOXES = (3, 30)
@@ -76,7 +76,7 @@ def random_scene(base: Floats, low: Floats, high: Floats, reach: float, rng: np.
     """Return random boxes between two corners, (3,), of sizes in proportion to the reach [m]."""
     least, small, large, most = HALF_EXTENTS
     typical = rng.uniform(np.log(small), np.log(large))
-    boxes: list[Obstacle] = []
+    boxes: list[tuple[Floats, Floats]] = []
     volume = 0.0
     for _ in range(int(rng.integers(*BOXES))):
         half = reach * np.clip(np.exp(rng.normal(typical, 0.5, 3)), least, most)
@@ -87,5 +87,5 @@ def random_scene(base: Floats, low: Floats, high: Floats, reach: float, rng: np.
         volume += float(np.prod(2.0 * half))
         if volume > FULL * reach**3:
             break
-        boxes.append(Obstacle.of(f"box {len(boxes)}", "box", tuple(2.0 * half), tuple(centre)))
-    return Scene(tuple(boxes), name="random")
+        boxes.append((2.0 * half, centre))
+    return Scene.of_boxes(*np.array(boxes).reshape(-1, 2, 3).swapaxes(0, 1), name="random")

@@ -14,7 +14,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._threads import in_order
-from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
+from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.kinematics import capsule_endpoints, link_poses
 from evenroad.robot_roadmap.free_probability import Surroundings
 
@@ -38,17 +38,17 @@ INSIDE = 0.7
 IN_ONE = 4
 """Largest number of queries in one passage."""
 
-FIRST = 4096
-"""Number of first configurations that each query is tried to be joined to at any distance."""
+FIRST = 2048
+"""Number of first candidates that each query is tried to be joined to at any distance."""
 
-NEAR = 1500
-"""Number of nearest configurations, of those that follow, that each query is tried to be joined to, too."""
+NEAR = 1000
+"""Number of nearest candidates, of those that follow, that each query is tried to be joined to, too."""
 
-STEP = 0.2
+STEP = 0.3
 """Resolution of the motions that are tried; nothing is proved here [rad]."""
 
-EARLY = 0.1
-"""Share of a motion at which it is checked first: most that leave a passage touch its walls at once."""
+EARLY = (0.05, 0.1, 0.2)
+"""Shares of a motion at which it is checked first: most that leave a passage touch its walls at once."""
 
 BATCH = 64
 """Number of passages that are drawn at once."""
@@ -86,13 +86,15 @@ def hard_queries(
     cell: Scene,
     pool: Floats,
     scaled: Floats,
+    candidates: Ints,
     count: int,
     rng: np.random.Generator,
     progress: Callable[[float], None] = lambda _: None,
 ) -> Visibility:
-    """Return what is visible from `count` random hard queries of a pool, (n, dim); fewer where hardly any is free.
+    """Return which candidates are visible from `count` random hard queries; fewer where hardly any is free.
 
-    `scaled` is the pool in the metric that decides which configurations are near.
+    Queries and candidates are rows of a pool, (n, dim).  `scaled` is the pool in the metric that decides which
+    candidates are near.
     """
     if not count:
         return no_visibility()
@@ -117,7 +119,7 @@ def hard_queries(
                     return
                 own = int(owns[i])
                 # The pool is free of these already.
-                world = ArmWorld(bare, Scene(batch.walls(i), name="narrow passage"), resolution=STEP)
+                world = ArmWorld(bare, batch.walls(i), resolution=STEP)
                 if not world.valid(pool[own : own + 1])[0]:
                     continue
                 others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))
@@ -128,7 +130,7 @@ def hard_queries(
 
     found: list[Ints] = []
     pairs = 0
-    for seen in in_order(lambda world, end: _seen(world, inside, pool, scaled, end), queries()):
+    for seen in in_order(lambda world, end: _seen(world, inside, pool, scaled, candidates, end), queries()):
         found.append(seen)
         pairs += len(seen) * len(robot.pairs)
         progress(min(max(len(found) / count, pairs / MOST_SEEN), 1.0))
@@ -139,22 +141,20 @@ def hard_queries(
     return Visibility(np.array(own_of[: len(found)]), np.cumsum([0, *map(len, found)]), np.concatenate(found))
 
 
-def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: int) -> Ints:
-    """Return which configurations a straight motion joins to a query, except itself: of the first ones and the near
-    ones.
+def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, candidates: Ints, end: int) -> Ints:
+    """Return which candidates a straight motion joins to a query, except itself: of the first ones and the near ones.
 
     `world` has the passage alone, `inside` robot and static scene; `scaled` is (dim, n).
     """
-    later = np.arange(FIRST, len(pool))
+    first, later = candidates[:FIRST], candidates[FIRST:]
     if len(later) > NEAR:
         squared = np.zeros(len(later))
         for positions in scaled:
-            apart = positions[FIRST:] - positions[end]
+            apart = positions[later] - positions[end]
             apart *= apart
             squared += apart
-        later = np.argpartition(squared, NEAR)[:NEAR] + FIRST
-    rows = np.append(np.arange(min(FIRST, len(pool))), later)
-    return joined_to(world, inside, pool, end, rows)
+        later = later[np.argpartition(squared, NEAR)[:NEAR]]
+    return joined_to(world, inside, pool, end, np.append(first, later))
 
 
 def joined_to(passage: ArmWorld, inside: ArmWorld, pool: Floats, end: int, rows: Ints) -> Ints:
@@ -163,11 +163,13 @@ def joined_to(passage: ArmWorld, inside: ArmWorld, pool: Floats, end: int, rows:
     The query is free of the passage, and the whole pool is free in `inside`, with robot and static scene.
     """
     rows = rows[rows != end]
-    here = np.broadcast_to(pool[end], (len(rows), pool.shape[1]))
-    free = passage.valid(passage.space.interpolate(here, pool[rows], EARLY))
+    towards = passage.space.flat.difference(pool[end], pool[rows])
+    for share in EARLY:
+        free = passage.valid(pool[end] + share * towards)
+        rows, towards = rows[free], towards[free]
     for world in (passage, inside):
-        free[free] = world.motion_valid(here[free], pool[rows[free]])
-    return rows[free]
+        rows = rows[world.motion_valid(np.broadcast_to(pool[end], (len(rows), pool.shape[1])), pool[rows])]
+    return rows
 
 
 def last_links(robot: Robot) -> list[int]:
@@ -193,12 +195,13 @@ def body_of(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
 
 
 class Passages(NamedTuple):
-    """Boxes without their sides to -x: centres, (m, 3), axes, (m, 3, 3), half extents, (m, 3), positions and half
-    extents of their walls, (m, 5, 3) each.
+    """Boxes without their sides to -x: centres, (m, 3), axes, (m, 3, 3), and the same as quaternions, (m, 4), half
+    extents, (m, 3), positions and half extents of their walls, (m, 5, 3) each.
     """
 
     centre: Floats
     turn: Floats
+    xyzw: Floats
     half: Floats
     positions: Floats
     sizes: Floats
@@ -221,19 +224,11 @@ class Passages(NamedTuple):
         inside: Bools = x & y & z
         return inside
 
-    def walls(self, i: int) -> tuple[Obstacle, ...]:
-        """Return the walls of a passage as obstacles."""
-        axes = tuple(self.turn[i].ravel().tolist())
-        return tuple(
-            Obstacle.of(
-                f"wall {number} of a passage",
-                "box",
-                (2.0 * size).tolist(),
-                (self.centre[i] + self.turn[i] @ position).tolist(),
-                axes,
-            )
-            for number, (position, size) in enumerate(zip(self.positions[i], self.sizes[i], strict=True))
-        )
+    def walls(self, i: int) -> Scene:
+        """Return the walls of a passage."""
+        centres = self.centre[i] + self.positions[i] @ self.turn[i].T
+        turned = np.broadcast_to(self.xyzw[i], (len(centres), 4))
+        return Scene.of_boxes(2.0 * self.sizes[i], centres, xyzw=turned, name="narrow passage")
 
 
 def passages_around(tips: Floats, around: Surroundings, rng: np.random.Generator) -> Passages:
@@ -246,10 +241,13 @@ def passages_around(tips: Floats, around: Surroundings, rng: np.random.Generator
     turn[:, 0, 1] = -turn[:, 1, 0]
     turn[:, 2, 2] = 1.0
     above = rng.random(len(tips)) < UPWARDS
+    # A quarter of a turn about y: what would open towards the robot opens above.
     turn[above] = turn[above] @ np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    sine, cosine, nothing = np.sin(0.5 * angle), np.cos(0.5 * angle), np.zeros(len(tips))
+    xyzw = np.where(above, (-sine, cosine, sine, cosine), (nothing, nothing, sine, cosine)).T
     half = around.reach * rng.uniform(_LEAST, _MOST, (len(tips), 3))
     off = half * rng.uniform(-0.5, 0.5, (len(tips), 3))
     centre = tips - np.einsum("mij,mj->mi", turn, off)
     half_walls = half[:, np.newaxis]
     sizes = np.where(_SIDES == 0.0, half_walls, WALL * around.reach)
-    return Passages(centre, turn, half, _SIDES * half_walls, sizes)
+    return Passages(centre, turn, xyzw, half, _SIDES * half_walls, sizes)

@@ -11,15 +11,18 @@ import numpy as np
 from evenroad._arrays import Floats, Ints
 from evenroad._native import roadmap as native
 from evenroad.errors import InvalidValue
-from evenroad.points import draw
 from evenroad.robot import ArmWorld, Robot
 from evenroad.robot.kinematics import KinematicTree, capsule_endpoints
+from evenroad.robot.tree_sequences import reversed_halton
 from evenroad.robot_roadmap.free_probability import free_probability
-from evenroad.robot_roadmap.narrow_passages import FIRST, Visibility, hard_queries
+from evenroad.robot_roadmap.narrow_passages import Visibility, hard_queries
 from evenroad.robot_roadmap.turns import TURN, OneTurn
 
-CHOICE = 16
-"""Number of free configurations per milestone to choose from; at least FIRST in all."""
+CHOICE, FEWEST = 16, 4096
+"""Number of free configurations per milestone to choose from, and the least number of all."""
+
+LIKELY = 0.5
+"""Share of them, the most probably free ones, that hard queries are tried to be joined to: hardly another is chosen."""
 
 MOST_DRAWN = 1 << 20
 """Number of configurations after which no more are drawn; fewer free ones than wanted are then enough."""
@@ -30,7 +33,7 @@ EXPLAINED = 100
 GAMMA = 4.0
 """Power of the probability of being free in the density of milestones, before hard queries count."""
 
-HARD_QUERIES = 3000
+HARD_QUERIES = 1500
 """Number of random hard queries that milestones are chosen for."""
 
 PAIRS, FEWEST_HARD_QUERIES = 60, 300
@@ -78,7 +81,7 @@ def precomputed(
     """Precompute what a recipe for n milestones needs; the streams draw pool, scenes and passages."""
     pool_rng, scene_rng, passage_rng = streams
     progress("drawing configurations", 0.0)
-    pool = _free_pool(world, one, max(CHOICE * n, FIRST), pool_rng)
+    pool = _free_pool(world, one, max(CHOICE * n, FEWEST), pool_rng)
     weights = displacement_weights(world.robot, pool[:MEASURED])
     chance = np.ones(len(pool))
     if recipe.gamma > 0.0:
@@ -88,6 +91,7 @@ def precomputed(
         world.scene,
         pool,
         weights * pool,
+        np.flatnonzero(chance >= np.quantile(chance, 1.0 - LIKELY)),
         recipe.hard_queries,
         passage_rng,
         lambda share: progress("narrow passages", share),
@@ -106,10 +110,12 @@ def chosen(data: Precomputed, recipe: Recipe, n: int) -> Ints:
 
 
 def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generator) -> Floats:
-    """Return the first free ones of a low-discrepancy sequence, (count, dim), or fewer if MOST_DRAWN hold no more."""
-    drawn = 2 * count
+    """Return the first free ones of Halton's sequence, shifted at random, or fewer if MOST_DRAWN hold no more:
+    (count, dim).
+    """
+    drawn, shift = 2 * count, rng.random(world.space.dim)
     while True:
-        cube = draw("sobol", drawn, world.space.dim, rng=rng.spawn(1)[0]).points
+        cube = (reversed_halton(drawn, world.space.dim) + shift) % 1.0
         q = one.low + cube * (one.high - one.low)
         free = q[world.valid(q)]
         if len(free) >= count or drawn >= MOST_DRAWN:
