@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
-from evenroad.roadmap import Complete, KNearest, Radius, Status
+from evenroad.roadmap import Complete, KNearest, Radius
 from evenroad.roadmap.rules import ascending
 from evenroad.world.gridmap.load import load_maze
 from tests.plan_on import plan_on
@@ -41,10 +41,9 @@ def queries(draw_value):
 
 
 @settings(max_examples=150, deadline=None)
-@given(queries(), st.booleans())
-def test_lazy_finds_the_path_of_the_full_search_bit_for_bit(query, lazy_milestones):
+@given(queries())
+def test_lazy_finds_the_path_of_the_full_search_bit_for_bit(query):
     world, points, options = query
-    options |= dict(lazy_milestones=lazy_milestones)
     full = plan_on(world, START, GOAL, points, **options)
     lazy = plan_on(world, START, GOAL, points, search="lazy", **options)
     assert lazy.status is full.status
@@ -92,10 +91,9 @@ def test_the_full_path_is_the_cheapest_one_and_follows_the_lowest_nodes_back(que
 
 
 @settings(max_examples=100, deadline=None)
-@given(queries(), st.booleans())
-def test_success_only_agrees_on_success_and_returns_a_free_path(query, lazy_milestones):
+@given(queries())
+def test_success_only_agrees_on_success_and_returns_a_free_path(query):
     world, points, options = query
-    options |= dict(lazy_milestones=lazy_milestones)
     full = plan_on(world, START, GOAL, points, **options)
     some = plan_on(world, START, GOAL, points, success_only=True, **options)
     assert some.status is full.status
@@ -107,11 +105,11 @@ def test_success_only_agrees_on_success_and_returns_a_free_path(query, lazy_mile
 
 
 @settings(max_examples=50, deadline=None)
-@given(queries(), st.sampled_from(["full", "lazy"]), st.booleans())
-def test_the_counts_are_what_the_world_was_asked(query, search, lazy_milestones):
+@given(queries(), st.sampled_from(["full", "lazy"]))
+def test_the_counts_are_what_the_world_was_asked(query, search):
     world, points, options = query
     world.asked_configurations = world.asked_motions = 0
-    result = plan_on(world, START, GOAL, points, search=search, lazy_milestones=lazy_milestones, **options)
+    result = plan_on(world, START, GOAL, points, search=search, **options)
     assert result.counts["configurations_checked"] == world.asked_configurations
     assert result.counts["edges_checked"] == world.asked_motions
     assert result.counts["points"] == points.n
@@ -157,17 +155,6 @@ def test_on_the_mazes_lazy_checks_few_edges_and_finds_the_same_path(level):
     assert full.solved
     assert lazy.path.tobytes() == full.path.tobytes()
     assert lazy.counts["edges_checked"] < 0.2 * full.counts["edges_checked"]
-    latest = plan_on(*query, search="lazy", lazy_milestones=True)
-    assert latest.counts["configurations_checked"] < 0.5 * full.counts["configurations_checked"]
-
-
-def test_lazily_not_connected_speaks_of_what_could_be_reached():
-    how = dict(search="lazy", lazy_milestones=True, links=None)
-    result = plan_on(ChanceWorld(1, 0.9, 0.0), START, GOAL, draw("sobol", 32, 2), **how)
-    assert result.status is Status.NOT_CONNECTED
-    assert result.counts["start_component"] == 0
-    assert "milestones not known to be invalid" in result.message
-    assert result.planner == "prm lazy + lazy milestones"
 
 
 def test_every_phase_is_timed_and_none_twice():

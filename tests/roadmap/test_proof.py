@@ -32,7 +32,6 @@ def _grown(world, start, goal, points, **options):
 PLANNERS = {
     "full": plan_on,
     "lazy": partial(plan_on, search="lazy"),
-    "lazy milestones": partial(plan_on, search="lazy", lazy_milestones=True),
     "any": partial(plan_on, success_only=True),
     "fmt": fmt_on,
     "anytime": _grown,

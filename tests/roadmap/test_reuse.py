@@ -35,17 +35,16 @@ def reuses(draw_value):
     return roadmap_of_points(SQUARE, PointSet(points), rule), world, queries
 
 
-def _cheapest(roadmap, world, start, goal, lazy_milestones, links):
+def _cheapest(roadmap, world, start, goal, links):
     """The definition: both ends joined as the rule's reach says, and the least cost by Bellman and Ford."""
     q = np.concatenate([roadmap.milestones, [start], [goal]])
     n = len(roadmap.milestones)
     valid = world.valid(q)
-    usable = np.ones(n, dtype=bool) if lazy_milestones else valid[:n]
     reach = roadmap.rule.reach(n, roadmap.space)
     edges = [tuple(edge) for edge in roadmap.edges.tolist()] + [(n, n + 1)]
     for end in (n, n + 1):
         away = np.hypot(*(q[:n] - q[end]).T)
-        near = [i for i in np.argsort(away, kind="stable") if usable[i]]
+        near = [i for i in np.argsort(away, kind="stable") if valid[i]]
         close = [] if links is None else near  # all of so few milestones
         near = [i for i in near if reach.radius is None or away[i] <= reach.radius]
         edges += [(int(i), end) for i in [*near[: reach.k], *close]]
@@ -56,13 +55,13 @@ def _cheapest(roadmap, world, start, goal, lazy_milestones, links):
 
 
 @settings(max_examples=60, deadline=None)
-@given(reuses(), st.booleans(), st.sampled_from([None, 100]))
-def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, lazy_milestones, links):
+@given(reuses(), st.sampled_from([None, 100]))
+def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, links):
     roadmap, world, queries = reuse
-    known = roadmap.within(world, lazy_milestones=lazy_milestones)
+    known = roadmap.within(world)
     for start, goal in queries:
         result = known.plan(start, goal, links=links, smooth=False)
-        expected = _cheapest(roadmap, world, start, goal, lazy_milestones, links)
+        expected = _cheapest(roadmap, world, start, goal, links)
         assert result.solved == np.isfinite(expected)
         if result.solved:
             assert result.cost == pytest.approx(expected, abs=1e-12)
@@ -71,13 +70,13 @@ def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, 
 
 
 @settings(max_examples=60, deadline=None)
-@given(reuses(), st.booleans(), st.sampled_from(["full", "lazy"]))
-def test_an_answer_does_not_depend_on_what_was_asked_before(reuse, lazy_milestones, search):
+@given(reuses(), st.sampled_from(["full", "lazy"]))
+def test_an_answer_does_not_depend_on_what_was_asked_before(reuse, search):
     roadmap, world, queries = reuse
-    known = roadmap.within(world, lazy_milestones=lazy_milestones)
+    known = roadmap.within(world)
     for start, goal in queries:
         late = known.plan(start, goal, smooth=False)
-        again = roadmap.within(world, lazy_milestones=lazy_milestones)
+        again = roadmap.within(world)
         fresh = again.plan(start, goal, search=search, smooth=False)
         assert late.status is fresh.status
         assert late.counts["edges_checked"] <= fresh.counts["edges_checked"]

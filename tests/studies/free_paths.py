@@ -50,9 +50,6 @@ def _arm(world, start, goal, **options):
 PLANNERS = {
     "full": lambda world, *ends, **options: plan_on(world, *ends, _points(world), **options),
     "lazy": lambda world, *ends, **options: plan_on(world, *ends, _points(world), search="lazy", **options),
-    "lazy milestones": lambda world, *ends, **options: plan_on(
-        world, *ends, _points(world), search="lazy", lazy_milestones=True, **options
-    ),
     "success only": lambda world, *ends, **options: plan_on(world, *ends, _points(world), success_only=True, **options),
     "several goals": _several,
     "fmt*": lambda world, *ends, **options: fmt_on(world, *ends, _points(world), **options),

@@ -38,9 +38,6 @@ class PRM:
     search : {"lazy", "full"}
         Check only the edges that could lie on the shortest path, or every edge before the search.  Both find the same
         path, bit for bit.
-    lazy_milestones : bool
-        Check milestones, too, only where they could lie on the path.  The rule then joins all points, free or not, so
-        it is another roadmap than that of the free ones alone.
     success_only : bool
         Only find out whether there is a path; the one returned is not the shortest.
     edge_cost : callable, optional
@@ -78,7 +75,6 @@ class PRM:
     k: int | None = None
     rule: Rule | None = None
     search: str = "lazy"
-    lazy_milestones: bool = False
     success_only: bool = False
     edge_cost: EdgeCost | None = None
     links: int | None = LINKS
@@ -96,8 +92,7 @@ class PRM:
     def solve(self, problem: Problem) -> PlanResult:
         """Return the shortest path along the roadmap, smoothed; see :class:`PRM`."""
         query = _query(self, problem, search=self.search, success_only=self.success_only)
-        planner = query.planner(self.lazy_milestones)
-        return _on_points(self, problem, query, planner, query.find)
+        return _on_points(self, problem, query, query.planner, query.find)
 
 
 @explains_calls
@@ -125,7 +120,6 @@ class FMT:
     """
 
     seconds: ClassVar[float] = 60.0
-    lazy_milestones: ClassVar[bool] = False
     certify: ClassVar[bool] = False
 
     points: PointSet | int = 1024
@@ -155,8 +149,6 @@ class _OnPoints(Protocol):
     def k(self) -> int | None: ...
     @property
     def rule(self) -> Rule | None: ...
-    @property
-    def lazy_milestones(self) -> bool: ...
     @property
     def edge_cost(self) -> EdgeCost | None: ...
     @property
@@ -210,10 +202,9 @@ def _on_points(planner: _OnPoints, problem: Problem, query: Query, name: str, fi
     if (refused := refusal(attempt)) is not None:
         return refused
     milestones = world.space.from_cube(points.points)
-    if not planner.lazy_milestones:
-        milestones = milestones[attempt.valid(milestones)]
+    milestones = milestones[attempt.valid(milestones)]
     states = attempt.candidates(rule, milestones)
-    states.node_states[len(milestones) if planner.lazy_milestones else 0 :] = FREE
+    states.node_states[:] = FREE
     certificate = None
     if planner.certify:
         terminals = 1 + len(attempt.goals)

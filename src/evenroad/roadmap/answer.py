@@ -174,11 +174,8 @@ def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tupl
     open_nodes = states.node_states[:start] != BLOCKED
     for end, name in ((start, "start_component"), (start + 1, "goal_component")):
         counts[name] = int(np.count_nonzero(open_nodes & (label[:start] == label[end])))
-    among = f"{counts['valid']} valid milestones"
-    if (open_nodes & (states.node_states[:start] != FREE)).any():
-        among = f"{int(np.count_nonzero(open_nodes))} milestones not known to be invalid"
-    so_far = f"start reaches {counts['start_component']} and goal {counts['goal_component']} of {among}"
-    return so_far, "and the two components do not meet"
+    both = f"start reaches {counts['start_component']} and goal {counts['goal_component']}"
+    return f"{both} of {counts['valid']} valid milestones", "and the two components do not meet"
 
 
 def _few_directions(attempt: Attempt, points: int) -> str:

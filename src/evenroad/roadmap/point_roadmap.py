@@ -151,21 +151,17 @@ class PointRoadmap(Roadmap):
         unit = FixedPoint.of(longest, n + 2)
         return EdgeWeights(longest, unit, unit.weights(costs))
 
-    def within(self, world: World, *, lazy_milestones: bool = False, edge_cost: EdgeCost | None = None) -> WorldRoadmap:
+    def within(self, world: World, *, edge_cost: EdgeCost | None = None) -> WorldRoadmap:
         """Return this roadmap in a world, for many queries.
 
-        Edges are checked when a query needs them.  With `lazy_milestones` milestones are, too; starts and goals are
-        then joined to the nearest of all milestones, else to the nearest valid ones.  An `edge_cost` is as in
-        :func:`plan`.
+        Milestones are checked now, edges when a query needs them.  An `edge_cost` is as in :class:`evenroad.PRM`.
 
         Raises InvalidValue if the world has another space: the points, or the distances, differ there.
         """
         if not self._fits(world.space):
             raise InvalidValue(f"the roadmap was built for another space than {world.space!r}")
         roadmap = replace(self, space=world.space) if self.space is None else self
-        planner: WorldRoadmap = above("PointRoadmap.within")(
-            roadmap, world, lazy_milestones=lazy_milestones, edge_cost=edge_cost
-        )
+        planner: WorldRoadmap = above("PointRoadmap.within")(roadmap, world, edge_cost=edge_cost)
         return planner
 
     def _fits(self, space: Space) -> bool:

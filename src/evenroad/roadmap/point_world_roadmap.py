@@ -30,17 +30,13 @@ class PointWorldRoadmap(WorldRoadmap):
     A query's answer depends on the roadmap, the world and the query alone: earlier queries only save checks.  Threads
     may share it; their queries are answered one after the other.
 
-    `roadmap` has the milestones and candidate edges, and `world` checks them.  With `lazy_milestones` milestones are
-    only checked where they could lie on a path.
+    `roadmap` has the milestones and candidate edges, and `world` checks them.
     """
 
     roadmap: PointRoadmap
 
-    def __init__(
-        self, roadmap: PointRoadmap, world: World, *, lazy_milestones: bool, edge_cost: EdgeCost | None
-    ) -> None:
-        self.roadmap, self.world, self.lazy_milestones = roadmap, world, lazy_milestones
-        self._edge_cost = edge_cost
+    def __init__(self, roadmap: PointRoadmap, world: World, *, edge_cost: EdgeCost | None) -> None:
+        self.roadmap, self.world, self._edge_cost = roadmap, world, edge_cost
         self._lock = OwnLock()
         # Milestones and edges come first; start, goals and their links go behind them.
         self._configurations, self._edges = roadmap.milestones, roadmap.edges
@@ -49,9 +45,8 @@ class PointWorldRoadmap(WorldRoadmap):
         if edge_cost is not None:
             # Now, so that an invalid cost is refused here.
             self._costs = edge_costs(world.space, self._configurations, self._edges, edge_cost)
-        if not lazy_milestones:
-            states = EdgeStates(world, self._configurations, self._edges, cache=self._cache)
-            states.evaluate_nodes(np.arange(len(self._configurations)))
+        states = EdgeStates(world, self._configurations, self._edges, cache=self._cache)
+        states.evaluate_nodes(np.arange(len(self._configurations)))
 
     @property
     def evaluated(self) -> dict[str, int]:
@@ -99,7 +94,7 @@ class PointWorldRoadmap(WorldRoadmap):
             connector=connector,
         )
         roadmap = self.roadmap
-        rule, planner = f"{roadmap.rule} of all points", query.planner(self.lazy_milestones)
+        rule, planner = f"{roadmap.rule} of all points", query.planner
         with self._lock:
             attempt = Attempt(self.world, query, roadmap.points.origin, rule, planner)
             if (refused := refusal(attempt)) is not None:
@@ -161,7 +156,7 @@ class PointWorldRoadmap(WorldRoadmap):
         """Return the links of start and goals, (l, 2), from their distances to the milestones."""
         n = len(self.roadmap.milestones)
         reach = self.roadmap.rule.reach(n, self.world.space)
-        usable = np.ones(n, dtype=np.bool_) if self.lazy_milestones else self._cache.nodes[:n] == FREE
+        usable = self._cache.nodes[:n] == FREE
         links, most = [], query.links_among(n)
         for node, away in enumerate(distances, start=n):
             near = nearest_of(away, usable, reach.k, reach.radius)

@@ -88,10 +88,10 @@ class Query:
         """The search."""
         return find_any if self.success_only else FINDERS[self.search]
 
-    def planner(self, lazy_milestones: bool) -> str:
-        """Return the name that results give the planner of this search."""
-        name = "any" if self.success_only else self.search
-        return f"prm {name}{' + lazy milestones' if lazy_milestones else ''}"
+    @property
+    def planner(self) -> str:
+        """The name that results give the planner of this search."""
+        return f"prm {'any' if self.success_only else self.search}"
 
 
 def as_start_and_goals(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) -> tuple[Floats, Floats]:

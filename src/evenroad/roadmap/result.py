@@ -109,9 +109,8 @@ class PlanResult(ResultMethods):
     links : int or None
         Number of links of the query; see :func:`plan`.
     planner : str
-        Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
-        ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``; or the world itself, with
-        ``trees`` or ``cells``.
+        Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest); ``prm anytime``,
+        ``fmt*``; or the world itself, with ``trees`` or ``cells``.
     deviation : dict of str to float
         Largest deviations of a path under tip constraints, on fine grids: ``line_m`` and ``line_rad`` from the
         straight lines, ``tilt_rad`` from upright.

@@ -13,7 +13,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints32
 from evenroad._native import roadmap as native
-from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates, States
+from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates
 from evenroad.roadmap.search.shortest import NOT_FOUND, FixedPoint, Found, SearchProblem, Terminals, best_path, graph_of
 from evenroad.world import ValidatesPaths, World
 
@@ -56,8 +56,7 @@ def find_lazily(problem: SearchProblem, states: EdgeStates) -> Found:
     """
     while True:
         found = best_path(problem, states.edge_states, states.node_states)
-        nodes_free = _all_free(found.nodes, states.node_states, states.evaluate_nodes)
-        if nodes_free and _all_free(found.edges, states.edge_states, states.evaluate_edges):
+        if _all_free(found.edges, states):
             return found
 
 
@@ -65,11 +64,11 @@ FINDERS: dict[str, Finder] = {"full": find_after_all, "lazy": find_lazily}
 """The searches by name; both find the same path."""
 
 
-def _all_free(numbers: Ints32, states: States, evaluate: Callable[[Ints32], None]) -> bool:
-    """Evaluate the unknown nodes or edges of a path, until one is blocked; return whether none is."""
-    for number in numbers[states[numbers] == UNKNOWN]:
-        evaluate(number[np.newaxis])
-        if states[number] == BLOCKED:
+def _all_free(edges: Ints32, states: EdgeStates) -> bool:
+    """Evaluate the unknown edges of a path, until one is blocked; return whether none is."""
+    for number in edges[states.edge_states[edges] == UNKNOWN]:
+        states.evaluate_edges(number[np.newaxis])
+        if states.edge_states[number] == BLOCKED:
             return False
     return True
 
@@ -87,10 +86,9 @@ def find_any(terminals: Terminals, states: EdgeStates) -> Found:
     tree[terminals.start], tree[terminals.goals] = 1, 2
     parent_edge = np.full(len(tree), -1, dtype=np.int32)
     evaluated, most = np.empty(0, dtype=np.int32), _FIRST
-    lazy_nodes = bool((states.node_states == UNKNOWN).any())
     known, trees = (states.edge_states, states.node_states), (tree, parent_edge, away)
     while True:
-        met, takers, evaluated = native.grow(edges, known, trees, evaluated, most)
+        met, _, evaluated = native.grow(edges, known, trees, evaluated, most)
         if met >= 0:
             a, b = sorted(edges[met].tolist(), key=lambda node: tree[node])
             there, back = _path_back(parent_edge, edges, a), _path_back(parent_edge, edges, b)
@@ -99,11 +97,7 @@ def find_any(terminals: Terminals, states: EdgeStates) -> Found:
         if not len(evaluated):
             return NOT_FOUND
         most += len(evaluated) // 4
-        if lazy_nodes:
-            states.evaluate_nodes(takers)
-            states.evaluate_edges(evaluated[states.node_states[takers] == FREE])
-        else:
-            states.evaluate_edges(evaluated)
+        states.evaluate_edges(evaluated)
 
 
 _FIRST = 16
