@@ -9,7 +9,8 @@ from typing import Annotated, Literal
 import pytest
 import tyro
 
-from evenroad.cli.options import read_options
+from evenroad.cli.options import option_names, read_options
+from evenroad.cli.plan import PlanArm
 from evenroad.errors import EvenroadError
 from tests.refused import refused
 
@@ -147,3 +148,16 @@ def test_only_what_is_asked_for_is_loaded(words, unwanted):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_the_help_of_a_plan_has_its_options_in_groups_on_two_screens(run, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    _, out, _ = run("plan", "--robot", "--help")
+    lines = out.splitlines()
+    assert len(lines) <= 100
+    titles = [line for line in lines if line.endswith(":") and not line.startswith(" ")]
+    assert titles == [f"{title}:" for title in PlanArm.groups]
+    # Each option once.
+    listed = [line.split()[0] for line in lines if line.startswith("  --")]
+    assert len(listed) == len(set(listed))
+    assert option_names(PlanArm) <= {word.strip(",") for line in lines for word in line.split()}

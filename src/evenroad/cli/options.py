@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import redirect_stderr
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import MISSING, fields, is_dataclass, replace
 from inspect import get_annotations
 from io import StringIO
@@ -27,6 +27,7 @@ from tyro.constructors import (
 
 from evenroad._checks import require_known
 from evenroad._terminal import table_width
+from evenroad.cli.help import regrouped
 from evenroad.errors import InvalidValue, UnknownName, shown
 
 HELP = {"-h", "--help"}
@@ -57,7 +58,13 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     texts = [" ".join(text.split()) for text in (kind.__doc__ or "").split("\n\n")]
     # Tyro does not wrap the text about a verb, and joins lines that begin with a letter.
     about = "\n\n".join(fill(text, table_width(), subsequent_indent="  ") for text in texts)
-    options, unknown = _parsed(kind, program, _with_axes(words), about)
+    printed = StringIO()
+    try:
+        with redirect_stdout(printed):
+            options, unknown = _parsed(kind, program, _with_axes(words), about)
+    except SystemExit:
+        print(regrouped(printed.getvalue(), getattr(kind, "groups", {})), end="")
+        raise
     if unknown:
         raise InvalidValue(f"{program} has no use for the word {shown(unknown[0])}")
     for field in fields(kind):

@@ -20,6 +20,21 @@ from evenroad.errors import InvalidValue
 class PlanOptions(SamplerOptions):
     """The options of every plan."""
 
+    groups: ClassVar[dict[str, tuple[str, ...]]] = {
+        "from where to where": (
+            *("help", "world", "robot_radius", "robot", "roadmap", "start", "goal", "goal_pose"),
+            *("tip", "frame", "free_axis", "tolerance", "deg", "clearance", "unknown_is_free"),
+        ),
+        "on the way": ("straight", "away", "upright", "upright_axis"),
+        "search": ("time", "improve", "certified", "resolution", "seed", "raw"),
+        "points, in place of trees or cells": (
+            *("n", "sampler", "k", "connect_radius", "guarantees", "plain", "skip", "allow_fewer"),
+        ),
+        "times": ("timed", "trajectory", "speed", "limits", "deviation", "step", "controller_joints"),
+        "the robot's files": ("srdf", "group", "bodies", "use_visuals", "package", "xacro"),
+        "results": ("out", "no_picture", "csv"),
+    }
+    """Title of a group of the help -> its options."""
     planner: ClassVar[str]
     """Function that plans, ``module:name``, loaded on call."""
 
@@ -66,7 +81,9 @@ class PlanDisk(PlanOptions):
     A disk (--robot-radius) moves on a bare image (.png, .pgm): unit = pixel, x right, y DOWN, origin in the top-left
     corner, dark = obstacle; or on a ROS map_server file (.yaml): unit = metre, map frame, y up.
 
-    For an arm in a scene give --robot instead; its options: evenroad plan --robot ur5 --help
+    For an arm in a scene give --robot instead; its options: evenroad plan --robot --help
+
+    Example: evenroad plan office.yaml --start 1 2 --goal 8.5 3 --robot-radius 0.25
     """
 
     planner = "evenroad.cli.plan_disk:plan_disk"
@@ -108,7 +125,7 @@ class RobotOptions:
     package: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """NAME=FOLDER: the folder of a ROS package with meshes; you can give several."""
     xacro: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """NAME=VALUE: an argument of a xacro, which may be empty; you can give several."""
+    """NAME=VALUE: an argument of a xacro, VALUE may be empty; you can give several."""
 
     def options(self) -> dict[str, Any]:
         """Return the arguments of `load_model`; fitting reports on standard error."""
@@ -145,8 +162,9 @@ class PlanArm(PlanOptions, RobotOptions):
     """Plan a short path for an arm in a scene, write a JSON result, the path as CSV and a picture.
 
     An arm (--robot) moves in a scene file (.yaml): metres and radians, frame of the robot's root link.
-
     For a disk on a map give --robot-radius instead; its options: evenroad plan --help
+
+    Example: evenroad plan box-reach.yaml --robot ur5 --start home --goal inside
     """
 
     planner = "evenroad.cli.plan_arm:plan_arm"
