@@ -48,6 +48,8 @@ README_STEPS = {
     "`make demo`'s plan through the maze": "evenroad demo --out demo",
     "a robot in figures": "evenroad robot ur5",
     "UR5 into the box": "evenroad plan box-reach.yaml --robot ur5 --start home --goal inside --trajectory reach.script",
+    "a page that plays offline": "evenroad view box-reach.json --html reach.html",
+    "a dry run of an arm": "evenroad send box-reach.json",
     "a goal pose": (
         "evenroad plan box-reach.yaml --robot ur5 --start home --tip tool0"
         ' --goal-pose "0.7 0 0.25 0 0.7071068 0 0.7071068" --out pose'
