@@ -62,9 +62,9 @@ class Plane:
         apart = np.where(self.wraps, apart - TURN * np.rint(apart / TURN), apart)
         return bool((np.linalg.norm(apart, axis=2) > 0.8).all())
 
-    def found(self, graph, ends, *, links=24, greed=1.0, check_cost=1.0):
+    def found(self, graph, ends, *, links=24, greed=1.0):
         """The search's path, with each motion that it asks for evaluated here."""
-        search = Search(graph, ends, (links, greed, check_cost))
+        search = Search(graph, ends, (links, greed))
         while (check := search.next_check()) is not None:
             _, _, a, b = check
             self.asked.append((tuple(a[0]), tuple(b[0])))
@@ -123,14 +123,14 @@ class Plane:
 @pytest.mark.parametrize("seed", range(4))
 def test_a_path_is_found_where_a_slow_search_finds_one_and_is_as_short(kind, seed):
     plane = Plane(kind, seed)
-    # A greedy search, and one that goes where it knows its way, find longer paths, but find one.
-    graphs = {(greed, cost): plane.graph() for greed, cost in ((1.0, 1.0), (3.0, 1.0), (1.0, 5.0))}
+    # A greedy search finds longer paths, but finds one.
+    graphs = {greed: plane.graph() for greed in (1.0, 3.0)}
     for goals in (1, 2):
         for first in range(0, len(plane.ends) - goals, goals + 1):
             ends = plane.ends[first : first + goals + 1]
             expected = plane.shortest(ends[0], ends[1:])
-            for (greed, cost), graph in graphs.items():
-                search = plane.found(graph, ends, greed=greed, check_cost=cost)
+            for greed, graph in graphs.items():
+                search = plane.found(graph, ends, greed=greed)
                 assert (search.goal >= 0) == (expected < np.inf)
                 if search.goal < 0:
                     assert len(search.path) == 0
@@ -138,32 +138,28 @@ def test_a_path_is_found_where_a_slow_search_finds_one_and_is_as_short(kind, see
                 # Links are measured in single precision.
                 length = plane.length_of(search.path)
                 assert length >= expected * (1.0 - 1e-6)
-                assert length <= expected * (1.0 + 1e-6) or (greed, cost) != (1.0, 1.0)
+                assert length <= expected * (1.0 + 1e-6) or greed != 1.0
                 np.testing.assert_array_equal(search.path[0], ends[0])
                 np.testing.assert_array_equal(search.path[-1], ends[1 + search.goal])
                 assert all(itertools.starmap(plane.free, itertools.pairwise(search.path)))
 
 
-def test_nothing_is_asked_twice_and_less_where_checks_are_expensive():
-    asked = {}
-    for cost in (1.0, 5.0):
-        plane = Plane("two turns", 1)
-        graph = plane.graph()
-        for first in range(0, len(plane.ends) - 1, 2):
-            plane.found(graph, plane.ends[first : first + 2], check_cost=cost)
-            known = len(plane.asked)
-            # The links and the straight motion belong to a query; what is known of the roadmap stays.
-            again = Search(graph, plane.ends[first : first + 2], (24, 1.0, cost))
-            while (check := again.next_check()) is not None:
-                kind, is_of_roadmap, a, b = check
-                assert not is_of_roadmap
-                assert kind == "motion"
-                again.record(plane.free(a[0], b[0]))
-            assert len(plane.asked) == known
-        motions = [(a, b) for a, b in plane.asked if a != b]
-        assert len(motions) == len(set(motions))
-        asked[cost] = len(motions)
-    assert asked[5.0] < asked[1.0]
+def test_nothing_is_asked_twice():
+    plane = Plane("two turns", 1)
+    graph = plane.graph()
+    for first in range(0, len(plane.ends) - 1, 2):
+        plane.found(graph, plane.ends[first : first + 2])
+        known = len(plane.asked)
+        # The links and the straight motion belong to a query; what is known of the roadmap stays.
+        again = Search(graph, plane.ends[first : first + 2], (24, 1.0))
+        while (check := again.next_check()) is not None:
+            kind, is_of_roadmap, a, b = check
+            assert not is_of_roadmap
+            assert kind == "motion"
+            again.record(plane.free(a[0], b[0]))
+        assert len(plane.asked) == known
+    motions = [(a, b) for a, b in plane.asked if a != b]
+    assert len(motions) == len(set(motions))
 
 
 def test_an_inserted_path_is_known_and_its_milestones_lead_to_eight_others():
@@ -174,7 +170,7 @@ def test_an_inserted_path_is_known_and_its_milestones_lead_to_eight_others():
     graph.insert(np.array(free[:2]))
     assert graph.size == len(plane.q) + 3
     # No check but that of the straight motion is needed along what was inserted.
-    search = Search(graph, np.array([free[0], free[2]]), (5, 1.0, 1.0))
+    search = Search(graph, np.array([free[0], free[2]]), (5, 1.0))
     assert search.next_check()[0] == "motion"
     search.record(False)
     kinds = []
@@ -247,11 +243,11 @@ def test_a_roadmap_that_does_not_fit_is_refused(changed, text):
 @pytest.mark.parametrize(
     ("ends", "rules", "text"),
     [
-        (np.zeros((1, 2)), (1, 1.0, 1.0), "a start and one goal or more"),
-        (np.zeros((2, 3)), (1, 1.0, 1.0), r"start_and_goals must have shape \(2, 2\)"),
-        (np.full((2, 2), np.inf), (1, 1.0, 1.0), "start_and_goals must be finite"),
-        (np.zeros((2, 2)), (0, 1.0, 1.0), "links must be 1 or more"),
-        (np.zeros((2, 2)), (1, 1.0), "rules must be"),
+        (np.zeros((1, 2)), (1, 1.0), "a start and one goal or more"),
+        (np.zeros((2, 3)), (1, 1.0), r"start_and_goals must have shape \(2, 2\)"),
+        (np.full((2, 2), np.inf), (1, 1.0), "start_and_goals must be finite"),
+        (np.zeros((2, 2)), (0, 1.0), "links must be 1 or more"),
+        (np.zeros((2, 2)), (1, 1.0, 1.0), "rules must be"),
     ],
 )
 def test_a_question_that_makes_no_sense_is_refused(ends, rules, text):
@@ -261,7 +257,7 @@ def test_a_question_that_makes_no_sense_is_refused(ends, rules, text):
 
 def test_a_search_refuses_results_that_it_did_not_ask_for_and_milestones_that_came_later():
     graph = graph_with()
-    search = Search(graph, np.array([[0.1, 0.1], [0.2, 0.2]]), (3, 1.0, 1.0))
+    search = Search(graph, np.array([[0.1, 0.1], [0.2, 0.2]]), (3, 1.0))
     with pytest.raises(InvalidValue, match="nothing is to be evaluated"):
         search.record(True)
     assert search.next_check() is not None

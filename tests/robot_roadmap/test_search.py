@@ -199,7 +199,7 @@ def test_a_search_in_slices_finds_what_it_finds_in_one_go(roadmap):
     for batches in (1, 10**9):
         known = within(roadmap, box_scene())
         checks = [checks_of(world) for world in known._worlds]
-        search = ProvedSearch(known._graph, np.concatenate([start[np.newaxis], goal]), (48, 3.0, 1.0), *checks)
+        search = ProvedSearch(known._graph, np.concatenate([start[np.newaxis], goal]), (48, 3.0), *checks)
         calls = 1
         while search.go_on(10**7, batches) == "paused":
             calls += 1

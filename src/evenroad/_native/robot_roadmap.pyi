@@ -27,12 +27,12 @@ class SceneGraph:
     def insert(self, path: Floats) -> None: ...
 
 class Search:
-    """A search that requests each check; `rules` are links of each terminal, greed, and the cost of a check."""
+    """A search that requests each check; `rules` are links of each terminal, and greed."""
 
     path: Floats
     goal: int
     counts: tuple[int, int]
-    def __init__(self, graph: SceneGraph, start_and_goals: Floats, rules: tuple[int, float, float]) -> None: ...
+    def __init__(self, graph: SceneGraph, start_and_goals: Floats, rules: tuple[int, float]) -> None: ...
     def next_check(self) -> tuple[Literal["milestone", "motion"], bool, Floats, Floats] | None: ...
     def record(self, is_free: bool) -> None: ...
 
@@ -46,7 +46,7 @@ class ProvedSearch:
         self,
         graph: SceneGraph,
         start_and_goals: Floats,
-        rules: tuple[int, float, float],
+        rules: tuple[int, float],
         everything: Checks,
         moved: Checks,
     ) -> None: ...

@@ -29,9 +29,9 @@ class Query(NamedTuple):
     greed: float = GREED
 
     @property
-    def rules(self) -> tuple[int, float, float]:
-        """Links, greed, and the cost of a unit of length that is not evaluated yet."""
-        return self.links, self.greed, 1.0
+    def rules(self) -> tuple[int, float]:
+        """Links and greed."""
+        return self.links, self.greed
 
 
 class SearchResult(NamedTuple):

@@ -159,6 +159,22 @@ inline nb::object as_bools(std::vector<std::uint8_t>&& values, std::initializer_
   return as_numpy(std::move(values), shape).attr("view")("bool");
 }
 
+/// Give numbers as one row, or as rows of so many.
+template <class T>
+nb::object as_row(std::vector<T>&& values) {
+  const std::size_t count = values.size();
+  return as_numpy(std::move(values), {count});
+}
+template <class T>
+nb::object as_rows(std::vector<T>&& values, std::size_t columns) {
+  const std::size_t rows = columns > 0 ? values.size() / columns : 0;
+  return as_numpy(std::move(values), {rows, columns});
+}
+template <class T>
+nb::object as_rows(OwnMatrix<T>&& matrix) {
+  return as_numpy(std::move(matrix.values), {matrix.rows, matrix.columns});
+}
+
 /// Call a function while other threads of Python run.
 template <class Function>
 auto without_gil(Function&& function) {

@@ -14,8 +14,7 @@ using namespace nb::literals;
 namespace {
 
 nb::tuple as_tuple(points::PairSums&& result) {
-  const std::size_t d = result.gradient.rows, n = result.gradient.columns;
-  return nb::make_tuple(as_numpy(std::move(result.sums), {n}), as_numpy(std::move(result.gradient.values), {d, n}));
+  return nb::make_tuple(as_row(std::move(result.sums)), as_rows(std::move(result.gradient)));
 }
 
 nb::tuple maximum_pair_sums(nb::handle columns, nb::handle ceiling, nb::handle slope, bool want_gradient) {
@@ -40,9 +39,7 @@ nb::tuple distance_pair_sums(nb::handle columns, nb::tuple pairs, bool want_grad
 nb::tuple riesz_rows(nb::handle columns, unsigned s, bool periodic, bool want_gradient) {
   const FloatRows at(columns, "columns");
   points::RieszRows rows = without_gil([&] { return points::riesz_rows(at.matrix(), s, periodic, want_gradient); });
-  const std::size_t d = at.shape(0), n = at.shape(1);
-  return nb::make_tuple(as_numpy(std::move(rows.nearest), {n}), as_numpy(std::move(rows.sums), {n}),
-                        as_numpy(std::move(rows.pushes.values), {d, n}));
+  return nb::make_tuple(as_row(std::move(rows.nearest)), as_row(std::move(rows.sums)), as_rows(std::move(rows.pushes)));
 }
 
 double star_discrepancy(nb::handle columns) {

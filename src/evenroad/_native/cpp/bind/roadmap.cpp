@@ -21,11 +21,6 @@ namespace {
 
 constexpr std::size_t MOST_NODES = std::numeric_limits<std::int32_t>::max();
 
-nb::object row(std::vector<std::int32_t>&& numbers) {
-  const std::size_t count = numbers.size();
-  return as_numpy(std::move(numbers), {count});
-}
-
 /// Edges, (m, 2), between nodes that there are.
 class Edges {
  public:
@@ -60,23 +55,21 @@ class PeriodicPoints {
 nb::object k_nearest(nb::handle points, nb::handle period, std::size_t k, bool earlier) {
   const PeriodicPoints given(points, period);
   require(k >= 1 && k < given.count(), "k must be at least 1 and less than the number of points");
-  return as_numpy(without_gil([&] { return roadmap::k_nearest(given.set(), k, earlier); }), {given.count(), k});
+  return as_rows(without_gil([&] { return roadmap::k_nearest(given.set(), k, earlier); }), k);
 }
 
 nb::object pairs_within(nb::handle points, nb::handle period, double radius) {
   const PeriodicPoints given(points, period);
   require(given.count() >= 1, "points must be one or more");
   require(radius >= 0.0, "radius must be a number >= 0");
-  auto pairs = without_gil([&] { return roadmap::pairs_within(given.set(), radius); });
-  const std::size_t count = pairs.size() / 2;
-  return as_numpy(std::move(pairs), {count, 2});
+  return as_rows(without_gil([&] { return roadmap::pairs_within(given.set(), radius); }), 2);
 }
 
 nb::object distances_from(nb::handle points, nb::handle period, nb::handle point) {
   const PeriodicPoints given(points, period);
   const Floats from(point, "point");
   from.of_shape({given.set().period.size()});
-  return as_numpy(without_gil([&] { return roadmap::distances_from(given.set(), from.span()); }), {given.count()});
+  return as_row(without_gil([&] { return roadmap::distances_from(given.set(), from.span()); }));
 }
 
 nb::object k_smallest(nb::handle distances, nb::handle usable, std::size_t k, double radius) {
@@ -84,7 +77,7 @@ nb::object k_smallest(nb::handle distances, nb::handle usable, std::size_t k, do
   const Array<const bool, 1> among(usable, "usable");
   among.of_shape({away.size()});
   const std::size_t most = std::min(k, away.size());
-  return row(without_gil([&] { return roadmap::k_smallest(away.span(), among.span(), most, radius); }));
+  return as_row(without_gil([&] { return roadmap::k_smallest(away.span(), among.span(), most, radius); }));
 }
 
 void make_graph(roadmap::Graph* self, std::size_t nodes, nb::handle edges) {
@@ -120,7 +113,7 @@ nb::tuple shortest_path(const roadmap::Graph& graph, nb::tuple costs, nb::tuple 
     return roadmap::shortest_path(graph, {weights.span(), bounds.span()}, {edges.span(), nodes.span()},
                                   static_cast<std::int32_t>(start), ends.span());
   });
-  return nb::make_tuple(row(std::move(path.nodes)), row(std::move(path.edges)));
+  return nb::make_tuple(as_row(std::move(path.nodes)), as_row(std::move(path.edges)));
 }
 
 nb::tuple best_offers(const roadmap::Graph& graph, std::int64_t node, nb::handle edge_weights, nb::handle costs,
@@ -134,7 +127,7 @@ nb::tuple best_offers(const roadmap::Graph& graph, std::int64_t node, nb::handle
     const auto number = static_cast<std::int32_t>(node);
     return roadmap::best_offers(graph.fixed(), number, weights.span(), cost.span(), stage.span());
   });
-  return nb::make_tuple(row(std::move(offers.nodes)), row(std::move(offers.edges)));
+  return nb::make_tuple(as_row(std::move(offers.nodes)), as_row(std::move(offers.edges)));
 }
 
 void join(nb::handle labels, nb::handle edges) {
@@ -165,7 +158,7 @@ nb::tuple grow(nb::handle edges, nb::tuple states, nb::tuple trees, nb::handle a
     return roadmap::grow(given.matrix(), {edge_states.span(), node_states.span()},
                          {tree.span(), parent_edge.span(), away.matrix()}, evaluated.span(), most);
   });
-  return nb::make_tuple(growth.met, row(std::move(growth.takers)), row(std::move(growth.edges)));
+  return nb::make_tuple(growth.met, as_row(std::move(growth.takers)), as_row(std::move(growth.edges)));
 }
 
 nb::object spread_order(nb::tuple set, nb::handle preferences, std::size_t count, nb::tuple seen, nb::tuple serving) {
@@ -179,11 +172,9 @@ nb::object spread_order(nb::tuple set, nb::handle preferences, std::size_t count
   require(std::is_sorted(first.span().begin(), first.span().end()), "first must not fall");
   require_below(first.span(), which.size() + 1, "first");
   const roadmap::Serving share{value_of<double>(serving[0], "least"), value_of<double>(serving[1], "served")};
-  return as_numpy(without_gil([&] {
-                    return roadmap::spread_order(given.set(), preference.span(), count, {first.span(), which.span()},
-                                                 share);
-                  }),
-                  {count});
+  const roadmap::Seen by_ends{first.span(), which.span()};
+  return as_row(
+      without_gil([&] { return roadmap::spread_order(given.set(), preference.span(), count, by_ends, share); }));
 }
 
 }  // namespace

@@ -14,7 +14,6 @@ namespace {
 
 using planning::NativeChecks;
 using robot_roadmap::Check;
-using robot_roadmap::Ended;
 using robot_roadmap::Graph;
 using robot_roadmap::HalfEdge;
 using robot_roadmap::Joint;
@@ -145,9 +144,8 @@ struct Asked {
       : rows(start_and_goals, "start_and_goals") {
     rows.of_shape({rows.shape(0), graph.joints.size()});
     require(rows.shape(0) >= 2, "start_and_goals must be a start and one goal or more");
-    require(rules.size() == 3, "rules must be (links, greed, check_cost)");
-    question = {rows.matrix(), value_of<std::size_t>(rules[0], "links"), value_of<double>(rules[1], "greed"),
-                value_of<double>(rules[2], "check_cost")};
+    require(rules.size() == 2, "rules must be (links, greed)");
+    question = {rows.matrix(), value_of<std::size_t>(rules[0], "links"), value_of<double>(rules[1], "greed")};
     require(question.links >= 1, "links must be 1 or more");
   }
 };
@@ -158,29 +156,10 @@ void require_unchanged(const Search& search) {
 }
 
 nb::object path_of(const Search& search) {
-  std::vector<double> points;
-  if (search.has_found()) points = search.path();
-  const std::size_t dim = search.graph().joints.size(), rows = points.size() / dim;
-  return as_numpy(std::move(points), {rows, dim});
+  return as_rows(search.has_found() ? search.path() : std::vector<double>(), search.graph().joints.size());
 }
 
 Number goal_of(const Search& search) { return search.has_found() ? search.goal() : robot_roadmap::NONE; }
-
-const char* in_words(Ended ended) {
-  switch (ended) {
-    case Ended::FOUND:
-      return "found";
-    case Ended::NO_PATH:
-      return "no path";
-    case Ended::NOT_FREE:
-      return "not free";
-    case Ended::SPENT:
-      return "spent";
-    case Ended::PAUSED:
-      return "paused";
-  }
-  return "";
-}
 
 /// Return what has to be evaluated, in words, whether the roadmap knows it to be free of robot and static scene, and
 /// where it begins and ends; None where the search has ended.
@@ -189,9 +168,7 @@ nb::object next_check(Search& search) {
   const Progress progress = without_gil([&] { return search.advance(); });
   if (progress != Progress::CHECK) return nb::none();
   const std::size_t dim = search.graph().joints.size();
-  const auto row = [dim](std::span<const double> q) {
-    return as_numpy(std::vector<double>(q.begin(), q.end()), {1, dim});
-  };
+  const auto row = [dim](std::span<const double> q) { return as_rows(std::vector<double>(q.begin(), q.end()), dim); };
   const Check& check = search.check();
   const bool is_milestone = check.kind == Check::Kind::MILESTONE;
   const bool is_edge = check.kind == Check::Kind::EDGE && search.graph().is_of_roadmap(check.edge);
@@ -247,7 +224,8 @@ void add_robot_roadmap(nb::module_& module) {
            [](ProvedSearch& search, std::int64_t most_motions, std::int64_t batches) {
              require_unchanged(search.search());
              require_budget(most_motions, "most_motions"), require_budget(batches, "batches");
-             return in_words(without_gil([&] { return search.go_on(most_motions, batches); }));
+             constexpr const char* WORDS[] = {"found", "no path", "not free", "spent", "paused"};
+             return WORDS[static_cast<int>(without_gil([&] { return search.go_on(most_motions, batches); }))];
            })
       .def_prop_ro("path", [](const ProvedSearch& search) { return path_of(search.search()); })
       .def_prop_ro("goal", [](const ProvedSearch& search) { return goal_of(search.search()); })

@@ -8,16 +8,12 @@ using namespace nb::literals;
 
 namespace {
 
-nb::object given_away(OwnMatrix<double>&& matrix) {
-  return as_numpy(std::move(matrix.values), {matrix.rows, matrix.columns});
-}
-
 nb::object flat_distances(nb::handle first, nb::handle second, nb::handle scales, nb::handle periods) {
   const FloatRows a(first, "a"), b(second, "b");
   const Floats scale(scales, "scale"), period(periods, "period", Entries::ANY);
   const std::size_t dim = scale.size();
   a.of_shape({a.shape(0), dim}), b.of_shape({b.shape(0), dim}), period.of_shape({dim});
-  return given_away(
+  return as_rows(
       without_gil([&] { return space::flat_distances(a.matrix(), b.matrix(), scale.span(), period.span()); }));
 }
 
@@ -32,7 +28,7 @@ nb::object row_distances(nb::handle first, nb::handle second, nb::handle scales,
 nb::object quaternion_angles(nb::handle first, nb::handle second) {
   const FloatRows a(first, "a"), b(second, "b");
   a.of_shape({a.shape(0), 4}), b.of_shape({b.shape(0), 4});
-  return given_away(without_gil([&] { return space::quaternion_angles(a.matrix(), b.matrix()); }));
+  return as_rows(without_gil([&] { return space::quaternion_angles(a.matrix(), b.matrix()); }));
 }
 
 }  // namespace

@@ -19,8 +19,7 @@ nb::object squared_speeds(nb::tuple curve, nb::handle ceilings, nb::handle accel
   ceiling.of_shape({intervals + 1});
   const trajectory::Curve path{ahead.matrix(), ahead_bend.matrix(), behind.matrix(), behind_bend.matrix(),
                                steps.span()};
-  return as_numpy(without_gil([&] { return trajectory::squared_speeds(path, ceiling.span(), acceleration.span()); }),
-                  {intervals + 1});
+  return as_row(without_gil([&] { return trajectory::squared_speeds(path, ceiling.span(), acceleration.span()); }));
 }
 
 }  // namespace

@@ -28,8 +28,6 @@ Search::Search(SceneGraph& graph, const Question& question)
       terminals_(terminals_at(question.start_and_goals)),
       links_(std::min(question.links, graph.size())),
       are_near_first_(question.greed > 1.0),
-      check_cost_(question.check_cost),
-      is_cheap_(question.check_cost <= 1.0),
       tree_(graph, terminals_, question.greed),
       from_(graph.joints.size()),
       to_(graph.joints.size()) {}
@@ -40,13 +38,11 @@ Progress Search::next() {
   if (phase_ == Phase::BEGIN) begin();
   if (phase_ == Phase::STRAIGHT && ask_straight()) return Progress::CHECK;
   if (phase_ == Phase::GOALS) {
-    const Progress progress = is_cheap_ ? ask_goal_link() : Progress::FOUND;
+    const Progress progress = ask_goal_link();
     if (progress != Progress::FOUND) return progress;
     phase_ = Phase::OPEN;
   }
-  if (phase_ == Phase::OPEN || !is_cheap_) {
-    tree_.clear();
-    pending_ = NONE;
+  if (phase_ == Phase::OPEN) {
     open();
     phase_ = Phase::SEARCH;
   }
@@ -110,8 +106,7 @@ void Search::open() {
   for (std::size_t goal = 1; goal < terminals_.size(); goal++) {
     const Terminal& terminal = terminals_[goal];
     if (terminal.straight == Verdict::BLOCKED) continue;
-    const double cost = weight(terminal.straight) * graph_.joints.distance(start.q, terminal.q);
-    tree_.offer({NONE, static_cast<Number>(goal), NONE, NONE, cost}, 0.0);
+    tree_.offer({NONE, static_cast<Number>(goal), NONE, NONE, graph_.joints.distance(start.q, terminal.q)}, 0.0);
   }
   const double nearby = are_near_first_ ? NEARBY : 0.0;
   for (const Number milestone : start.near) {
@@ -120,7 +115,7 @@ void Search::open() {
     const Number state = tree_.state_at(milestone, start.turns[milestone]);
     if (state == NONE) continue;
     const double away = start.away[milestone];
-    tree_.offer({state, 0, NONE, NONE, weight(link) * away}, tree_.state(state).left + nearby * away);
+    tree_.offer({state, 0, NONE, NONE, away}, tree_.state(state).left + nearby * away);
   }
 }
 
@@ -138,35 +133,16 @@ Progress Search::search() {
       const Verdict milestone = graph_.milestones[state.milestone];
       if (state.reached != NONE || milestone == Verdict::BLOCKED) verdict = Verdict::BLOCKED;
       const bool is_unknown = check.kind == Kind::EDGE && milestone == Verdict::UNKNOWN;
-      if (is_cheap_ && is_unknown && verdict != Verdict::BLOCKED) return ask_milestone(way.state);
+      if (is_unknown && verdict != Verdict::BLOCKED) return ask_milestone(way.state);
     }
-    if (is_cheap_ && verdict == Verdict::UNKNOWN) return ask_motion(pending_);
-    if (verdict != Verdict::BLOCKED && way.state == NONE) {
-      return is_cheap_ ? Progress::FOUND : ask_first_unknown(pending_);
-    }
+    if (verdict == Verdict::UNKNOWN) return ask_motion(pending_);
     if (verdict != Verdict::BLOCKED) {
+      if (way.state == NONE) return Progress::FOUND;
       tree_.state(way.state).reached = pending_;
       expand(pending_);
     }
     pending_ = NONE;
   }
-}
-
-/// Ask for what is unknown of a path: its milestones first, then its links and edges; else it is FOUND.
-Progress Search::ask_first_unknown(Number goal) {
-  Number chosen = NONE;
-  bool is_chosen_link = false;
-  for (Number here = goal; here != NONE; here = tree_.way(here).before) {
-    const Way& way = tree_.way(here);
-    const Check check = check_of(way);
-    if (verdict_of(check) != Verdict::UNKNOWN) continue;
-    const bool is_link = check.kind == Kind::LINK;
-    if (way.state != NONE && graph_.milestones[tree_.state(way.state).milestone] == Verdict::UNKNOWN) {
-      return ask_milestone(way.state);
-    }
-    if (chosen == NONE || (is_link && !is_chosen_link)) chosen = here, is_chosen_link = is_link;
-  }
-  return chosen == NONE ? Progress::FOUND : ask_motion(chosen);
 }
 
 /// Put all that the end of a way leads to into the queue.
@@ -180,7 +156,7 @@ void Search::expand(Number number) {
     const double away = terminal.away[milestone];
     const bool is_tried = is_free(link) || (link == Verdict::UNKNOWN && away <= terminal.radius);
     if (terminal.turns[milestone] != turns || !is_tried) continue;
-    tree_.offer({NONE, static_cast<Number>(goal), number, NONE, cost + weight(link) * away}, 0.0);
+    tree_.offer({NONE, static_cast<Number>(goal), number, NONE, cost + away}, 0.0);
   }
   const Graph& graph = graph_.graph();
   for (Number next = graph.first_half(milestone); next != NONE; next = graph.half(next).next) {
@@ -190,10 +166,10 @@ void Search::expand(Number number) {
     const Number to = tree_.state_at(half.milestone, turns + half.turns);
     if (to == NONE) continue;
     State& state = tree_.state(to);
-    const double reached = cost + weight(edge) * half.length;
+    const double reached = cost + half.length;
     if (state.reached != NONE || reached >= state.least) continue;
-    // What counts more than its length, or may be blocked, keeps no other away.
-    if (!is_cheap_ || (is_free(edge) && is_free(there))) state.least = reached;
+    // What may be blocked keeps no other away.
+    if (is_free(edge) && is_free(there)) state.least = reached;
     tree_.offer({to, 0, number, half.edge, reached}, state.left);
   }
 }
@@ -235,8 +211,6 @@ Verdict& Search::verdict_of(const Check& check) {
   }
   return terminals_[check.terminal].straight;
 }
-
-Verdict Search::verdict() const { return const_cast<Search*>(this)->verdict_of(check_); }
 
 void Search::record(Verdict verdict) {
   Verdict& known = verdict_of(check_);

@@ -1,9 +1,7 @@
 // The search of a roadmap, which stops where a motion has to be evaluated.
 //
 // A lazy A* (Cohen, Phillips and Likhachev 2015): an edge is evaluated when the search would go along it, a milestone
-// before the first edge to it.  An edge that is not evaluated yet counts `check_cost` times its length.  Where that is
-// above 1, evaluations are expensive: then a whole path is planned first, and only what is unknown of it is evaluated
-// (Dellin and Srinivasa 2016).
+// before the first edge to it.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +18,6 @@ struct Question {
   Matrix<const double> start_and_goals;
   std::size_t links;  // that are tried of each of them, at most
   double greed;       // factor of the bound, 1 for the shortest path
-  double check_cost;  // of a unit of length that is not evaluated yet, 1 where evaluations are cheap
 };
 
 /// Something to be evaluated.
@@ -48,9 +45,6 @@ class Search {
   const Check& check() const { return check_; }
   std::span<const double> from() const { return from_; }
   std::span<const double> to() const { return to_; }
-
-  /// Return what is known of `check()`.
-  Verdict verdict() const;
 
   /// Take the result of `check()`.
   void record(Verdict verdict);
@@ -87,21 +81,17 @@ class Search {
   Progress ask_goal_link();
   void open();
   Progress search();
-  Progress ask_first_unknown(Number goal);
   void expand(Number number);
   Progress ask_milestone(Number state);
   Progress ask_motion(Number way);
   Check check_of(const Way& way) const;
   Verdict& verdict_of(const Check& check);
-  double weight(Verdict verdict) const { return is_free(verdict) ? 1.0 : check_cost_; }
 
   SceneGraph& graph_;
   std::size_t size_;
   std::vector<Terminal> terminals_;
   std::size_t links_;
   bool are_near_first_;
-  double check_cost_;
-  bool is_cheap_;
   SearchTree tree_;
   Phase phase_ = Phase::BEGIN;
   Progress progress_ = Progress::NO_PATH;
