@@ -9,6 +9,8 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from time import perf_counter
 
+_KNOWN = 0.05
+"""Share of the work after which the remaining time can be estimated."""
 WIDTH = 100
 """Largest width of a table [columns]."""
 
@@ -74,9 +76,11 @@ class LineProgress:
         if now - self.last < self.every or step <= self.first_step:
             return
         self.last = now
-        left = (now - self.began) / (step - self.first_step) * (steps - step)
+        done = (step - self.first_step) / max(steps - self.first_step, 1)
+        # The first steps, which load and set up, say nothing about the pace of the others.
+        left = f", {(now - self.began) * (1.0 / done - 1.0):.0f} s left" if done >= _KNOWN else ""
         value = "" if best is None else f", best {best:.5g}"
-        self.report(f"{self.title}: {100 * step / steps:.0f} %, {left:.0f} s left{value}")
+        self.report(f"{self.title}: {100 * step / steps:.0f} %{left}{value}")
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evenroad._terminal import print_table, progress_shown
+from evenroad._terminal import LineProgress, print_table, progress_shown
 from evenroad.cli.plan_parts import print_plan
 from evenroad.planning import PRM, plan
 from evenroad.points import PointSet, save_points
@@ -67,3 +67,13 @@ def test_the_times_of_a_plan_for_an_arm_fit_one_line_of_80_columns(capsys, monke
     print_plan(result, ["a.json"], [("checked by", "lanes")])
     out = capsys.readouterr().out
     assert "time [ms]   validity 12, neighbours 1457, search 556, motions 1000, shortcut 2.1" in out
+
+
+def test_the_time_left_is_told_once_it_can_be_known(monkeypatch):
+    now, said = [0.0], []
+    monkeypatch.setattr("evenroad._terminal.perf_counter", lambda: now[0])
+    progress = LineProgress("work", said.append, every=10.0)
+    for seconds, step in ((1.0, 0), (30.0, 2), (45.0, 50), (60.0, 75)):
+        now[0] = seconds
+        progress(step, 100)
+    assert said == ["work: 2 %", "work: 50 %, 45 s left", "work: 75 %, 20 s left"]

@@ -106,7 +106,8 @@ def guarantee_rows(certificate: Certificate) -> list[tuple[str, str]]:
     """Return a certificate as rows of a table."""
     said = guarantees(certificate)
     needed = f"all motions up to {2 * certificate.dispersion:.6g} have to be tried"
-    path = f"nothing is guaranteed: {needed}; take a larger k or radius, or more points"
+    enough = math.ceil(1e4 * 2.0 * certificate.dispersion + 1e-3) / 1e4
+    path = f"nothing is guaranteed: {needed}; --connect-radius {enough:g} does, or more points need less"
     if (least := said["complete_from_clearance"]) is not None:
         path = f"if one of clearance {least:.6g} does; if none is found, none does"
     between, to_terminals = (
