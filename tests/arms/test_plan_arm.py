@@ -11,6 +11,7 @@ from evenroad.planning.read_request import arm_request
 from evenroad.roadmap import Budget
 from evenroad.robot import Obstacle, link_poses
 from evenroad.robot.reference.validate import MeshCheck
+from tests.refused import refused
 from tests.robot.mesh_arms import write_fork_arm
 
 
@@ -169,6 +170,17 @@ def test_a_pose_is_a_goal_and_the_path_ends_there():
     assert "(tool0 at (0.65, 0, 0.2))" in result.message
     assert np.abs(tip_of(er.load_robot("ur5"), result.path[-1], "tool0") - pose.matrix).max() < 1e-6
     assert "goals" in result.timings
+
+
+def test_the_matrix_of_a_pose_is_the_pose_alone_and_among_others():
+    world = er.ArmWorld("ur5", "box-reach")
+    poses = [er.Pose.from_rpy((0.65, y, 0.2), (0.0, np.pi / 2, 0.0)) for y in (0.05, -0.05)]
+    by_pose, matrices = er.plan(world, "home", poses), np.array([pose.matrix for pose in poses])
+    for goals in (matrices, list(matrices)):
+        np.testing.assert_array_equal(er.plan(world, "home", goals).goals, by_pose.goals)
+    one, of_pose = er.plan(world, "home", matrices[0]), er.plan(world, "home", poses[0])
+    np.testing.assert_array_equal(one.path, of_pose.path)
+    refused(er.errors.InvalidValue, "matrix", er.plan, world, "home", 2.0 * matrices[0])
 
 
 def test_of_poses_and_configurations_the_path_ends_at_one_and_the_cheapest_where_that_is_asked_for():

@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
-from evenroad.world import MapFrame, load_map
+from evenroad.world import GridMap, MapFrame, load_map
 from evenroad.world.gridmap import load_image
 from evenroad.world.gridmap.load import LARGEST_IMAGE
 from tests.refused import refused
@@ -162,3 +162,10 @@ def test_a_huge_size_in_the_header_is_refused_before_any_pixel_is_read(tmp_path,
 @pytest.mark.parametrize("name", ["map.jpg", "map", "map.yaml.bak"])
 def test_an_unknown_suffix_is_refused_with_the_known_ones(name):
     refused(UnknownName, r"\.pgm, \.png, \.yaml, \.yml", load_map, name)
+
+
+def test_an_array_is_a_map():
+    occupied = np.zeros((20, 30), dtype=bool)
+    occupied[4:9, 12] = True
+    np.testing.assert_array_equal(load_map(occupied).occupied, GridMap(occupied).occupied)
+    refused(InvalidValue, "occupied", load_map, np.zeros(3, dtype=bool))

@@ -76,7 +76,8 @@ def plan(
         state, ``0,-1.57,...`` or ``name=value``.  A value may exceed its joint's limits by 1e-5, as five printed
         decimals do, and stays what it is.
     goal : as `start`, Pose, PoseGoal, or a sequence of such
-        A pose stands for all configurations found that reach it.  Of several goals the path ends at the nearest if it
+        A pose stands for all configurations found that reach it; its (4, 4) matrix as an array is one, too, unless the
+        arm has four joints.  Of several goals the path ends at the nearest if it
         is reached soon; along a roadmap, or with ``improve``, at the cheapest.
     planner : Planner, Roadmap, PointSet, str or path-like, optional
         Such as ``er.RRTConnect()``, ``er.PRM(512)`` or ``"fmt"``.  Default: trees for an arm, a search of cells

@@ -119,7 +119,7 @@ def arm_request(
     else:
         model = load_model(robot, **options)
         source, robot = model.file, model.robot
-    goals = _goal_list(goal)
+    goals = _goal_list(goal, len(robot.group))
     texts = [target for target in (start, *goals) if isinstance(target, str)]
     robot = at_states(in_scene(robot, scene), texts, scene)
     if reading.held:
@@ -139,7 +139,7 @@ def arm_request(
 
 def request_in(world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[Goal], reading: Reading) -> Request:
     """Read start and goals of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
-    goals = _goal_list(goal)
+    goals = _goal_list(goal, world.dim)
     first = _configuration(world.robot, world.scene, "start", start, reading)
     given = _goals_in(world, first, goals, reading)
     return Request(world, first, given.configurations, given)
@@ -171,15 +171,19 @@ def _refuse_what_is_none(robot: Robot, scene: Scene, goals: list[Goal], reading:
     require_tips(robot, goals, reading.tip, reading.frame)
 
 
-def _goal_list(goal: Goal | Sequence[Goal]) -> list[Goal]:
+def _goal_list(goal: Goal | Sequence[Goal], dim: int) -> list[Goal]:
+    """Return the goals one by one; of an arm of other than four joints a (4, 4) array is the matrix of a pose."""
     if isinstance(goal, np.ndarray):
-        return list(goal) if goal.ndim == 2 else [goal]
+        if goal.shape == (4, 4) and dim != 4:
+            return [Pose.from_matrix(goal)]
+        return [each for part in goal for each in _goal_list(part, dim)] if goal.ndim in (2, 3) else [goal]
     if isinstance(goal, str | Mapping | Pose | PoseGoal):
         return [goal]
-    several = isinstance(goal, Sequence) and any(
+    if not isinstance(goal, Sequence) or not any(
         isinstance(each, str | Mapping | Pose | PoseGoal) or np.ndim(each) > 0 for each in goal
-    )
-    return list(goal) if several else [goal]  # type: ignore[arg-type, list-item]
+    ):
+        return [goal]  # type: ignore[list-item]
+    return [each for part in goal for each in (_goal_list(part, dim) if isinstance(part, np.ndarray) else [part])]
 
 
 def _configuration(robot: Robot, scene: Scene, name: str, target: ConfigurationLike, reading: Reading) -> Floats:

@@ -49,6 +49,8 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld) -> Image.Image:
     collision are red.
     """
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
+    if result.clearance is not None:
+        title += f"; {1e3 * result.clearance:.1f} mm from obstacles"
     sheet = Sheet(SIZE, len(VIEWS), title)
     low, high = _limits(world, _shown(result, world))
     scale = min(float(np.min(np.array(sheet.available) / (high - low)[list(pair)])) for _, pair in VIEWS)

@@ -51,14 +51,14 @@ class RosMapMeta(NamedTuple):
 
 
 @explains_calls
-def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> GridMap:
-    """Read a map: a bare image (.png, .pgm) or a ROS map_server file (.yaml, .yml).
+def load_map(path: str | os.PathLike[str] | Bools, *, unknown_is_free: bool = False) -> GridMap:
+    """Read a map: a bare image (.png, .pgm), a ROS map_server file (.yaml, .yml), or an array as `GridMap` takes it.
 
     `load_image` and `load_ros_map` say what the pixels mean, where the map then lies, and what they raise.
 
     Parameters
     ----------
-    path : path
+    path : path, or bool ndarray, shape (height, width)
         The file; where there is none, the name of a shipped map: ``office.yaml``, 12 m by 8 m, or ``maze1``,
         ``maze2`` and ``maze3``, images of 640 by 480 pixels.
     unknown_is_free : bool
@@ -81,6 +81,8 @@ def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> 
     >>> er.load_map("office.yaml")
     GridMap(160 x 240 cells of 0.05, 26% occupied)
     """
+    if isinstance(path, np.ndarray):
+        return GridMap(path)
     file = find_map(path)
     near = get_close_matches(str(path), [Path(name).stem for name in SHIPPED], 1)
     if near and not file.exists():
