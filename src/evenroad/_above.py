@@ -25,6 +25,7 @@ FUNCTIONS = {
     "Robot.limits": "evenroad.robot.robot_queries:joint_limits",
     "Robot.fk": "evenroad.robot.robot_queries:pose_of_link",
     "Robot.ik": "evenroad.robot.robot_queries:configurations_at",
+    "Robot.with_padding": "evenroad.robot.robot_queries:with_padding",
     "Robot.random": "evenroad.robot.robot_queries:random_configurations",
 }
 """Method -> its function, ``module:name``."""

@@ -40,21 +40,20 @@ class Robot(RobotMethods):
         The bodies, and the links that are tested against each other.
     group : tuple of str
         Joints that are planned for, in the order of a configuration, none of them fixed or a mimic.
-    held : mapping of str to float
-        Values of other movable joints [rad or m].  Default: 0, or the nearest value within limits.
-    states : mapping of str to mapping
-        Named configurations: joint -> value, also of joints outside the group.
+    held, states : mapping of str to float, mapping of str to mapping
+        Values of other movable joints [rad or m], by default 0, or the nearest within limits; and named
+        configurations: joint -> value, also of joints outside the group.
     hulls : tuple of Hull
-        Convex pieces that hold the links' shapes more tightly than capsules: where capsules touch, these decide.
+        Convex pieces of the links' shapes: where the capsules of two links touch, these decide.
     pairs_given, resting : bool, tuple of (str, str)
         Whether the pairs were given, as by an SRDF; if not, the pairs left out because they always touch.
     holds, planes : tuple of str, tuple of Plane
         Links of held objects, see :meth:`holding`; half spaces that are in every scene.
     inner : tuple of Capsule or None
-        Capsules within the links' true shapes: proofs that there is no path are about them.  None: `capsules` are
-        the true shapes.
-    shapes : tuple of Parts
+        Capsules within the links' true shapes, for proofs that there is no path.  None: `capsules` are these shapes.
+    shapes, padding : tuple of Parts, tuple of (str, float)
         The links' true shapes: where capsules touch an obstacle, these decide.  A link without any is its capsules.
+        By how much links are larger against obstacles [m], see :meth:`with_padding`.
 
     Examples
     --------
@@ -78,6 +77,7 @@ class Robot(RobotMethods):
     planes: tuple[Plane, ...] = ()
     inner: tuple[Capsule, ...] | None = None
     shapes: tuple[Parts, ...] = ()
+    padding: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         # The kernel takes endpoints: those of a capsule with a pose are transformed to its link's frame.
@@ -85,9 +85,9 @@ class Robot(RobotMethods):
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of all that decides checks; the names of the robot and its states do not."""
-        # Planes and shapes only where there are any: robots without keep the fingerprints that they always had.
+        # These only where there are any: robots without keep the fingerprints that they always had.
         left_out = {"name", "states", "holds", "inner"}
-        left_out |= {each for each in ("planes", "shapes") if not getattr(self, each)}
+        left_out |= {each for each in ("planes", "shapes", "padding") if not getattr(self, each)}
         return fingerprint_of(*(getattr(self, each.name) for each in fields(self) if each.name not in left_out))
 
     def with_tool(self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = "") -> Robot:
@@ -157,6 +157,7 @@ class Robot(RobotMethods):
             resting=(*self.resting, *tool.resting),
             inner=inner_of_both(self.inner, self.capsules, tool.inner, tool.capsules),
             shapes=(*self.shapes, *tool.shapes) if self.shapes else (),
+            padding=(*self.padding, *tool.padding),
         )
         between = tuple(
             pair
@@ -179,10 +180,8 @@ class Robot(RobotMethods):
             The body, with its pose in the frame of the link that carries it; a HeldObject has the other parameters.
         link : str
             That link.
-        touches : sequence of str
-            Links that it may touch.
-        name : str
-            Its name, for allowed contacts of a scene and for messages.
+        touches, name : sequence of str, str
+            Links that it may touch, and its name, for allowed contacts of a scene and for messages.
 
         Raises
         ------
@@ -267,6 +266,7 @@ def _renamed(robot: Robot, prefix: str) -> Robot:
         resting=tuple((prefix + first, prefix + second) for first, second in robot.resting),
         inner=robot.inner and tuple(replace(each, link=prefix + each.link) for each in robot.inner),
         shapes=tuple(replace(each, link=prefix + each.link) for each in robot.shapes),
+        padding=tuple((prefix + link, metres) for link, metres in robot.padding),
     )
 
 

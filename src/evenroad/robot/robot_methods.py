@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy.typing as npt
 
@@ -175,6 +175,37 @@ class RobotMethods:
         """
         drawn: Floats = above("Robot.random")(self, rng, n)
         return drawn
+
+    def with_padding(self, padding: Mapping[str, float]) -> Self:
+        """Return the robot with links that keep more away from obstacles, as MoveIt's link padding.
+
+        Links are tested against each other as they are.  The clearance of a world is added.
+
+        Parameters
+        ----------
+        padding : mapping of str to float
+            Link -> by how much it is larger against obstacles, from 0 to 1 [m].  Others keep what they have.
+
+        Returns
+        -------
+        Robot
+
+        Raises
+        ------
+        UnknownName
+            If there is no such link.
+        InvalidValue
+            If a number is none, or out of its range.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> robot = er.load_robot("ur5").with_padding({"wrist_3_link": 0.02})
+        >>> er.ArmWorld(robot, "box-reach").valid("home")
+        True
+        """
+        padded: Self = above("Robot.with_padding")(self, padding)
+        return padded
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r}, {self.dof} joints, {len(self.links)} links)"

@@ -47,7 +47,8 @@ def robot_arrays(robot: Robot, tables: RobotTables, bounds: Floats) -> dict[str,
             "frame": _ints([tables.tree.links[link].frame for link in bodies]),
             "hulls": _ints([trees.roots.get(link, -1) for link in bodies]),
         },
-        "capsules": _capsules(capsules, number) | {"speeds": np.ascontiguousarray(tables.speeds.T)},
+        "capsules": _capsules(capsules, number, dict(robot.padding))
+        | {"speeds": np.ascontiguousarray(tables.speeds.T)},
         "pairs": {
             "bodies": _ints([(number[a], number[b]) for a, b in tables.body_pairs]).reshape(-1, 2),
             "by_hulls": _ints([tables.by_hulls]),
@@ -148,7 +149,9 @@ def _ints(values: Sequence[object]) -> Ints:
     return np.array(values, dtype=np.int64)
 
 
-def _capsules(capsules: Sequence[PlacedCapsule], number: dict[str, int]) -> dict[str, npt.NDArray[np.generic]]:
+def _capsules(
+    capsules: Sequence[PlacedCapsule], number: dict[str, int], padding: dict[str, float]
+) -> dict[str, npt.NDArray[np.generic]]:
     counts = [len(capsule.cover.positions) for capsule in capsules]
     return {
         "body": _ints([number[capsule.link] for capsule in capsules]),
@@ -157,5 +160,6 @@ def _capsules(capsules: Sequence[PlacedCapsule], number: dict[str, int]) -> dict
         "half": np.array([capsule.half for capsule in capsules]),
         "radius": np.array([capsule.radius for capsule in capsules]),
         "covering": np.array([capsule.cover.radius for capsule in capsules]),
+        "padding": np.array([padding.get(capsule.link, 0.0) for capsule in capsules]),
         "samples": np.concatenate([np.array(capsule.cover.positions) for capsule in capsules]),
     }

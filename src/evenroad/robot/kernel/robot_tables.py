@@ -41,7 +41,7 @@ class RobotTables:
     capsules : tuple of PlacedCapsule
         Those that do not move come first.
     reach : float
-        No point of the robot is ever farther than this from the root's origin [m].
+        No point of the robot, padding included, is ever farther than this from the root's origin [m].
     capsule_pairs : tuple of pairs of int
         Capsules that are tested against each other.
     speeds, pair_speeds : float64 ndarrays, shapes (capsules, dim) and (capsule pairs + by_hulls, dim)
@@ -82,7 +82,7 @@ def robot_tables(robot: Robot) -> RobotTables:
     # By frame, then by link: bodies lie together, those that are fixed come first.
     order = sorted(range(len(placed)), key=lambda i: (placed[i].frame, robot.links.index(placed[i].link)))
     capsules = tuple(placed[i] for i in order)
-    reach = farthest(tree, capsules, robot)
+    reach = farthest(tree, capsules, robot) + max((metres for _, metres in robot.padding), default=0.0)
     if reach > FARTHEST:
         raise InvalidValue(f"robot {robot.name!r} reaches {reach:.3g} m: more than {FARTHEST:g} leaves no digits")
     moving, fixed = _split_pairs(robot, tree)

@@ -63,7 +63,7 @@ void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle ca
   given.capsules = {of_capsules.span<std::int64_t>("body"), of_capsules.span<std::int64_t>("first_sample"),
                     of_capsules.span<double, 2>("centre"),  of_capsules.span<double, 2>("half"),
                     of_capsules.span<double>("radius"),     of_capsules.span<double>("covering"),
-                    of_capsules.span<double>("samples")};
+                    of_capsules.span<double>("samples"),    of_capsules.span<double>("padding")};
   const auto by_hulls = of_pairs.span<std::int64_t>("by_hulls"), around = of_shapes.span<std::int64_t>("around_first");
   require(by_hulls.size() == 1, "pairs.by_hulls must be one number");
   given.pairs = {of_pairs.span<std::int64_t, 2>("bodies"), by_hulls[0]};

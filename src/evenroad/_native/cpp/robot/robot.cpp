@@ -66,7 +66,7 @@ struct Shapes {
   const double* centre(int i) const { return given.capsules.centre.data() + 3 * i; }
   const double* half(int i) const { return given.capsules.half.data() + 3 * i; }
   double radius(int i) const { return given.capsules.radius[i]; }
-  double covering(int i) const { return given.capsules.covering[i]; }
+  double covering(int i) const { return given.capsules.covering[i] + given.capsules.padding[i]; }
   Range samples(int i) const {
     const auto& first = given.capsules.first_sample;
     return {static_cast<int>(first[i]), static_cast<int>(first[i + 1])};
@@ -123,7 +123,7 @@ void add_capsules(Robot& robot, const GivenRobot& given) {
   const auto& from = given.capsules;
   const std::size_t count = from.body.size();
   require(from.first_sample.size() == count + 1 && from.centre.size() == 3 * count && from.half.size() == 3 * count &&
-              from.radius.size() == count && from.covering.size() == count,
+              from.radius.size() == count && from.covering.size() == count && from.padding.size() == count,
           "arrays of capsules must be equally long");
   for (double place : from.samples) robot.samples.push_back(static_cast<float>(place));
   for (std::size_t i = 0; i < count; i++) {
@@ -137,7 +137,7 @@ void add_capsules(Robot& robot, const GivenRobot& given) {
                               static_cast<float>(length),
                               static_cast<float>(1.0 / std::max(length * length, LEAST_SQUARE)),
                               static_cast<float>(from.covering[i] - from.radius[i])});
-    robot.lengths.capsules.push_back(static_cast<float>(from.covering[i] + given.padding));
+    robot.lengths.capsules.push_back(static_cast<float>(Shapes{given}.covering(static_cast<int>(i)) + given.padding));
   }
 }
 
@@ -215,7 +215,10 @@ void add_shapes(Robot& robot, const GivenRobot& given) {
   for (std::size_t i = 0; 4 * i < inside.rows.size(); i++) {
     robot.inside.push_back({single(inside.rows.data() + 4 * i), static_cast<float>(inside.rows[4 * i + 3])});
   }
-  robot.lengths.shapes.assign(robot.bodies.size(), static_cast<float>(given.padding));
+  for (const Body& body : robot.bodies) {
+    const double padding = given.capsules.padding[body.capsules.first];
+    robot.lengths.shapes.push_back(static_cast<float>(padding + given.padding));
+  }
 }
 
 void add_pairs(Robot& robot, const GivenRobot& given, const std::vector<Around>& balls) {

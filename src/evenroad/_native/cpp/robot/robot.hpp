@@ -131,6 +131,7 @@ struct GivenRobot {
   struct {
     std::span<const std::int64_t> body, first_sample;
     std::span<const double> centre, half, radius, covering, samples;
+    std::span<const double> padding;  // by which each is larger where obstacles are concerned
   } capsules;
   struct {
     std::span<const std::int64_t> bodies;
