@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from functools import lru_cache
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._native import robot as native
+from evenroad.geometry.hulls import winding_number
 from evenroad.geometry.mesh import closed_parts
 from evenroad.geometry.shapes import Mesh, PointCloud
 
@@ -22,6 +24,12 @@ PIECE = 0.1
 """Triangles are cut until no side is longer than this share of the robot's reach: a box around a large one says
 little."""
 
+_CUBE = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))[
+    [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)]
+    + [(2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+]
+"""Triangles of a cube around the origin, outside to the right of their turn."""
+
 
 @lru_cache(maxsize=64)
 def surface_of(body: PointCloud | Mesh, reach: float) -> native.Surface | None:
@@ -35,7 +43,10 @@ def surface_of(body: PointCloud | Mesh, reach: float) -> native.Surface | None:
         near, (closed, turned) = _within_reach(corners, reach), closed_parts(body.triangles)
         solid = corners[closed]
     if len(near) == 0:
-        return None
+        if not turned or abs(winding_number(solid, np.zeros(3))) < 0.5:
+            return None
+        # All that the robot can reach is inside.
+        near = solid = reach * _CUBE
     padding = PADDING * (float(np.linalg.norm(near, axis=2).max()) + radius)
     return native.Surface(np.ascontiguousarray(near), radius + padding, solid, turned, reach)
 

@@ -11,6 +11,10 @@ namespace {
 /// A stretch is halved no more often, whatever the tolerance: its half is then less than 1e-13 of the motion.
 constexpr int DEEPEST_STRETCH = 40;
 
+/// Where stretches move something by more than that, capsules alone decide [m]: shapes are rarely free where they are
+/// not, and two halves cost less than to ask these.
+constexpr double COARSE = 0.005;
+
 /// What sums of single precision are multiplied by to be no less than the true ones.
 constexpr float UP = 1.0F + 3e-7F;
 
@@ -82,6 +86,7 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
     if (level != enlarged_for) {
       half = 0.5 / static_cast<double>(std::int64_t{LANES} << level);
       enlarge(workspace, half);
+      workspace.enlarged.shapes_decide = half * fastest < std::max(COARSE, 2.0 * limits.tolerance);
       enlarged_for = level;
     }
     int taken = 0;

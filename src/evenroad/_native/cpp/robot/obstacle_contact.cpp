@@ -45,7 +45,7 @@ Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, f
 
 /// Return the mask of lanes in which a ball inside of a body's true shape comes within `near` of an obstacle.
 Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacle& obstacle, float near,
-                    Mask asked) {
+                    Mask asked, Wanted wanted) {
   const PlacedFrame& frame = places.frames[body.frame];
   const Vec3x16 origin = frame.origin - spread(obstacle.centre);
   const float* r = obstacle.rotation;
@@ -60,7 +60,7 @@ Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, 
     }
     const float reach = radius + near + obstacle.rounding;
     meeting |= asked & below_zero(squared_distance(obstacle, here) - reach * reach);
-    if (meeting == asked) break;
+    if (meeting == asked || is_enough(meeting, wanted)) break;
   }
   return meeting;
 }
@@ -126,7 +126,7 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
   // From the outermost bodies inwards: those meet obstacles most often.
   for (int b = static_cast<int>(robot.bodies.size()) - 1; b >= robot.fixed_bodies; b--) {
     const Range capsules = robot.bodies[b].capsules;
-    const bool many = capsules.size() > FEW, shaped = robot.bodies[b].shape >= 0;
+    const bool many = capsules.size() > FEW, shaped = lengths.shapes_decide && robot.bodies[b].shape >= 0;
     for (int number = 0; number < blocks; number++) {
       const Block& block = scene.blocks[number];
       Mask near_body = ALL_LANES;
@@ -173,7 +173,7 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
         Mask asked = open[k] & ~blocked;
         if (asked == 0) continue;
         const Mask surely =
-            inside_meeting(robot, places, robot.bodies[b], scene.obstacles[obstacle], lengths.shapes[b], asked);
+            inside_meeting(robot, places, robot.bodies[b], scene.obstacles[obstacle], lengths.shapes[b], asked, wanted);
         if (found != nullptr && blocked == 0 && surely != 0) {
           *found = {Contact::With::OBSTACLE, first[k], scene.obstacles[obstacle].number};
         }

@@ -77,6 +77,7 @@ struct Lengths {
   std::vector<float> body_pairs;    // centres of balls around bodies farther apart than this: none of them touch
   std::vector<float> hull_margins;  // hulls nearer than this count as touching
   std::vector<float> shapes;        // of bodies: true shapes nearer than this to an obstacle touch it
+  bool shapes_decide = true;        // where they are known; else capsules alone do
 
   /// Bodies larger by a margin where obstacles are concerned; they may be as near to each other as before.
   Lengths enlarged(float margin) const;

@@ -14,6 +14,7 @@ namespace {
 /// Single precision makes an obstacle uncertain by less than this share of its farthest point's distance from the
 /// origin.
 constexpr double OBSTACLE_PADDING = 2.5e-7;
+constexpr double STANDS = 2e-6;      // a base may reach so deep into what it stands on [m]
 constexpr float NEVER_HIT = -1e30F;  // half extent that fills unused places of a block
 constexpr double FARTHEST = 1e6;     // no length may be larger [m]: single precision would leave decimetres
 
@@ -157,6 +158,24 @@ double add(Scene& scene, const Exact& o, int number) {
   return rounding - o.rounding;
 }
 
+/// Return whether the true shape of a body that does not move touches an obstacle, which is a little smaller then: a
+/// base that stands on a table does not.
+bool base_touches(const Robot& robot, const Places& places, const Body& body, Exact o, double clearance) {
+  double extents[3];
+  write_extents(o, extents);
+  const double less = STANDS + 2.0 * OBSTACLE_PADDING *
+                                   std::hypot(std::abs(o.centre[0]) + extents[0], std::abs(o.centre[1]) + extents[1],
+                                              std::abs(o.centre[2]) + extents[2]);
+  if (o.rounding > 0) {
+    o.rounding = std::max(o.rounding - less, 0.0);
+  } else {
+    for (double& half : o.half) half = std::max(half - less, 0.0);
+  }
+  Scene alone;
+  add(alone, o, 0);
+  return shape_meeting(robot, places, body, alone, 0, static_cast<float>(clearance), 1, Wanted::FIRST) != 0;
+}
+
 }  // namespace
 
 PlacedFrame placed(const Obstacle& obstacle) {
@@ -199,8 +218,7 @@ Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, M
       const Capsule& capsule = robot.capsules[sphere.capsule];
       if (squared_distance(kept[k], sphere.centre) < near * near &&
           (robot.bodies[capsule.body].shape < 0 ||
-           shape_meeting(robot, places, robot.bodies[capsule.body], scene, static_cast<int>(k),
-                         static_cast<float>(clearance), 1, Wanted::FIRST) != 0)) {
+           base_touches(robot, places, robot.bodies[capsule.body], kept[k], clearance))) {
         scene.fixed_contact = {sphere.capsule, scene.obstacles[k].number};
       }
     }

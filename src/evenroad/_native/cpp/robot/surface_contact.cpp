@@ -207,7 +207,7 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
     if (scene.surfaces_tested[i] == 0) continue;
     const Capsule& capsule = robot.capsules[i];
     const Body& body = robot.bodies[capsule.body];
-    const bool shaped = body.shape >= 0;
+    const bool shaped = lengths.shapes_decide && body.shape >= 0;
     const Asked of{places.capsules[i], samples.subspan(capsule.samples.first, capsule.samples.size()),
                    capsule.half_length, lengths.capsules[i], capsule.slack};
     Mask open = ALL_LANES;
