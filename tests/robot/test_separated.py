@@ -134,10 +134,10 @@ FLAT = """<robot name="flat"><link name="rail"/><link name="plate"><collision>{o
 <limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
 
 
-def flat_link(folder, shape='<box size=".5 .4 .02"/>', origin=""):
+def flat_link(folder, shape='<box size=".5 .4 .02"/>', origin="", bodies="capsules"):
     file = folder / "flat.urdf"
     file.write_text(FLAT.format(shape=shape, origin=origin))
-    return load_robot(file)
+    return load_robot(file, bodies=bodies)
 
 
 def slot(gap, half=0.05):

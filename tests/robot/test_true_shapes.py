@@ -29,7 +29,7 @@ WIDE = "<limit lower='-3' upper='3' velocity='2' effort='1'/>"
 def arm(tmp_path_factory):
     """An arm of a box, a cylinder, a capsule and a fork, with no link tested against another, and its shapes."""
     folder = tmp_path_factory.mktemp("arm")
-    robot = load_robot(write_fork_arm(folder), bodies="shapes")
+    robot = load_robot(write_fork_arm(folder))
     from evenroad.robot.urdf import read_urdf
 
     return replace(robot, pairs=()), read_urdf(folder / "arm.urdf").shapes
@@ -136,7 +136,7 @@ def hollow_arm(folder):
         name="hollow",
     )
     (folder / "hollow.urdf").write_text(text)
-    return load_robot(folder / "hollow.urdf", bodies="shapes")
+    return load_robot(folder / "hollow.urdf")
 
 
 def test_what_is_inside_of_a_link_or_has_it_inside_is_not_free(tmp_path):
@@ -156,9 +156,9 @@ def test_what_is_inside_of_a_link_or_has_it_inside_is_not_free(tmp_path):
     assert not ArmWorld(robot, Scene((around,))).valid(np.array([[0.0], [2.0]])).any()
 
 
-def test_shapes_decide_where_they_are_asked_for_and_only_there(tmp_path):
+def test_shapes_decide_unless_capsules_are_asked_for(tmp_path):
     file = write_fork_arm(tmp_path)
-    shaped, again, capsules = load_robot(file, bodies="shapes"), load_robot(file, bodies="shapes"), load_robot(file)
+    shaped, again, capsules = load_robot(file), load_robot(file, bodies="shapes"), load_robot(file, bodies="capsules")
     assert shaped.shapes == again.shapes
     assert {each.of for each in shaped.shapes} == {"box", "cylinder", "mesh"}
     assert capsules == replace(shaped, shapes=())
@@ -167,7 +167,7 @@ def test_shapes_decide_where_they_are_asked_for_and_only_there(tmp_path):
         refused(InvalidValue, "shapes that decide", require_same_robot, one, Scene(()), other)
     held = Box((0.1, 0.1, 0.1), xyz=(0, 0, 0.1))
     assert shaped.holding(held, shaped.links[-1]).shapes[-1].of == "box"
-    assert capsules.holding(held, capsules.links[-1]).shapes == load_robot("ur5", bodies="shapes").shapes == ()
+    assert capsules.holding(held, capsules.links[-1]).shapes == load_robot("ur5").shapes == ()
 
 
 def test_a_flat_link_passes_a_slot_with_12_mm_on_both_sides(tmp_path):
@@ -187,8 +187,8 @@ def test_a_flat_link_passes_a_slot_with_12_mm_on_both_sides(tmp_path):
         )
     )
     start, goal = np.array([-0.8, 0.1]), np.array([0.8, -0.2])
-    assert plan(ArmWorld(load_robot(tmp_path / "plate.urdf", bodies="shapes"), slot), start, goal).solved
-    capsules = load_robot(tmp_path / "plate.urdf")
+    assert plan(ArmWorld(load_robot(tmp_path / "plate.urdf"), slot), start, goal).solved
+    capsules = load_robot(tmp_path / "plate.urdf", bodies="capsules")
     assert not ArmWorld(capsules, slot).valid(np.array([0.0, 0.0]))
 
 

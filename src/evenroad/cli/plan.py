@@ -118,8 +118,8 @@ class RobotOptions:
     """Groups of the SRDF, or joints, separated by commas, planned for together in this order; you can give several.
     Other joints stay where the named states of start and goal have them, else at 0, or where they do not touch."""
     bodies: Path | None = None
-    """A YAML file of capsules and spheres in place of the robot's collision geometry; or `shapes`: where the capsules
-    that stand for a link touch an obstacle, the shapes of the robot's file decide, which takes longer."""
+    """A YAML file of capsules and spheres in place of the robot's collision geometry; or `capsules`: those that stand
+    for a link decide alone.  Default: where they touch an obstacle, the shapes of the robot's file decide."""
     use_visuals: bool = False
     """Use the visual geometry of links that have no collision geometry."""
     package: tyro.conf.UseAppendAction[tuple[str, ...]] = ()

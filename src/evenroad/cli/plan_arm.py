@@ -17,7 +17,7 @@ from evenroad.cli.plan_parts import (
     output_files,
     wants_points,
 )
-from evenroad.cli.robot import bodiless_rows
+from evenroad.cli.robot import bodiless_rows, decided_by
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
@@ -117,7 +117,7 @@ def _rows(request: Request) -> list[tuple[str, str]]:
         postures = f"{reached.branches} postures, {reached.blocked} in collision ({reached.solver})"
         rows.append(("goal pose", f"{goal}: {postures}"))
     rows += [] if request.model is None else bodiless_rows(request.model)
-    return rows
+    return [*rows, ("decided by", decided_by(robot))] if robot.shapes else rows
 
 
 def _goals(plan: PlanArm) -> list[Goal]:

@@ -65,6 +65,12 @@ class Robot(RobotOptions):
         return 0
 
 
+def decided_by(robot: Arm) -> str:
+    """Return what decides whether a robot touches an obstacle: its capsules, or shapes of its file and their kinds."""
+    kinds = ", ".join(dict.fromkeys(parts.of for parts in robot.shapes))
+    return f"shapes of the file where capsules touch ({kinds})" if kinds else "capsules"
+
+
 def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
     """Return rows, name and text: notes of the loader, links without a body, pairs that always touch."""
     rows = [("note", note) for note in model.notes]
@@ -131,7 +137,7 @@ def _summary(model: RobotModel, world: ArmWorld) -> list[tuple[str, str]]:
     if robot.states:
         rows.append(("states", ", ".join(robot.states)))
     measured = _measured(world)
-    rows += [("obstacles", _conservatism(model, world)), ("checks", _speed(world, measured))]
+    rows += [("decided by", decided_by(robot)), ("obstacles", _conservatism(model, world)), ("checks", _speed(world, measured))]
     if measured["blocking"] is not None and not (model.never_free or model.always_touching):
         text = f"no random configuration is free in {world.scene.name}; most often {measured['blocking']}"
         rows.append(("WARNING", text))

@@ -32,8 +32,8 @@ from evenroad.robot.srdf import Srdf, read_srdf, with_moving_base
 from evenroad.robot.urdf import Urdf, read_urdf
 from evenroad.robot.urdf_xml import RobotFile, outermost
 
-SHAPES = "shapes"
-"""`bodies` where the maker's shapes decide once capsules touch an obstacle."""
+SHAPES, CAPSULES = "shapes", "capsules"
+"""`bodies` where the maker's shapes decide once capsules touch an obstacle, and where capsules alone do."""
 PathLike = str | os.PathLike[str]
 
 
@@ -125,8 +125,8 @@ def load_model(
         SRDF's only group, or the longest chain among several, else every joint that moves and is no mimic, in the order
         of the file.
     bodies : str or path-like, optional
-        ``shapes``: where capsules touch an obstacle the file's shapes decide, and a plan takes up to twenty times as
-        long.  Or a YAML file of capsules and spheres, in place of those fitted (see :func:`read_bodies`).
+        ``shapes``, the default: where capsules touch an obstacle the file's shapes decide.  ``capsules``: they alone do.
+        Or a YAML file of capsules and spheres, in place of shapes of the file (see :func:`read_bodies`).
     use_visuals : bool
         Links without collision geometry use their visuals.
     packages : mapping of str to path-like, optional
@@ -149,8 +149,9 @@ def load_model(
         tuple(sorted((arguments or {}).items())),
     )
     srdf_path = own_srdf if srdf is None else Path(srdf)
-    with_shapes = bodies is not None and os.fspath(bodies) == SHAPES
-    bodies_path = None if bodies is None or with_shapes else Path(bodies)
+    named = None if bodies is None else os.fspath(bodies)
+    with_shapes = named != CAPSULES
+    bodies_path = None if named in (None, SHAPES, CAPSULES) else Path(named)
     asked = file, srdf_path, bodies_path, str(group), with_shapes
     model = known(asked)
     if model is not None:
@@ -158,7 +159,7 @@ def load_model(
     before = stamps((path, srdf_path, bodies_path))
     urdf = read_robot(file)
     before |= stamps(shape.source for shape in urdf.shapes if isinstance(shape, Mesh))
-    others = [("SRDF", srdf_path), ("file of bodies", bodies_path), *([(SHAPES, None)] if with_shapes else [])]
+    others = [("SRDF", srdf_path), ("file of bodies", bodies_path), *([] if with_shapes else [(CAPSULES, None)])]
     key = key_of(urdf, others, group)
     model = cached(key)
     if model is None:
