@@ -85,7 +85,7 @@ def touching(truth: Truth, scene: Scene, q: np.ndarray, margin: float) -> np.nda
 
 def measured(file: Path, rng: np.random.Generator) -> dict[str, object]:
     """Return the row of one robot."""
-    robot = load_robot(file, bodies="shapes")
+    robot = load_robot(file)
     robot = replace(robot, pairs=(), pairs_given=True)
     capsules = replace(robot, shapes=())
     held = {

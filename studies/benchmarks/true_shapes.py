@@ -109,19 +109,21 @@ def problems(robot: Robot, truth: Truth, family: str, each: int) -> list[tuple[S
 
 
 def planned(robot: Robot, scene: Scene, start: np.ndarray, goal: np.ndarray) -> tuple[er.PlanResult, float]:
-    """Return a plan, and its seconds of the second try."""
-    world = ArmWorld(robot, scene)
-    er.plan(world, start, goal)
-    began = time.perf_counter()
+    """Return a plan, and the least of its processor's seconds of three tries after the first."""
+    world, least = ArmWorld(robot, scene), np.inf
     result = er.plan(world, start, goal)
-    return result, time.perf_counter() - began
+    for _ in range(3 if result.solved else 0):
+        began = time.process_time()
+        er.plan(world, start, goal)
+        least = min(least, time.process_time() - began)
+    return result, least
 
 
 def measured(file: Path, each: int) -> list[dict[str, object]]:
     """Return the rows of one robot."""
-    robot = load_robot(file, bodies="shapes")
+    robot = load_robot(file)
     arm = [name for name in robot.group if not any(word in name for word in ("finger", "robotiq", "gripper", "drive"))]
-    robot = load_robot(file, group=arm, bodies="shapes")
+    robot = load_robot(file, group=arm)
     held = {
         joint.name: robot.held.get(joint.name, joint.neutral)
         for joint in robot.joints

@@ -156,6 +156,31 @@ def test_what_is_inside_of_a_link_or_has_it_inside_is_not_free(tmp_path):
     assert not ArmWorld(robot, Scene((around,))).valid(np.array([[0.0], [2.0]])).any()
 
 
+@pytest.mark.parametrize(("high", "is_free"), [(0.0, True), (1e-6, True), (1e-4, False)])
+def test_a_base_may_stand_on_a_table_but_not_in_it(tmp_path, high, is_free):
+    text = urdf(
+        link("base", "<collision><origin xyz='0 0 .05'/><geometry><box size='.3 .2 .1'/></geometry></collision>"),
+        link("arm", "<collision><origin xyz='0 0 .4'/><geometry><box size='.05 .05 .4'/></geometry></collision>"),
+        joint("turn", "base", "arm", "revolute", WIDE, "0 0 0", "0 1 0"),
+        name="standing",
+    )
+    (tmp_path / "standing.urdf").write_text(text)
+    top = Obstacle("table", Box((1.0, 1.0, 0.5), xyz=(0, 0, high - 0.25)))
+    leg = Obstacle("leg", Cylinder(0.1, 0.5, xyz=(0, 0, high - 0.25)))
+    for table in (top, leg):
+        world = ArmWorld(load_robot(tmp_path / "standing.urdf"), Scene((table,)))
+        assert world.valid(np.array([0.0])) == is_free
+        assert world.explain(np.array([0.0])) == ("it is free" if is_free else f"'base' touches {table.name!r}")
+
+
+def test_a_closed_mesh_around_all_that_the_robot_can_reach_is_an_obstacle(tmp_path):
+    robot = hollow_arm(tmp_path)
+    for away, is_free in ((0.0, False), (90.0, True)):
+        mesh = trimesh.creation.box((40.0, 40.0, 40.0)).apply_translation((away, 0, 0))
+        world = ArmWorld(robot, Scene((Obstacle("around", Mesh(from_trimesh(mesh))),)))
+        assert world.valid(np.array([0.3])) == is_free
+
+
 def test_shapes_decide_unless_capsules_are_asked_for(tmp_path):
     file = write_fork_arm(tmp_path)
     shaped, again, capsules = load_robot(file), load_robot(file, bodies="shapes"), load_robot(file, bodies="capsules")
