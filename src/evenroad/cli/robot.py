@@ -137,7 +137,8 @@ def _summary(model: RobotModel, world: ArmWorld) -> list[tuple[str, str]]:
     if robot.states:
         rows.append(("states", ", ".join(robot.states)))
     measured = _measured(world)
-    rows += [("decided by", decided_by(robot)), ("obstacles", _conservatism(model, world)), ("checks", _speed(world, measured))]
+    rows += [("decided by", decided_by(robot)), ("obstacles", _conservatism(model, world))]
+    rows.append(("checks", _speed(world, measured)))
     if measured["blocking"] is not None and not (model.never_free or model.always_touching):
         text = f"no random configuration is free in {world.scene.name}; most often {measured['blocking']}"
         rows.append(("WARNING", text))

@@ -125,8 +125,8 @@ def load_model(
         SRDF's only group, or the longest chain among several, else every joint that moves and is no mimic, in the order
         of the file.
     bodies : str or path-like, optional
-        ``shapes``, the default: where capsules touch an obstacle the file's shapes decide.  ``capsules``: they alone do.
-        Or a YAML file of capsules and spheres, in place of shapes of the file (see :func:`read_bodies`).
+        ``shapes``, the default: where capsules touch an obstacle the file's shapes decide.  ``capsules``: these alone
+        do.  Or a YAML file of capsules and spheres, in place of shapes of the file (see :func:`read_bodies`).
     use_visuals : bool
         Links without collision geometry use their visuals.
     packages : mapping of str to path-like, optional

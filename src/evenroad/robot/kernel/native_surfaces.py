@@ -24,10 +24,11 @@ PIECE = 0.1
 """Triangles are cut until no side is longer than this share of the robot's reach: a box around a large one says
 little."""
 
-_CUBE = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))[
-    [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)]
-    + [(2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
-]
+_SIDES = (
+    ((0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)),
+    (*((2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)),),
+)
+_CUBE = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))[np.concatenate(_SIDES)]
 """Triangles of a cube around the origin, outside to the right of their turn."""
 
 
