@@ -86,9 +86,9 @@ class MakeRoadmap(RobotOptions):
 
 
 _UNTIL = {
-    "drawing configurations": 0.02,
-    "random scenes": 0.1,
-    "narrow passages": 0.9,
+    "drawing configurations": 0.03,
+    "random scenes": 0.2,
+    "narrow passages": 0.95,
     "choosing and joining milestones": 1.0,
 }
 """Stage, in order -> share of the time at its end, about."""

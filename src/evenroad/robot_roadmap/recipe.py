@@ -36,7 +36,7 @@ GAMMA = 4.0
 HARD_QUERIES = 1500
 """Number of random hard queries that milestones are chosen for."""
 
-PAIRS, FEWEST_HARD_QUERIES = 60, 300
+PAIRS, FEWEST_HARD_QUERIES = 120, 300
 """Number of capsule pairs above which a robot gets fewer hard queries in proportion, and their least number."""
 
 SCENES = 400
