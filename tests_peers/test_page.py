@@ -77,13 +77,13 @@ def _changed(before, after):
 
 def test_a_goal_that_is_dragged_is_planned_again_at_least_twenty_times_a_second(page):
     tip = page.world.robot.links.index(page._tip)
-    pose = link_poses(page.world.robot, page._ends["goal"][np.newaxis])[0, tip]
+    pose = link_poses(page.world.robot, page._endpoints["goal"][np.newaxis])[0, tip]
     from evenroad.viz.page import _wxyz
 
     began, moves = time.perf_counter(), 40
     for i in range(moves):
         away = pose[:3, 3] + [-0.002 * i, 0.0, 0.0]
-        result = page.move_end("goal", away, _wxyz(pose[:3, :3]))
+        result = page.move_endpoint("goal", away, _wxyz(pose[:3, :3]))
         place = link_poses(page.world.robot, result.goal[np.newaxis])[0, tip, :3, 3]
         assert result.solved
         np.testing.assert_allclose(place, away, atol=2e-3)
