@@ -58,12 +58,16 @@ class Pool:
 
     def within(self, region: Region) -> Vector:
         """Return the configurations whose tool is in a region, (n, dim)."""
-        centre, half, angle = region
-        cosine, sine = np.cos(angle), np.sin(angle)
-        x, y = (self.tool - centre)[:, :2].T
-        inside = (np.abs(cosine * x + sine * y) <= half[0]) & (np.abs(cosine * y - sine * x) <= half[1])
-        inside &= np.abs(self.tool[:, 2] - centre[2]) <= half[2]
-        return self.q[inside]
+        return self.q[within(self.tool, region)]
+
+
+def within(places: Vector, region: Region) -> npt.NDArray[np.bool_]:
+    """Return which places, (n, 3), are in a region."""
+    centre, half, angle = region
+    cosine, sine = np.cos(angle), np.sin(angle)
+    x, y = (places - centre)[:, :2].T
+    inside = (np.abs(cosine * x + sine * y) <= half[0]) & (np.abs(cosine * y - sine * x) <= half[1])
+    return inside & (np.abs(places[:, 2] - centre[2]) <= half[2])
 
 
 def problems(pool: Pool, seeds: range, kinds: tuple[str, ...] = KINDS) -> Iterator[Problem]:
@@ -212,3 +216,8 @@ def _clutter(rng: np.random.Generator) -> tuple[list[Obstacle], list[Region]]:
 
 
 _SCENES = {"shelf": _shelf, "box": _box, "cage": _cage, "table": _clutter}
+
+
+def scene_of(kind: str, rng: np.random.Generator) -> tuple[list[Obstacle], list[Region]]:
+    """Return the obstacles of a scene of this kind, and the regions that tools go to."""
+    return _SCENES[kind](rng)
