@@ -20,6 +20,24 @@ class Trees:
     def __init__(self, checks: Checks, ends: Floats, samples: Points, steps: Points) -> None: ...
     def grow(self, most_motions: int, batches: int) -> Literal["paused", "spent", "not free", "solved"]: ...
 
+class Improver:
+    path: Floats
+    along_trees: Floats
+    goal: int
+    length: float
+    rounds: int
+    motions: int
+    nodes: int
+    def __init__(
+        self,
+        checks: Checks,
+        ends: Floats,
+        driven_by: tuple[Points, Points, Points, Points],
+        first: tuple[Floats, int, int],
+        is_smoothing: bool,
+    ) -> None: ...
+    def improve(self, rounds: int, motions: int, batches: int) -> bool: ...
+
 class Tree:
     nodes: tuple[Floats, Ints]
     def __init__(self, period: Floats) -> None: ...

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "bind/arrays.hpp"
+#include "planning/improver.hpp"
 #include "planning/native_checks.hpp"
 #include "planning/path_proof.hpp"
 #include "planning/smoother.hpp"
@@ -131,6 +132,55 @@ nb::object prove_or_bend(NativeChecks& checks, nb::handle path, double margin, c
   return is_proved ? points_of(bent) : nb::none();
 }
 
+/// An improver with the array that it reads.
+struct Improvement {
+  FloatRows ends;
+  planning::Improver improver;
+
+  Improvement(NativeChecks& checks, const FloatRows& given_ends, const planning::Sequences& sequences,
+              const planning::Guides& guides, planning::First first, bool is_smoothing)
+      : ends(given_ends), improver(ends.matrix(), sequences, guides, std::move(first), is_smoothing, checks) {}
+};
+
+/// `driven_by` are samples, steps, pairs and directions; `first` is a path, its goal, and the motions that trees
+/// checked.
+void make_improvement(Improvement* improvement, NativeChecks& checks, nb::handle given_ends, nb::tuple driven_by,
+                      nb::tuple first, bool is_smoothing) {
+  const std::size_t dim = checks.joints.size();
+  require(driven_by.size() == 4, "driven_by must be (samples, steps, pairs, directions)");
+  require(first.size() == 3, "first must be (path, goal, motions)");
+  const auto by = [&](std::size_t i, std::size_t columns, bool of_unit_cube, const char* name) {
+    return value_of<const Points*>(driven_by[i], name)->of(columns, of_unit_cube, name);
+  };
+  const FloatRows ends(given_ends, "ends");
+  ends.of_shape({ends.shape(0), dim});
+  require(ends.shape(0) >= 2, "ends must be a start and one goal or more");
+  const auto goal = value_of<std::int64_t>(first[1], "goal"), motions = value_of<std::int64_t>(first[2], "motions");
+  require(goal >= 0 && motions >= 0, "goal and motions must be 0 or more");
+  planning::First given{path_from(FloatRows(first[0], "path"), checks), goal, motions};
+  new (improvement)
+      Improvement(checks, ends, {by(0, dim, true, "samples"), by(1, dim, false, "steps")},
+                  {by(2, 2, true, "pairs"), by(3, dim, false, "directions")}, std::move(given), is_smoothing);
+}
+
+void add_improver(nb::module_& part) {
+  nb::class_<Improvement>(part, "Improver")
+      .def("__init__", &make_improvement, nb::keep_alive<1, 2>(), nb::keep_alive<1, 4>())
+      .def("improve",
+           [](Improvement& improvement, std::int64_t rounds, std::int64_t motions, std::int64_t batches) {
+             require_budget(rounds, "rounds"), require_budget(motions, "motions"), require_budget(batches, "batches");
+             return without_gil([&] { return improvement.improver.improve({rounds, motions, batches}); });
+           })
+      .def_prop_ro("path", [](const Improvement& improvement) { return points_of(improvement.improver.path()); })
+      .def_prop_ro("along_trees",
+                   [](const Improvement& improvement) { return points_of(improvement.improver.along_trees()); })
+      .def_prop_ro("goal", [](const Improvement& improvement) { return improvement.improver.goal(); })
+      .def_prop_ro("length", [](const Improvement& improvement) { return improvement.improver.length(); })
+      .def_prop_ro("rounds", [](const Improvement& improvement) { return improvement.improver.rounds(); })
+      .def_prop_ro("motions", [](const Improvement& improvement) { return improvement.improver.motions(); })
+      .def_prop_ro("nodes", [](const Improvement& improvement) { return improvement.improver.nodes(); });
+}
+
 /// A tree by itself, for tests.
 struct LoneTree {
   planning::Tree tree;
@@ -153,7 +203,7 @@ void add_tree(nb::module_& part) {
       .def(nb::init<nb::handle>())
       .def("add",
            [](LoneTree& lone, nb::handle q, planning::Node parent) {
-             return lone.tree.add(lone.configuration(q), parent < 0 ? planning::NO_NODE : lone.known(parent));
+             return lone.tree.add(lone.configuration(q), parent < 0 ? planning::NO_NODE : lone.known(parent), 1.0);
            })
       .def("nearest",
            [](const LoneTree& lone, nb::handle q) {
@@ -194,6 +244,7 @@ void add_planning(nb::module_& module) {
   part.def("prove_or_bend", &prove_or_bend);
   part.attr("CLEARANCES") = nb::make_tuple(planning::CLEARANCES[0], planning::CLEARANCES[1]);
   add_tree(part);
+  add_improver(part);
 }
 
 }  // namespace evenroad::bind

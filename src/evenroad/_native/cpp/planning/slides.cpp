@@ -15,12 +15,6 @@ constexpr std::array SIZES{0.2, 0.24, 0.3, 0.36, 0.44, 0.54, 0.66, 0.8};
 /// So much of the direction in which the path gets shorter soonest is added to a direction of length 1.
 constexpr double AHEAD = 0.2;
 
-/// The way from neighbour to neighbour has to become shorter by this share.
-constexpr double WORTH_WHILE = 1e-3;
-
-/// A waypoint does not slide where the way by it is longer than the straight one by less than this share.
-constexpr double BEND = 0.01;
-
 /// The states beside a place are so far towards the neighbours, as a share of the way.
 constexpr double BESIDE = 0.4;
 
@@ -41,8 +35,8 @@ Slides::Slides(Path& path, MotionChecks& checks, Matrix<const double> directions
 void Slides::slide(std::size_t i, std::size_t number) {
   const ConstConfiguration a = path_[i - 1], here = path_[i], b = path_[i + 1];
   const auto [before, after] = write_ahead(a, here, b);
-  if (write_direction(a, b, checks_.joints, direction_) > (before + after) * (1.0 - BEND)) return;
-  const double most = (before + after) * (1.0 - WORTH_WHILE);
+  if (write_direction(a, b, checks_.joints, direction_) > (before + after) * (1.0 - fineness.bend)) return;
+  const double most = (before + after) * (1.0 - fineness.worth_while);
   bool is_any_open = false;
   for (std::size_t place = 0; place < CANDIDATES; place++) {
     const bool is_within =
@@ -86,7 +80,7 @@ bool Slides::write_candidate(Candidate& candidate, ConstConfiguration here, std:
   for (std::size_t k = 0; k < here.size(); k++) along += direction[k] * ahead_[k];
   // Rather away from the contact than back.
   const double side = along < 0.0 ? -1.0 : 1.0;
-  double reach = SIZES[turn % SIZES.size()] * shorter;
+  double reach = fineness.size * SIZES[turn % SIZES.size()] * shorter;
   reach /= std::sqrt(1.0 + 2.0 * AHEAD * side * along + AHEAD * AHEAD);
   for (std::size_t k = 0; k < here.size(); k++) {
     candidate.q[k] = here[k] + reach * (side * direction[k] + AHEAD * ahead_[k]);

@@ -12,9 +12,17 @@
 
 namespace evenroad::planning {
 
+/// How far waypoints move, as a share of what is tried at first, and for how little: shares of the way between a
+/// waypoint's neighbours by which it is longer than the straight one, and by which it has to become shorter.
+struct Fineness {
+  double size = 1.0, bend = 0.01, worth_while = 1e-3;
+};
+
 /// Moves single waypoints of a path.
 class Slides {
  public:
+  Fineness fineness;
+
   /// `directions` have length 1 and are used in turn; they must last as long as this.
   Slides(Path& path, MotionChecks& checks, Matrix<const double> directions);
 

@@ -29,6 +29,12 @@ constexpr std::size_t SPARE_PAIRS = 20;
 /// The proof of a motion takes about so many batches, which slides leave to it.
 constexpr std::int64_t OF_PROOF = 6;
 
+/// Of a path that is polished: waypoints slide until they move by less than this share of what is tried at first; they
+/// move less far where a turn makes the path shorter by less than this share; and its motions are divided that are
+/// longer than one of so many parts of it.
+constexpr double LEAST_SIZE = 0.02, FINE_GAIN = 2e-4;
+constexpr std::size_t PARTS = 8;
+
 constexpr std::size_t HALF = LANES / 2;
 
 /// A path without its ends where these nearly touch something: they stay as they are, and what leads away from them.
@@ -97,8 +103,37 @@ void slide_and_shorten(Path& path, const Guides& guides, std::int64_t most_batch
   shortcuts.shortcut_corners(MOST_SHORTCUTS);
 }
 
+/// Put a waypoint into the middle of each long motion.
+void divide(Path& path, const MotionChecks& checks) {
+  std::vector<double> middle(checks.joints.size());
+  path.measure();
+  const double longest = path.length() / static_cast<double>(PARTS);
+  for (std::size_t i = path.size() - 1; i-- > 0;) {
+    if (path.place(i + 1) - path.place(i) < longest) continue;
+    path.write_place(i, 0.5 * (path.place(i) + path.place(i + 1)), middle);
+    path.insert(i + 1, middle);
+  }
+  path.measure();
+}
+
+/// Let waypoints slide, ever less far, while that gains anything.
+void slide_finely(Path& path, const Guides& guides, std::size_t turn, MotionChecks& checks) {
+  Slides slides(path, checks, guides.directions);
+  std::size_t number = 977 * turn;
+  divide(path, checks);
+  slides.fineness = {1.0, 1e-5, 1e-6};
+  while (slides.fineness.size > LEAST_SIZE) {
+    const double length = path.length();
+    for (std::size_t i = 1; i + 1 < path.size(); i++) slides.slide(i, number++);
+    path.measure();
+    if (path.length() > length * (1.0 - FINE_GAIN)) slides.fineness.size *= 0.5;
+  }
+  Shortcuts(path, checks, Demand::FREE).pass_by();
+}
+
 /// Return the path drawn tight and proved; nothing where it is not.
-std::optional<Path> smoothed(const Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks) {
+template <class Draw>
+std::optional<Path> drawn(const Path& path, const Guides& guides, Draw draw, MotionChecks& checks) {
   std::optional<Middle> middle;
   double margin = 0.0;
   for (const double each : CLEARANCES) {
@@ -107,7 +142,7 @@ std::optional<Path> smoothed(const Path& path, const Guides& guides, std::int64_
     middle = between_ends(path, checks);
     if (middle) break;
   }
-  if (middle) slide_and_shorten(middle->path, guides, most_batches, checks);
+  if (middle) draw(middle->path);
   checks.keep_away(0.0);
   if (!middle) return {};
   Path shorter = std::move(*middle).whole();
@@ -141,11 +176,23 @@ void shorten(Path& path, Matrix<const double> pairs, std::int64_t most_shortcuts
 
 bool smooth(Path& path, const Guides& guides, std::int64_t most_batches, bool is_given_proved, MotionChecks& checks) {
   if (path.size() < 3) return true;
-  if (std::optional<Path> shorter = smoothed(path, guides, most_batches, checks)) {
+  const std::int64_t most = checks.counts.batches + most_batches;
+  const auto slide = [&](Path& middle) { slide_and_shorten(middle, guides, most, checks); };
+  if (std::optional<Path> shorter = drawn(path, guides, slide, checks)) {
     path = std::move(*shorter);
     return true;
   }
   return shorten_as_given(path, guides, most_batches, is_given_proved, checks);
+}
+
+bool polish(Path& path, const Guides& guides, std::size_t turn, MotionChecks& checks) {
+  path.measure();
+  std::optional<Path> finer =
+      drawn(path, guides, [&](Path& middle) { slide_finely(middle, guides, turn, checks); }, checks);
+  if (finer) finer->measure();
+  if (!finer || finer->length() >= path.length()) return false;
+  path = std::move(*finer);
+  return true;
 }
 
 }  // namespace evenroad::planning

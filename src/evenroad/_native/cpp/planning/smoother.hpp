@@ -31,4 +31,8 @@ void shorten(Path& path, Matrix<const double> pairs, std::int64_t most_shortcuts
 /// that is not proved either, and `is_given_proved` does not say that it was.
 bool smooth(Path& path, const Guides& guides, std::int64_t most_batches, bool is_given_proved, MotionChecks& checks);
 
+/// Draw a path of proved motions tighter, by waypoints that slide ever less far; return whether it became shorter, and
+/// is proved.  The turn says which directions come first.
+bool polish(Path& path, const Guides& guides, std::size_t turn, MotionChecks& checks);
+
 }  // namespace evenroad::planning

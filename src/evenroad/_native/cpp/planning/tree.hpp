@@ -1,4 +1,5 @@
-// A tree of configurations: its nodes, which of them is nearest to a place, and which was tried least often.
+// A tree of configurations: its nodes, how far they are from the root, which is nearest to a place, and which was tried
+// least often.
 #pragma once
 
 #include <cstddef>
@@ -34,11 +35,18 @@ class Tree {
   bool is_proved(Node node) const { return proved_[static_cast<std::size_t>(node)] != 0; }
   void set_proved(Node node) { proved_[static_cast<std::size_t>(node)] = 1; }
 
-  /// Add a configuration, which is no node of this tree, and return its number.
-  Node add(ConstConfiguration q, Node parent);
+  /// How long the way from the root to a node is.
+  double cost(Node node) const { return costs_[static_cast<std::size_t>(node)]; }
+
+  /// Add a configuration, which is no node of this tree, so far from its parent, and return its number.
+  Node add(ConstConfiguration q, Node parent, double apart);
 
   /// Return the node nearest to a configuration, the first of equals; distances are of single precision.
   Node nearest(ConstConfiguration q) const;
+
+  /// Return the nearest of the nodes by which a way from the root to a configuration may be no longer than this, or
+  /// NO_NODE.
+  Node nearest_within(ConstConfiguration q, double longest) const;
 
   /// Return the node that was tried least often, the first of equals.
   Node least_tried() const;
@@ -47,13 +55,17 @@ class Tree {
   void remove_branch(Node node);
 
  private:
+  template <class Admitted>
+  Node nearest_of(ConstConfiguration q, Admitted admitted) const;
   void write_columns(Node node);
   void make_room();
 
   std::size_t dim_, capacity_ = 0;
-  std::vector<double> nodes_;
+  std::vector<double> nodes_, costs_;
   /// The nodes by coordinate, `capacity_` numbers each; places that hold no node are far away.
   std::vector<float> columns_;
+  /// The costs of the nodes, in single precision, as many.
+  std::vector<float> cost_column_;
   std::vector<float> periods_;
   std::vector<Node> parents_;
   std::vector<std::int64_t> tried_;

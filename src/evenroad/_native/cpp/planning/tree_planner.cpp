@@ -14,15 +14,20 @@ constexpr std::int64_t MOST_STEPS = 64;
 /// So many goals at most are first tried straight on.
 constexpr Node MOST_STRAIGHT = 16;
 
+/// Trees that offered no step so often in a row have no room to grow within their bounds.
+constexpr std::int64_t MOST_IDLE = 1000;
+
 /// Of the proofs of the motions of a path [m].
 constexpr ProofLimits PROOF{1e-6, 1024};
 
 }  // namespace
 
-TreePlanner::TreePlanner(Matrix<const double> ends, const Sequences& sequences, MotionChecks& checks)
+TreePlanner::TreePlanner(Matrix<const double> ends, const Sequences& sequences, MotionChecks& checks,
+                         const PathBound* bound, std::size_t round)
     : ends_(ends),
       checks_(checks),
-      steps_(checks.joints, sequences),
+      bound_(bound),
+      steps_(checks.joints, sequences, bound, round),
       trees_{Tree(checks.joints), Tree(checks.joints)},
       here_(ends.columns),
       there_(ends.columns),
@@ -40,7 +45,9 @@ Growth TreePlanner::grow(std::int64_t most_motions, std::int64_t batches) {
   while (true) {
     if (is_spent()) return Growth::SPENT;
     if (checks_.counts.batches >= pause) return Growth::PAUSED;
-    const Node goals = std::min(static_cast<Node>(goals_.size()), MOST_STRAIGHT);
+    if (idle_ > MOST_IDLE) return Growth::SPENT;
+    // Bounds come from a path: by then the straight ways were tried.
+    const Node goals = bound_ != nullptr ? 0 : std::min(static_cast<Node>(goals_.size()), MOST_STRAIGHT);
     const bool is_solved = straight_ < goals ? join(0, 0, straight_++) : grow_once();
     if (is_solved) return Growth::SOLVED;
   }
@@ -65,7 +72,7 @@ void TreePlanner::plant() {
       if (!inside[lane] || touching[lane]) continue;
       const std::size_t row = first + lane;
       for (std::size_t k = 0; k < here_.size(); k++) here_[k] = checks_.state(k, lane);
-      trees_[row == 0 ? 0 : 1].add(here_, NO_NODE);
+      trees_[row == 0 ? 0 : 1].add(here_, NO_NODE, 0.0);
       if (row > 0) goals_.push_back(static_cast<std::int64_t>(row) - 1);
     }
     if (trees_[0].empty()) return;
@@ -83,15 +90,28 @@ bool TreePlanner::grow_once() {
   const std::size_t tree = growing_tree();
   Tree& own = trees_[tree];
   const auto left = static_cast<std::size_t>(most_motions_ - checks_.counts.motions);
-  for (const Step& step : steps_.next(own, std::min(STEPS_AT_ONCE, left), checks_)) {
+  const std::int64_t before = checks_.counts.batches;
+  const std::span<const Step> steps = steps_.next(own, tree, std::min(STEPS_AT_ONCE, left), checks_);
+  idle_ = steps.empty() && checks_.counts.batches == before ? idle_ + 1 : 0;
+  for (const Step& step : steps) {
     if (is_spent()) return false;
     if (!checks_.is_free(own[step.origin], step.target, Known::START)) continue;
-    const Node found = own.add(step.target, step.origin);
-    if (join(tree, found, trees_[1 - tree].nearest(own[found]))) return true;
+    const double apart = write_direction(own[step.origin], step.target, checks_.joints, direction_);
+    const Node found = own.add(step.target, step.origin, apart);
+    const Node other = other_end(tree, found);
+    if (other == NO_NODE) continue;
+    if (join(tree, found, other)) return true;
     // The proof failed and took nodes away: the other steps know old numbers.
     if (have_met()) return false;
   }
   return false;
+}
+
+/// Return the node of the other tree to go on to: the nearest, with bounds of those where the path is short enough.
+Node TreePlanner::other_end(std::size_t tree, Node found) const {
+  const Tree &own = trees_[tree], &other = trees_[1 - tree];
+  return bound_ == nullptr ? other.nearest(own[found])
+                           : other.nearest_within(own[found], bound_->longest - own.cost(found));
 }
 
 /// Go from a node to one of the other tree; return whether that makes a path of which every motion is proved.
@@ -122,7 +142,7 @@ Node TreePlanner::reach(std::size_t tree, Node found, Node other) {
     if (is_spent()) return NO_NODE;
     if (!checks_.is_free(own[found], target_, is_last ? Known::BOTH_ENDPOINTS : Known::START)) return NO_NODE;
     if (is_last) return found;
-    found = own.add(target_, found);
+    found = own.add(target_, found, length / static_cast<double>(steps));
   }
   return NO_NODE;
 }

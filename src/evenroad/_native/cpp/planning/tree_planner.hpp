@@ -24,8 +24,10 @@ enum class Growth : std::uint8_t { PAUSED, SPENT, NOT_FREE, SOLVED };
 class TreePlanner {
  public:
   /// `ends` are the start and the goals, of which the first are tried straight on.  Ends, sequences and the joints of
-  /// the checks must last as long as this.
-  TreePlanner(Matrix<const double> ends, const Sequences& sequences, MotionChecks& checks);
+  /// the checks must last as long as this.  With a bound, the path is shorter than that allows; each
+  /// round is driven by other points of the sequences.
+  TreePlanner(Matrix<const double> ends, const Sequences& sequences, MotionChecks& checks,
+              const PathBound* bound = nullptr, std::size_t round = 0);
 
   /// Grow until the trees meet, so many motions are spent, or about so many batches of sixteen were checked in this
   /// call; the next call goes on.
@@ -45,6 +47,7 @@ class TreePlanner {
   bool is_planted() const { return !trees_[0].empty() && !trees_[1].empty(); }
   std::size_t growing_tree();
   bool grow_once();
+  Node other_end(std::size_t tree, Node found) const;
   bool join(std::size_t tree, Node found, Node other);
   Node reach(std::size_t tree, Node found, Node other);
   bool have_met() const { return met_[0] != NO_NODE; }
@@ -55,6 +58,7 @@ class TreePlanner {
 
   Matrix<const double> ends_;
   MotionChecks& checks_;
+  const PathBound* bound_;
   TreeSteps steps_;
   /// From the start, and from the goals.
   std::array<Tree, 2> trees_;
@@ -67,6 +71,8 @@ class TreePlanner {
   /// Where the trees met last: a node of each, or none.
   std::array<Node, 2> met_{NO_NODE, NO_NODE};
   std::int64_t most_motions_ = 0;
+  /// How often in a row the tree had no step to offer.
+  std::int64_t idle_ = 0;
   std::vector<double> here_, there_, direction_, target_;
   std::vector<double> path_;
   std::int64_t goal_ = -1;

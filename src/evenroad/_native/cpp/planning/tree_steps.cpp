@@ -18,6 +18,9 @@ constexpr double STEP_SHARE = 1.0 / 5.8, LONGEST_STEP = 1.5;
 /// Steps around a node are within so many steps, but for the largest [rad].
 constexpr double BALL_SHARE = 1.5, LARGEST_BALL = 2.0;
 
+/// So many steps of the sequence are rounds apart.
+constexpr std::size_t APART = 1279;
+
 /// Shifts of an even sequence of their own: multiples of the golden ratio, one more for each coordinate.
 constexpr double GOLDEN = 0.6180339887498949;
 
@@ -31,11 +34,14 @@ double longest_step(const Joints& joints) {
 
 }  // namespace
 
-TreeSteps::TreeSteps(const Joints& joints, const Sequences& sequences)
+TreeSteps::TreeSteps(const Joints& joints, const Sequences& sequences, const PathBound* bound, std::size_t round)
     : joints_(joints),
       sequences_(sequences),
+      bound_(bound),
       longest_(longest_step(joints)),
       radii_(joints.size()),
+      next_sample_(round * sequences.samples.rows),
+      next_step_(round * APART),
       sample_(joints.size()),
       direction_(joints.size()) {
   for (std::size_t k = 0; k < joints.size(); k++) {
@@ -44,14 +50,34 @@ TreeSteps::TreeSteps(const Joints& joints, const Sequences& sequences)
   for (Step& step : offered_) step.target.resize(joints.size());
 }
 
-std::span<const Step> TreeSteps::next(Tree& tree, std::size_t most, MotionChecks& checks) {
+std::span<const Step> TreeSteps::next(Tree& tree, std::size_t side, std::size_t most, MotionChecks& checks) {
   write_sample();
-  const Node closest = tree.nearest(sample_);
-  if (tree.tried(closest) < EXTENSIONS) {
-    tree.tried(closest)++;
-    return extension(tree, closest);
+  const Node origin = closest(tree, side);
+  if (origin == NO_NODE) return {};
+  if (tree.tried(origin) < EXTENSIONS) {
+    tree.tried(origin)++;
+    const std::span<const Step> step = extension(tree, origin);
+    return is_allowed(tree, side, step[0]) ? step : step.first(0);
   }
-  return ball_steps(tree, closest, most, checks);
+  return ball_steps(tree, side, origin, most, checks);
+}
+
+/// Return the node nearest to the sample; with bounds, of those from which it is not too far from the root.
+///
+/// How far it may be is even between the least and the most: so ways from the root become as short as needed.
+Node TreeSteps::closest(const Tree& tree, std::size_t side) const {
+  if (bound_ == nullptr) return tree.nearest(sample_);
+  const double least = bound_->distance(sample_, side);
+  const double room = bound_->longest - bound_->distance(sample_, 1 - side) - least;
+  const double share = modulo(static_cast<double>(next_sample_) * GOLDEN, 1.0);
+  return room > 0.0 ? tree.nearest_within(sample_, least + share * room) : NO_NODE;
+}
+
+/// Return whether bounds on paths, if there are any, allow this step.
+bool TreeSteps::is_allowed(const Tree& tree, std::size_t side, const Step& step) {
+  if (bound_ == nullptr) return true;
+  const double cost = tree.cost(step.origin) + write_direction(tree[step.origin], step.target, joints_, direction_);
+  return cost + bound_->distance(step.target, 1 - side) < bound_->longest;
 }
 
 void TreeSteps::write_sample() {
@@ -75,7 +101,10 @@ std::span<const Step> TreeSteps::extension(const Tree& tree, Node closest) {
   return {offered_.data(), 1};
 }
 
-std::span<const Step> TreeSteps::ball_steps(Tree& tree, Node closest, std::size_t most, MotionChecks& checks) {
+std::span<const Step> TreeSteps::ball_steps(Tree& tree, std::size_t side, Node closest, std::size_t most,
+                                            MotionChecks& checks) {
+  std::array<bool, STEPS_AT_ONCE> is_kept{};
+  bool is_any_kept = false;
   for (std::size_t i = 0; i < most; i++) {
     Step& step = offered_[i];
     step.origin = i % 2 == 1 ? closest : tree.least_tried();
@@ -84,16 +113,19 @@ std::span<const Step> TreeSteps::ball_steps(Tree& tree, Node closest, std::size_
     next_step_++;
     for (std::size_t k = 0; k < here.size(); k++) step.target[k] = here[k] + radii_[k] * ball[k];
     bring_inside(step.target, joints_);
+    is_any_kept |= is_kept[i] = is_allowed(tree, side, step);
     write_direction(here, step.target, joints_, direction_);
     for (std::size_t k = 0; k < here.size(); k++) {
       checks.state(k, 2 * i) = here[k] + 0.5 * direction_[k];
       checks.state(k, 2 * i + 1) = step.target[k];
     }
   }
+  if (!is_any_kept) return {};
   const Touching touching = checks.touching();
   checks.counts.configurations += static_cast<std::int64_t>(2 * most);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < most; i++) {
+    if (!is_kept[i]) continue;
     if (touching[2 * i] || touching[2 * i + 1]) {
       // A motion that was asked for, and is blocked.
       checks.counts.motions++;

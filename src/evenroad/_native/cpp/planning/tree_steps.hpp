@@ -9,6 +9,7 @@
 
 #include "common/matrix.hpp"
 #include "planning/motion_checks.hpp"
+#include "planning/path_bound.hpp"
 #include "planning/tree.hpp"
 
 namespace evenroad::planning {
@@ -33,22 +34,26 @@ struct Sequences {
 /// Offers the next steps of a tree.
 class TreeSteps {
  public:
-  TreeSteps(const Joints& joints, const Sequences& sequences);
+  /// With bounds on paths, steps stay where these allow.  Each round takes other points of the sequences.
+  TreeSteps(const Joints& joints, const Sequences& sequences, const PathBound* bound, std::size_t round);
 
   /// No step of a tree is longer.
   double longest() const { return longest_; }
 
-  /// Return where the tree may go next: one extension, or of at most so many steps those free in the middle and at the
-  /// end.
-  std::span<const Step> next(Tree& tree, std::size_t most, MotionChecks& checks);
+  /// Return where a tree, 0 that of the start, may go next: one extension, or of at most so many steps those free in
+  /// the middle and at the end.
+  std::span<const Step> next(Tree& tree, std::size_t side, std::size_t most, MotionChecks& checks);
 
  private:
   void write_sample();
+  Node closest(const Tree& tree, std::size_t side) const;
+  bool is_allowed(const Tree& tree, std::size_t side, const Step& step);
   std::span<const Step> extension(const Tree& tree, Node closest);
-  std::span<const Step> ball_steps(Tree& tree, Node closest, std::size_t most, MotionChecks& checks);
+  std::span<const Step> ball_steps(Tree& tree, std::size_t side, Node closest, std::size_t most, MotionChecks& checks);
 
   const Joints& joints_;
   Sequences sequences_;
+  const PathBound* bound_;
   double longest_;
   /// Of the ball of steps, along each coordinate.
   std::vector<double> radii_;

@@ -1,0 +1,125 @@
+// Trees may find a path that is longer than the best by a share that changes from round to round: smoothing makes it
+// shorter.  What they may find at most comes near the best path again and again, so in the end no better one is missed.
+#include "planning/improver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "planning/shortcuts.hpp"
+
+namespace evenroad::planning {
+
+namespace {
+
+/// Paths of trees may be longer than the best path by up to this share, by that times the square of a multiple of the
+/// golden ratio, without its integer.
+constexpr double LOOSEST = 3.0, GOLDEN = 0.6180339887498949;
+
+/// The trees of a round may check so many motions at least, or so many times those of the first path, times 1, 1, 2, 1,
+/// 1, 2, 4 ...
+constexpr std::int64_t LEAST_MOTIONS = 400, TIMES_FIRST = 2;
+
+/// After so many rounds without a better path the best is polished, so often while that gains anything.
+constexpr std::int64_t WAIT = 3;
+constexpr std::size_t MOST_POLISHED = 4;
+
+/// A path that exceeds the best by less than this share is polished, too.
+constexpr double PROMISING = 0.01;
+
+/// After so many batches of sixteen checks no waypoint slides any more before a path is polished.
+constexpr std::int64_t SMOOTHING = 500;
+
+/// A path is as short as can be when it exceeds the straight distance by less than this share.
+constexpr double STRAIGHT = 1e-9;
+
+/// Return term i >= 1 of 1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8 ... (M. Luby, A. Sinclair, D. Zuckerman, 1993).
+std::int64_t luby(std::int64_t i) {
+  std::int64_t power = 1;
+  while (power < i + 1) power *= 2;
+  return power == i + 1 ? power / 2 : luby(i - power / 2 + 1);
+}
+
+}  // namespace
+
+Improver::Improver(Matrix<const double> ends, const Sequences& sequences, const Guides& guides, First first,
+                   bool is_smoothing, MotionChecks& checks)
+    : ends_(ends),
+      sequences_(sequences),
+      guides_(guides),
+      checks_(checks),
+      is_smoothing_(is_smoothing),
+      bound_(ends, checks.joints),
+      best_(first.path),
+      along_trees_(std::move(first.path)),
+      goal_(first.goal),
+      round_motions_(std::max(LEAST_MOTIONS, TIMES_FIRST * std::min(first.motions, MOST_MOTIONS))),
+      is_polished_(!is_smoothing) {
+  best_.measure();
+}
+
+bool Improver::improve(Effort most) {
+  while (length() > (1.0 + STRAIGHT) * least()) {
+    if (checks_.counts.batches >= most.batches || motions_ >= most.motions) return true;
+    if (!trees_) {
+      const bool is_last = rounds_ >= most.rounds;
+      if (!is_polished_ && (is_last || rounds_ - best_round_ >= WAIT)) {
+        polish_best();
+        continue;
+      }
+      if (is_last) return true;
+      begin_round();
+    }
+    switch (grow(most)) {
+      case Growth::PAUSED:
+        return true;
+      case Growth::SOLVED:
+        take(trees_->path(), trees_->goal());
+        break;
+      case Growth::SPENT:
+      case Growth::NOT_FREE:
+        if (left_ > 0 && motions_ >= most.motions) return true;
+    }
+    nodes_ += trees_->tree(0).size() + trees_->tree(1).size();
+    trees_.reset();
+  }
+  return false;
+}
+
+void Improver::begin_round() {
+  rounds_++;
+  const double share = std::fmod(static_cast<double>(rounds_) * GOLDEN, 1.0);
+  bound_.longest = is_smoothing_ ? length() * (1.0 + LOOSEST * share * share) : length();
+  left_ = round_motions_ * luby(rounds_);
+  trees_.emplace(ends_, sequences_, checks_, &bound_, static_cast<std::size_t>(rounds_));
+}
+
+Growth Improver::grow(Effort most) {
+  const std::int64_t before = checks_.counts.motions;
+  const std::int64_t some = std::min(left_, most.motions - motions_);
+  const Growth growth = trees_->grow(before + some, most.batches - checks_.counts.batches);
+  const std::int64_t checked = checks_.counts.motions - before;
+  motions_ += checked, left_ -= checked;
+  return growth;
+}
+
+/// Take a path of the trees if it is the best once it is drawn tight.
+void Improver::take(const std::vector<double>& points, std::int64_t goal) {
+  Path path{points, checks_.joints};
+  if (is_smoothing_) smooth(path, guides_, SMOOTHING, true, checks_);
+  path.measure();
+  if (is_smoothing_ && path.length() < (1.0 + PROMISING) * length() && path.length() >= length()) {
+    polish(path, guides_, 0, checks_);
+    path.measure();
+  }
+  if (path.length() >= length()) return;
+  best_ = std::move(path), along_trees_ = Path{points, checks_.joints}, goal_ = goal;
+  is_polished_ = !is_smoothing_, polished_ = 0, best_round_ = rounds_;
+}
+
+void Improver::polish_best() {
+  is_polished_ = !polish(best_, guides_, polished_++, checks_) || polished_ >= MOST_POLISHED;
+  best_.measure();
+}
+
+}  // namespace evenroad::planning

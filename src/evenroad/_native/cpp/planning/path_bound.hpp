@@ -1,0 +1,42 @@
+// How long a path may be, and how short it can be at best: by straight distances to the start and to the goals.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "common/matrix.hpp"
+#include "planning/joints.hpp"
+
+namespace evenroad::planning {
+
+/// A bound on paths from a start to the nearest of some goals.
+class PathBound {
+ public:
+  /// Paths along trees are shorter.
+  double longest = std::numeric_limits<double>::infinity();
+
+  /// `ends` are the start and the goals; they and the joints must last as long as this.
+  PathBound(Matrix<const double> ends, const Joints& joints) : ends_(ends), joints_(joints), way_(joints.size()) {}
+
+  /// Return the distance to the start, side 0, or to the nearest goal, side 1.
+  double distance(ConstConfiguration q, std::size_t side) const {
+    if (side == 0) return write_direction(ends_[0], q, joints_, way_);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t row = 1; row < ends_.rows; row++) {
+      least = std::min(least, write_direction(ends_[row], q, joints_, way_));
+    }
+    return least;
+  }
+
+  /// Return a length that no path falls below.
+  double least() const { return distance(ends_[0], 1); }
+
+ private:
+  Matrix<const double> ends_;
+  const Joints& joints_;
+  mutable std::vector<double> way_;
+};
+
+}  // namespace evenroad::planning
