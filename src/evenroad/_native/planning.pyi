@@ -27,6 +27,7 @@ class Improver:
     length: float
     rounds: int
     motions: int
+    smoothing_motions: int
     nodes: int
     def __init__(
         self,
@@ -36,7 +37,7 @@ class Improver:
         first: tuple[Floats, int, int],
         is_smoothing: bool,
     ) -> None: ...
-    def improve(self, rounds: int, motions: int, batches: int) -> bool: ...
+    def improve(self, rounds: int, motions: int, batches: int) -> Literal["paused", "spent", "shortest"]: ...
 
 class Tree:
     nodes: tuple[Floats, Ints]

@@ -151,6 +151,25 @@ def smooth_apart(world: ArmWorld, path: Floats, *, batches: int) -> tuple[Floats
     return apart if is_short else shortest, motions + more
 
 
+def improver(
+    world: PlansWithTrees,
+    terminals: Floats,
+    samples: planning.Points,
+    first: tuple[Floats, int, int],
+    *,
+    is_smoothing: bool,
+) -> planning.Improver:
+    """Return what makes a path ever shorter: `first` is the path, the row of its goal, and the motions checked for it.
+
+    Its motions are proved, and so are those of the better paths.  Without smoothing they are as trees find them.
+    """
+    dim = world.space.dim
+    guides = native_points(share_pairs, PAIRS), native_points(sphere_points, dim)
+    return planning.Improver(
+        checks_of(world), terminals, (samples, native_points(ball_points, dim), *guides), first, is_smoothing
+    )
+
+
 def checks_of(world: PlansWithTrees) -> planning.Checks:
     """Return the checks of a world for one planner."""
     return planning.Checks(world.checker)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._native.planning import Points
+from evenroad._native.planning import Improver, Points
 from evenroad.planning import arm_trees
 from evenroad.planning.plain_trees import grow_trees
 from evenroad.roadmap.connector import Connection, Connector
@@ -61,6 +61,14 @@ class ArmTrees:
         dim = len(start)
         samples = Points(shifted_cube_points(dim, variant)) if variant else native_points(cube_points, dim)
         return arm_trees.joined(inside, terminals, samples, most_motions, seconds)
+
+    def improver(
+        self, world: Any, terminals: Floats, first: tuple[Floats, int, int], *, variant: int, is_smoothing: bool
+    ) -> Improver:
+        """Return what makes a `first` path shorter: the path, the row of its goal, and the motions checked for it."""
+        inside, dim = self.inside or world, terminals.shape[1]
+        samples = Points(shifted_cube_points(dim, variant)) if variant else native_points(cube_points, dim)
+        return arm_trees.improver(inside, terminals, samples, first, is_smoothing=is_smoothing)
 
     def smooth(self, world: ArmWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """See :func:`evenroad.planning.arm_trees.smooth_apart`; quickly by its :func:`shorten`."""

@@ -6,8 +6,7 @@ Each plans until there is a path, a proof that there is none, or the budget is s
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import count, pairwise
-from time import perf_counter as now
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
@@ -17,19 +16,15 @@ from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import CELLS, connector_of, trees_for
 from evenroad.planning.growing import GrowingPRM
+from evenroad.planning.improve import improved, rest_of
 from evenroad.roadmap.answer import connected, gave_up, refusal, shown_apart
 from evenroad.roadmap.attempt import NO_LIMIT, Attempt
-from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Connection, Connector
 from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.query import Query
-from evenroad.roadmap.result import NO_POINTS, PlanResult, Stage
+from evenroad.roadmap.result import NO_POINTS, PlanResult
 from evenroad.world.gridmap.gridmap import DiskWorld
 
-NO_BETTER = 1e-9
-"""Share by which a path may exceed the shortest possible one before it is improved."""
-LEAST_MOTIONS, LONGER = 1000, 4
-"""Largest number of motions of a round: the larger of a number and a multiple of the first path's motions."""
 TO_NEAREST = 300
 """Largest number of motions checked towards the nearest of several goals alone."""
 
@@ -47,7 +42,8 @@ class RRTConnect:
     ----------
     improve : bool
         Go on after the first path, until the budget is spent, and return the best of all.  The count ``rounds`` is
-        then the number of plans, and `stages` says when better paths were found.
+        then the number of plans, and `stages` says when better paths were found.  Trees of arms then grow only where a
+        path may be shorter: given time, the path comes as near to the shortest as you like.
 
     Examples
     --------
@@ -133,10 +129,10 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
         connection = _connection(attempt, connector, more, variant)
     if connection.goal >= 0:
         result = connected(attempt, connection)
-        return _improved(attempt, connector, result, variant) if improve else result
+        return improved(attempt, connector, result, variant) if improve else result
     if (left := attempt.left()) is None:
         return gave_up(attempt, connection)
-    return _growing(improve).solve(_rest(attempt, left))
+    return _growing(improve).solve(rest_of(attempt, left))
 
 
 def _variant(rng: RngLike) -> int:
@@ -164,71 +160,3 @@ def _connection(attempt: Attempt, connector: Connector, most: int, variant: int)
         configurations=near.configurations + found.configurations,
         motions=near.motions + found.motions,
     )
-
-
-def _improved(attempt: Attempt, connector: Connector, first: PlanResult, variant: int) -> PlanResult:
-    """Return the best path within the rest of the budget or of its rounds; never a worse one than the first."""
-    nodes = first.counts["nodes"]
-    stage = Stage(nodes, nodes, attempt.motions_checked, first.cost, attempt.elapsed())
-    if connector.varies:
-        return _by_rounds(attempt, connector, first, stage, variant)
-    return _by_growth(attempt, first, stage)
-
-
-def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage: Stage, variant: int) -> PlanResult:
-    """Plan repeatedly, each time with another sequence."""
-    best, stages, nodes, counts, done = first, [stage], stage.points, dict(first.counts), 0
-    # A round that is much longer than the first costs the time of many others.
-    most = max(LEAST_MOTIONS, LONGER * attempt.motions_checked)
-    for number in count(1):
-        if not _goes_on(attempt, best, number):
-            break
-        connection = attempt.connect(connector, variant + number, most)
-        done, nodes = number, nodes + connection.nodes
-        counts["configurations_checked"] += connection.configurations
-        if connection.goal < 0:
-            continue
-        result = connected(attempt, connection)
-        if attempt.query.smooth:
-            counts["shortcut_motions"] += result.counts["shortcut_motions"]
-        if _cost(result) < _cost(best):
-            best = result
-            stages.append(Stage(nodes, nodes, attempt.motions_checked, best.cost, attempt.elapsed()))
-    counts |= {"nodes": nodes, "edges_checked": attempt.motions_checked, "rounds": done}
-    message = f"{best.message}, the best of {done + 1}" if done else best.message
-    return replace(best, message=message, counts=counts, stages=tuple(stages), timings=attempt.watch.seconds)
-
-
-def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
-    """Grow a roadmap beside the first path."""
-    left = attempt.left()
-    if left is None or not _goes_on(attempt, first, 1):
-        return replace(first, counts=first.counts | {"rounds": 0}, stages=(stage,))
-    before = attempt.elapsed()
-    grown = GrowingPRM(until="budget").solve(_rest(attempt, left))
-    stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
-    best = grown if grown.cost is not None and grown.cost < _cost(first) else first
-    return replace(best, counts=best.counts | {"rounds": len(grown.stages)}, stages=tuple(stages))
-
-
-def _goes_on(attempt: Attempt, best: PlanResult, number: int) -> bool:
-    """Return whether the budget allows this round and the path exceeds the distance to the nearest goal."""
-    budget, start, goals = attempt.query.budget, attempt.query.start, attempt.free_goals
-    least = float(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals).min())
-    return (
-        now() < attempt.deadline
-        and (budget.rounds is None or number <= budget.rounds)
-        and (budget.motions is None or attempt.motions_checked < budget.motions)
-        and _cost(best) > (1.0 + NO_BETTER) * least
-    )
-
-
-def _cost(result: PlanResult) -> float:
-    assert result.cost is not None
-    return result.cost
-
-
-def _rest(attempt: Attempt, left: Budget) -> Problem:
-    """Return the problem of an attempt with what is left of its budget."""
-    query = attempt.query
-    return Problem(attempt.world, query.start, query.goals, budget=left, smooth=query.smooth)

@@ -143,12 +143,10 @@ def _with_path(
             if path is not raw:
                 measure = world.space.distance if cost is None else cost
                 length = float(np.sum(measure(path[:-1], path[1:])))
-    named = "length" if cost is None else "cost"
-    to = f" to goal {goal}" if len(query.goals) > 1 else ""
     return _result(
         attempt,
         Status.SOLVED,
-        f"path of {named} {length:.6g} with {len(path)} waypoints{to}",
+        path_message(path, length, goal, len(query.goals), "length" if cost is None else "cost"),
         goal_index=goal,
         path=path,
         milestone_path=raw,
@@ -157,6 +155,12 @@ def _with_path(
         milestone_cost=raw_cost,
         counts=counts,
     )
+
+
+def path_message(path: Floats, cost: float, goal: int, goals: int, named: str = "length") -> str:
+    """Return what is said of a path to one of so many goals."""
+    to = f" to goal {goal}" if goals > 1 else ""
+    return f"path of {named} {cost:.6g} with {len(path)} waypoints{to}"
 
 
 def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tuple[str, str]:

@@ -15,6 +15,7 @@ from evenroad.points.pointset import Origin
 from evenroad.roadmap.certificate import Certificate
 from evenroad.roadmap.result_methods import ResultMethods
 from evenroad.space import Space
+from evenroad.space.path import path_length
 from evenroad.world import MeasuresPaths, World
 
 NO_POINTS = Origin(family="none", method="no points")
@@ -165,6 +166,18 @@ class PlanResult(ResultMethods):
         if self.path is None or not isinstance(self.world, MeasuresPaths):
             return None
         return self.world.path_clearance(self.path)
+
+    @cached_property
+    def gap(self) -> float | None:
+        """By what share the path is longer than the shortest, at most: no path is shorter than the straight distance
+        from the start to the nearest goal.  None without a path, and in a plan that was read from a file.
+        """
+        if self.path is None or self.world is None:
+            return None
+        space = self.world.space
+        least = float(space.distance(np.broadcast_to(self.start, self.goals.shape), self.goals).min())
+        length = path_length(self.path, space)
+        return max(length / least - 1.0, 0.0) if least > 0.0 else 0.0 if length == 0.0 else np.inf
 
     @property
     def solved(self) -> bool:

@@ -33,6 +33,18 @@ const char* in_words(planning::Growth growth) {
   return "";
 }
 
+const char* in_words(planning::Progress progress) {
+  switch (progress) {
+    case planning::Progress::PAUSED:
+      return "paused";
+    case planning::Progress::SPENT:
+      return "spent";
+    case planning::Progress::SHORTEST:
+      return "shortest";
+  }
+  return "";
+}
+
 /// Points of an even sequence, (n, d) from -1 to 1: checked once, for all queries that they drive.
 struct Points {
   FloatRows rows;
@@ -169,7 +181,7 @@ void add_improver(nb::module_& part) {
       .def("improve",
            [](Improvement& improvement, std::int64_t rounds, std::int64_t motions, std::int64_t batches) {
              require_budget(rounds, "rounds"), require_budget(motions, "motions"), require_budget(batches, "batches");
-             return without_gil([&] { return improvement.improver.improve({rounds, motions, batches}); });
+             return in_words(without_gil([&] { return improvement.improver.improve({rounds, motions}, batches); }));
            })
       .def_prop_ro("path", [](const Improvement& improvement) { return points_of(improvement.improver.path()); })
       .def_prop_ro("along_trees",
@@ -178,6 +190,8 @@ void add_improver(nb::module_& part) {
       .def_prop_ro("length", [](const Improvement& improvement) { return improvement.improver.length(); })
       .def_prop_ro("rounds", [](const Improvement& improvement) { return improvement.improver.rounds(); })
       .def_prop_ro("motions", [](const Improvement& improvement) { return improvement.improver.motions(); })
+      .def_prop_ro("smoothing_motions",
+                   [](const Improvement& improvement) { return improvement.improver.smoothing_motions(); })
       .def_prop_ro("nodes", [](const Improvement& improvement) { return improvement.improver.nodes(); });
 }
 

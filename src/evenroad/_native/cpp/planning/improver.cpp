@@ -58,32 +58,34 @@ Improver::Improver(Matrix<const double> ends, const Sequences& sequences, const 
   best_.measure();
 }
 
-bool Improver::improve(Effort most) {
+Progress Improver::improve(Effort most, std::int64_t batches) {
+  const std::int64_t pause = checks_.counts.batches + batches;
   while (length() > (1.0 + STRAIGHT) * least()) {
-    if (checks_.counts.batches >= most.batches || motions_ >= most.motions) return true;
+    if (motions_ >= most.motions) return Progress::SPENT;
+    if (checks_.counts.batches >= pause) return Progress::PAUSED;
     if (!trees_) {
       const bool is_last = rounds_ >= most.rounds;
       if (!is_polished_ && (is_last || rounds_ - best_round_ >= WAIT)) {
         polish_best();
         continue;
       }
-      if (is_last) return true;
+      if (is_last) return Progress::SPENT;
       begin_round();
     }
-    switch (grow(most)) {
+    switch (grow(most, pause)) {
       case Growth::PAUSED:
-        return true;
+        return Progress::PAUSED;
       case Growth::SOLVED:
         take(trees_->path(), trees_->goal());
         break;
       case Growth::SPENT:
       case Growth::NOT_FREE:
-        if (left_ > 0 && motions_ >= most.motions) return true;
+        if (left_ > 0 && motions_ >= most.motions) return Progress::SPENT;
     }
     nodes_ += trees_->tree(0).size() + trees_->tree(1).size();
     trees_.reset();
   }
-  return false;
+  return Progress::SHORTEST;
 }
 
 void Improver::begin_round() {
@@ -94,10 +96,10 @@ void Improver::begin_round() {
   trees_.emplace(ends_, sequences_, checks_, &bound_, static_cast<std::size_t>(rounds_));
 }
 
-Growth Improver::grow(Effort most) {
+Growth Improver::grow(Effort most, std::int64_t pause) {
   const std::int64_t before = checks_.counts.motions;
   const std::int64_t some = std::min(left_, most.motions - motions_);
-  const Growth growth = trees_->grow(before + some, most.batches - checks_.counts.batches);
+  const Growth growth = trees_->grow(before + some, pause - checks_.counts.batches);
   const std::int64_t checked = checks_.counts.motions - before;
   motions_ += checked, left_ -= checked;
   return growth;

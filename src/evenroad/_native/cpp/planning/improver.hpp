@@ -18,10 +18,13 @@
 
 namespace evenroad::planning {
 
-/// When an improver pauses: after so many rounds, motions checked by trees, or batches of sixteen checks, in all.
+/// What an improver may spend in all: rounds, and motions checked by trees.
 struct Effort {
-  std::int64_t rounds, motions, batches;
+  std::int64_t rounds, motions;
 };
+
+/// What a call of `improve` ended with: its slice used up, the effort spent, or a path that is as short as can be.
+enum class Progress : std::uint8_t { PAUSED, SPENT, SHORTEST };
 
 /// The path that is to become shorter: its motions are proved, it ends at the goal with this number, and trees found it
 /// after so many motions.
@@ -38,10 +41,10 @@ class Improver {
   Improver(Matrix<const double> ends, const Sequences& sequences, const Guides& guides, First first, bool is_smoothing,
            MotionChecks& checks);
 
-  /// Go on until the effort is spent, or the path is as short as can be: then return false.
+  /// Go on until the effort is spent, or about so many batches of sixteen were checked in this call.
   ///
-  /// However often it pauses, what is found is the same.
-  bool improve(Effort most);
+  /// However often it pauses, what it finds is the same.
+  Progress improve(Effort most, std::int64_t batches);
 
   const Path& path() const { return best_; }
   /// The path along the trees that became the best one.
@@ -51,8 +54,9 @@ class Improver {
   /// The length that no path falls below.
   double least() const { return bound_.least(); }
   std::int64_t rounds() const { return rounds_; }
-  /// How many motions trees checked; smoothing is not counted.
+  /// How many motions trees checked, and how many smoothing did.
   std::int64_t motions() const { return motions_; }
+  std::int64_t smoothing_motions() const { return checks_.counts.motions - motions_; }
   /// Of all trees that are done.
   std::int64_t nodes() const { return nodes_; }
 
@@ -61,7 +65,7 @@ class Improver {
   static constexpr std::int64_t MOST_MOTIONS = 1'000'000;
 
   void begin_round();
-  Growth grow(Effort most);
+  Growth grow(Effort most, std::int64_t pause);
   void take(const std::vector<double>& points, std::int64_t goal);
   void polish_best();
 

@@ -1,0 +1,149 @@
+"""Better paths for more time: plans below a bound for arms, other sequences for other worlds, a roadmap for maps."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import count
+from time import perf_counter as now
+from typing import Any
+
+import numpy as np
+
+from evenroad.planning.connectors import ArmTrees
+from evenroad.planning.growing import GrowingPRM
+from evenroad.roadmap.answer import connected, path_message
+from evenroad.roadmap.attempt import NO_LIMIT, Attempt
+from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.connector import Connector
+from evenroad.roadmap.problem import Problem
+from evenroad.roadmap.result import PlanResult, Stage, require_start_and_goal
+from evenroad.space.path import path_length
+
+NO_BETTER = 1e-9
+"""Share by which a path may exceed the shortest possible one before it is improved."""
+LEAST_MOTIONS, LONGER = 1000, 4
+"""Largest number of motions of a round: the larger of a number and a multiple of the first path's motions."""
+_SLICE = 250
+"""Batches of sixteen checks between two looks at the clock: about 1 ms."""
+
+
+def improved(attempt: Attempt, connector: Connector, first: PlanResult, variant: int) -> PlanResult:
+    """Return the best path within the rest of the budget or of its rounds; never a worse one than the first."""
+    nodes = first.counts["nodes"]
+    stage = Stage(nodes, nodes, attempt.motions_checked, first.cost, attempt.elapsed())
+    if isinstance(connector, ArmTrees):
+        return _below_bounds(attempt, connector, first, stage, variant)
+    if connector.varies:
+        return _by_rounds(attempt, connector, first, stage, variant)
+    return _by_growth(attempt, first, stage)
+
+
+def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stage: Stage, variant: int) -> PlanResult:
+    """Plan in native code, each time below a bound on the length; see `evenroad._native.planning.Improver`."""
+    assert first.path is not None
+    query, counts, space = attempt.query, dict(first.counts), attempt.world.space
+    budget = query.budget
+    goal = int(np.flatnonzero(attempt.goals == first.goal_index)[0])
+    improver = connector.improver(
+        attempt.world,
+        attempt.start_and_goals,
+        (first.path, goal, attempt.motions_checked),
+        variant=variant,
+        is_smoothing=bool(query.smooth),
+    )
+    rounds = NO_LIMIT if budget.rounds is None else budget.rounds
+    motions = NO_LIMIT if budget.motions is None else max(budget.motions - attempt.motions_checked, 0)
+    stages, length = [stage], improver.length
+    with attempt.watch("search"):
+        state = "paused"
+        while state == "paused" and now() < attempt.deadline:
+            state = improver.improve(rounds, motions, _SLICE)
+            if improver.length < length:
+                length, nodes = improver.length, stage.points + improver.nodes
+                checked = attempt.motions_checked + improver.motions
+                stages.append(Stage(nodes, nodes, checked, length, attempt.elapsed()))
+    attempt.motions_checked += improver.motions
+    counts |= {
+        "nodes": stage.points + improver.nodes,
+        "edges_checked": attempt.motions_checked,
+        "rounds": improver.rounds,
+    }
+    if query.smooth:
+        counts["shortcut_motions"] += improver.smoothing_motions
+    more: dict[str, Any] = dict(counts=counts, stages=tuple(stages), timings=attempt.watch.seconds)
+    if len(stages) > 1:
+        path, row = improver.path, int(attempt.goals[improver.goal])
+        raw = improver.along_trees
+        cost = path_length(path, space)
+        more |= dict(path=path, cost=cost, goal_index=row, message=path_message(path, cost, row, len(query.goals)))
+        if not np.array_equal(raw, first.path):
+            more |= dict(milestone_path=raw, milestone_cost=path_length(raw, space))
+    best = require_start_and_goal(space, replace(first, **more))
+    if not improver.rounds:
+        return best
+    return replace(best, message=f"{best.message}, the best of {improver.rounds + 1}: {_gap(best)}")
+
+
+def _gap(result: PlanResult) -> str:
+    """Return in words how far from the shortest path a path can be."""
+    assert result.gap is not None
+    return f"at most {100.0 * result.gap:.3g} % longer than the shortest"
+
+
+def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage: Stage, variant: int) -> PlanResult:
+    """Plan repeatedly, each time with another sequence."""
+    best, stages, nodes, counts, done = first, [stage], stage.points, dict(first.counts), 0
+    # A round that is much longer than the first costs the time of many others.
+    most = max(LEAST_MOTIONS, LONGER * attempt.motions_checked)
+    for number in count(1):
+        if not _goes_on(attempt, best, number):
+            break
+        connection = attempt.connect(connector, variant + number, most)
+        done, nodes = number, nodes + connection.nodes
+        counts["configurations_checked"] += connection.configurations
+        if connection.goal < 0:
+            continue
+        result = connected(attempt, connection)
+        if attempt.query.smooth:
+            counts["shortcut_motions"] += result.counts["shortcut_motions"]
+        if _cost(result) < _cost(best):
+            best = result
+            stages.append(Stage(nodes, nodes, attempt.motions_checked, best.cost, attempt.elapsed()))
+    counts |= {"nodes": nodes, "edges_checked": attempt.motions_checked, "rounds": done}
+    message = f"{best.message}, the best of {done + 1}" if done else best.message
+    return replace(best, message=message, counts=counts, stages=tuple(stages), timings=attempt.watch.seconds)
+
+
+def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
+    """Grow a roadmap beside the first path."""
+    left = attempt.left()
+    if left is None or not _goes_on(attempt, first, 1):
+        return replace(first, counts=first.counts | {"rounds": 0}, stages=(stage,))
+    before = attempt.elapsed()
+    grown = GrowingPRM(until="budget").solve(rest_of(attempt, left))
+    stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
+    best = grown if grown.cost is not None and grown.cost < _cost(first) else first
+    return replace(best, counts=best.counts | {"rounds": len(grown.stages)}, stages=tuple(stages))
+
+
+def _goes_on(attempt: Attempt, best: PlanResult, number: int) -> bool:
+    """Return whether the budget allows this round and the path exceeds the distance to the nearest goal."""
+    budget, start, goals = attempt.query.budget, attempt.query.start, attempt.free_goals
+    least = float(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals).min())
+    return (
+        now() < attempt.deadline
+        and (budget.rounds is None or number <= budget.rounds)
+        and (budget.motions is None or attempt.motions_checked < budget.motions)
+        and _cost(best) > (1.0 + NO_BETTER) * least
+    )
+
+
+def _cost(result: PlanResult) -> float:
+    assert result.cost is not None
+    return result.cost
+
+
+def rest_of(attempt: Attempt, left: Budget) -> Problem:
+    """Return the problem of an attempt with what is left of its budget."""
+    query = attempt.query
+    return Problem(attempt.world, query.start, query.goals, budget=left, smooth=query.smooth)
