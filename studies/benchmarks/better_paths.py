@@ -18,10 +18,12 @@ from studies.benchmarks.arm_problems import REPORTING, TUNING, Pool, Problem, ar
 from studies.benchmarks.rows import parser_of
 
 from evenroad.planning.arm_trees import connect
-from evenroad.planning.connectors import ARM_TREES
+from evenroad.planning.connectors import ArmTrees
 from evenroad.roadmap.attempt import NO_LIMIT
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.tree_sequences import shifted_cube_points
+
+TREES = ArmTrees(shortest=True)
 
 MOST_MOTIONS = 200_000
 TIMES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
@@ -37,10 +39,10 @@ def lengths(world: ArmWorld, problem: Problem, variant: int, most: float) -> Ite
     found = connect(world, problem.start, goals, most_motions=MOST_MOTIONS, seconds=60, sequence=sequence)
     if found.goal < 0:
         return
-    path, _ = ARM_TREES.smooth(world, found.path)
+    path, _ = TREES.smooth(world, found.path)
     terminals = np.concatenate([problem.start[np.newaxis], goals])
     first = path, 0, found.motions
-    improver = ARM_TREES.improver(world, terminals, first, variant=variant, is_smoothing=True)
+    improver = TREES.improver(world, terminals, first, variant=variant, is_smoothing=True)
     length, state = np.inf, "paused"
     while True:
         if improver.length < length:

@@ -158,7 +158,7 @@ def _with_path(
 
 
 def path_message(path: Floats, cost: float, goal: int, goals: int, named: str = "length") -> str:
-    """Return what is said of a path to one of so many goals."""
+    """Return what a result says about its path."""
     to = f" to goal {goal}" if goals > 1 else ""
     return f"path of {named} {cost:.6g} with {len(path)} waypoints{to}"
 
