@@ -20,11 +20,13 @@ import pytest
 from evenroad import _native
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Mesh, PointCloud
+from evenroad.planning.connectors import ARM_TREES
 from evenroad.robot import ArmWorld, load_robot
 from evenroad.robot.scene import Scene
 from evenroad.world.gridmap.gridmap import GridMap
 from tests.robot.kernel_arms import random_scene
 from tests.robot.mesh_arms import write_fork_arm
+from tests.robot.paths import GOAL, START, box_world
 
 ROUNDS = int(os.environ.get("EVENROAD_FUZZ", "12"))
 """How often each function is tried with each seed."""
@@ -265,11 +267,12 @@ def place_of(name):
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
-    """With what the package makes a robot, surfaces and a scene, and a disk on a map."""
+    """With what the package makes a robot, surfaces and a scene, what improves a path, and a disk on a map."""
     calls = defaultdict(list)
     with pytest.MonkeyPatch.context() as patch:
         for name in ("Robot", "Surface", "Scene"):
             patch.setattr(_native.robot, name, recording(f"robot.{name}", calls))
+        patch.setattr(_native.planning, "Improver", recording("planning.Improver", calls))
         patch.setattr("evenroad.world.gridmap.gridmap.Disk", recording("world.Disk", calls))
         patch.setattr("evenroad.robot.arm_world.Checker", recording("robot.Checker", calls))
         robot = load_robot(write_fork_arm(tmp_path_factory.mktemp("fork")))
@@ -278,6 +281,9 @@ def recorded(tmp_path_factory):
         mesh = Mesh((rng.random((20, 3)), rng.permuted(np.tile(np.arange(20), (9, 1)), axis=1)[:, :3]))
         scene = random_scene(3)
         ArmWorld(robot, Scene((*scene.obstacles, cloud, mesh))).valid(np.zeros(3))
+        ends = np.stack([START, GOAL])
+        first = np.stack([START, START + 0.1, GOAL]), 0, 10
+        ARM_TREES.improver(box_world(), ends, first, variant=0, is_smoothing=True)
         for resolution in (0.1, 0.5):
             GridMap(rng.random((20, 30)) < 0.1, resolution=resolution).world(0.4).valid(np.zeros((1, 2)))
     return dict(calls)

@@ -21,6 +21,8 @@ from evenroad.world.gridmap.gridmap import DiskWorld
 
 BEFORE_PROOF = 50_000
 """Number of motions after which the world tries to prove that there is no path: more than hard queries need."""
+BEFORE_PROOF_OF_CELLS = 200_000
+"""The same for a search of cells, which begins again after it."""
 BEFORE_QUICK_PROOF = 4_000
 """Number of motions after which a world with a quick proof tries it: most queries need fewer."""
 
@@ -88,7 +90,7 @@ class Cells:
 
     planner: ClassVar[str] = "cells"
     varies: ClassVar[bool] = False
-    stages: ClassVar[tuple[tuple[int, bool], ...]] = ((BEFORE_PROOF, False),)
+    stages: ClassVar[tuple[tuple[int, bool], ...]] = ((BEFORE_PROOF_OF_CELLS, False),)
 
     def connect(
         self,

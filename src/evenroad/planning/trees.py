@@ -115,18 +115,23 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
         return refused
     variant = _variant(problem.rng)
     stages = [*connector.stages, (NO_LIMIT, False)]
-    connection = _connection(attempt, connector, stages[0][0], variant)
-    for (most, quickly), (more, _) in pairwise(stages):
+    connection = found = _connection(attempt, connector, stages[0][0], variant)
+    for number, ((most, quickly), (more, _)) in enumerate(pairwise(stages), 1):
         if connection.goal >= 0:
             break
-        ended = connection.motions < most or attempt.left() is None
+        ended = found.motions < most or attempt.left() is None
         if (apart_for := shown_apart(attempt, quickly=quickly and not ended)) is not None:
             return apart_for
         if ended:
             break
-        # The same search again, and further.
-        attempt.motions_checked -= connection.motions
-        connection = _connection(attempt, connector, more, variant)
+        if connector.varies:
+            # Another search, and further: one that lasts long is rarely soon at its end.
+            found = _connection(attempt, connector, more, variant + number)
+            connection = _after(connection, found)
+        else:
+            # The same again, and further.
+            attempt.motions_checked -= found.motions
+            connection = found = _connection(attempt, connector, more, variant)
     if connection.goal >= 0:
         result = connected(attempt, connection)
         return improved(attempt, connector, result, variant) if improve else result
@@ -154,9 +159,14 @@ def _connection(attempt: Attempt, connector: Connector, most: int, variant: int)
     if near.goal >= 0 or attempt.left() is None:
         return near
     found = attempt.connect(connector, variant, most - near.motions)
+    return _after(near, found)
+
+
+def _after(earlier: Connection, found: Connection) -> Connection:
+    """Return what was found, with the work of an earlier search that found nothing."""
     return replace(
         found,
-        nodes=near.nodes + found.nodes,
-        configurations=near.configurations + found.configurations,
-        motions=near.motions + found.motions,
+        nodes=earlier.nodes + found.nodes,
+        configurations=earlier.configurations + found.configurations,
+        motions=earlier.motions + found.motions,
     )
