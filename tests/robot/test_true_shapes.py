@@ -171,6 +171,9 @@ def test_a_base_may_stand_on_a_table_but_not_in_it(tmp_path, high, is_free):
         world = ArmWorld(load_robot(tmp_path / "standing.urdf"), Scene((table,)))
         assert world.valid(np.array([0.0])) == is_free
         assert world.explain(np.array([0.0])) == ("it is free" if is_free else f"'base' touches {table.name!r}")
+    padded = load_robot(tmp_path / "standing.urdf").with_padding({"base": 0.01})
+    beneath = Box((1.0, 1.0, 0.5), xyz=(0, 0, high - 0.255))
+    assert not ArmWorld(padded, Scene((Obstacle("table", beneath),))).valid(np.array([0.0]))
 
 
 def test_a_closed_mesh_around_all_that_the_robot_can_reach_is_an_obstacle(tmp_path):

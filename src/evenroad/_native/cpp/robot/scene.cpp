@@ -218,7 +218,8 @@ Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, M
       const Capsule& capsule = robot.capsules[sphere.capsule];
       if (squared_distance(kept[k], sphere.centre) < near * near &&
           (robot.bodies[capsule.body].shape < 0 ||
-           base_touches(robot, places, robot.bodies[capsule.body], kept[k], clearance))) {
+           base_touches(robot, places, robot.bodies[capsule.body], kept[k],
+                        clearance + robot.lengths.shapes[capsule.body] - robot.padding))) {
         scene.fixed_contact = {sphere.capsule, scene.obstacles[k].number};
       }
     }

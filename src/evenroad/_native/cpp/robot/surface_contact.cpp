@@ -247,7 +247,8 @@ Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Plac
       const auto radius = static_cast<float>(robot.lengths.capsules[i] - robot.padding - capsule.slack + clearance);
       const CapsuleAt at{centre, lane_of(places.capsules[i].half, 0), capsule.one_by_squared, radius + surface.radius};
       const Body& body = robot.bodies[capsule.body];
-      const ShapeNear shape{robot, places, body, i, static_cast<float>(clearance)};
+      const ShapeNear shape{robot, places, body, i,
+                            static_cast<float>(clearance + robot.lengths.shapes[capsule.body] - robot.padding)};
       if ((touches(surface, at) || (!surface.windings.empty() && is_inside(surface, centre))) &&
           (body.shape < 0 || shape_touching(shape, surface, at.reach, 1) != 0)) {
         return {Contact::With::SURFACE, i, each.number};
