@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -44,7 +45,7 @@ class MapFrame:
         if self.yaw != 0.0 and not self.y_up:
             raise InvalidValue(f"a frame with y down cannot be rotated: yaw must be 0, got {self.yaw!r}")
 
-    @property
+    @cached_property
     def rectangle(self) -> Rectangle:
         """The image's outline in the map: the cube's origin goes to `origin`, its axes along the image's."""
         width, height = self.cols * self.resolution, self.rows * self.resolution
