@@ -34,6 +34,7 @@ MAY_IMPORT = {
     "robot": BASE | {"space", "geometry", "world"},
     "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "planning"},
     "trajectory": BASE | {"space", "world", "robot"},
+    "task": BASE | {"space", "geometry", "world", "robot", "roadmap", "planning", "trajectory"},
     "adapters": BASE | {"points", "space", "world", "robot", "trajectory"},
     "cli": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}

@@ -21,6 +21,7 @@ FUNCTIONS = {
     "Trajectory.save": "evenroad.trajectory.files:save_trajectory",
     "PointSet.discrepancy": "scipy.stats.qmc:discrepancy",
     "PointSet.save": "evenroad.points.npz:write_points",
+    "Task.plan": "evenroad.task.solve:plan_task",
     "Robot.configuration": "evenroad.robot.states:as_configuration",
     "Robot.limits": "evenroad.robot.robot_queries:joint_limits",
     "Robot.fk": "evenroad.robot.robot_queries:pose_of_link",

@@ -1,0 +1,158 @@
+"""TaskResult: the motions of a task, or which step cannot be done and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue
+from evenroad.roadmap import PlanResult, Status
+from evenroad.task.motion import Motion
+from evenroad.task.steps import MoveTo, Step, Wait
+from evenroad.trajectory.trajectory import Trajectory
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TaskResult:
+    """The answer to a task.
+
+    Attributes
+    ----------
+    steps : tuple
+        Those of the task.
+    status : Status
+        That of the step that failed, else ``solved``.
+    message : str
+        One sentence: what happened, or which step cannot be done and why.
+    motions : tuple of Motion
+        Of each MoveTo the plans of its `parts`: lines, and the way between them, each in its own world.  What is held
+        is a body of the robot there.
+    step : int or None
+        Number of the step that failed, from 0 on.
+    timings : dict of str to float
+        Wall time [s].
+    tried : int
+        Number of motions planned, those of choices that were given up included.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> from evenroad.task import MoveTo, Task
+    >>> Task([MoveTo("inside"), MoveTo("home")]).plan(er.ArmWorld("ur5", "box-reach"), "home").cost > 0
+    True
+    """
+
+    steps: tuple[Step, ...]
+    status: Status
+    message: str
+    motions: tuple[Motion, ...] = ()
+    step: int | None = None
+    timings: Mapping[str, float] = field(default_factory=dict)
+    tried: int = 0
+
+    @property
+    def solved(self) -> bool:
+        """Whether all steps can be done."""
+        return self.status is Status.SOLVED
+
+    @property
+    def parts(self) -> tuple[PlanResult, ...]:
+        """The plans of all motions, in their order."""
+        return tuple(part for motion in self.motions for part in motion.parts)
+
+    @property
+    def cost(self) -> float | None:
+        """Sum of the costs of the motions; None unless solved."""
+        return sum(each.cost or 0.0 for each in self.parts) if self.solved else None
+
+    @property
+    def path(self) -> Floats | None:
+        """Waypoints of all motions, (p, dim); None unless solved."""
+        if not self.solved:
+            return None
+        paths = [each.path for each in self.parts if each.path is not None]
+        return np.concatenate([paths[0][:1], *(path[1:] for path in paths)])
+
+    def __repr__(self) -> str:
+        if not self.solved:
+            return f"TaskResult({self.status}, step {self.step})"
+        return f"TaskResult(solved, {len(self.steps)} steps, cost {self.cost:.4g})"
+
+    def trajectory(self, **options: Any) -> Trajectory:
+        """Return one trajectory through all steps, which stands still where the gripper acts, and where a line ends.
+
+        Parameters
+        ----------
+        **options
+            As of :meth:`evenroad.PlanResult.trajectory`; each motion is checked in its own world.
+
+        Returns
+        -------
+        Trajectory
+
+        Raises
+        ------
+        InvalidValue, NotAvailable
+            As that; InvalidValue also if the task is not solved.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> from evenroad.task import MoveTo, Step, Wait
+        >>> task = Task([MoveTo("inside"), Wait(0.5), MoveTo("home")])
+        >>> task.plan(er.ArmWorld("ur5", "box-reach"), "home").trajectory(speed=0.5).names[0]
+        'shoulder_pan_joint'
+        """
+        if not self.solved:
+            raise InvalidValue(f"there is no trajectory: {self.message}")
+        parts: list[Trajectory] = []
+        pauses: list[float] = []
+        pause, motions = 0.0, iter(self.motions)
+        for step in self.steps:
+            if isinstance(step, Wait):
+                pause += step.seconds
+            if not isinstance(step, MoveTo):
+                continue
+            # A motion to where the arm is takes no time.
+            for part in (part for part in next(motions).parts if part.cost):
+                parts.append(part.trajectory(**options))
+                pauses, pause = [*pauses, pause], 0.0
+        return _joined(parts, [*pauses, pause])
+
+
+def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
+    """Return trajectories one after the other, each after its pause, and a last pause."""
+    if not parts:
+        raise InvalidValue("there is no trajectory: the arm stays where it is")
+    step = float(parts[0].times[1] - parts[0].times[0])
+    rows: dict[str, list[Floats]] = {"positions": [], "velocities": [], "accelerations": []}
+    for part, pause in zip([*parts, None], pauses, strict=True):
+        still = parts[0].positions[0] if not rows["positions"] else rows["positions"][-1][-1]
+        count = round(pause / step)
+        rows["positions"].append(np.tile(still, (count, 1)))
+        for name in ("velocities", "accelerations"):
+            rows[name].append(np.zeros((count, len(still))))
+        if part is not None:
+            # Each begins at rest where the one before ended.
+            first = 0 if part is parts[0] and count == 0 else 1
+            for name, values in rows.items():
+                values.append(getattr(part, name)[first:])
+    positions, velocities, accelerations = (np.concatenate(values) for values in rows.values())
+    order = ("resolution", "certified", "exact")
+    return replace(
+        parts[0],
+        times=np.arange(len(positions), dtype=np.float64) * step,
+        positions=positions,
+        velocities=velocities,
+        accelerations=accelerations,
+        waypoints=np.concatenate([parts[0].waypoints[:1], *(part.waypoints[1:] for part in parts)]),
+        deviation=max(part.deviation for part in parts),
+        stops=sum(part.stops for part in parts) + len(parts) - 1,
+        highest={name: max(part.highest[name] for part in parts) for name in parts[0].highest},
+        proof=min((part.proof for part in parts), key=order.index),
+        radii=(),
+    )

@@ -1,0 +1,119 @@
+"""Planning a task: motion by motion, with another choice of goals where a later step cannot be done."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from time import perf_counter as now
+
+import numpy as np
+
+from evenroad._rng import RngLike
+from evenroad.errors import InvalidValue, shown
+from evenroad.planning.plan import Options, budget_of, finished, solve
+from evenroad.planning.read_request import request_in
+from evenroad.planning.request import ConfigurationLike, Reading, Request
+from evenroad.roadmap import PlanResult, Status
+from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.connector import Smooth
+from evenroad.robot import ArmWorld
+from evenroad.robot.chain import default_tip
+from evenroad.task.motion import Motion, PlanWay, plan_motion
+from evenroad.task.result import TaskResult
+from evenroad.task.stage import Contacts, Stage, touches
+from evenroad.task.steps import Attach, Detach, MoveTo, Step
+
+MOST_PLANS = 64
+"""Largest number of motions that are planned for one task."""
+
+
+@dataclass
+class _Search:
+    """A depth-first search over the goals of the motions."""
+
+    steps: tuple[Step, ...]
+    plan_way: PlanWay
+    reading: Reading
+    tried: int = 0
+    deepest: int = -1
+    failed: PlanResult | None = None
+
+    def run(self, number: int, stage: Stage) -> tuple[Motion, ...] | None:
+        """Return the motions of the steps from `number` on; None where they cannot be done."""
+        if number == len(self.steps):
+            return ()
+        step, where = self.steps[number], f"step {number} of the task"
+        if isinstance(step, Attach):
+            return self.run(number + 1, stage.attach(step, where))
+        if isinstance(step, Detach):
+            return self.run(number + 1, stage.detach(step, where))
+        if not isinstance(step, MoveTo):
+            return self.run(number + 1, stage)
+        world = stage.with_contacts(stage.near_start | self._at_goal(number, stage))
+        request = request_in(world, stage.q, step.goal, self.reading)
+        left = np.arange(len(request.goals))
+        while len(left) and self.tried < MOST_PLANS:
+            self.tried += 1
+            motion = plan_motion(replace(request, goals=request.goals[left]), stage.world, step, self.plan_way)
+            if motion.goal is None:
+                # Of failures the one that comes after most steps says most.
+                if number > self.deepest:
+                    self.deepest, self.failed = number, motion.parts[-1]
+                return None
+            later = self.run(number + 1, replace(stage, q=motion.end, near_start=frozenset()))
+            if later is not None:
+                return (motion, *later)
+            # With a goal that is left the rest may be done.
+            left = np.delete(left, motion.goal)
+        return None
+
+    def _at_goal(self, number: int, stage: Stage) -> Contacts:
+        """Return the contacts that are not tested on the line to a goal, because of what the gripper does there."""
+        after = self.steps[number + 1] if number + 1 < len(self.steps) else None
+        if isinstance(after, Attach):
+            robot = stage.world.robot
+            return frozenset(
+                (link, after.object) for link in (after.link or default_tip(robot), *touches(after, robot))
+            )
+        if isinstance(after, Detach):
+            return frozenset((after.object, name) for name in after.onto)
+        return frozenset()
+
+
+def plan_task(
+    steps: tuple[Step, ...],
+    world: ArmWorld,
+    start: ConfigurationLike,
+    *,
+    seconds: float | None = None,
+    limits: Budget | Mapping[str, int] | None = None,
+    smooth: Smooth = True,
+    rng: RngLike = 0,
+    tip: str = "",
+    frame: str = "",
+    degrees: bool = False,
+) -> TaskResult:
+    """Return the plan of a task; see :meth:`evenroad.task.Task.plan`."""
+    if not isinstance(world, ArmWorld):
+        raise InvalidValue(f"a task is planned in an ArmWorld, got {shown(world)}")
+    began, budget = now(), budget_of(None, seconds, limits)
+
+    def plan_way(request: Request, step: MoveTo) -> PlanResult:
+        options = Options(budget, smooth, rng, constraints=step.constraints)
+        return finished(request, solve(request, None, options))[0]
+
+    reading = Reading(degrees, tip, frame)
+    search = _Search(steps, plan_way, reading)
+    first = request_in(world, start, start, reading).start
+    motions = search.run(0, Stage(world, first, world.robot))
+    timings = {"task": now() - began}
+    if motions is not None:
+        cost = sum(part.cost or 0.0 for motion in motions for part in motion.parts)
+        message = f"{len(motions)} motions of length {cost:.6g}"
+        return TaskResult(steps, Status.SOLVED, message, motions, None, timings, search.tried)
+    status = Status.NOT_CONNECTED if search.failed is None else search.failed.status
+    why = "no goal is left" if search.failed is None else search.failed.message
+    message = f"step {search.deepest} of the task cannot be done: {why}"
+    if search.tried > 1:
+        message += f"; {search.tried} motions were planned in all"
+    return TaskResult(steps, status, message, (), search.deepest, timings, search.tried)

@@ -1,0 +1,111 @@
+"""Stage: where an arm stands between two steps of a task, what it holds, and what is around it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import WORLD
+from evenroad.robot import ArmWorld, Robot, Scene
+from evenroad.robot.chain import default_tip
+from evenroad.robot.held import HeldObject
+from evenroad.robot.kinematics import link_poses
+from evenroad.robot.obstacle import Obstacle
+from evenroad.task.steps import Attach, Detach
+
+Contacts = frozenset[tuple[str, str]]
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """A world, and the configuration of its arm, (dim,).
+
+    `near_start` are contacts, (link, obstacle), that are not tested on the straight line of the next motion from here:
+    of the gripper with what it has put down, of what it has taken with what that stood on.  `empty` is the robot with
+    nothing attached by the task.
+    """
+
+    world: ArmWorld
+    q: Floats
+    empty: Robot
+    near_start: Contacts = frozenset()
+
+    def with_contacts(self, contacts: Contacts) -> ArmWorld:
+        """Return the world in which some contacts are not tested."""
+        if not contacts:
+            return self.world
+        held, scene = {each.name for each in self.world.scene.attached}, self.world.scene
+        bodies = contacts - {each for each in contacts if each[1] in held}
+        return replace(self.world, scene=replace(scene, allowed=scene.allowed | bodies))
+
+    def attach(self, step: Attach, where: str) -> Stage:
+        """Return the stage after an obstacle is taken.  Raises UnknownName if there is none; `where` names the step."""
+        scene, robot = self.world.scene, self.world.robot
+        found = [each for each in scene.obstacles if each.name == step.object]
+        if not found:
+            raise UnknownName.among(f"obstacle of {where}", step.object, scene.names)
+        link = step.link or default_tip(robot)
+        frame = pose_of(robot, self.q, link)
+        body = replace(found[0].body, pose=frame.inverse() @ found[0].body.pose)
+        held = HeldObject(step.object, body, link, touches(step, robot))
+        attached = replace(scene.without(step.object), attached=(*scene.attached, held))
+        stage = replace(self, world=_world(self, attached))
+        # What it stood on, it may touch until it is lifted.
+        stood = frozenset((step.object, each) for each in stage.touched(step.object))
+        return replace(stage, near_start=self.near_start | stood)
+
+    def detach(self, step: Detach, where: str) -> Stage:
+        """Return the stage after an object is let go.  Raises InvalidValue if the task has not attached it."""
+        scene, robot = self.world.scene, self.world.robot
+        held = {each.name: each for each in scene.attached if each.name not in self.empty.holds}
+        if step.object not in held:
+            holds = ", ".join(held) or "nothing that the task has attached"
+            raise InvalidValue(f"{where} lets go of {step.object!r}, which it cannot: the arm holds {holds}")
+        body = held[step.object].body
+        frame = pose_of(robot, self.q, held[step.object].link)
+        placed = Obstacle(step.object, replace(body, pose=frame @ body.pose, link=WORLD))
+        left = tuple(each for each in scene.attached if each.name != step.object)
+        allowed = frozenset(each for each in scene.allowed if each[0] != step.object)
+        scene = replace(scene, obstacles=(*scene.obstacles, placed), attached=left, allowed=allowed)
+        let_go = frozenset((link, step.object) for link in (held[step.object].link, *held[step.object].touches))
+        return replace(self, world=_world(self, scene), near_start=self.near_start | let_go)
+
+    def touched(self, held: str) -> list[str]:
+        """Return the obstacles without which what is held would be free here: those that it touches."""
+        scene, world = self.world.scene, self.world
+        found: list[str] = []
+        for each in scene.obstacles:
+            alone = replace(scene, obstacles=(each,), allowed=frozenset(a for a in scene.allowed if a[1] == each.name))
+            spared = replace(alone, allowed=alone.allowed | {(held, each.name)})
+            if not replace(world, scene=alone).valid(self.q) and replace(world, scene=spared).valid(self.q):
+                found.append(each.name)
+        return found
+
+
+def touches(step: Attach, robot: Robot) -> tuple[str, ...]:
+    """Return the links that may touch what is attached: by default all that no planned joint moves against the link."""
+    if step.touches is not None:
+        return step.touches
+    first = {robot.links[0]: robot.links[0]}
+    for joint in robot.joints:
+        first[joint.child] = joint.child if joint.name in robot.group else first[joint.parent]
+    link = step.link or default_tip(robot)
+    return tuple(each for each in robot.links if first[each] == first[link] and each not in robot.holds)
+
+
+def pose_of(robot: Robot, q: Floats, link: str) -> Pose:
+    """Return the pose of a link at a configuration, (dim,)."""
+    return Pose.from_matrix(link_poses(robot, q[np.newaxis])[0, robot.links.index(link)])
+
+
+def _world(stage: Stage, scene: Scene) -> ArmWorld:
+    """Return the stage's world with another scene, and the robot holding what is attached there."""
+    robot = stage.empty
+    for held in scene.attached:
+        if held.name not in robot.holds:
+            robot = robot.holding(held)
+    return replace(stage.world, robot=robot, scene=scene)

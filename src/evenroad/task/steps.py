@@ -1,0 +1,167 @@
+"""Steps of a task, as values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from evenroad._arrays import set_fields
+from evenroad._call import explains_calls
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue, shown
+from evenroad.robot.cartesian_line import CartesianLine
+from evenroad.robot.constraint import Constraint, part_of
+
+
+@explains_calls
+@dataclass(frozen=True)
+class MoveTo:
+    """A motion to a goal.
+
+    Parameters
+    ----------
+    goal : configuration, Pose, PoseGoal, str, or a sequence of such
+        As :func:`evenroad.plan` takes it.  Of several, one is taken with which the rest of the task can be done.
+    approach, retreat : float
+        Lengths of straight lines of the tip to the goal and from the start, >= 0 [m].
+    away : sequence of 3 floats, "x", "-x", ..., or "up"
+        Direction of the lines, see :class:`evenroad.CartesianLine`.
+    constraints : Constraint, optional
+        Others, such as :class:`evenroad.OrientationConstraint`.
+
+    Raises
+    ------
+    InvalidValue
+        If a length is not such a number, or the constraints have a line of their own.
+
+    Examples
+    --------
+    >>> from evenroad.task import MoveTo
+    >>> MoveTo("home", retreat=0.1).retreat
+    0.1
+    """
+
+    goal: Any
+    approach: float = 0.0
+    retreat: float = 0.0
+    away: Any = "-z"
+    constraints: Constraint | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("approach", "retreat"):
+            set_fields(self, **{name: require_positive(name, getattr(self, name), or_zero=True)})
+        if part_of(self.constraints, CartesianLine) is not None:
+            raise InvalidValue("the lines of MoveTo are its approach and retreat, not constraints")
+
+    def line(self, tip: str) -> CartesianLine | None:
+        """Return the straight lines of a tip; None where there are none."""
+        if not (self.approach or self.retreat):
+            return None
+        return CartesianLine(self.approach, self.retreat, self.away, tip)
+
+
+@explains_calls
+@dataclass(frozen=True)
+class Attach:
+    """The gripper takes an obstacle, which then moves with a link.
+
+    Parameters
+    ----------
+    object : str
+        Name of the obstacle.
+    link : str
+        The link that carries it; default: the last one.
+    touches : sequence of str, optional
+        Links that may touch it, on the lines to it and while it is held.  Default: all that no joint which is planned
+        for moves against `link`, such as fingers.
+
+    Raises
+    ------
+    InvalidValue
+        If a name is no text.
+
+    Examples
+    --------
+    >>> from evenroad.task import Attach
+    >>> Attach("can").object
+    'can'
+    """
+
+    object: str
+    link: str = ""
+    touches: tuple[str, ...] | None = None
+
+    def __post_init__(self) -> None:
+        _require_names(self, "object", "link")
+        if self.touches is not None:
+            set_fields(self, touches=(self.touches,) if isinstance(self.touches, str) else tuple(self.touches))
+
+
+@explains_calls
+@dataclass(frozen=True)
+class Detach:
+    """The gripper lets go of what it holds, which is an obstacle again, where it is then.
+
+    Parameters
+    ----------
+    object : str
+        Name of what is held.
+    onto : sequence of str
+        Obstacles that it may touch on the line to its place, such as the table.
+
+    Raises
+    ------
+    InvalidValue
+        If a name is no text.
+
+    Examples
+    --------
+    >>> from evenroad.task import Detach
+    >>> Detach("can", onto="table").onto
+    ('table',)
+    """
+
+    object: str
+    onto: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        _require_names(self, "object")
+        set_fields(self, onto=(self.onto,) if isinstance(self.onto, str) else tuple(self.onto))
+
+
+@explains_calls
+@dataclass(frozen=True)
+class Wait:
+    """The arm stands still.
+
+    Parameters
+    ----------
+    seconds : float
+        >= 0 [s].
+
+    Raises
+    ------
+    InvalidValue
+        If it is no such number.
+
+    Examples
+    --------
+    >>> from evenroad.task import Wait
+    >>> Wait(0.5)
+    Wait(seconds=0.5)
+    """
+
+    seconds: float
+
+    def __post_init__(self) -> None:
+        set_fields(self, seconds=require_positive("seconds", self.seconds, or_zero=True))
+
+
+Step = MoveTo | Attach | Detach | Wait
+
+
+def _require_names(step: Attach | Detach, *names: str) -> None:
+    for name in names:
+        if not isinstance(getattr(step, name), str):
+            text = f"{name} of {type(step).__name__} must be a name"
+            raise InvalidValue(f"{text}, got {shown(getattr(step, name))}")

@@ -1,0 +1,83 @@
+"""Task: the steps of an arm, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from evenroad._above import above
+from evenroad._arrays import set_fields
+from evenroad._call import explains_calls
+from evenroad.errors import InvalidValue, shown
+from evenroad.robot import ArmWorld
+from evenroad.task.result import TaskResult
+from evenroad.task.steps import MoveTo, Step
+
+
+@explains_calls
+@dataclass(frozen=True)
+class Task:
+    """Steps, one after the other.
+
+    Parameters
+    ----------
+    steps : sequence of MoveTo, Attach, Detach and Wait
+        One motion at least.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no motion, or something else among them.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> from evenroad.task import MoveTo, Task
+    >>> task = Task([MoveTo("inside"), MoveTo("home")])
+    >>> task.plan(er.ArmWorld("ur5", "box-reach"), "home").solved
+    True
+    """
+
+    steps: tuple[Step, ...]
+
+    def __init__(self, steps: Sequence[Step]) -> None:
+        given = tuple(steps) if isinstance(steps, list | tuple) else (steps,)
+        for number, step in enumerate(given):
+            if not isinstance(step, Step):
+                raise InvalidValue(f"step {number} of a task must be MoveTo, Attach, Detach or Wait, got {shown(step)}")
+        if not any(isinstance(step, MoveTo) for step in given):
+            raise InvalidValue("a task must have one MoveTo or more")
+        set_fields(self, steps=given)
+
+    def plan(self, world: ArmWorld, start: Any, **options: Any) -> TaskResult:
+        """Plan all motions; where a step cannot be done, other goals are taken before it.
+
+        Parameters
+        ----------
+        world : ArmWorld
+            Where the task begins.  What is attached becomes a body of the robot.
+        start : configuration or str
+            As :func:`evenroad.plan` takes it.
+        **options
+            ``seconds`` of each motion, ``limits``, ``smooth``, ``rng``, ``tip``, ``frame``, ``degrees``, as there.
+
+        Returns
+        -------
+        TaskResult
+            A failure is a result, too, and says which step cannot be done, and why.
+
+        Raises
+        ------
+        InvalidValue, UnknownName
+            If an argument is none of these, a step takes what is no obstacle, or lets go of what is not held.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> from evenroad.task import MoveTo, Task, Wait
+        >>> Task([MoveTo("inside"), Wait(0.5)]).plan(er.ArmWorld("ur5", "box-reach"), "home").solved
+        True
+        """
+        found: TaskResult = above("Task.plan")(self.steps, world, start, **options)
+        return found

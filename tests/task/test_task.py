@@ -1,0 +1,141 @@
+"""A task is done step by step: each motion is free in the world as it is then; a failure says which step, and why."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.errors import EvenroadError
+from evenroad.robot import HeldObject
+from evenroad.task import Attach, Detach, MoveTo, Task, Wait
+from tests.robot import oracle
+
+HOME = [0.0, -2.0, 1.9, -1.5, -math.pi / 2, 0.0]
+CAN = er.Box((0.06, 0.06, 0.16), xyz=(0.70, 0.1, 0.29), name="can")
+SHELF = [
+    er.Box((0.5, 0.6, 0.04), xyz=(0.0, -0.62, 0.02), name="table"),
+    er.Box((0.32, 0.7, 0.02), xyz=(0.76, 0.1, 0.20), name="board"),
+    er.Box((0.32, 0.7, 0.02), xyz=(0.76, 0.1, 0.62), name="upper board"),
+    er.Box((0.32, 0.02, 0.62), xyz=(0.76, -0.26, 0.31), name="side"),
+    er.Box((0.02, 0.7, 0.62), xyz=(0.93, 0.1, 0.31), name="back"),
+]
+PLACE = er.PoseGoal(er.Pose((0.0, -0.6, 0.121)), tip="can", free_axis="z")
+
+
+def grasp(angle):
+    """A flange at the can's side, from a direction in the plane."""
+    away = 0.033
+    xyz = (0.70 - away * math.cos(angle), 0.1 - away * math.sin(angle), 0.30)
+    return er.PoseGoal(er.Pose(xyz, rpy=(0.0, math.pi / 2, angle)), free_axis="z")
+
+
+def pick_and_place(grasps):
+    """Take the can out of the shelf, put it onto the table, and go home."""
+    return Task(
+        [
+            MoveTo(grasps, approach=0.12),
+            Attach("can"),
+            MoveTo(PLACE, retreat=0.05, approach=0.05, away="up"),
+            Detach("can", onto="table"),
+            Wait(0.4),
+            MoveTo(HOME, retreat=0.1),
+        ]
+    )
+
+
+@pytest.fixture(scope="module")
+def world():
+    """A UR5 before the shelf."""
+    return er.ArmWorld("ur5", er.Scene([*SHELF, CAN]))
+
+
+@pytest.fixture(scope="module")
+def done(world):
+    """The task's plan."""
+    return pick_and_place([grasp(angle) for angle in np.linspace(-1.2, 1.2, 8)]).plan(world, HOME)
+
+
+def apart(robot, bodies, path, allowed=frozenset()):
+    """By how much the oracle keeps bodies apart along a path."""
+    states = np.linspace(path[:-1], path[1:], 10, axis=1).reshape(-1, path.shape[1])
+    return oracle.clearance(robot, er.Scene(bodies, allowed=allowed), states).min()
+
+
+def test_every_part_is_free_in_the_world_as_it_is_then(world, done):
+    assert done.solved
+    into, out, back = done.motions
+    robot = world.robot
+    (way, line), (lift, carry, lower), (leave, home) = into.parts, out.parts, back.parts
+    assert apart(robot, [*SHELF, CAN], way.path) > 0.0
+    gripper = frozenset((link, "can") for link in ("tool0", "wrist_3_link"))
+    assert apart(robot, [*SHELF, CAN], line.path, gripper) > 0.0
+    # While it is held the can moves with the flange, and touches nothing but what it stood on, or shall stand on.
+    turn, origin = (each[0] for each in oracle.link_poses(robot, line.path[-1:])["tool0"])
+    held = er.Box(CAN.size, pose=er.Pose(origin, tuple(turn.ravel())).inverse() @ CAN.pose)
+    holding = robot.holding(HeldObject("can", held, "tool0", ("tool0", "wrist_3_link")))
+    assert apart(holding, SHELF, lift.path, frozenset({("can", "board")})) > 0.0
+    assert apart(holding, SHELF, carry.path) > 0.0
+    assert apart(holding, SHELF, lower.path, frozenset({("can", "table")})) > 0.0
+    turn, origin = (each[0] for each in oracle.link_poses(holding, lower.path[-1:])["can"])
+    np.testing.assert_allclose([*origin, turn[2, 2]], [0.0, -0.6, 0.121, 1.0], atol=1e-4)
+    placed = er.Box(CAN.size, pose=er.Pose(origin, tuple(turn.ravel())), name="can")
+    assert apart(robot, [*SHELF, placed], leave.path, gripper) > 0.0
+    assert apart(robot, [*SHELF, placed], home.path) > 0.0
+
+
+def test_parts_follow_each_other_and_a_grasp_with_which_the_rest_fails_is_not_taken(done):
+    path = [part.path for part in done.parts]
+    assert all(np.array_equal(before[-1], after[0]) for before, after in itertools.pairwise(path))
+    assert done.tried > len(done.motions), "no grasp had to be given up: this tests nothing"
+
+
+def test_one_trajectory_stands_still_where_the_gripper_acts(done):
+    trajectory = done.trajectory(speed=0.5)
+    assert np.abs(np.diff(trajectory.positions, axis=0)).max() < 0.05
+    still = np.abs(trajectory.velocities).max(axis=1) < 1e-9
+    for motion in done.motions:
+        assert np.abs(trajectory.positions[still] - motion.end).max(axis=1).min() < 1e-9
+    waiting = still & (np.abs(trajectory.positions - done.motions[1].end).max(axis=1) < 1e-9)
+    assert 0.4 <= waiting.sum() * (trajectory.times[1] - trajectory.times[0]) <= 0.45
+
+
+def test_a_step_that_cannot_be_done_is_named_with_its_reason(world):
+    result = Task([MoveTo(HOME), Wait(1.0), MoveTo([0.0, -0.15, 0.0, 0.0, 0.0, 0.0])]).plan(world, HOME)
+    assert (result.status, result.step, result.path, result.cost) == (er.Status.GOAL_INVALID, 2, None, None)
+    assert result.message.startswith("step 2 of the task cannot be done: ")
+    assert "touches" in result.message
+    with pytest.raises(EvenroadError, match="there is no trajectory: step 2"):
+        result.trajectory()
+
+
+@pytest.mark.parametrize(
+    ("steps", "says"),
+    [
+        ([], "one MoveTo or more"),
+        ([Wait(1.0)], "one MoveTo or more"),
+        (["home"], "step 0 of a task must be MoveTo, Attach, Detach or Wait, got 'home'"),
+        ([Attach("cup"), MoveTo(HOME)], "unknown obstacle of step 0 of the task:? 'cup'"),
+        ([Detach("can"), MoveTo(HOME)], "step 0 of the task lets go of 'can', which it cannot"),
+    ],
+)
+def test_steps_that_make_no_sense_are_refused_in_one_line(world, steps, says):
+    with pytest.raises(EvenroadError, match=says) as caught:
+        Task(steps).plan(world, HOME)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Wait(-1.0),
+        lambda: MoveTo(HOME, approach=-0.1),
+        lambda: MoveTo(HOME, constraints=er.CartesianLine(approach=0.1)),
+        lambda: Attach(3),
+        lambda: Detach(None),
+    ],
+)
+def test_a_value_out_of_range_is_refused(make):
+    with pytest.raises(EvenroadError):
+        make()
