@@ -67,8 +67,8 @@ def test_every_part_is_free_in_the_world_as_it_is_then(world, done):
     assert done.solved
     into, out, back = done.motions
     robot = world.robot
-    (way, line), (lift, carry, lower), (leave, home) = into.parts, out.parts, back.parts
-    assert apart(robot, [*SHELF, CAN], way.path) > 0.0
+    (middle, line), (lift, carry, lower), (leave, home) = into.parts, out.parts, back.parts
+    assert apart(robot, [*SHELF, CAN], middle.path) > 0.0
     gripper = frozenset((link, "can") for link in ("tool0", "wrist_3_link"))
     assert apart(robot, [*SHELF, CAN], line.path, gripper) > 0.0
     # While it is held the can moves with the flange, and touches nothing but what it stood on, or shall stand on.

@@ -1,4 +1,4 @@
-"""One motion of a task: a straight line away, the way between, a straight line to the goal, each in its own world."""
+"""One motion of a task: a straight line away, a plan between, a straight line to the goal, each in its own world."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from evenroad.robot.orientation_constraint import OrientationConstraint, orienta
 from evenroad.space.path import path_length
 from evenroad.task.steps import MoveTo
 
-PlanWay = Callable[[Request, MoveTo], PlanResult]
+PlanBetween = Callable[[Request, MoveTo], PlanResult]
 """A function that plans a request without lines, from its start to its goals in its world."""
 
 
@@ -42,14 +42,14 @@ class Motion:
         return path[-1]
 
 
-def plan_motion(request: Request, between: ArmWorld, step: MoveTo, plan_way: PlanWay) -> Motion:
-    """Plan one motion: its straight lines in the world of the request, the way between them in `between`."""
+def plan_motion(request: Request, between: ArmWorld, step: MoveTo, plan_between: PlanBetween) -> Motion:
+    """Plan one motion: its straight lines in the world of the request, the path between them in `between`."""
     if (result := unreached(request)) is not None:
         return Motion((result,))
     straight = step.line(request.tip or default_tip(request.world.robot))
     if straight is None:
-        way = plan_way(replace(request, world=between), step)
-        return Motion((way,), None if way.path is None else way.goal_index)
+        middle = plan_between(replace(request, world=between), step)
+        return Motion((middle,), None if middle.path is None else middle.goal_index)
     leaving = _line(request, step, straight, request.start, straight.retreat)
     if leaving.why:
         return Motion((refused(request, Status.NOT_CONNECTED, f"no straight line from the start: {leaving.why}"),))
@@ -63,11 +63,11 @@ def plan_motion(request: Request, between: ArmWorld, step: MoveTo, plan_way: Pla
     if not coming:
         return Motion((refused(request, Status.NOT_CONNECTED, f"no straight line to a goal: {why}"),))
     beginnings = np.array([each.path[-1] for each in coming.values()])
-    way = plan_way(Request(between, leaving.path[-1], beginnings), step)
-    if way.path is None or way.goal_index is None:
-        return Motion((replace(way, message=f"between the straight lines: {way.message}"),))
-    row = list(coming)[way.goal_index]
-    lines = _along(request.world, leaving), way, _along(request.world, coming[row], turned=True)
+    middle = plan_between(Request(between, leaving.path[-1], beginnings), step)
+    if middle.path is None or middle.goal_index is None:
+        return Motion((replace(middle, message=f"between the straight lines: {middle.message}"),))
+    row = list(coming)[middle.goal_index]
+    lines = _along(request.world, leaving), middle, _along(request.world, coming[row], turned=True)
     return Motion(tuple(each for each in lines if each.path is not None and len(each.path) > 1), row)
 
 

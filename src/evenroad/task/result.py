@@ -29,7 +29,7 @@ class TaskResult:
     message : str
         One sentence: what happened, or which step cannot be done and why.
     motions : tuple of Motion
-        Of each MoveTo the plans of its `parts`: lines, and the way between them, each in its own world.  What is held
+        Of each MoveTo the plans of its `parts`: lines, and the path between them, each in its own world.  What is held
         is a body of the robot there.
     step : int or None
         Number of the step that failed, from 0 on.

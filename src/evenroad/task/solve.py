@@ -18,7 +18,7 @@ from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Smooth
 from evenroad.robot import ArmWorld
 from evenroad.robot.chain import default_tip
-from evenroad.task.motion import Motion, PlanWay, plan_motion
+from evenroad.task.motion import Motion, PlanBetween, plan_motion
 from evenroad.task.result import TaskResult
 from evenroad.task.stage import Contacts, Stage, touches
 from evenroad.task.steps import Attach, Detach, MoveTo, Step
@@ -32,7 +32,7 @@ class _Search:
     """A depth-first search over the goals of the motions."""
 
     steps: tuple[Step, ...]
-    plan_way: PlanWay
+    plan_between: PlanBetween
     reading: Reading
     tried: int = 0
     deepest: int = -1
@@ -54,7 +54,7 @@ class _Search:
         left = np.arange(len(request.goals))
         while len(left) and self.tried < MOST_PLANS:
             self.tried += 1
-            motion = plan_motion(replace(request, goals=request.goals[left]), stage.world, step, self.plan_way)
+            motion = plan_motion(replace(request, goals=request.goals[left]), stage.world, step, self.plan_between)
             if motion.goal is None:
                 # Of failures the one that comes after most steps says most.
                 if number > self.deepest:
@@ -98,12 +98,12 @@ def plan_task(
         raise InvalidValue(f"a task is planned in an ArmWorld, got {shown(world)}")
     began, budget = now(), budget_of(None, seconds, limits)
 
-    def plan_way(request: Request, step: MoveTo) -> PlanResult:
+    def plan_between(request: Request, step: MoveTo) -> PlanResult:
         options = Options(budget, smooth, rng, constraints=step.constraints)
         return finished(request, solve(request, None, options))[0]
 
     reading = Reading(degrees, tip, frame)
-    search = _Search(steps, plan_way, reading)
+    search = _Search(steps, plan_between, reading)
     first = request_in(world, start, start, reading).start
     motions = search.run(0, Stage(world, first, world.robot))
     timings = {"task": now() - began}
