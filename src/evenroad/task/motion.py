@@ -72,7 +72,7 @@ def plan_motion(request: Request, between: ArmWorld, step: MoveTo, plan_between:
 
 
 def _line(request: Request, step: MoveTo, straight: CartesianLine, q: Floats, length: float) -> Line:
-    """Return the straight line from a configuration, which keeps the orientation that the step asks for."""
+    """Return the straight line from a configuration, in the orientation of the step."""
     world = request.world
     if not world.valid(q):
         return Line(q[np.newaxis], world.explain(q))
