@@ -84,14 +84,12 @@ def plan_task(
     steps: tuple[Step, ...],
     world: ArmWorld,
     start: ConfigurationLike,
+    reading: Reading,
     *,
     seconds: float | None = None,
     limits: Budget | Mapping[str, int] | None = None,
     smooth: Smooth = True,
     rng: RngLike = 0,
-    tip: str = "",
-    frame: str = "",
-    degrees: bool = False,
 ) -> TaskResult:
     """Return the plan of a task; see :meth:`evenroad.task.Task.plan`."""
     if not isinstance(world, ArmWorld):
@@ -102,7 +100,6 @@ def plan_task(
         options = Options(budget, smooth, rng, constraints=step.constraints)
         return finished(request, solve(request, None, options))[0]
 
-    reading = Reading(degrees, tip, frame)
     search = _Search(steps, plan_between, reading)
     first = request_in(world, start, start, reading).start
     motions = search.run(0, Stage(world, first, world.robot))

@@ -10,6 +10,7 @@ from evenroad._above import above
 from evenroad._arrays import set_fields
 from evenroad._call import explains_calls
 from evenroad.errors import InvalidValue, shown
+from evenroad.planning.request import Reading
 from evenroad.robot import ArmWorld
 from evenroad.task.result import TaskResult
 from evenroad.task.steps import MoveTo, Step
@@ -50,7 +51,9 @@ class Task:
             raise InvalidValue("a task must have one MoveTo or more")
         set_fields(self, steps=given)
 
-    def plan(self, world: ArmWorld, start: Any, **options: Any) -> TaskResult:
+    def plan(
+        self, world: ArmWorld, start: Any, *, tip: str = "", frame: str = "", degrees: bool = False, **options: Any
+    ) -> TaskResult:
         """Plan all motions; where a step cannot be done, other goals are taken before it.
 
         Parameters
@@ -59,8 +62,10 @@ class Task:
             Where the task begins.  What is attached becomes a body of the robot.
         start : configuration or str
             As :func:`evenroad.plan` takes it.
+        tip, frame, degrees
+            How poses and texts are read, as there.
         **options
-            ``seconds`` of each motion, ``limits``, ``smooth``, ``rng``, ``tip``, ``frame``, ``degrees``, as there.
+            ``seconds`` of each motion, ``limits``, ``smooth``, ``rng``, as there.
 
         Returns
         -------
@@ -79,5 +84,5 @@ class Task:
         >>> Task([MoveTo("inside"), Wait(0.5)]).plan(er.ArmWorld("ur5", "box-reach"), "home").solved
         True
         """
-        found: TaskResult = above("Task.plan")(self.steps, world, start, **options)
+        found: TaskResult = above("Task.plan")(self.steps, world, start, Reading(degrees, tip, frame), **options)
         return found
