@@ -110,6 +110,11 @@ def test_a_step_that_cannot_be_done_is_named_with_its_reason(world):
         result.trajectory()
 
 
+def test_an_unknown_keyword_is_refused_with_the_known_ones(world):
+    with pytest.raises(EvenroadError, match=r"'secs'.*seconds"):
+        Task([MoveTo(HOME)]).plan(world, HOME, secs=3)
+
+
 @pytest.mark.parametrize(
     ("steps", "says"),
     [

@@ -8,6 +8,7 @@ from time import perf_counter as now
 
 import numpy as np
 
+from evenroad._call import explains_calls
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.plan import Options, budget_of, finished, solve
@@ -80,6 +81,7 @@ class _Search:
         return frozenset()
 
 
+@explains_calls
 def plan_task(
     steps: tuple[Step, ...],
     world: ArmWorld,
