@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -94,7 +95,7 @@ class Attach:
     def __post_init__(self) -> None:
         _require_names(self, "object", "link")
         if self.touches is not None:
-            set_fields(self, touches=(self.touches,) if isinstance(self.touches, str) else tuple(self.touches))
+            set_fields(self, touches=_names(self, "touches"))
 
 
 @explains_calls
@@ -126,7 +127,7 @@ class Detach:
 
     def __post_init__(self) -> None:
         _require_names(self, "object")
-        set_fields(self, onto=(self.onto,) if isinstance(self.onto, str) else tuple(self.onto))
+        set_fields(self, onto=_names(self, "onto"))
 
 
 @explains_calls
@@ -165,3 +166,12 @@ def _require_names(step: Attach | Detach, *names: str) -> None:
         if not isinstance(getattr(step, name), str):
             text = f"{name} of {type(step).__name__} must be a name"
             raise InvalidValue(f"{text}, got {shown(getattr(step, name))}")
+
+
+def _names(step: Attach | Detach, name: str) -> tuple[str, ...]:
+    """Return the names that a field of a step has."""
+    given = getattr(step, name)
+    listed = (given,) if isinstance(given, str) else given
+    if not isinstance(listed, Collection) or not all(isinstance(each, str) for each in listed):
+        raise InvalidValue(f"{name} of {type(step).__name__} must be names, got {shown(given)}")
+    return tuple(listed)
