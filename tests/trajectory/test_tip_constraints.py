@@ -85,3 +85,13 @@ def test_a_joint_that_turns_for_ever_goes_the_short_way_as_its_path_does(tmp_pat
     again = arm_trajectory(world, [[2.6], [-2.6], [-1.1], [-2.6], [2.6]])
     assert np.abs(np.diff(again.waypoints, axis=0)).max() < 1.7
     assert again.positions[-1, 0] == pytest.approx(2.6)
+
+
+def test_a_plan_that_stays_upright_is_driven_by_its_arm():
+    """With its names and limits, and upright: not as a point in a space, one unit a second."""
+    home = [-1.2, -2.0, 1.9, -1.5, -np.pi / 2, 0.0]
+    world = er.ArmWorld("ur5", er.Scene([]))
+    upright = er.OrientationConstraint(0.05)
+    trajectory = er.plan(world, home, [1.2, *home[1:]], constraints=upright).trajectory()
+    assert trajectory.names == world.robot.group
+    assert trajectory.limits == arm_trajectory(world, [home, [1.2, *home[1:]]], constraints=upright).limits

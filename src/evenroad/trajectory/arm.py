@@ -15,6 +15,7 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.robot import ArmWorld, Robot, held_values, tip_links
 from evenroad.robot.constraint import Constraint
 from evenroad.robot.kinematics import link_poses
+from evenroad.robot.orientation_constraint import OrientationConstraint, OrientationWorld
 from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of
 from evenroad.trajectory.tip_constraints import constrained_world
 from evenroad.trajectory.trajectory import DEVIATION, STEP, Trajectory, make_trajectory
@@ -128,6 +129,10 @@ def trajectory_of(
     known = {*signature(arm_trajectory).parameters} - {"world", "path"}
     for key in options:
         require_known("keyword of trajectory:", key, known)
+    if isinstance(world, OrientationWorld):
+        # A plan without lines is one in such a world: its arm has names and limits, and stays upright as it is driven.
+        options.setdefault("constraints", OrientationConstraint(world.tolerance, world.axis, world.chain.tip))
+        world = world.world
     if isinstance(world, ArmWorld):
         if isinstance(limits, str | os.PathLike):
             limits = limits_of(world.robot, limits)
