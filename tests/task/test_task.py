@@ -115,6 +115,67 @@ def test_an_unknown_keyword_is_refused_with_the_known_ones(world):
         Task([MoveTo(HOME)]).plan(world, HOME, secs=3)
 
 
+def test_what_is_lifted_from_a_table_may_not_end_inside_it():
+    """What it stood on it may touch while it is lifted, not where it is put."""
+    table = er.Box((0.5, 0.9, 0.04), xyz=(0.6, 0.0, 0.02), name="table")
+    can = er.Box((0.06, 0.06, 0.16), xyz=(0.6, 0.2, 0.121), name="can")
+    above = er.PoseGoal(er.Pose((0.6, 0.2, 0.205), rpy=(math.pi, 0.0, 0.0)), free_axis="z")
+    inside = er.PoseGoal(er.Pose((0.6, -0.2, 0.07)), tip="can", free_axis="z")
+    steps = [MoveTo(above, approach=0.1), Attach("can"), MoveTo(inside, retreat=0.1, approach=0.1, away="up")]
+    result = Task(steps).plan(er.ArmWorld("ur5", er.Scene([table, can])), HOME)
+    assert (result.status, result.step) == (er.Status.GOAL_INVALID, 2)
+    assert "'can' touches 'table'" in result.message
+
+
+def test_what_is_taken_and_let_go_at_once_stays_where_it_is(world):
+    result = Task([Attach("can"), Detach("can"), MoveTo([0.1, *HOME[1:]])]).plan(world, HOME)
+    (part,) = result.parts
+    assert part.world.scene.obstacles[-1].name == "can"
+    np.testing.assert_allclose(part.world.scene.obstacles[-1].xyz, CAN.pose.xyz, atol=1e-12)
+
+
+def test_a_task_of_many_motions_is_done(world):
+    """No limit of what is tried in vain holds for what has to be done."""
+    assert Task([MoveTo(HOME), Wait(0.1)] * 100).plan(world, HOME).solved
+    assert Task([*[Wait(0.1)] * 2000, MoveTo(HOME)]).plan(world, HOME).solved
+
+
+def test_a_continuous_joint_goes_on_where_the_motion_before_ended(tmp_path):
+    """Not a whole turn away, in one step."""
+    links = "".join(
+        f'<link name="l{i}"><collision><origin xyz="0.2 0 0"/><geometry><box size="0.3 0.03 0.03"/></geometry>'
+        "</collision></link>"
+        for i in range(3)
+    )
+    joints = "".join(
+        f'<joint name="j{i}" type="continuous"><parent link="l{i}"/><child link="l{i + 1}"/>'
+        '<origin xyz="0.4 0 0.05"/><axis xyz="0 0 1"/><limit velocity="1" effort="1"/></joint>'
+        for i in range(2)
+    )
+    file = tmp_path / "turning.urdf"
+    file.write_text(f'<robot name="turning">{links}{joints}</robot>')
+    task = Task([MoveTo([-3.0, 0.5]), MoveTo([-2.0, 0.5])])
+    trajectory = task.plan(er.ArmWorld(er.load_robot(file), er.Scene([])), [3.0, 0.0]).trajectory()
+    assert np.abs(np.diff(trajectory.positions, axis=0)).max() < 0.02
+    np.testing.assert_allclose(trajectory.positions[-1], [2.0 * math.pi - 2.0, 0.5], atol=1e-6)
+    np.testing.assert_allclose(trajectory.waypoints[-1], trajectory.positions[-1], atol=1e-6)
+
+
+def test_a_trajectory_has_names_and_limits_of_the_arm_and_keeps_the_constraints_of_a_step(world):
+    upright = er.OrientationConstraint(0.2)
+    result = Task([MoveTo([0.6, *HOME[1:]], constraints=upright), MoveTo(HOME)]).plan(world, HOME)
+    (motion, _), trajectory = result.motions, result.trajectory(speed=0.5)
+    assert motion.constraints == er.OrientationConstraint(0.2, tip="tool0")
+    assert trajectory.names == world.robot.group
+    assert trajectory.limits.along_path is None
+
+
+def test_a_wait_that_no_trajectory_holds_is_refused(world):
+    result = Task([MoveTo([0.1, *HOME[1:]]), Wait(1e9)]).plan(world, HOME)
+    with pytest.raises(EvenroadError, match="would stand still for 1e\\+09 s"):
+        result.trajectory()
+
+
 @pytest.mark.parametrize(
     ("steps", "says"),
     [
@@ -122,6 +183,9 @@ def test_an_unknown_keyword_is_refused_with_the_known_ones(world):
         ([Wait(1.0)], "one MoveTo or more"),
         (["home"], "step 0 of a task must be MoveTo, Attach, Detach or Wait, got 'home'"),
         ([Attach("cup"), MoveTo(HOME)], "unknown obstacle of step 0 of the task:? 'cup'"),
+        ([MoveTo(HOME)] * 501, "one MoveTo or more, up to 500, got 501"),
+        ([Attach("can", "hand"), MoveTo(HOME)], "unknown link that takes 'can': 'hand'"),
+        ([MoveTo(HOME), Attach("can", "hand")], "unknown link that takes 'can': 'hand'"),
         ([Detach("can"), MoveTo(HOME)], "step 0 of the task lets go of 'can', which it cannot"),
     ],
 )
@@ -139,6 +203,8 @@ def test_steps_that_make_no_sense_are_refused_in_one_line(world, steps, says):
         lambda: MoveTo(HOME, constraints=er.CartesianLine(approach=0.1)),
         lambda: Attach(3),
         lambda: Detach(None),
+        lambda: Detach("can", onto=3),
+        lambda: Attach("can", touches=[3]),
     ],
 )
 def test_a_value_out_of_range_is_refused(make):

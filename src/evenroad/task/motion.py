@@ -15,7 +15,7 @@ from evenroad.roadmap.result import make_result
 from evenroad.robot import ArmWorld
 from evenroad.robot.cartesian_line import CartesianLine, Line, line_from
 from evenroad.robot.chain import chain_of, default_tip
-from evenroad.robot.constraint import part_of
+from evenroad.robot.constraint import Constraint, part_of
 from evenroad.robot.orientation_constraint import OrientationConstraint, orientation_world
 from evenroad.space.path import path_length
 from evenroad.task.steps import MoveTo
@@ -28,11 +28,13 @@ PlanBetween = Callable[[Request, MoveTo], PlanResult]
 class Motion:
     """The plans of a motion's parts, one to three, and the row of the goal that it ends at.
 
-    Without a motion the only part says why, and `goal` is None.
+    Without a motion the only part says why, and `goal` is None.  `constraints` are those of its step, with the name of
+    the link that they constrain.
     """
 
     parts: tuple[PlanResult, ...]
     goal: int | None = None
+    constraints: Constraint | None = None
 
     @property
     def end(self) -> Floats:
@@ -42,21 +44,28 @@ class Motion:
         return path[-1]
 
 
-def plan_motion(request: Request, between: ArmWorld, step: MoveTo, plan_between: PlanBetween) -> Motion:
-    """Plan one motion: its straight lines in the world of the request, the path between them in `between`."""
+def plan_motion(request: Request, worlds: tuple[ArmWorld, ArmWorld], step: MoveTo, plan_between: PlanBetween) -> Motion:
+    """Plan one motion: the line from its start and the path between the lines in two `worlds`, the lines to its goals
+    in the world of the request.
+    """
+    at_start, between = worlds
     if (result := unreached(request)) is not None:
         return Motion((result,))
+    if (orientation := part_of(step.constraints, OrientationConstraint)) is not None and not orientation.tip:
+        # The path between lines has no goal pose to take it from.
+        tip = request.tip or default_tip(request.world.robot)
+        step = replace(step, constraints=replace(orientation, tip=tip))
     straight = step.line(request.tip or default_tip(request.world.robot))
     if straight is None:
         middle = plan_between(replace(request, world=between), step)
-        return Motion((middle,), None if middle.path is None else middle.goal_index)
-    leaving = _line(request, step, straight, request.start, straight.retreat)
+        return Motion((middle,), None if middle.path is None else middle.goal_index, step.constraints)
+    leaving = _line(at_start, request, step, straight, request.start, straight.retreat)
     if leaving.why:
         return Motion((refused(request, Status.NOT_CONNECTED, f"no straight line from the start: {leaving.why}"),))
     coming: dict[int, Line] = {}
     why, first = "", np.broadcast_to(leaving.path[-1], request.goals.shape)
     for row in np.argsort(request.world.space.distance(first, request.goals), kind="stable").tolist():
-        last = _line(request, step, straight, request.goals[row], straight.approach)
+        last = _line(request.world, request, step, straight, request.goals[row], straight.approach)
         why = why or last.why
         if not last.why and len(coming) < LINES:
             coming[row] = last
@@ -67,13 +76,12 @@ def plan_motion(request: Request, between: ArmWorld, step: MoveTo, plan_between:
     if middle.path is None or middle.goal_index is None:
         return Motion((replace(middle, message=f"between the straight lines: {middle.message}"),))
     row = list(coming)[middle.goal_index]
-    lines = _along(request.world, leaving), middle, _along(request.world, coming[row], turned=True)
-    return Motion(tuple(each for each in lines if each.path is not None and len(each.path) > 1), row)
+    lines = _along(at_start, leaving), middle, _along(request.world, coming[row], turned=True)
+    return Motion(tuple(each for each in lines if each.path is not None and len(each.path) > 1), row, step.constraints)
 
 
-def _line(request: Request, step: MoveTo, straight: CartesianLine, q: Floats, length: float) -> Line:
+def _line(world: ArmWorld, request: Request, step: MoveTo, straight: CartesianLine, q: Floats, length: float) -> Line:
     """Return the straight line from a configuration, in the orientation of the step."""
-    world = request.world
     if not world.valid(q):
         return Line(q[np.newaxis], world.explain(q))
     line = Line(q[np.newaxis])
@@ -82,7 +90,7 @@ def _line(request: Request, step: MoveTo, straight: CartesianLine, q: Floats, le
     orientation = part_of(step.constraints, OrientationConstraint)
     if line.why or orientation is None:
         return line
-    chain = chain_of(world.robot, orientation.tip or straight.tip)
+    chain = chain_of(world.robot, orientation.tip)
     upright = orientation_world(world, chain, orientation, request.start)
     tilt = upright.largest_tilt(line.path)
     return line if tilt <= upright.tolerance else Line(line.path[:1], f"along it {upright.tilted(tilt)}")

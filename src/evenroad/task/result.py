@@ -13,7 +13,7 @@ from evenroad.errors import InvalidValue
 from evenroad.roadmap import PlanResult, Status
 from evenroad.task.motion import Motion
 from evenroad.task.steps import MoveTo, Step, Wait
-from evenroad.trajectory.trajectory import Trajectory
+from evenroad.trajectory.trajectory import MOST_STATES, Trajectory
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -88,7 +88,8 @@ class TaskResult:
         Parameters
         ----------
         **options
-            As of :meth:`evenroad.PlanResult.trajectory`; each motion is checked in its own world.
+            As of :meth:`evenroad.PlanResult.trajectory`; each motion is checked in its own world, and keeps the
+            constraints of its step unless others are given.
 
         Returns
         -------
@@ -117,9 +118,11 @@ class TaskResult:
                 pause += step.seconds
             if not isinstance(step, MoveTo):
                 continue
+            motion = next(motions)
+            kept = {} if motion.constraints is None else {"constraints": motion.constraints}
             # A motion to where the arm is takes no time.
-            for part in (part for part in next(motions).parts if part.cost):
-                parts.append(part.trajectory(**options))
+            for part in (part for part in motion.parts if part.cost):
+                parts.append(part.trajectory(**kept | options))
                 pauses, pause = [*pauses, pause], 0.0
         return _joined(parts, [*pauses, pause])
 
@@ -129,7 +132,10 @@ def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
     if not parts:
         raise InvalidValue("there is no trajectory: the arm stays where it is")
     step = float(parts[0].times[1] - parts[0].times[0])
+    if (seconds := sum(pauses)) > MOST_STATES * step:
+        raise InvalidValue(f"the arm would stand still for {seconds:g} s, more than {MOST_STATES} steps of {step:g} s")
     rows: dict[str, list[Floats]] = {"positions": [], "velocities": [], "accelerations": []}
+    waypoints = [parts[0].waypoints[:1]]
     for part, pause in zip([*parts, None], pauses, strict=True):
         still = parts[0].positions[0] if not rows["positions"] else rows["positions"][-1][-1]
         count = round(pause / step)
@@ -137,8 +143,11 @@ def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
         for name in ("velocities", "accelerations"):
             rows[name].append(np.zeros((count, len(still))))
         if part is not None:
-            # Each begins at rest where the one before ended.
-            first = 0 if part is parts[0] and count == 0 else 1
+            # Each begins at rest where the one before ended, where a continuous joint may have gone on for turns.
+            turns = 2.0 * np.pi * np.rint((still - part.positions[0]) / (2.0 * np.pi))
+            part = replace(part, positions=part.positions + turns, waypoints=part.waypoints + turns)
+            waypoints.append(part.waypoints[1:])
+            first = 0 if not rows["positions"][0].size and len(rows["positions"]) == 1 else 1
             for name, values in rows.items():
                 values.append(getattr(part, name)[first:])
     positions, velocities, accelerations = (np.concatenate(values) for values in rows.values())
@@ -149,7 +158,7 @@ def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
         positions=positions,
         velocities=velocities,
         accelerations=accelerations,
-        waypoints=np.concatenate([parts[0].waypoints[:1], *(part.waypoints[1:] for part in parts)]),
+        waypoints=np.concatenate(waypoints),
         deviation=max(part.deviation for part in parts),
         stops=sum(part.stops for part in parts) + len(parts) - 1,
         highest={name: max(part.highest[name] for part in parts) for name in parts[0].highest},

@@ -25,7 +25,7 @@ from evenroad.task.stage import Contacts, Stage, touches
 from evenroad.task.steps import Attach, Detach, MoveTo, Step
 
 MOST_PLANS = 64
-"""Largest number of motions that are planned for one task."""
+"""Largest number of motions that are planned for one task beside those that it has."""
 
 
 @dataclass
@@ -39,23 +39,30 @@ class _Search:
     deepest: int = -1
     failed: PlanResult | None = None
 
-    def run(self, number: int, stage: Stage) -> tuple[Motion, ...] | None:
-        """Return the motions of the steps from `number` on; None where they cannot be done."""
-        if number == len(self.steps):
+    @property
+    def most(self) -> int:
+        """Largest number of motions that are planned."""
+        return MOST_PLANS + sum(isinstance(step, MoveTo) for step in self.steps)
+
+    def run(self, first: int, stage: Stage) -> tuple[Motion, ...] | None:
+        """Return the motions of the steps from `first` on; None where they cannot be done."""
+        for number, step in enumerate(self.steps[first:], first):
+            where = f"step {number} of the task"
+            if isinstance(step, Attach):
+                stage = stage.attach(step, where)
+            elif isinstance(step, Detach):
+                stage = stage.detach(step, where)
+            elif isinstance(step, MoveTo):
+                break
+        else:
             return ()
-        step, where = self.steps[number], f"step {number} of the task"
-        if isinstance(step, Attach):
-            return self.run(number + 1, stage.attach(step, where))
-        if isinstance(step, Detach):
-            return self.run(number + 1, stage.detach(step, where))
-        if not isinstance(step, MoveTo):
-            return self.run(number + 1, stage)
-        world = stage.with_contacts(stage.near_start | self._at_goal(number, stage))
-        request = request_in(world, stage.q, step.goal, self.reading)
+        # Each line has contacts of its own: what is lifted from a table may not end inside it.
+        worlds = stage.with_contacts(stage.near_start), stage.world
+        request = request_in(stage.with_contacts(self._at_goal(number, stage)), stage.q, step.goal, self.reading)
         left = np.arange(len(request.goals))
-        while len(left) and self.tried < MOST_PLANS:
+        while len(left) and self.tried < self.most:
             self.tried += 1
-            motion = plan_motion(replace(request, goals=request.goals[left]), stage.world, step, self.plan_between)
+            motion = plan_motion(replace(request, goals=request.goals[left]), worlds, step, self.plan_between)
             if motion.goal is None:
                 # Of failures the one that comes after most steps says most.
                 if number > self.deepest:

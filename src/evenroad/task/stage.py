@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import WORLD
@@ -45,13 +46,14 @@ class Stage:
     def attach(self, step: Attach, where: str) -> Stage:
         """Return the stage after an obstacle is taken.  Raises UnknownName if there is none; `where` names the step."""
         scene, robot = self.world.scene, self.world.robot
+        touching = touches(step, robot)
         found = [each for each in scene.obstacles if each.name == step.object]
         if not found:
             raise UnknownName.among(f"obstacle of {where}", step.object, scene.names)
         link = step.link or default_tip(robot)
         frame = pose_of(robot, self.q, link)
         body = replace(found[0].body, pose=frame.inverse() @ found[0].body.pose)
-        held = HeldObject(step.object, body, link, touches(step, robot))
+        held = HeldObject(step.object, body, link, touching)
         attached = replace(scene.without(step.object), attached=(*scene.attached, held))
         stage = replace(self, world=_world(self, attached))
         # What it stood on, it may touch until it is lifted.
@@ -72,7 +74,9 @@ class Stage:
         allowed = frozenset(each for each in scene.allowed if each[0] != step.object)
         scene = replace(scene, obstacles=(*scene.obstacles, placed), attached=left, allowed=allowed)
         let_go = frozenset((link, step.object) for link in (held[step.object].link, *held[step.object].touches))
-        return replace(self, world=_world(self, scene), near_start=self.near_start | let_go)
+        # What it stood on is no matter any more: it is no body of the robot.
+        others = frozenset(each for each in self.near_start if each[0] != step.object)
+        return replace(self, world=_world(self, scene), near_start=others | let_go)
 
     def touched(self, held: str) -> list[str]:
         """Return the obstacles without which what is held would be free here: those that it touches."""
@@ -87,7 +91,12 @@ class Stage:
 
 
 def touches(step: Attach, robot: Robot) -> tuple[str, ...]:
-    """Return the links that may touch what is attached: by default all that no planned joint moves against the link."""
+    """Return the links that may touch what is attached: by default all that no planned joint moves against the link.
+
+    Raises UnknownName if there is no such link.
+    """
+    if step.link:
+        require_known(f"link that takes {step.object!r}:", step.link, robot.links)
     if step.touches is not None:
         return step.touches
     first = {robot.links[0]: robot.links[0]}

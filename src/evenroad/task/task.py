@@ -15,6 +15,9 @@ from evenroad.robot import ArmWorld
 from evenroad.task.result import TaskResult
 from evenroad.task.steps import MoveTo, Step
 
+MOST_MOTIONS = 500
+"""Largest number of motions of a task: the search goes as deep."""
+
 
 @explains_calls
 @dataclass(frozen=True)
@@ -24,12 +27,12 @@ class Task:
     Parameters
     ----------
     steps : sequence of MoveTo, Attach, Detach and Wait
-        One motion at least.
+        One motion at least, and 500 at most.
 
     Raises
     ------
     InvalidValue
-        If there is no motion, or something else among them.
+        If there is no motion, there are too many, or something else is among them.
 
     Examples
     --------
@@ -47,8 +50,9 @@ class Task:
         for number, step in enumerate(given):
             if not isinstance(step, Step):
                 raise InvalidValue(f"step {number} of a task must be MoveTo, Attach, Detach or Wait, got {shown(step)}")
-        if not any(isinstance(step, MoveTo) for step in given):
-            raise InvalidValue("a task must have one MoveTo or more")
+        motions = sum(isinstance(step, MoveTo) for step in given)
+        if not 0 < motions <= MOST_MOTIONS:
+            raise InvalidValue(f"a task must have one MoveTo or more, up to {MOST_MOTIONS}, got {motions}")
         set_fields(self, steps=given)
 
     def plan(

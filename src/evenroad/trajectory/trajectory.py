@@ -33,7 +33,7 @@ _FINER = 8
 _SAME = 1e-9
 """Distance in every joint below which two waypoints are equal [rad or m]."""
 
-_MOST_STATES = 1_000_000
+MOST_STATES = 1_000_000
 """Largest number of states, more than two hours at 125 Hz."""
 
 _HALVINGS = 6
@@ -276,10 +276,10 @@ def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeL
     shares = _shares(law.at(within.ravel()), limits)
     law = slowed(law, max(1.0, shares["velocity"], math.sqrt(shares["acceleration"])))
     steps = max(math.ceil((law.duration + window) / step - 1e-9), math.floor(window / step) + 1)
-    if steps > _MOST_STATES:
+    if steps > MOST_STATES:
         raise InvalidValue(
             f"the trajectory would take {law.duration + window:.4g} s in steps of {step:g} s, more than"
-            f" {_MOST_STATES} of them: take longer steps, or move faster"
+            f" {MOST_STATES} of them: take longer steps, or move faster"
         )
     while True:
         law = slowed(law, (steps * step - window) / law.duration)
