@@ -33,7 +33,7 @@ CALLS = {
     "er.qmc.Even(2)": "n",
     "er.qmc.Even(d=2, n=16, rgn=0)": "rng",
     # --- maps
-    "er.load_map(np.zeros((3, 3)))": "GridMap(",
+    "er.load_map(np.zeros((3, 3)))": "compared, as cells > 0",
     "er.load_map(None)": "file",
     "er.load_map('ofice.yaml')": "the shipped 'office'?",
     "er.GridMap('office.yaml')": "load_map",

@@ -70,15 +70,17 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
     }
     if query.smooth:
         counts["shortcut_motions"] += improver.smoothing_motions
-    more: dict[str, Any] = dict(counts=counts, stages=tuple(stages), timings=attempt.watch.seconds)
+    more: dict[str, Any] = dict(counts=counts, timings=attempt.watch.seconds)
     if len(stages) > 1:
         path, row = improver.path, int(attempt.goals[improver.goal])
         raw = improver.along_trees
         cost = path_length(path, space)
+        # The kernel sums lengths in another order: its last bit may differ.
+        stages[-1] = replace(stages[-1], cost=cost)
         more |= dict(path=path, cost=cost, goal_index=row, message=path_message(path, cost, row, len(query.goals)))
         if not np.array_equal(raw, first.path):
             more |= dict(milestone_path=raw, milestone_cost=path_length(raw, space))
-    best = require_start_and_goal(space, replace(first, **more))
+    best = require_start_and_goal(space, replace(first, stages=tuple(stages), **more))
     if not improver.rounds:
         return best
     return replace(best, message=f"{best.message}, the best of {improver.rounds + 1}: {_gap(best)}")
