@@ -10,6 +10,7 @@ import evenroad as er
 from evenroad.errors import EvenroadError
 from evenroad.robot import HeldObject
 from evenroad.task import Attach, Detach, MoveTo, Task, Wait
+from evenroad.task.stage import touches
 from tests.robot import oracle
 
 HOME = [0.0, -2.0, 1.9, -1.5, -math.pi / 2, 0.0]
@@ -210,3 +211,26 @@ def test_steps_that_make_no_sense_are_refused_in_one_line(world, steps, says):
 def test_a_value_out_of_range_is_refused(make):
     with pytest.raises(EvenroadError):
         make()
+
+
+def test_a_finger_that_mimics_a_planned_one_may_not_touch_what_is_held_unasked(tmp_path):
+    """It moves against the hand, like the one that it follows."""
+    shape = '<collision><geometry><box size="0.05 0.05 0.05"/></geometry></collision>'
+    links = "".join(f'<link name="{name}">{shape}</link>' for name in ("base", "hand", "left", "right"))
+    joints = "".join(
+        f'<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{child}"/>'
+        f'<origin xyz="0.2 0 0"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="1"/>{more}</joint>'
+        for name, parent, child, more in (
+            ("turn", "base", "hand", ""),
+            ("open", "hand", "left", ""),
+            ("follow", "hand", "right", '<mimic joint="open" multiplier="-1"/>'),
+        )
+    )
+    (tmp_path / "hand.urdf").write_text(f'<robot name="hand">{links}{joints}</robot>')
+    robot = er.load_robot(tmp_path / "hand.urdf")
+    assert touches(Attach("can", "hand"), robot) == ("hand",)
+    assert touches(Attach("can", "hand"), er.load_robot(tmp_path / "hand.urdf", group=["turn"])) == (
+        "hand",
+        "left",
+        "right",
+    )

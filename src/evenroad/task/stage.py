@@ -101,7 +101,8 @@ def touches(step: Attach, robot: Robot) -> tuple[str, ...]:
         return step.touches
     first = {robot.links[0]: robot.links[0]}
     for joint in robot.joints:
-        first[joint.child] = joint.child if joint.name in robot.group else first[joint.parent]
+        leader = joint.name if joint.mimic is None else joint.mimic.joint
+        first[joint.child] = joint.child if leader in robot.group else first[joint.parent]
     link = step.link or default_tip(robot)
     return tuple(each for each in robot.links if first[each] == first[link] and each not in robot.holds)
 
