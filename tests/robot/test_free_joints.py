@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
+from evenroad.errors import EvenroadError
 from evenroad.robot import load_model
 
 BASE = """<link name="base"><collision><geometry><box size="0.4 0.3 0.2"/></geometry></collision></link>
@@ -50,6 +51,19 @@ def test_an_arm_on_a_base_drives_through_a_door_too_narrow_for_its_outstretched_
     assert result.solved
     for t in np.linspace(0.0, 1.0, 50):
         assert world.valid(world.space.interpolate(result.path[:-1], result.path[1:], t)).all()
+
+
+def test_an_ordinary_joint_of_such_a_name_is_planned_for(tmp_path):
+    (tmp_path / "r.urdf").write_text(FIXED.replace('"turn"', '"arm/roll"'))
+    assert load_model(tmp_path / "r.urdf").robot.joint_names == ("arm/roll",)
+
+
+def test_no_joint_mimics_several_coordinates(tmp_path):
+    (tmp_path / "r.urdf").write_text(
+        PLANAR.replace('effort="1"/></joint>', 'effort="1"/><mimic joint="drive"/></joint>')
+    )
+    with pytest.raises(EvenroadError, match="'turn' in .* mimics 'drive', which has several coordinates"):
+        load_model(tmp_path / "r.urdf")
 
 
 def test_a_base_without_limits_goes_where_it_is_near(load):

@@ -81,6 +81,7 @@ def test_a_hollow_mesh_is_filled_by_its_convex_hull(tmp_path):
         ("{include: cabinet.urdf, joints: {hinge: 1}}", "'hinge' at 1 rad, 1 rad outside"),
         ("{include: cabinet.urdf, joints: {lid: 1}}", "unknown joint of .*'lid'; known: hinge"),
         ("{include: room.stl, joints: {lid: 1}}", "unknown joint of .*room.stl: 'lid'"),
+        ("{include: cabinet.urdf, convex: true}", "convex goes with a mesh's file"),
         ("{include: none.glb}", "none.glb is missing"),
         ("{include: cabinet.urdf, scale: 2}", "scale"),
         ("{include: cabinet.urdf, convex: 1}", "convex of obstacle 'it' in .* must be true or false, got 1"),

@@ -56,9 +56,11 @@ class Joint:
 
     @property
     def loose(self) -> bool:
-        """Whether it is a coordinate of a planar or a floating joint."""
+        """Whether it is a coordinate of a planar or a floating joint: its name alone says so of other joints, too."""
         owner, _, name = self.name.rpartition("/")
-        return bool(owner) and name in LOOSE
+        before, _, last = self.parent.rpartition("/")
+        follows = before == owner and last in LOOSE
+        return bool(owner) and name in LOOSE and (self.child == self.name or follows)
 
     @property
     def neutral(self) -> float:
@@ -87,7 +89,8 @@ def require_within(joint: Joint, value: float, what: str, limits: str = "") -> N
 def with_direct_mimics(joints: Sequence[Joint], where: str) -> list[Joint]:
     """Return the joints with every mimic following a joint that is no mimic itself.
 
-    Raises BrokenFile if a mimic follows a fixed joint, or mimics follow each other in a circle.
+    Raises BrokenFile if a mimic follows a fixed joint or one of several coordinates, or mimics follow each other in a
+    circle.
     """
     by_name = {joint.name: joint for joint in joints}
 
@@ -95,6 +98,8 @@ def with_direct_mimics(joints: Sequence[Joint], where: str) -> list[Joint]:
         multiplier, offset, followed, seen = 1.0, 0.0, joint, [joint.name]
         while followed.mimic is not None:
             name = followed.mimic.joint
+            if name not in by_name:
+                raise BrokenFile(f"joint {followed.name!r} in {where} mimics {name!r}, which has several coordinates")
             if by_name[name].kind == "fixed":
                 raise BrokenFile(f"joint {followed.name!r} in {where} mimics {name!r}, which is fixed")
             if name in seen:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from evenroad._checks import require_known
-from evenroad.errors import BrokenFile
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.mesh import convex_hull
 from evenroad.geometry.mesh_file import load_objects
 from evenroad.geometry.pose import IDENTITY, Pose
@@ -34,9 +34,11 @@ def objects_of(path: Path, joints: Mapping[str, float], *, convex: bool = False)
     Of a URDF: the collision shapes of its links, or what is drawn of a link that has none, with its joints at the
     values given, else at 0 or the limit next to it.  Of a mesh's file: each object of its scene; with `convex` the
     convex hull of each.  Raises as the readers of such files do; UnknownName for a joint that there is not;
-    InvalidValue for a value beyond its limits.
+    InvalidValue for a value beyond its limits, and for `convex` of a URDF.
     """
     if path.suffix.lower() in ROBOT_FILES:
+        if convex:
+            raise InvalidValue(f"convex goes with a mesh's file; the shapes of {path} are as they are")
         return _of_urdf(path, joints)
     require_known(f"joint of {path}:", next(iter(joints), ""), ("",))
     frame = Y_UP if path.suffix.lower() in GLTF else IDENTITY
