@@ -85,7 +85,7 @@ def trajectory_rows(
         meshes = mesh_check(request, trajectory.positions)
         if meshes is not None and meshes.verdict == "in collision":
             raise NotAvailable(
-                "the trajectory is free for the robot's capsules, but not for the shapes that they stand for:"
+                "the trajectory is free for the bodies of the plan, but not for the shapes that they stand for:"
                 f" in collision {meshes.message}; a smaller --deviation may help"
             )
     except NotAvailable:

@@ -111,7 +111,7 @@ def plan(
     -------
     PlanResult
         Without a path, ``status`` and ``message`` say why.  ``mesh_collision`` is the status of a path that is free for
-        an arm's capsules, but not for the meshes of its file; ``goal_unreachable`` that of a pose that no configuration
+        the bodies it was planned with, but not for the meshes of the arm's file; ``goal_unreachable`` that of a pose that no configuration
         was found for.
 
     Raises
@@ -227,7 +227,7 @@ def finished(request: Request, result: PlanResult, *, certified: bool = False) -
     if meshes is None or meshes.verdict != "in collision":
         return result, meshes
     message = (
-        "the path is free for the robot's capsules, but not for the shapes that they stand for: in collision"
+        "the path is free for the bodies of the plan, but not for the shapes that they stand for: in collision"
         f" {meshes.message}"
     )
     return replace(result, status=Status.MESH_COLLISION, message=message), meshes
