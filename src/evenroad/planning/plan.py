@@ -111,8 +111,8 @@ def plan(
     -------
     PlanResult
         Without a path, ``status`` and ``message`` say why.  ``mesh_collision`` is the status of a path that is free for
-        the bodies it was planned with, but not for the meshes of the arm's file; ``goal_unreachable`` that of a pose that no configuration
-        was found for.
+        the bodies it was planned with, but not for the meshes of the arm's file; ``goal_unreachable`` that of a pose
+        that no configuration was found for.
 
     Raises
     ------
