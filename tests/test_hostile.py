@@ -65,17 +65,28 @@ DRAWN = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version
 PARTS = "".join(f'<node id="n{i}">' + f'<instance_node url="#n{i - 1}"/>' * 9 + "</node>" for i in range(1, 8))
 
 
-def glb(count):
+def gltf(count):
     """A triangle whose corners are not in the file, so many of them: by the rules of glTF they are zeros."""
-    text = json.dumps(
+    return json.dumps(
         dict(
             asset=dict(version="2.0"),
+            scene=0,
             scenes=[dict(nodes=[0])],
             nodes=[dict(mesh=0)],
-            meshes=[dict(primitives=[dict(attributes=dict(POSITION=0))])],
-            accessors=[dict(componentType=5126, count=count, type="VEC3")],
+            buffers=[],
+            bufferViews=[],
+            meshes=[dict(primitives=[dict(attributes=dict(POSITION=0), indices=1)])],
+            accessors=[
+                dict(componentType=5126, count=count, type="VEC3"),
+                dict(componentType=5125, count=count, type="SCALAR"),
+            ],
         )
     ).encode()
+
+
+def glb(count):
+    """The same in one file."""
+    text = gltf(count)
     text += b" " * (-len(text) % 4)
     return b"glTF" + struct.pack("<IIII", 2, 20 + len(text), len(text), 0x4E4F534A) + text
 
@@ -89,6 +100,7 @@ HOSTILE = {
     "entities.urdf": (load_robot, entities(9, 9)),
     "parts.dae": (load_mesh, DRAWN.format(PARTS).encode()),
     "zeros.glb": (load_mesh, glb(100_000_000)),
+    "zeros.gltf": (load_mesh, gltf(100_000_000)),
     "bomb.3mf": (load_mesh, npz(model=b" " * 90_000_000)),
     "bomb.stl.gz": (load_mesh, b"\x1f\x8b"),
     "many.stl": (load_mesh, bytes(80) + struct.pack("<I", 10**9) + bytes(100)),

@@ -123,9 +123,16 @@ def require_bounded(file: Path) -> None:
         with zipfile.ZipFile(file) as archive:
             require_unpackable(file, archive)
     elif suffix == ".glb":
-        announced = _announced_by_gltf(file.read_bytes())
+        content = file.read_bytes()
+        length = int.from_bytes(content[12:16], "little")
+        announced = _announced_by_gltf(content[20 : 20 + length])
         if announced > _MOST_TIMES * size:
             raise ValueError(f"it announces {announced} entries in {size} bytes")
+    elif suffix == ".gltf":
+        # What it has lies in other files; what lies in none would be zeros.
+        announced = _announced_by_gltf(file.read_bytes(), without_data=True)
+        if announced > max(_FEW_TRIANGLES, _MOST_TIMES * size):
+            raise ValueError(f"it announces {announced} entries without data in {size} bytes")
     elif suffix == ".dae":
         content = file.read_bytes()
         if content.count(b"instance_node") > _FEW_INSTANCES:
@@ -138,11 +145,10 @@ def require_few_triangles(count: int, size: int) -> None:
         raise ValueError(f"with its repetitions it has {count} parts, in {size} bytes")
 
 
-def _announced_by_gltf(content: bytes) -> int:
-    """Return the number of entries of all accessors of a .glb; an accessor without data stands for zeros."""
-    length = int.from_bytes(content[12:16], "little")
-    record = json.loads(content[20 : 20 + length])
-    return sum(int(each["count"]) for each in record.get("accessors", []))
+def _announced_by_gltf(content: bytes, *, without_data: bool = False) -> int:
+    """Return the number of entries of all accessors of a glTF; an accessor without data stands for zeros."""
+    accessors = json.loads(content).get("accessors", [])
+    return sum(int(each["count"]) for each in accessors if not (without_data and "bufferView" in each))
 
 
 def _nodes_of_collada(content: bytes) -> int:
