@@ -42,6 +42,15 @@ def test_a_base_moves_its_links_in_the_plane_and_turns_them(load):
     np.testing.assert_allclose(pose.apply((1.0, 0.0, 0.0)) - pose.xyz, (0.0, 1.0, 0.0), atol=1e-12)
 
 
+def test_a_state_places_the_base(load, tmp_path):
+    state = '<group_state name="s" group="{}"><joint name="drive" value="1 2 0.5"/><joint name="turn" value="0.3"/>'
+    states = "".join(state.format(group) + "</group_state>" for group in ("whole", "arm"))
+    (tmp_path / "r.srdf").write_text(SRDF.replace("</robot>", states + "</robot>"))
+    whole = load(group="whole").robot.states["s"]
+    assert whole == {"drive/x": 1.0, "drive/y": 2.0, "drive/theta": 0.5, "turn": 0.3}
+    assert load(group="arm").robot.states["s"]["turn"] == 0.3
+
+
 def test_an_arm_on_a_base_drives_through_a_door_too_narrow_for_its_outstretched_arm(load):
     walls = [er.Box((0.1, 1.7, 1.0), xyz=(0.0, y, 0.5), name=f"wall {y:+g}") for y in (-1.15, 1.15)]
     world = er.ArmWorld(load(group="whole").robot, er.Scene(walls, limits=LIMITS))

@@ -169,15 +169,19 @@ def _values(state: Element, known: _Model, path: Path) -> dict[str, float]:
     values = {}
     for joint in state.findall("joint"):
         name = _attribute(joint, "name", path)
-        if not known.joint(name):
-            continue
-        text = _attribute(joint, "value", path)
-        try:
-            values[name] = float(text)
-        except ValueError:
-            values[name] = math.nan
-        if not math.isfinite(values[name]):
-            raise InvalidValue(f"joint {name!r} of a state in {path} must be a finite number, got {text!r}")
+        # MoveIt writes the coordinates of a planar joint as one text.
+        several, numbers = named(name, known.urdf.order), _attribute(joint, "value", path).split()
+        if len(several) != len(numbers):
+            if not known.joint(name):
+                continue
+            several, numbers = [name], [" ".join(numbers)]
+        for each, text in zip(several, numbers, strict=True):
+            try:
+                values[each] = float(text)
+            except ValueError:
+                values[each] = math.nan
+            if not math.isfinite(values[each]):
+                raise InvalidValue(f"joint {each!r} of a state in {path} must be a finite number, got {text!r}")
     return values
 
 
