@@ -35,7 +35,7 @@ from evenroad.robot.robot import Robot
 from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.urdf import Urdf
 
-_FORMAT = 22
+_FORMAT = 23
 """Version of the cache: it counts up when the same files give another robot, or the format changes."""
 
 
