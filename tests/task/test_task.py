@@ -171,6 +171,11 @@ def test_a_trajectory_has_names_and_limits_of_the_arm_and_keeps_the_constraints_
     assert trajectory.limits.along_path is None
 
 
+def test_the_arm_waits_no_shorter_than_it_is_told(world):
+    trajectory = Task([MoveTo([0.1, *HOME[1:]]), Wait(0.003)]).plan(world, HOME).trajectory()
+    assert np.array_equal(trajectory.positions[-1], trajectory.positions[-2])
+
+
 def test_a_wait_that_no_trajectory_holds_is_refused(world):
     result = Task([MoveTo([0.1, *HOME[1:]]), Wait(1e9)]).plan(world, HOME)
     with pytest.raises(EvenroadError, match="would stand still for 1e\\+09 s"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -138,7 +139,7 @@ def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
     waypoints = [parts[0].waypoints[:1]]
     for part, pause in zip([*parts, None], pauses, strict=True):
         still = parts[0].positions[0] if not rows["positions"] else rows["positions"][-1][-1]
-        count = round(pause / step)
+        count = math.ceil(pause / step - 1e-9)
         rows["positions"].append(np.tile(still, (count, 1)))
         for name in ("velocities", "accelerations"):
             rows[name].append(np.zeros((count, len(still))))

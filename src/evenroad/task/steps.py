@@ -66,6 +66,9 @@ class MoveTo:
 class Attach:
     """The gripper takes an obstacle, which then moves with a link.
 
+    Obstacles that it touches there, such as what it stands on, are not tested against it on the straight line with
+    which the next motion leaves, however deep it goes into them: lead that line away from them.
+
     Parameters
     ----------
     object : str
@@ -108,7 +111,8 @@ class Detach:
     object : str
         Name of what is held.
     onto : sequence of str
-        Obstacles that it may touch on the line to its place, such as the table.
+        Obstacles that it may touch on the line to its place, such as the table: they are not tested against it there,
+        so a place inside the table is none that is refused.
 
     Raises
     ------
