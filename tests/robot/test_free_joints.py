@@ -67,6 +67,14 @@ def test_an_ordinary_joint_of_such_a_name_is_planned_for(tmp_path):
     assert load_model(tmp_path / "r.urdf").robot.joint_names == ("arm/roll",)
 
 
+def test_a_joint_of_the_robot_is_not_taken_for_a_base_of_its_name(tmp_path):
+    name = "drive/x"
+    (tmp_path / "r.urdf").write_text(FIXED.replace('"turn"', f'"{name}"'))
+    (tmp_path / "r.srdf").write_text(SRDF.replace('"turn"', f'"{name}"'))
+    robot = load_model(tmp_path / "r.urdf", srdf=tmp_path / "r.srdf", group="whole").robot
+    assert robot.joint_names == (name,)
+
+
 def test_no_joint_mimics_several_coordinates(tmp_path):
     (tmp_path / "r.urdf").write_text(
         PLANAR.replace('effort="1"/></joint>', 'effort="1"/><mimic joint="drive"/></joint>')

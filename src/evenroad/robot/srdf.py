@@ -82,6 +82,9 @@ def with_moving_base(urdf: Urdf, srdf: Path) -> Urdf:
         if element.get("type") != "planar" or element.get("child_link") != root or not name:
             continue
         joints = of_planar(name, frame if frame not in urdf.links else f"{name}/{frame}", root)
+        if {name, *(joint.name for joint in joints)} & set(urdf.order):
+            # The robot's own joint of that name is meant.
+            continue
         links = (joints[0].parent, *(joint.child for joint in joints), *urdf.links[1:])
         order = (*(joint.name for joint in joints), *urdf.order)
         return replace(urdf, links=links, joints=(*joints, *urdf.joints), order=order)
