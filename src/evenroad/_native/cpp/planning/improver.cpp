@@ -63,43 +63,44 @@ Progress Improver::improve(Effort most, std::int64_t batches) {
   while (length() > (1.0 + STRAIGHT) * least()) {
     if (motions_ >= most.motions) return Progress::SPENT;
     if (checks_.counts.batches >= pause) return Progress::PAUSED;
-    if (!trees_) {
+    TreePlanner* trees = trees_ ? &*trees_ : nullptr;
+    if (trees == nullptr) {
       const bool is_last = rounds_ >= most.rounds;
       if (!is_polished_ && (is_last || rounds_ - best_round_ >= WAIT)) {
         polish_best();
         continue;
       }
       if (is_last) return Progress::SPENT;
-      begin_round();
+      trees = &begin_round();
     }
-    switch (grow(most, pause)) {
+    switch (grow(*trees, most, pause)) {
       case Growth::PAUSED:
         return Progress::PAUSED;
       case Growth::SOLVED:
-        take(trees_->path(), trees_->goal());
+        take(trees->path(), trees->goal());
         break;
       case Growth::SPENT:
       case Growth::NOT_FREE:
         if (left_ > 0 && motions_ >= most.motions) return Progress::SPENT;
     }
-    nodes_ += trees_->tree(0).size() + trees_->tree(1).size();
+    nodes_ += trees->tree(0).size() + trees->tree(1).size();
     trees_.reset();
   }
   return Progress::SHORTEST;
 }
 
-void Improver::begin_round() {
+TreePlanner& Improver::begin_round() {
   rounds_++;
   const double share = std::fmod(static_cast<double>(rounds_) * GOLDEN, 1.0);
   bound_.longest = is_smoothing_ ? length() * (1.0 + LOOSEST * share * share) : length();
   left_ = round_motions_ * luby(rounds_);
-  trees_.emplace(ends_, sequences_, checks_, &bound_, static_cast<std::size_t>(rounds_));
+  return trees_.emplace(ends_, sequences_, checks_, &bound_, static_cast<std::size_t>(rounds_));
 }
 
-Growth Improver::grow(Effort most, std::int64_t pause) {
+Growth Improver::grow(TreePlanner& trees, Effort most, std::int64_t pause) {
   const std::int64_t before = checks_.counts.motions;
   const std::int64_t some = std::min(left_, most.motions - motions_);
-  const Growth growth = trees_->grow(before + some, pause - checks_.counts.batches);
+  const Growth growth = trees.grow(before + some, pause - checks_.counts.batches);
   const std::int64_t checked = checks_.counts.motions - before;
   motions_ += checked, left_ -= checked;
   return growth;
@@ -120,7 +121,9 @@ void Improver::take(const std::vector<double>& points, std::int64_t goal) {
 }
 
 void Improver::polish_best() {
-  is_polished_ = !polish(best_, guides_, polished_++, checks_) || polished_ >= MOST_POLISHED;
+  const bool is_shorter = polish(best_, guides_, polished_, checks_);
+  polished_++;
+  is_polished_ = !is_shorter || polished_ >= MOST_POLISHED;
   best_.measure();
 }
 

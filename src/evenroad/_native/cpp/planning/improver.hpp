@@ -64,8 +64,8 @@ class Improver {
   /// More motions of a first path are not taken for the trees' work.
   static constexpr std::int64_t MOST_MOTIONS = 1'000'000;
 
-  void begin_round();
-  Growth grow(Effort most, std::int64_t pause);
+  TreePlanner& begin_round();
+  Growth grow(TreePlanner& trees, Effort most, std::int64_t pause);
   void take(const std::vector<double>& points, std::int64_t goal);
   void polish_best();
 
