@@ -148,6 +148,17 @@ class Trajectory:
         order : sequence of str, optional
             As :meth:`columns`.
 
+        Raises
+        ------
+        UnknownName
+            For another suffix, or an unknown joint.
+        InvalidValue
+            If a joint that moves is missing in `order`.
+        NotAvailable
+            If the format needs what the trajectory lacks.
+        BrokenFile
+            If the file cannot be written.
+
         Examples
         --------
         >>> import tempfile
