@@ -153,9 +153,9 @@ class Trajectory:
         UnknownName
             For another suffix, or an unknown joint.
         InvalidValue
-            If a joint that moves is missing in `order`.
+            If a joint that moves is missing in `order`, or a URScript does not have six joints.
         NotAvailable
-            If the format needs what the trajectory lacks.
+            If the package is not installed that writes the format.
         BrokenFile
             If the file cannot be written.
 
