@@ -82,7 +82,9 @@ class PointSet:
     origin: Origin = field(default_factory=lambda: Origin(family="given", method="given"))
 
     def __post_init__(self) -> None:
-        set_fields(self, points=as_unit_points(self.points).copy())
+        points = as_unit_points(self.points)
+        # A read-only array that is nobody's view is kept as it is: samplers make such, and large sets fit once.
+        set_fields(self, points=points.copy() if points.flags.writeable or points.base is not None else points)
 
     @property
     def n(self) -> int:
@@ -226,8 +228,9 @@ def as_unit_points(points: object) -> Floats:
         raise InvalidValue(f"points must be an (n, d) array of numbers: {error}") from None
     if array.ndim != 2 or array.shape[1] < 1:
         raise InvalidValue(f"points must have shape (n, d) with d >= 1, got {array.shape}")
-    bad = ~((array >= 0.0) & (array < 1.0))
-    if bad.any():
+    # Extremes first, which need no further array; NaN fails the comparison.
+    if array.size and not (array.min() >= 0.0 and array.max() < 1.0):
+        bad = ~((array >= 0.0) & (array < 1.0))
         i, k = np.argwhere(bad)[0]
         raise InvalidValue(f"points must lie in [0, 1): coordinate [{i}, {k}] is {float(array[i, k])!r}")
     return array

@@ -30,6 +30,15 @@ class TestKorobov(SamplerContract):
     sampler = Korobov()
     shapes = ((1, 1), (1, 4), (2, 3), (7, 1), (64, 2), (97, 14), (100, 3))
 
+    # One block of points, a little more, and products up to 2**52.
+    @pytest.mark.parametrize(("n", "vector"), [(97, (1, 5)), (2**14 + 1, (1, 7, 16384)), (2**26 - 5, (2**26 - 6,))])
+    def test_blocks_of_floats_give_the_bits_of_whole_numbers(self, n, vector):
+        shift = np.random.default_rng(n).random(len(vector))
+        made = korobov.shifted_lattice(n, vector, shift)
+        rows = np.unique(np.append(np.random.default_rng(1).integers(0, n, 20_000), [0, n - 1]))
+        whole = rows[:, np.newaxis] * np.array(vector) % n / n
+        np.testing.assert_array_equal(made[rows], (whole + shift) % 1.0)
+
     @pytest.mark.parametrize(("n", "d"), [(12, 2), (31, 3), (100, 7)])
     def test_the_coordinates_of_each_axis_are_n_equally_spaced_values(self, n, d):
         points = self.sampler.draw(n, d, rng=4).points
