@@ -128,8 +128,47 @@ def test_what_is_lifted_from_a_table_may_not_end_inside_it():
     assert "'can' touches 'table'" in result.message
 
 
+TABLE = er.Box((0.5, 0.9, 0.04), xyz=(0.6, 0.0, 0.02), name="table")
+STANDING = er.Box((0.06, 0.06, 0.16), xyz=(0.6, 0.2, 0.121), name="can")
+
+
+@pytest.mark.parametrize("bodies", [None, "capsules"])
+@pytest.mark.parametrize(("depth", "height", "solved"), [(0.005, 0.118, True), (0.005, 0.06, False), (0.07, 0.06, True)])
+def test_what_is_put_onto_a_table_may_be_in_it_by_the_stated_depth_alone(bodies, depth, height, solved):
+    above = er.PoseGoal(er.Pose((0.6, 0.2, 0.205), rpy=(math.pi, 0.0, 0.0)), free_axis="z")
+    place = er.PoseGoal(er.Pose((0.6, -0.2, height)), tip="can", free_axis="z")
+    steps = [
+        MoveTo(above, approach=0.1),
+        Attach("can", depth=depth),
+        MoveTo(place, retreat=0.1, approach=0.1, away="up"),
+        Detach("can", onto="table"),
+    ]
+    world = er.ArmWorld(er.load_robot("ur5", bodies=bodies), er.Scene([TABLE, STANDING]))
+    result = Task(steps).plan(world, HOME)
+    assert result.solved == solved
+    if not solved:
+        assert (result.status, result.step) == (er.Status.GOAL_INVALID, 2)
+        assert "'can less 5 mm' touches 'table'" in result.message
+
+
+def test_what_is_lifted_is_not_pushed_through_what_it_stands_on():
+    above = er.PoseGoal(er.Pose((0.6, 0.2, 0.205), rpy=(math.pi, 0.0, 0.0)), free_axis="z")
+    steps = [MoveTo(above, approach=0.1), Attach("can"), MoveTo(HOME, retreat=0.1, away="up")]
+    world = er.ArmWorld("ur5", er.Scene([TABLE, STANDING]))
+    assert Task(steps).plan(world, HOME).solved
+    down = [*steps[:2], MoveTo(HOME, retreat=0.03, away="z")]
+    result = Task(down).plan(world, HOME)
+    assert (result.step, result.solved) == (2, False)
+    assert "'can less 5 mm'" in result.message
+
+
+def test_what_is_out_of_reach_is_not_taken(world):
+    with pytest.raises(EvenroadError, match=r"step 0 of the task attaches 'can', which is 0\.3\d* m from 'tool0' there"):
+        Task([Attach("can"), MoveTo(HOME)]).plan(world, HOME)
+
+
 def test_what_is_taken_and_let_go_at_once_stays_where_it_is(world):
-    result = Task([Attach("can"), Detach("can"), MoveTo([0.1, *HOME[1:]])]).plan(world, HOME)
+    result = Task([Attach("can", reach=1.0), Detach("can"), MoveTo([0.1, *HOME[1:]])]).plan(world, HOME)
     (part,) = result.parts
     assert part.world.scene.obstacles[-1].name == "can"
     np.testing.assert_allclose(part.world.scene.obstacles[-1].xyz, CAN.pose.xyz, atol=1e-12)
@@ -211,6 +250,8 @@ def test_steps_that_make_no_sense_are_refused_in_one_line(world, steps, says):
         lambda: Detach(None),
         lambda: Detach("can", onto=3),
         lambda: Attach("can", touches=[3]),
+        lambda: Attach("can", depth=-0.01),
+        lambda: Attach("can", reach=math.nan),
     ],
 )
 def test_a_value_out_of_range_is_refused(make):

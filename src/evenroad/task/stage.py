@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from evenroad.robot.chain import default_tip
 from evenroad.robot.held import HeldObject
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.obstacle import Obstacle
+from evenroad.task.contact import core_of, distance_of
 from evenroad.task.steps import Attach, Detach
 
 Contacts = frozenset[tuple[str, str]]
@@ -27,35 +29,53 @@ class Stage:
 
     `near_start` are contacts, (link, obstacle), that are not tested on the straight line of the next motion from here:
     of the gripper with what it has put down, of what it has taken with what that stood on.  `empty` is the robot with
-    nothing attached by the task.
+    nothing attached by the task, and `depths` says how deep such contacts of what is held may be [m].
     """
 
     world: ArmWorld
     q: Floats
     empty: Robot
     near_start: Contacts = frozenset()
+    depths: Mapping[str, float] = field(default_factory=dict)
 
     def with_contacts(self, contacts: Contacts) -> ArmWorld:
-        """Return the world in which some contacts are not tested."""
+        """Return the world in which some contacts are not tested; of what is held they may not be deep.
+
+        For these the arm holds the object once more, smaller by the depth that is allowed.
+        """
         if not contacts:
             return self.world
-        held, scene = {each.name for each in self.world.scene.attached}, self.world.scene
+        held, scene, robot = {each.name: each for each in self.world.scene.attached}, self.world.scene, self.world.robot
+        for name in sorted({link for link, _ in contacts} & held.keys() & self.depths.keys()):
+            less, depth = held[name], self.depths[name]
+            core = core_of(less.body, depth, as_capsule=not robot.shapes)
+            if core is not None:
+                robot = robot.holding(HeldObject(f"{name} less {1e3 * depth:g} mm", core, less.link, less.touches))
         bodies = contacts - {each for each in contacts if each[1] in held}
-        return replace(self.world, scene=replace(scene, allowed=scene.allowed | bodies))
+        return replace(self.world, robot=robot, scene=replace(scene, allowed=scene.allowed | bodies))
 
     def attach(self, step: Attach, where: str) -> Stage:
-        """Return the stage after an obstacle is taken.  Raises UnknownName if there is none; `where` names the step."""
+        """Return the stage after an obstacle is taken; `where` names the step.
+
+        Raises UnknownName if there is none, InvalidValue if it is out of reach.
+        """
         scene, robot = self.world.scene, self.world.robot
         touching = touches(step, robot)
         found = [each for each in scene.obstacles if each.name == step.object]
         if not found:
             raise UnknownName.among(f"obstacle of {where}", step.object, scene.names)
         link = step.link or default_tip(robot)
+        far = distance_of(found[0].body, robot, self.q, {link, *touching})
+        if far > step.reach:
+            raise InvalidValue(
+                f"{where} attaches {step.object!r}, which is {far:.3g} m from {link!r} there, more than its reach of"
+                f" {step.reach:g} m: let a MoveTo before it end at the object"
+            )
         frame = pose_of(robot, self.q, link)
         body = replace(found[0].body, pose=frame.inverse() @ found[0].body.pose)
         held = HeldObject(step.object, body, link, touching)
         attached = replace(scene.without(step.object), attached=(*scene.attached, held))
-        stage = replace(self, world=_world(self, attached))
+        stage = replace(self, world=_world(self, attached), depths={**self.depths, step.object: step.depth})
         # What it stood on, it may touch until it is lifted.
         stood = frozenset((step.object, each) for each in stage.touched(step.object))
         return replace(stage, near_start=self.near_start | stood)

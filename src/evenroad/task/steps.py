@@ -13,6 +13,9 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.constraint import Constraint, part_of
 
+DEPTH, REACH = 0.005, 0.1
+"""How deep an object may be in what it stands on, and the distance at which a gripper takes it, by default [m]."""
+
 
 @explains_calls
 @dataclass(frozen=True)
@@ -66,8 +69,8 @@ class MoveTo:
 class Attach:
     """The gripper takes an obstacle, which then moves with a link.
 
-    Obstacles that it touches there, such as what it stands on, are not tested against it on the straight line with
-    which the next motion leaves, however deep it goes into them: lead that line away from them.
+    Obstacles that it touches there, such as what it stands on, it may touch on the straight line with which the next
+    motion leaves, up to `depth`.
 
     Parameters
     ----------
@@ -78,11 +81,15 @@ class Attach:
     touches : sequence of str, optional
         Links that may touch it, on the lines to it and while it is held.  Default: all that no joint which is planned
         for moves against `link`, such as fingers.
+    depth : float
+        How deep it may be in what it may touch: less by this on every side, it must be free, >= 0 [m].
+    reach : float
+        Largest distance at which it is taken, from the links that may touch it, >= 0 [m].
 
     Raises
     ------
     InvalidValue
-        If a name is no text.
+        If a name is no text, or a length is not such a number.
 
     Examples
     --------
@@ -94,9 +101,13 @@ class Attach:
     object: str
     link: str = ""
     touches: tuple[str, ...] | None = None
+    depth: float = DEPTH
+    reach: float = REACH
 
     def __post_init__(self) -> None:
         _require_names(self, "object", "link")
+        for name in ("depth", "reach"):
+            set_fields(self, **{name: require_positive(name, getattr(self, name), or_zero=True)})
         if self.touches is not None:
             set_fields(self, touches=_names(self, "touches"))
 
@@ -111,8 +122,7 @@ class Detach:
     object : str
         Name of what is held.
     onto : sequence of str
-        Obstacles that it may touch on the line to its place, such as the table: they are not tested against it there,
-        so a place inside the table is none that is refused.
+        Obstacles that it may touch on the line to its place, such as the table, up to the `depth` of its Attach.
 
     Raises
     ------

@@ -1,0 +1,81 @@
+"""How near a gripper is to an object, and what of an object must stay free where contacts of it are allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial.distance import cdist
+
+from evenroad._arrays import Floats
+from evenroad.geometry.distance import point_distance
+from evenroad.geometry.inner import capsules_inside
+from evenroad.geometry.mesh import TriangleMesh
+from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, PointCloud, Shape, Sphere
+from evenroad.robot import Robot
+from evenroad.robot.kinematics import link_poses
+
+_LEAST = 0.2
+"""Share of its size that is left of an object however deep its contacts may be."""
+_SAMPLES = 9
+"""Number of points on each capsule from which an object is looked for."""
+
+
+def core_of(body: Shape, depth: float, *, as_capsule: bool) -> Shape | None:
+    """Return what lies at least `depth` [m] inside of a body; None where nothing is known to.
+
+    Of a mesh it is the mesh drawn together towards its middle.  With `as_capsule` it is one capsule: for robots whose
+    bodies are capsules, where a body held has capsules around it.
+    """
+    if as_capsule or isinstance(body, PointCloud):
+        inside = max(capsules_inside(body), key=lambda each: each.radius, default=None)
+        if inside is None:
+            return None
+        radius, a, b = _less(inside.radius, depth), np.array(inside.a), np.array(inside.b)
+        length = float(np.linalg.norm(b - a))
+        left = length - _less(length, 2.0 * (depth - inside.radius + radius))
+        inward = 0.5 * left / max(length, 1e-12) * (b - a)
+        return Capsule(tuple((a + inward).tolist()), tuple((b - inward).tolist()), radius, link=inside.link)
+    match body:
+        case Box():
+            return replace(body, size=tuple(_less(side, 2.0 * depth) for side in body.size))
+        case Sphere() | Capsule():
+            return replace(body, radius=_less(body.radius, depth))
+        case Cylinder():
+            return replace(body, radius=_less(body.radius, depth), length=_less(body.length, 2.0 * depth))
+        case Mesh():
+            mesh = body.triangles
+            low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+            share = np.maximum(1.0 - 2.0 * depth / np.maximum(high - low, 1e-9), _LEAST)
+            middle = 0.5 * (low + high)
+            drawn = TriangleMesh(middle + share * (mesh.vertices - middle), mesh.triangles, mesh.name)
+            return replace(body, source=drawn, scale=(1.0, 1.0, 1.0))
+    return None
+
+
+def distance_of(body: Shape, robot: Robot, q: Floats, links: Collection[str]) -> float:
+    """Return how far a body is from the nearest of some links at a configuration, (dim,): no less than it is [m].
+
+    Links are their frames and capsules.  Of a mesh or a cloud the corners or points are looked for.
+    """
+    poses = link_poses(robot, q[np.newaxis])[0]
+    shares = np.linspace(0.0, 1.0, _SAMPLES)[:, np.newaxis]
+    points, radii = [poses[robot.links.index(link), :3, 3][np.newaxis] for link in links], [np.zeros(len(links))]
+    for capsule in robot.capsules:
+        if capsule.link in links:
+            pose = poses[robot.links.index(capsule.link)]
+            along = np.array(capsule.a) + shares * np.subtract(capsule.b, capsule.a)
+            points.append(along @ pose[:3, :3].T + pose[:3, 3])
+            radii.append(np.full(_SAMPLES, capsule.radius))
+    places = np.concatenate(points)
+    if isinstance(body, PointCloud | Mesh):
+        corners = body.points if isinstance(body, PointCloud) else body.triangles.vertices
+        away = cdist(places, body.pose.apply(corners)).min(axis=1)
+    else:
+        away = point_distance(body, places)
+    return max(0.0, float((away - np.concatenate(radii)).min()))
+
+
+def _less(length: float, by: float) -> float:
+    return max(length - by, _LEAST * length)
