@@ -4,7 +4,7 @@ from pathlib import Path
 
 import evenroad as er
 from evenroad.trajectory import arm_trajectory, limits_of, save_trajectory
-from evenroad.viz.solid import save_arm_gif
+from evenroad.viz.arm import save_arm_gif
 
 robot, scene = er.load_robot("ur5"), er.load_scene("box-reach")
 world = er.ArmWorld(robot, scene)

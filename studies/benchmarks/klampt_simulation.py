@@ -28,7 +28,7 @@ from evenroad.planning.read_request import arm_request
 from evenroad.robot import Scene
 from evenroad.robot.kinematics import joint_values
 from evenroad.trajectory import Trajectory, limits_of, make_trajectory
-from evenroad.viz.solid import ArmScene
+from evenroad.viz.arm import ArmScene
 
 MASSES = {
     "shoulder_link": 3.7,

@@ -13,6 +13,7 @@ kernel = load()
 VARIANT: str = kernel.VARIANT
 """The instruction set of the loaded module."""
 
+picture = kernel.picture
 planning = kernel.planning
 points = kernel.points
 roadmap = kernel.roadmap
@@ -22,5 +23,5 @@ space = kernel.space
 trajectory = kernel.trajectory
 world = kernel.world
 
-for _part in (planning, points, roadmap, robot, robot_roadmap, space, trajectory, world):
+for _part in (picture, planning, points, roadmap, robot, robot_roadmap, space, trajectory, world):
     sys.modules[f"{__name__}.{_part.__name__.rpartition('.')[2]}"] = _part

@@ -80,7 +80,7 @@ def plan_arm(plan: PlanArm) -> int:
     def draw(file: Path) -> None:
         from evenroad.viz.arm import save_arm_picture
 
-        save_arm_picture(file, result, world)
+        save_arm_picture(file, result, world, request.source)
 
     return finish(files, result, record, world.robot.group, draw, rows)
 

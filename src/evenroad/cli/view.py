@@ -103,7 +103,7 @@ class View(RobotOptions):
     def _save_gif(self, plan: PlanFile, arm: bool) -> None:
         if not arm:
             raise NotAvailable("--gif shows arms; --html plays the plan of a disk, too")
-        from evenroad.viz.solid import save_arm_gif
+        from evenroad.viz.arm import save_arm_gif
 
         assert self.gif is not None
         save_arm_gif(self.gif, plan.result, plan.request.world, self._file(plan))
@@ -112,8 +112,7 @@ class View(RobotOptions):
     def _save_page(self, plan: PlanFile, path: Path) -> None:
         from evenroad.viz.player import save_page
 
-        timed = None if plan.trajectory is None else (plan.trajectory.times, plan.trajectory.positions)
-        save_page(path, plan.result, file=self._file(plan), timed=timed)
+        save_page(path, plan.result, file=self._file(plan), timed=_times(plan))
         print(f"wrote {path}")
 
     def _serve(self, plan: PlanFile) -> None:
@@ -121,11 +120,11 @@ class View(RobotOptions):
 
         request = plan.request
 
-        def again(start: Floats, goal: Floats) -> PlanResult:
+        def again(world: ArmWorld, start: Floats, goal: Floats) -> PlanResult:
             goals = goal[np.newaxis]
-            return self._planned(replace(request, start=start, goals=goals, given=Goals(goals, ("",))))
+            return self._planned(replace(request, world=world, start=start, goals=goals, given=Goals(goals, ("",))))
 
-        page = ArmPage(request.world, plan.result, again, self._file(plan), port=self.port)
+        page = ArmPage(request.world, plan.result, again, self._file(plan), timed=_times(plan), port=self.port)
         print(f"{page.address}   (Ctrl-C ends it)", flush=True)
         webbrowser.open(page.address)
         try:
@@ -136,3 +135,7 @@ class View(RobotOptions):
     def _planned(self, request: Request) -> PlanResult:
         planner = None if self.n is None else PRM(self.n)
         return solve(request, planner, Options(Budget(seconds=SECONDS)))
+
+
+def _times(plan: PlanFile) -> tuple[Floats, Floats] | None:
+    return None if plan.trajectory is None else (plan.trajectory.times, plan.trajectory.positions)

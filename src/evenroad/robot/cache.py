@@ -34,6 +34,7 @@ from evenroad.robot.planes import Plane
 from evenroad.robot.robot import Robot
 from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.urdf import Urdf
+from evenroad.robot.urdf_xml import RobotFile
 
 _FORMAT = 23
 """Version of the cache: it counts up when the same files give another robot, or the format changes."""
@@ -134,6 +135,14 @@ def know(asked: object, files: dict[Path, tuple[int, ...]], model: RobotModel) -
         _known.clear()
     robot = replace(model.robot, states=deepcopy(model.robot.states), held=dict(model.robot.held))
     _known[_asked_here(asked)] = files, model, replace(model, robot=robot)
+
+
+def file_of(robot: Robot) -> RobotFile | None:
+    """Return the file that a robot was loaded from in this process, whatever it holds or lets touch since; else None."""
+    for _, model, _ in reversed(list(_known.values())):
+        if (model.robot.name, model.robot.links, model.robot.joints) == (robot.name, robot.links, robot.joints):
+            return model.file
+    return None
 
 
 def _asked_here(asked: object) -> object:

@@ -1,182 +1,216 @@
-"""Pictures of an arm's plan in its scene: three views, with the arm along its path."""
+"""Pictures of an arm's plan in its scene, in three dimensions: one of the whole plan, or an arm that moves as a GIF."""
 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
-from PIL import Image, ImageColor
+from PIL import Image
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
-from evenroad.geometry.shapes import Mesh, PointCloud
 from evenroad.roadmap import PlanResult, Status
-from evenroad.robot.kinematics import capsule_endpoints, link_poses, tip_links
-from evenroad.space.path import resample
+from evenroad.robot import ArmWorld, tip_links
+from evenroad.robot.kinematics import link_poses
+from evenroad.robot.urdf_xml import RobotFile
+from evenroad.space.path import configuration_at
 from evenroad.viz import style
-from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
-from evenroad.viz.sheet import Colour, Faint, Sheet, View
+from evenroad.viz.bodies import obstacle_part, rgb, robot_parts
+from evenroad.viz.camera import Camera, best_camera
+from evenroad.viz.stage import Part, Stage, part_of
+from evenroad.viz.sheet import Entry, Sheet
+from evenroad.viz.surfaces import tube
 
-if TYPE_CHECKING:
-    from evenroad.robot import ArmWorld, Robot
-
-VIEWS = (("from above", (0, 1)), ("from the side", (0, 2)), ("from the front", (1, 2)))
-"""Title of a view, and the two axes of the robot's root link that it shows."""
-SIZE = (1920, 744)
-"""Width and height of the picture [pixels]."""
-_AXES = "xyz"
-_TOWARDS = (1.0, -1.0, 1.0)
-"""Signs of the directions towards the viewer along x, y and z, if the other two axes point right and up."""
-_BETWEEN = 7
-"""Number of configurations between start and goal at which the arm is shown."""
-_STEP = 0.05
-"""Step between configurations whose tips are joined by a line, in the metric of the joints."""
-
-
-def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: ArmWorld) -> None:
-    """Save the picture of :func:`draw_arm_plan` as PNG, atomically."""
-    picture = draw_arm_plan(result, world)
-    with atomic_write(path) as file:
-        # Compressing more takes longer than drawing a view, for a tenth of the bytes.
-        picture.save(file, format="png", compress_level=1)
+SIZE, MOVING = (1000, 640), (720, 450)
+"""Width and height of a picture, and of one that moves [pixels]."""
+FRAMES, _FRAME, _PAUSE = 40, 80, 900
+"""Number of frames of a moving picture, and milliseconds of each, and of the first and the last."""
+_END, _BETWEEN, _HIDDEN = 0.42, 0.12, 0.4
+"""How opaque an arm is at start and goal, and between; and the share of that where something hides it."""
+_GHOSTS = (0.2, 0.4, 0.8)
+"""Shares of the path at which a faint arm is shown; at `_MIDDLE` it is a solid one."""
+_MIDDLE = 0.6
+_SAMPLES, _THICK = 80, 0.006
+"""Number of pieces of the tip's path, and their radius [m]."""
+_POINTS = 200
+"""Number of corners of each link by which a side for the camera is chosen."""
+_NEAR, _MARGIN = 0.15, 0.02
+"""How far from the arm obstacles are shown, and the room around all: shares of the size of what the arm needs."""
 
 
-def draw_arm_plan(result: PlanResult, world: ArmWorld) -> Image.Image:
-    """Return a picture of a plan of an arm: from above, from the side and from the front, to one scale.
+@dataclass(frozen=True)
+class ArmScene:
+    """What pictures of one plan share: the bodies, the camera, and what stands still."""
 
-    The start is green, the goal blue, with the arm along the path between them.  Paths of tips and bodies in
-    collision are red.
+    world: ArmWorld
+    links: dict[str, Part]
+    obstacles: tuple[Part, ...]
+    trails: tuple[Part, ...]
+    stage: Stage
+
+    @classmethod
+    def of(
+        cls, result: PlanResult, world: ArmWorld, file: RobotFile | None = None, size: tuple[int, int] = MOVING
+    ) -> ArmScene:
+        """Return what is drawn of a plan: the robot as its file draws it, else as its capsules."""
+        links = {
+            # Bodies of neighbours often share a surface: one of them is a little smaller.
+            link: replace(part, corners=part.corners - 0.001 * (i % 2) * part.normals)
+            for i, (link, part) in enumerate(robot_parts(world.robot, file).items())
+        }
+        obstacles = [obstacle_part(each) for each in world.scene.obstacles]
+        camera, lowest = chosen_camera(result, world, links, obstacles, size)
+        return cls(world, links, tuple(obstacles), tuple(_trails(result, world)), Stage(camera, lowest))
+
+    def picture(self, q: Floats, ghosts: Sequence[Part] = ()) -> Image.Image:
+        """Return a picture of the arm at a configuration, (dim,), with translucent bodies."""
+        return self.stage.picture([*_posed(self.world, self.links, q), *self.obstacles, *self.trails, *ghosts])
+
+    def ghost(self, states: Sequence[Floats], colour: str, opacity: float, hidden: float = 0.0) -> Part:
+        """Return translucent arms at configurations, (dim,) each, as one body."""
+        parts = [part for q in states for part in _posed(self.world, self.links, q)]
+        corners, normals = (np.concatenate([getattr(part, name) for part in parts]) for name in ("corners", "normals"))
+        return Part(corners, normals, rgb(colour), opacity, hidden)
+
+
+def chosen_camera(
+    result: PlanResult,
+    world: ArmWorld,
+    links: dict[str, Part],
+    obstacles: Sequence[Part],
+    size: tuple[int, int] = MOVING,
+) -> tuple[Camera, float]:
+    """Return the camera that sees the arm along its path, and the height of a floor below all bodies."""
+    shown = np.stack([result.start, result.goal]) if result.path is None else _along(result, world, 9)
+    few = {link: _few(part) for link, part in links.items()}
+    arms = np.stack([_corners(_posed(world, few, q)) for q in shown])
+    low, high = _bounds(arms, obstacles)
+    before = np.concatenate([np.zeros((0, 3, 3)), *(part.corners for part in obstacles)])
+    camera = best_camera(arms[1::3].reshape(-1, 3), before, low, high, size)
+    return camera, min([low[2], *(float(part.corners[..., 2].min()) for part in obstacles)]) - 0.005
+
+
+def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = None) -> Image.Image:
+    """Return a picture of a plan of an arm: the arm on its way, where it starts in green, its goal in blue.
+
+    The paths of its tips are red.  Of a start or goal in collision the arm is shown there, with the links and obstacles
+    that touch in red.  The robot looks as `file`, or the file it was loaded from, draws it.
     """
+    scene = ArmScene.of(result, world, file, SIZE)
+    start, goal = (scene.ghost([q], colour, _END, _HIDDEN) for q, colour in
+                   ((result.start, style.START), (result.goal, style.GOAL)))
+    if result.status is Status.START_INVALID:
+        picture = _touching(scene, result.start).picture(result.start, (goal,))
+    elif result.status is Status.GOAL_INVALID:
+        picture = _touching(scene, result.goal).picture(result.goal, (start,))
+    elif result.path is None:
+        picture = scene.picture(result.start, (start, goal))
+    else:
+        middle, *between = configuration_at(result.path, world.space, np.array([_MIDDLE, *_GHOSTS]))
+        trails = [replace(trail, opacity=0.999, hidden=_HIDDEN) for trail in scene.trails]
+        ghosts = scene.ghost(between, style.MILESTONE, _BETWEEN)
+        picture = scene.picture(middle, (ghosts, start, goal, *trails))
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
     if result.clearance is not None:
-        title += f"; {1e3 * result.clearance:.1f} mm from obstacles"
-    sheet = Sheet(SIZE, len(VIEWS), title)
-    low, high = _limits(world, _shown(result, world))
-    scale = min(float(np.min(np.array(sheet.available) / (high - low)[list(pair)])) for _, pair in VIEWS)
-    for i, (name, pair) in enumerate(VIEWS):
-        view = View(low[list(pair)], high[list(pair)], scale)
-        draw_arm_view(view, result, world, pair)
-        first, second = (_AXES[axis] for axis in pair)
-        sheet.add(view, i, f"{name} ({first}, {second})", (f"{first} [m]", f"{second} [m]"))
-    sheet.legend(_legend(result, world))
-    return sheet.image
+        title += f"; {1e3 * result.clearance:.1f} mm from obstacles at least"
+    return Sheet.of_picture(picture, title, _legend(result, world)).image
 
 
-def draw_arm_view(view: View, result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> None:
-    """Draw the projection to two of the axes x, y, z, from far to near."""
-    shown = _shown(result, world)
-    last = len(shown) - 1
-    arms = [(i / last, endpoints) for i, endpoints in enumerate(capsule_endpoints(world.robot, shown))]
-    axis, towards = next((k, _TOWARDS[k]) for k in range(3) if k not in pair)
-    things: list[tuple[float, Floats, Colour, Colour, float]] = []
-    for share, endpoints in [*arms[1:-1], arms[0], arms[-1]]:
-        faint = share not in (0.0, 1.0)
-        fill, edge = _tint(share, 0.25 if faint else 0.55), _tint(share, 0.45 if faint else 1.0)
-        for body, outline in zip(endpoints, _bodies(world.robot, endpoints, pair), strict=True):
-            depth = -np.inf if faint else towards * float(body[:, axis].mean())
-            things.append((depth, outline, fill, edge, 1.0 if faint else 1.5))
-    for obstacle in world.scene.obstacles:
-        colour = style.OUTSIDE if obstacle.cell else style.OBSTACLE
-        # A cloud or a mesh may surround the arm: it is faint, and drawn first.
-        if isinstance(obstacle.body, PointCloud):
-            points = obstacle.body.pose.apply(obstacle.body.points)[:, list(pair)]
-            view.balls(points, obstacle.body.radius, _faint(colour, 0.16), _faint(style.OBSTACLE, 0.4))
-            continue
-        if isinstance(obstacle.body, Mesh):
-            mesh = obstacle.body.triangles
-            corners = obstacle.body.pose.apply(mesh.vertices)[mesh.triangles][:, :, list(pair)]
-            view.polygons(corners, _faint(colour, 0.16), _faint(style.OBSTACLE, 0.25))
-            continue
-        depth = towards * float(np.mean([corner[axis] for corner in obstacle_bounds(obstacle)]))
-        things.append((depth, obstacle_outline(obstacle, pair), _faint(colour, 0.16), style.OBSTACLE, 1.5))
-    for _, outline, fill, edge, width in sorted(things, key=lambda thing: thing[0]):
-        view.polygon(outline, fill, edge, width)
+def save_arm_picture(
+    path: str | os.PathLike[str], result: PlanResult, world: ArmWorld, file: RobotFile | None = None
+) -> None:
+    """Save the picture of :func:`draw_arm_plan` as PNG, atomically."""
+    picture = draw_arm_plan(result, world, file)
+    with atomic_write(path) as out:
+        # Compressing more takes longer than drawing, for a tenth of the bytes.
+        picture.save(out, format="png", compress_level=1)
+
+
+def save_arm_gif(
+    path: str | os.PathLike[str], result: PlanResult, world: ArmWorld, file: RobotFile | None = None
+) -> None:
+    """Save an animation of the arm on its path as GIF, atomically; without a path of start and goal."""
+    scene = ArmScene.of(result, world, file)
+    configurations = np.stack([result.start, result.goal])
     if result.path is not None:
-        for tips in _tips(result.path, world, _STEP):
-            view.line(tips[:, pair], style.PATH, 3)
-    if result.status in (Status.START_INVALID, Status.GOAL_INVALID):
-        for outline in _colliding(result, world, pair):
-            view.polygon(outline, _faint(style.COLLISION, 0.35), style.COLLISION, 3)
-    for tips in _tips(np.stack([result.start, result.goal]), world):
-        for position, colour in zip(tips[:, pair], (style.START, style.GOAL), strict=True):
-            view.dot(position, colour, 6)
+        # For an arm that does not move all frames are equal.
+        configurations = _along(result, world, FRAMES if result.cost else 2)
+    goal = scene.ghost([result.goal], style.GOAL, 0.5 * _END, _HIDDEN)
+    frames = [scene.picture(q, (goal,)) for q in configurations]
+    # One palette for all frames, or colours would flicker.
+    palette = frames[len(frames) // 2].quantize(200, dither=Image.Dither.NONE)
+    frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    pauses = [_PAUSE, *(len(frames) - 2) * [_FRAME], _PAUSE]
+    with atomic_write(path) as out:
+        frames[0].save(out, format="gif", save_all=True, append_images=frames[1:], duration=pauses, loop=0)
 
 
-def _shown(result: PlanResult, world: ArmWorld) -> Floats:
-    """Return configurations from start to goal, evenly along the path, (s, dim)."""
+def _posed(world: ArmWorld, links: dict[str, Part], q: Floats) -> list[Part]:
+    poses = link_poses(world.robot, q[np.newaxis])[0]
+    return [part.moved(poses[world.robot.links.index(link)]) for link, part in links.items()]
+
+
+def _few(part: Part) -> Part:
+    """Return some of a body's triangles."""
+    step = len(part.corners) // _POINTS + 1
+    return replace(part, corners=part.corners[::step], normals=part.normals[::step])
+
+
+def _corners(parts: Iterable[Part]) -> Floats:
+    return np.concatenate([part.corners.reshape(-1, 3) for part in parts])
+
+
+def _along(result: PlanResult, world: ArmWorld, count: int) -> Floats:
+    """Return configurations along the path, slow at both ends as a robot is, (count, dim)."""
+    assert result.path is not None
+    share = np.linspace(0.0, 1.0, count)
+    return configuration_at(result.path, world.space, share * share * (3.0 - 2.0 * share))
+
+
+def _trails(result: PlanResult, world: ArmWorld) -> list[Part]:
+    """Return the paths of the tips as tubes."""
     if result.path is None:
-        return np.stack([result.start, result.goal])
-    dense = resample(result.path, world.space, _STEP)[0]
-    lengths = np.append(0.0, np.cumsum(world.space.distance(dense[:-1], dense[1:])))
-    wanted = np.linspace(0.0, lengths[-1], _BETWEEN + 2)
-    return dense[np.abs(lengths - wanted[:, np.newaxis]).argmin(axis=1)]
+        return []
+    q = configuration_at(result.path, world.space, np.linspace(0.0, 1.0, _SAMPLES))
+    poses = link_poses(world.robot, q)
+    tips = [poses[:, world.robot.links.index(tip), :3, 3] for tip in tip_links(world.robot)]
+    return [part_of(tube(points, _THICK), rgb(style.PATH)) for points in tips]
 
 
-def _bodies(robot: Robot, endpoints: Floats, pair: tuple[int, int]) -> list[Floats]:
-    return [
-        stadium(a[list(pair)], b[list(pair)], capsule.radius)
-        for (a, b), capsule in zip(endpoints, robot.capsules, strict=True)
-    ]
+def _touching(scene: ArmScene, q: Floats) -> ArmScene:
+    """Return a scene with the links and obstacles in red that touch at a configuration."""
+    reason = scene.world.explain(q)
+
+    def shown(name: str, part: Part) -> Part:
+        return replace(part, colour=rgb(style.COLLISION)) if repr(name) in reason else part
+
+    named = zip(scene.world.scene.names, scene.obstacles, strict=True)
+    obstacles = tuple(shown(name, part) for name, part in named)
+    return replace(scene, links={link: shown(link, part) for link, part in scene.links.items()}, obstacles=obstacles)
 
 
-def _tips(path: Floats, world: ArmWorld, step: float | None = None) -> list[Floats]:
-    """Return the positions of each tip, (n, 3), at configurations, (n, dim), or every `step` on their path."""
-    dense = path if step is None else resample(path, world.space, step)[0]
-    poses = link_poses(world.robot, dense)
-    return [poses[:, world.robot.links.index(tip), :3, 3] for tip in tip_links(world.robot)]
-
-
-def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> list[Floats]:
-    """Return the outlines of the bodies named in the message."""
-    end = result.start if result.status is Status.START_INVALID else result.goal
-    reason = world.explain(end)
-    bodies = _bodies(world.robot, capsule_endpoints(world.robot, end[np.newaxis])[0], pair)
-    named = [body for body, own in zip(bodies, world.robot.capsules, strict=True) if repr(own.link) in reason]
-    # A cloud or a mesh may surround the arm: the robot's body shows the position.
-    obstacles = [each for each in world.scene.obstacles if repr(each.name) in reason and each.row]
-    return named + [obstacle_outline(each, pair) for each in obstacles]
-
-
-def _tint(share: float, strength: float) -> Colour:
-    """Return a colour between start and goal; less strength is paler."""
-    start, goal = (np.array(ImageColor.getrgb(colour)) for colour in (style.START, style.GOAL))
-    colour = 255 - strength * (255 - (1.0 - share) * start - share * goal)
-    red, green, blue = np.rint(colour).astype(int).tolist()
-    return red, green, blue
-
-
-def _faint(colour: str, opacity: float) -> Faint:
-    red, green, blue = ImageColor.getrgb(colour)[:3]
-    return red, green, blue, round(255 * opacity)
-
-
-def _limits(world: ArmWorld, shown: Floats) -> tuple[Floats, Floats]:
-    """Return corners, (3,) each, of the box shown: the arm and obstacles near it."""
-    endpoints = capsule_endpoints(world.robot, shown)
-    radius = max(capsule.radius for capsule in world.robot.capsules)
-    low, high = endpoints.min(axis=(0, 1, 2)) - radius, endpoints.max(axis=(0, 1, 2)) + radius
-    near = 0.35 * float((high - low).max())
+def _bounds(arms: Floats, obstacles: Iterable[Part]) -> tuple[Floats, Floats]:
+    """Return the corners, (3,) each, of the box shown: the arm, and obstacles as far as they are near it."""
+    low, high = arms.min(axis=(0, 1)), arms.max(axis=(0, 1))
+    near = _NEAR * float((high - low).max())
     least, most = low.copy(), high.copy()
-    for obstacle in world.scene.obstacles:
-        lower, upper = obstacle_bounds(obstacle)
-        least = np.minimum(least, np.maximum(lower, low - near))
-        most = np.maximum(most, np.minimum(upper, high + near))
-    margin = 0.04 * float((most - least).max())
+    for part in obstacles:
+        corners = part.corners.reshape(-1, 3)
+        lower, upper = corners.min(axis=0), corners.max(axis=0)
+        if (lower < high + near).all() and (upper > low - near).all():
+            least = np.minimum(least, np.maximum(lower, low - near))
+            most = np.maximum(most, np.minimum(upper, high + near))
+    margin = _MARGIN * float((most - least).max())
     return least - margin, most + margin
 
 
-def _legend(result: PlanResult, world: ArmWorld) -> list[tuple[str, Colour, Colour | None]]:
+def _legend(result: PlanResult, world: ArmWorld) -> list[Entry]:
     """Return names, colours and edge colours of the legend."""
-    entries: list[tuple[str, Colour, Colour | None]] = [
-        ("start", _tint(0.0, 0.55), style.START),
-        ("goal", _tint(1.0, 0.55), style.GOAL),
-    ]
+    entries: list[Entry] = [("start", style.START, "white"), ("goal", style.GOAL, "white")]
     if result.path is not None:
-        entries.append(("along the path", _tint(0.5, 0.25), _tint(0.5, 0.45)))
-        entries.append((f"path of {', '.join(tip_links(world.robot))}", style.PATH, None))
+        entries += [("on its way", style.ARM[0], "white"), (f"path of {', '.join(tip_links(world.robot))}", style.PATH, None)]
     elif result.status in (Status.START_INVALID, Status.GOAL_INVALID):
-        entries.append(("in collision", _faint(style.COLLISION, 0.35), style.COLLISION))
-    if world.scene.obstacles:
-        entries.append(("obstacles", _faint(style.OBSTACLE, 0.16), style.OBSTACLE))
+        entries.append(("in collision", style.COLLISION, "white"))
     return entries

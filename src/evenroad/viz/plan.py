@@ -13,7 +13,7 @@ from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad.roadmap import PlanResult, Status
 from evenroad.viz import style
-from evenroad.viz.sheet import Colour, Sheet, View
+from evenroad.viz.sheet import Entry, Sheet, View
 
 if TYPE_CHECKING:
     from evenroad.world.gridmap import DiskWorld
@@ -40,17 +40,15 @@ def draw_plan(result: PlanResult, world: DiskWorld) -> Image.Image:
     title = f"{result.status}: {result.message}"
     if result.rule != "none":
         title += f"; {result.origin}, {result.rule}"
-    sheet = Sheet.around(view, LEAST_WIDTH, title)
-    sheet.add(view, 0, "" if view.up else "y points down", ("x", "y"))
-    entries: list[tuple[str, Colour, Colour | None]] = []
+    entries: list[Entry] = []
     if result.path is not None:
         raw = "path before shortcuts" if result.roadmap is None else "roadmap path"
         entries = [(raw, style.RAW_PATH, None), ("path", style.PATH, None)]
     entries += [("start", style.START, "white"), ("goal", style.GOAL, "white")]
     if result.status in (Status.START_INVALID, Status.GOAL_INVALID):
         entries.append(("collision", style.COLLISION, None))
-    sheet.legend(entries)
-    return sheet.image
+    above = "" if view.up else "y points down"
+    return Sheet.of_view(view, LEAST_WIDTH, title, above, ("x", "y"), entries).image
 
 
 def draw_plan_view(result: PlanResult, world: DiskWorld) -> View:

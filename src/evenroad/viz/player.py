@@ -5,8 +5,6 @@ from __future__ import annotations
 import base64
 import json
 import os
-from collections.abc import Iterator
-from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -16,17 +14,16 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import as_file, require_known
 from evenroad._files import atomic_write
-from evenroad.errors import EvenroadError, NotAvailable
+from evenroad.errors import NotAvailable
 from evenroad.roadmap import PlanResult
-from evenroad.robot import ArmWorld, Robot, tip_links
+from evenroad.robot import ArmWorld, tip_links
 from evenroad.robot.kinematics import joint_values
-from evenroad.robot.load import read_robot
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import configuration_at
-from evenroad.viz.raster import Part, part_of
+from evenroad.viz.arm import chosen_camera
+from evenroad.viz.bodies import CAPSULES, COLLISION, VISUAL, indexed, obstacle_part, robot_sets
 from evenroad.viz.result import plot_map
-from evenroad.viz.solid import chosen_camera, link_colour, obstacle_colour, obstacle_surface
-from evenroad.viz.surfaces import Surface, link_surfaces, surfaces_by_link
+from evenroad.viz.stage import Part
 from evenroad.world import MeasuresPaths
 from evenroad.world.gridmap import DiskWorld
 
@@ -37,10 +34,6 @@ SECONDS = 4.0
 """Duration of a path that has no times [s]."""
 _MOST = 600
 """Largest number of states of a trajectory that are kept."""
-_SAME = 2e-3
-"""Difference between two surfaces below which they are of one body [m]."""
-_SETS = ("visual", "collision", "capsules")
-"""What a robot can be shown as."""
 
 
 def save_page(
@@ -137,14 +130,14 @@ def _of_arm(world: ArmWorld, result: PlanResult, states: Floats, file: RobotFile
             "mimic": joint.mimic and [joint.mimic.joint, joint.mimic.multiplier, joint.mimic.offset],
             "values": _rounded(values[joint.name], 5) if joint.kind != "fixed" else None,
         })  # fmt: skip
-    bodies = [*_scene_bodies(world), *_robot_bodies(robot, file, number)]
-    shown = [name for name in _SETS if any(body["set"] == name for body in bodies)]
+    obstacles = [obstacle_part(each) for each in world.scene.obstacles]
+    sets = robot_sets(robot, file)
+    bodies = [_body(part, 0, "scene", name) for part, name in zip(obstacles, world.scene.names, strict=True)]
+    for name, links in sets.items():
+        bodies += [_body(part, number[link], name, link) for link, part in links.items()]
     tips = [number[tip] for tip in tip_links(robot)]
-    links = {link: part_of(surface, link_colour(0)) for link, surface in link_surfaces(robot, None).items()}
-    obstacles = [part_of(obstacle_surface(each), obstacle_colour(each)) for each in world.scene.obstacles]
-    x, y, _ = np.subtract(
-        *(getattr(chosen_camera(result, world, links, obstacles)[0], end) for end in ("eye", "look_at"))
-    )
+    camera, _ = chosen_camera(result, world, sets[CAPSULES], obstacles)
+    x, y, _ = camera.eye - camera.look_at
     return {
         "kind": "arm",
         "unit": "m",
@@ -152,60 +145,24 @@ def _of_arm(world: ArmWorld, result: PlanResult, states: Floats, file: RobotFile
         "joints": joints,
         "links": len(robot.links),
         "tips": tips,
-        "sets": shown,
+        "sets": [name for name in (VISUAL, COLLISION, CAPSULES) if name in sets],
         "bodies": bodies,
         "turn": round(float(np.arctan2(y, x)), 3),
     }
 
 
-def _scene_bodies(world: ArmWorld) -> Iterator[dict[str, Any]]:
-    for obstacle in world.scene.obstacles:
-        yield _body(part_of(obstacle_surface(obstacle), obstacle_colour(obstacle)), 0, "scene", obstacle.name)
-
-
-def _robot_bodies(robot: Robot, file: RobotFile | None, number: dict[str, int]) -> Iterator[dict[str, Any]]:
-    sets = {"capsules": surfaces_by_link(robot.capsules)}
-    for name, as_drawn in (("collision", False), ("visual", True)) if file is not None else ():
-        assert file is not None
-        try:
-            shapes = read_robot(replace(file, as_drawn=as_drawn)).shapes
-        except EvenroadError:
-            # A drawing that cannot be read is no reason to show nothing.
-            continue
-        surfaces = {link: each for link, each in surfaces_by_link(shapes).items() if link in number}
-        if surfaces and not any(_equal(surfaces, other) for other in sets.values()):
-            sets[name] = surfaces
-    for name, surfaces in sets.items():
-        for i, (link, surface) in enumerate(surfaces.items()):
-            yield _body(part_of(surface, link_colour(i)), number[link], name, link)
-
-
-def _equal(one: dict[str, Surface], other: dict[str, Surface]) -> bool:
-    """Return whether the surfaces of all links have as many corners and the same bounds."""
-
-    def bounds(surface: Surface) -> Floats:
-        return np.concatenate([surface[0].min(axis=0), surface[0].max(axis=0), [float(len(surface[0]))]])
-
-    same_links = one.keys() == other.keys()
-    return same_links and all(np.allclose(bounds(one[link]), bounds(other[link]), atol=_SAME) for link in one)
-
-
 def _body(part: Part, link: int, kind: str, name: str) -> dict[str, Any]:
-    """Return a body with each different pair of a corner and its normal once."""
-    rows = np.column_stack([
-        np.round(part.corners.reshape(-1, 3), 5), np.round(127.0 * part.normals.reshape(-1, 3))
-    ])  # fmt: skip
-    different, index = np.unique(rows, axis=0, return_inverse=True)
-    normals = np.zeros((len(different), 4), dtype=np.int8)
-    normals[:, :3] = different[:, 3:]
+    corners, directions, triangles = indexed(part)
+    normals = np.zeros((len(corners), 4), dtype=np.int8)
+    normals[:, :3] = np.rint(127.0 * directions)
     return {
         "link": link,
         "set": kind,
         "name": name,
         "colour": [round(each / 255.0, 3) for each in part.colour],
-        "v": _coded(different[:, :3].astype("<f4")),
+        "v": _coded(corners.astype("<f4")),
         "n": _coded(normals),
-        "t": _coded(index.reshape(-1).astype("<u4")),
+        "t": _coded(triangles.reshape(-1).astype("<u4")),
     }
 
 

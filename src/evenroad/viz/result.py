@@ -13,8 +13,8 @@ from evenroad._files import atomic_write
 from evenroad.errors import NotAvailable
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld
+from evenroad.viz.arm import draw_arm_plan
 from evenroad.viz.plan import draw_plan
-from evenroad.viz.solid import draw_arm
 from evenroad.world.gridmap import DiskWorld, GridMap
 
 _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 40
@@ -29,7 +29,7 @@ def plot_result(result: PlanResult, path: str | os.PathLike[str] | None = None, 
     if isinstance(world, DiskWorld):
         picture = draw_plan(result, world)
     elif isinstance(world, ArmWorld):
-        picture = draw_arm(result, world)
+        picture = draw_arm_plan(result, world)
     else:
         known = "its world is not known: plot(world=...)" if world is None else f"its world is a {type(world).__name__}"
         raise NotAvailable(f"plans of disks on maps and of arms can be drawn, but of this one {known}")

@@ -1,4 +1,4 @@
-"""A sheet of views side by side, drawn with Pillow, which loads and draws in a fifth of Matplotlib's time."""
+"""A sheet with a picture or a view, drawn with Pillow, which loads and draws in a fifth of Matplotlib's time."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from evenroad._arrays import Floats
 FINER = 2
 """Factor by which bodies are drawn larger, then shrunk, so that their edges are smooth."""
 TEXT, GRID = "#000000", "#e3e9ee"
-_LEFT, _BETWEEN, _TOP, _BOTTOM = 95, 105, 105, 125
-"""Margins in pixels; ticks and labels of a view are left of it and below."""
-Faint = tuple[int, int, int, int]
-Colour = tuple[int, int, int] | Faint | str
+_LEFT, _RIGHT, _TOP, _BOTTOM = 95, 45, 105, 125
+"""Margins of a view [pixels]; its ticks and labels are left of it and below."""
+Colour = tuple[int, int, int] | tuple[int, int, int, int] | str
+Entry = tuple[str, Colour, Colour | None]
+"""Name and colour of something in a legend, and that of its edge; without one it is a line."""
 
 
 class View:
@@ -48,11 +49,6 @@ class View:
         x, y = pixels.T
         return self.low + np.stack([x, self.image.height - y if self.up else y], axis=1) / self.scale
 
-    def polygon(self, outline: Floats, fill: Colour, edge: Colour, width: float = 1.0) -> None:
-        """Draw an area, (n, 2), with its edge."""
-        self._draw.polygon(self.pixels(outline), fill=fill)
-        self.line(np.vstack([outline, outline[:1]]), edge, width)
-
     def line(self, points: Floats, colour: Colour, width: float) -> None:
         """Draw a line through points, (n, 2)."""
         self._draw.line(self.pixels(points), fill=colour, width=round(FINER * width), joint="curve")
@@ -63,33 +59,6 @@ class View:
         """Draw a disk or its edge, of a radius in metres."""
         at, most = self.pixels(centre[np.newaxis])[0], self.scale * radius
         self._draw.circle(at, most, fill, edge, round(FINER * width))
-
-    def balls(self, points: Floats, radius: float, fill: Faint, edge: Faint) -> None:
-        """Fill all that is within `radius` of points, (n, 2), and mark the points themselves."""
-        from scipy.ndimage import distance_transform_edt
-
-        width, height = self.image.size
-        columns, rows = np.rint(np.array(self.pixels(points)).T).astype(np.int64)
-        shown = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
-        if not shown.any():
-            return
-        away = np.ones((height, width), dtype=np.bool_)
-        away[rows[shown], columns[shown]] = False
-        within = distance_transform_edt(away) <= max(self.scale * radius, 1.0)
-        for mask, colour in ((within, fill), (~away, edge)):
-            self.image.paste(colour[:3], mask=Image.fromarray((mask * colour[3]).astype(np.uint8)))
-
-    def polygons(self, outlines: Floats, fill: Faint, edge: Faint) -> None:
-        """Fill the union of areas, (n, corners, 2), and mark their edges."""
-        size = self.image.size
-        masks = Image.new("L", size), Image.new("L", size)
-        draws = [ImageDraw.Draw(mask) for mask in masks]
-        for outline in outlines:
-            corners = self.pixels(outline)
-            draws[0].polygon(corners, fill=fill[3])
-            draws[1].line([*corners, corners[0]], fill=edge[3])
-        for mask, colour in zip(masks, (fill, edge), strict=True):
-            self.image.paste(colour[:3], mask=mask)
 
     def dot(self, position: Floats, colour: Colour, radius: float) -> None:
         """Draw a dot with a white rim."""
@@ -106,47 +75,55 @@ def ticks(low: float, high: float) -> Floats:
 
 
 class Sheet:
-    """A picture of `size` pixels with a title, room for `count` views, and a legend."""
+    """A picture with a title above it and a legend below."""
 
-    def __init__(self, size: tuple[int, int], count: int, title: str) -> None:
+    def __init__(self, size: tuple[int, int], title: str) -> None:
         self.image = Image.new("RGB", size, "white")
         self._draw = ImageDraw.Draw(self.image, "RGBA")
-        self.available = (size[0] - _LEFT + 60) // count - _BETWEEN, size[1] - _TOP - _BOTTOM
         for i, line in enumerate(wrap(title, size[0] // 11)[:3]):
             self._text((size[0] / 2, 20 + 22 * i), line, 18)
 
     @classmethod
-    def around(cls, view: View, width: int, title: str) -> Sheet:
-        """Return a sheet that has room for one view, and is at least so wide."""
-        across, down = (side // FINER for side in view.image.size)
-        return cls((max(width, across + _LEFT - 60 + _BETWEEN), down + _TOP + _BOTTOM), 1, title)
+    def of_picture(cls, picture: Image.Image, title: str, entries: Sequence[Entry]) -> Sheet:
+        """Return a sheet of a picture that fills its width."""
+        top = 16 + 22 * len(wrap(title, picture.width // 11)[:3])
+        sheet = cls((picture.width, top + picture.height + 48), title)
+        sheet.image.paste(picture, (0, top))
+        sheet._legend(entries)
+        return sheet
 
-    def add(self, view: View, number: int, title: str, labels: tuple[str, str]) -> None:
-        """Paste a view, with frame, ticks and labels."""
+    @classmethod
+    def of_view(
+        cls, view: View, least: int, title: str, above: str, labels: tuple[str, str], entries: Sequence[Entry]
+    ) -> Sheet:
+        """Return a sheet of a view, with frame, ticks and labels; at least so wide."""
         image = view.image.reduce(FINER)
-        left = _LEFT + number * (self.available[0] + _BETWEEN) + (self.available[0] - image.width) // 2
-        top = _TOP + (self.available[1] - image.height) // 2
+        width = max(least, image.width + _LEFT + _RIGHT)
+        sheet = cls((width, image.height + _TOP + _BOTTOM), title)
+        left, top = _LEFT + (width - _LEFT - _RIGHT - image.width) // 2, _TOP
         right, bottom = left + image.width, top + image.height
-        self.image.paste(image, (left, top))
-        self._draw.rectangle((left, top, right, bottom), outline=TEXT)
+        sheet.image.paste(image, (left, top))
+        sheet._draw.rectangle((left, top, right, bottom), outline=TEXT)
         for tick in ticks(view.low[0], view.high[0]):
             x = left + view.shown_scale * (tick - view.low[0])
-            self._draw.line((x, bottom, x, bottom + 5), fill=TEXT)
-            self._text((x, bottom + 18), f"{round(tick, 9):g}", 16)
+            sheet._draw.line((x, bottom, x, bottom + 5), fill=TEXT)
+            sheet._text((x, bottom + 18), f"{round(tick, 9):g}", 16)
         for tick in ticks(view.low[1], view.high[1]):
             away = view.shown_scale * (tick - view.low[1])
             y = bottom - away if view.up else top + away
-            self._draw.line((left - 5, y, left, y), fill=TEXT)
-            self._text((left - 9, y), f"{round(tick, 9):g}", 16, "rm")
-        self._text(((left + right) / 2, bottom + 42), labels[0], 17)
-        self._text((left - 52, (top + bottom) / 2), labels[1], 17, "rm")
-        self._text(((left + right) / 2, top - 16), title, 20)
+            sheet._draw.line((left - 5, y, left, y), fill=TEXT)
+            sheet._text((left - 9, y), f"{round(tick, 9):g}", 16, "rm")
+        sheet._text(((left + right) / 2, bottom + 42), labels[0], 17)
+        sheet._text((left - 52, (top + bottom) / 2), labels[1], 17, "rm")
+        sheet._text(((left + right) / 2, top - 16), above, 20)
+        sheet._legend(entries)
+        return sheet
 
-    def legend(self, entries: Sequence[tuple[str, Colour, Colour | None]]) -> None:
-        """Say at the bottom what has which colour: name, colour, and that of the edge; without one it is a line."""
+    def _legend(self, entries: Sequence[Entry]) -> None:
+        """Say at the bottom what has which colour."""
         font = ImageFont.load_default(18)
         widths = [85 + font.getlength(name) for name, _, _ in entries]
-        x, y = (self.image.width - sum(widths)) / 2, self.image.height - 30
+        x, y = (self.image.width - sum(widths)) / 2, self.image.height - 26
         for (name, fill, edge), width in zip(entries, widths, strict=True):
             if edge is None:
                 self._draw.line((x, y, x + 34, y), fill=fill, width=3)

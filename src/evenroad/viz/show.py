@@ -6,12 +6,12 @@ import sys
 import webbrowser
 from typing import Any
 
-from evenroad._arrays import Floats
 from evenroad._checks import require_extra
 from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.planning.plan import plan as plan_path
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld
+from evenroad.robot.cache import file_of
 from evenroad.viz.page import ArmPage
 from evenroad.world.gridmap import GridMap
 
@@ -59,12 +59,7 @@ def show(what: PlanResult | GridMap, *, port: int = 0) -> Any:
         else:
             notebook.display(picture)
         return picture
-    world = what.world
-
-    def plan_again(start: Floats, goal: Floats) -> PlanResult:
-        return plan_path(world, start, goal)
-
-    page = ArmPage(world, what, plan_again, port=port)
+    page = ArmPage(what.world, what, plan_path, file_of(what.world.robot), port=port)
     if notebook is not None:
         notebook.display(notebook.IFrame(page.address, "100%", HEIGHT))
         return page

@@ -1,0 +1,153 @@
+"""What pictures and viewers show of robots and obstacles: bodies in their colours, as their files draw them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import replace
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from PIL import ImageColor
+
+from evenroad._arrays import Floats, Ints
+from evenroad._files import atomic_write, cache_folder
+from evenroad._seal import read_sealed, sealed
+from evenroad.errors import EvenroadError
+from evenroad.geometry.shapes import Mesh
+from evenroad.robot import Robot
+from evenroad.robot.cache import file_of, key_of
+from evenroad.robot.load import read_robot
+from evenroad.robot.scene import Obstacle
+from evenroad.robot.urdf_xml import RobotFile
+from evenroad.viz import style
+from evenroad.viz.stage import Part, part_of
+from evenroad.viz.surfaces import Surface, surface_of, surfaces_by_link
+
+CAPSULES, COLLISION, VISUAL = "capsules", "collision", "visual"
+"""What a robot can be shown as; one that draws best comes last."""
+_GRAIN = 0.003
+"""Size of the smallest details that are shown of large meshes [m]."""
+_MANY = 2000
+"""Number of triangles of a link from which on it is simplified."""
+_FORMAT = 1
+"""Version of what is kept of drawings."""
+_SAME = 2e-3
+"""Difference between two drawings of a link below which they are one [m]."""
+
+
+def robot_parts(robot: Robot, file: RobotFile | None = None) -> dict[str, Part]:
+    """Return link -> what is drawn of it, in the link's frame: as its file draws it, else its capsules.
+
+    Without a file it is that of which the robot was loaded in this process.  A drawing that cannot be read is no reason
+    to show nothing.
+    """
+    shown = _coloured(robot, surfaces_by_link(robot.capsules))
+    file = file_of(robot) if file is None else file
+    return shown if file is None else shown | _drawn(robot, file, as_drawn=True)
+
+
+def robot_sets(robot: Robot, file: RobotFile | None) -> dict[str, dict[str, Part]]:
+    """Return all that a robot can be shown as, by its name: each that differs from those before it."""
+    sets = {CAPSULES: _coloured(robot, surfaces_by_link(robot.capsules))}
+    for name, as_drawn in ((COLLISION, False), (VISUAL, True)) if file is not None else ():
+        assert file is not None
+        drawn = _drawn(robot, file, as_drawn=as_drawn)
+        if drawn and not any(_equal(drawn, other) for other in sets.values()):
+            sets[name] = drawn
+    return sets
+
+
+def obstacle_part(obstacle: Obstacle) -> Part:
+    """Return what is drawn of an obstacle; what belongs to the cell is grey."""
+    colour = style.CELL if obstacle.cell else style.THING
+    return part_of(surface_of(obstacle.body), colour, closed=not isinstance(obstacle.body, Mesh))
+
+
+def rgb(colour: str) -> tuple[int, int, int]:
+    """Return a colour as three numbers up to 255."""
+    red, green, blue = ImageColor.getrgb(colour)[:3]
+    return red, green, blue
+
+
+def indexed(part: Part) -> tuple[Floats, Floats, Ints]:
+    """Return each different pair of a corner and its normal once, (v, 3) each, and triangles as rows of them."""
+    rows = np.column_stack([
+        np.round(part.corners.reshape(-1, 3), 5), np.round(127.0 * part.normals.reshape(-1, 3))
+    ])  # fmt: skip
+    different, index = np.unique(rows, axis=0, return_inverse=True)
+    return different[:, :3], different[:, 3:] / 127.0, index.reshape(-1, 3)
+
+
+def _coloured(robot: Robot, surfaces: Mapping[str, Surface]) -> dict[str, Part]:
+    parts = {link: part_of(surface, style.ARM[0], closed=True) for link, surface in surfaces.items()}
+    return _numbered(robot, {link: _simplified(part) for link, part in parts.items()})
+
+
+def _numbered(robot: Robot, parts: Mapping[str, Part]) -> dict[str, Part]:
+    """Return the bodies of a robot's links, in colours that differ between neighbours."""
+    shown = {link: part for link, part in parts.items() if link in robot.links}
+    return {link: replace(part, colour=style.ARM[i % 2]) for i, (link, part) in enumerate(shown.items())}
+
+
+def _drawn(robot: Robot, file: RobotFile, *, as_drawn: bool) -> dict[str, Part]:
+    """Return link -> what the robot's file draws of it, or checks of it; kept between runs, as meshes are large."""
+    try:
+        urdf = read_robot(replace(file, use_visuals=False, as_drawn=as_drawn))
+        key = f"{key_of(urdf, (), 'drawn')}|{_FORMAT}"
+    except EvenroadError:
+        return {}
+    path = cache_folder() / "pictures" / f"{key[:32]}.npz"
+    content = read_sealed(path, key, "the drawing of a robot")
+    if content is not None:
+        with np.load(BytesIO(content)) as kept:
+            links, corners, normals = (kept[name] for name in ("links", "corners", "normals"))
+            cuts = kept["cuts"]
+        pieces = (np.split(each.astype(np.float64), cuts) for each in (corners, normals))
+        parts = {str(link): Part(*both, style.ARM[0]) for link, *both in zip(links, *pieces, strict=True)}
+        return _numbered(robot, parts)
+    surfaces = surfaces_by_link(urdf.shapes)
+    parts = {link: _simplified(part_of(surface, style.ARM[0])) for link, surface in surfaces.items()}
+    if sum(len(rows) for _, rows in surfaces.values()) > _MANY:
+        with suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with atomic_write(path) as stream:
+                stream.write(sealed(_written(parts), key))
+    return _numbered(robot, parts)
+
+
+def _written(parts: Mapping[str, Part]) -> bytes:
+    out = BytesIO()
+    arrays: dict[str, Any] = {
+        "links": np.array(list(parts)),
+        "cuts": np.cumsum([len(part.corners) for part in parts.values()])[:-1],
+        "corners": np.concatenate([part.corners for part in parts.values()], dtype=np.float32),
+        "normals": np.concatenate([part.normals for part in parts.values()]).astype(np.float16),
+    }
+    np.savez(out, **arrays)
+    return out.getvalue()
+
+
+def _simplified(part: Part) -> Part:
+    """Return a body without details that no picture shows: corners within a grain of each other become one."""
+    if len(part.corners) <= _MANY:
+        return part
+    corners = part.corners.reshape(-1, 3)
+    cells = np.floor(corners / _GRAIN).astype(np.int64)
+    _, cluster, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+    middle = np.stack([np.bincount(cluster, corners[:, k]) / count for k in range(3)], axis=1)
+    cluster = cluster.reshape(-1, 3)
+    kept = (cluster != np.roll(cluster, 1, axis=1)).all(axis=1)
+    return replace(part, corners=middle[cluster[kept]], normals=part.normals[kept])
+
+
+def _equal(one: Mapping[str, Part], other: Mapping[str, Part]) -> bool:
+    """Return whether the bodies of all links have as many triangles and the same bounds."""
+
+    def bounds(part: Part) -> Floats:
+        corners = part.corners.reshape(-1, 3)
+        return np.concatenate([corners.min(axis=0), corners.max(axis=0), [float(len(corners))]])
+
+    same_links = one.keys() == other.keys()
+    return same_links and all(np.allclose(bounds(one[link]), bounds(other[link]), atol=_SAME) for link in one)

@@ -1,0 +1,111 @@
+"""Pictures of bodies in three dimensions: what the native kernel is given to draw."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from PIL import Image
+
+from evenroad._arrays import Floats, Ints
+from evenroad._native.picture import paint
+from evenroad.viz import style
+from evenroad.viz.camera import Camera
+from evenroad.viz.surfaces import Surface
+
+_CREASE = 0.75
+"""Cosine of the angle between two faces beyond which their edge is sharp."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A body to draw: corners of its triangles, (t, 3, 3) [m], their normals, its colour, and how opaque it is.
+
+    Of a translucent one, `hidden` of its opacity is seen where something hides it.  Of one that is `closed` the faces
+    that look away are never seen.
+    """
+
+    corners: Floats
+    normals: Floats
+    colour: tuple[int, int, int]
+    opacity: float = 1.0
+    hidden: float = 0.0
+    closed: bool = False
+
+    def moved(self, pose: Floats) -> Part:
+        """Return it moved by a transform, (4, 4)."""
+        turned = pose[:3, :3].T
+        return replace(self, corners=self.corners @ turned + pose[:3, 3], normals=self.normals @ turned)
+
+
+def part_of(surface: Surface, colour: tuple[int, int, int], *, closed: bool = False) -> Part:
+    """Return a body of its surface, with normals that are smooth except at sharp edges."""
+    vertices, triangles = surface
+    corners = vertices[triangles]
+    faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(faces, axis=1)
+    # What has no area, as at the pole of a ball, shows nothing.
+    corners, faces, triangles = (each[sizes > 0.0] for each in (corners, faces, triangles))
+    units = faces / sizes[sizes > 0.0, np.newaxis]
+    _, same = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
+    at = same.reshape(-1)[triangles].reshape(-1)
+    # Corners in the order of their vertex: pairs of faces at one vertex are pairs within its run.
+    order = np.argsort(at, kind="stable")
+    firsts = np.searchsorted(at[order], np.arange(at.max() + 2 if len(at) else 1))
+    count = (firsts[1:] - firsts[:-1])[at[order]]
+    one = np.repeat(order, count)
+    other = order[np.repeat(firsts[at[order]], count) + _within(count)]
+    smooth = (units[one // 3] * units[other // 3]).sum(axis=1) > _CREASE
+    normals = np.zeros((len(at), 3))
+    for axis in range(3):
+        normals[:, axis] = np.bincount(one[smooth], faces[other[smooth] // 3, axis], len(at))
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-15)
+    return Part(corners, normals.reshape(-1, 3, 3), colour, closed=closed)
+
+
+class Stage:
+    """A camera, and a floor at this height [m] below all that it sees."""
+
+    def __init__(self, camera: Camera, floor: float) -> None:
+        self._camera = camera
+        # The light comes from behind the camera's left shoulder, high above.
+        right, _, forward = camera.axes
+        light = np.array([0.0, 0.0, 1.05]) - 0.55 * forward * [1.0, 1.0, 0.0] - 0.55 * right
+        light /= np.linalg.norm(light)
+        across = np.cross(light, right) / np.linalg.norm(np.cross(light, right))
+        colours = (style.SKY, style.HORIZON, style.GROUND, style.LINES)
+        at_floor = np.full(3, floor)
+        self._studio = np.stack([at_floor, camera.look_at, *colours, np.cross(across, light), across, light])
+
+    def picture(self, parts: Sequence[Part]) -> Image.Image:
+        """Return a picture of bodies; translucent ones throw no shadow, and are drawn over all others, in order."""
+        layers = [[part for part in parts if part.opacity == 1.0], *([part] for part in parts if part.opacity < 1.0)]
+        drawn = [part for layer in layers for part in layer]
+        counts = [len(part.corners) for part in drawn]
+        looks = [(layer[0].opacity, layer[0].hidden) if layer else (1.0, 0.0) for layer in layers]
+        ends = np.cumsum([sum(len(part.corners) for part in layer) for layer in layers])
+        camera, (columns, rows) = self._camera, self._camera.size
+        picture = paint(
+            np.vstack([camera.eye, camera.axes]),
+            camera.scale,
+            columns,
+            rows,
+            self._studio,
+            np.concatenate([np.zeros((0, 3, 3)), *(part.corners for part in drawn)]),
+            np.concatenate([np.zeros((0, 3, 3)), *(part.normals for part in drawn)]),
+            np.repeat(np.array([part.colour for part in drawn], dtype=np.float64).reshape(-1, 3), counts, axis=0),
+            # Faces that look away are seen through nothing that is translucent, either.
+            np.repeat(np.array([part.closed or part.opacity < 1.0 for part in drawn], dtype=np.bool_), counts),
+            np.column_stack([ends, looks]),
+        )
+        return Image.fromarray(picture)
+
+
+def _within(counts: Ints) -> Ints:
+    """Return 0, 1, ... counts[0] - 1, 0, 1, ... counts[1] - 1 and so on."""
+    ends = np.cumsum(counts, dtype=np.int32)
+    within: Ints = np.arange(ends[-1] if len(ends) else 0, dtype=np.int32) - np.repeat(ends - counts, counts)
+    return within
+
+
