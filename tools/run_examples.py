@@ -23,7 +23,9 @@ START = {"start_map": ("map.md", "hall-plan.png"), "start_arm": ("arm.md", "desk
 """Picture -> the page below docs/start that draws it, and under which name."""
 WIDTH = 1000
 ANEW = "python tools/run_examples.py keeps it anew"
-COLOURS = 160
+COLOURS = 256
+LEGEND, TIMES = 48, 12
+"""Height of a picture's legend [pixels], and how often it counts when colours are chosen."""
 
 
 def keep(picture: Path, name: str) -> None:
@@ -34,7 +36,14 @@ def keep(picture: Path, name: str) -> None:
     image = Image.open(picture).convert("RGB")
     if image.width > WIDTH:
         image = image.resize((WIDTH, round(image.height * WIDTH / image.width)), Image.Resampling.LANCZOS)
-    image.quantize(COLOURS).save(SHOWN / f"{name}.png", optimize=True)
+    # A legend is small: its colours are kept only where it counts more than once.
+    legend = image.crop((0, image.height - LEGEND, image.width, image.height))
+    weighed = Image.new("RGB", (image.width, image.height + TIMES * LEGEND))
+    weighed.paste(image)
+    for i in range(TIMES):
+        weighed.paste(legend, (0, image.height + i * LEGEND))
+    palette = weighed.quantize(COLOURS)
+    image.quantize(palette=palette, dither=Image.Dither.NONE).save(SHOWN / f"{name}.png", optimize=True)
 
 
 def missing(script: Path) -> list[str]:

@@ -7,13 +7,13 @@ from PIL import Image
 
 from evenroad.cli.view import View
 from evenroad.robot import held_values
-from evenroad.viz import solid
+from evenroad.viz import arm
 
 REACH = ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture")
 
 
 def test_a_plan_becomes_a_moving_picture_and_a_scene_shows_the_arm_at_rest(run, tmp_path, monkeypatch):
-    monkeypatch.setattr(solid, "FRAMES", 7)
+    monkeypatch.setattr(arm, "FRAMES", 7)
     run(*REACH)
     code, out, err = run("view", "box-reach.json", "--gif", "out.gif")
     assert (code, out, err) == (0, "wrote out.gif\n", "")

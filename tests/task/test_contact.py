@@ -9,7 +9,12 @@ from evenroad.task.contact import core_of, distance_of
 from evenroad.viz.surfaces import surface_of
 
 AT = er.Pose((0.3, -0.2, 0.5), rpy=(0.4, -0.3, 1.1))
-SHAPES = [er.Box((0.1, 0.2, 0.3), pose=AT), Sphere(0.1, pose=AT), Cylinder(0.05, 0.2, pose=AT), Capsule(0.05, 0.2, pose=AT)]
+SHAPES = [
+    er.Box((0.1, 0.2, 0.3), pose=AT),
+    Sphere(0.1, pose=AT),
+    Cylinder(0.05, 0.2, pose=AT),
+    Capsule(0.05, 0.2, pose=AT),
+]
 
 
 @pytest.mark.parametrize("body", SHAPES, ids=lambda each: each.kind)
@@ -36,7 +41,7 @@ def test_of_a_mesh_the_core_is_inside_and_of_what_is_thin_a_fifth_is_left():
 def test_the_distance_of_a_gripper_is_that_of_its_capsules_and_frames():
     robot, q = er.load_robot("ur5"), np.array([0.0, -2.0, 1.9, -1.5, -1.5, 0.0])
     tip = link_poses(robot, q[np.newaxis])[0, robot.links.index("tool0"), :3, 3]
-    for body in (Sphere(0.1, xyz=tip + [0.3, 0.0, 0.0]), PointCloud([tip + [0.2, 0.0, 0.0]])):
+    for body in (Sphere(0.1, xyz=tip + np.array([0.3, 0.0, 0.0])), PointCloud([tip + np.array([0.2, 0.0, 0.0])])):
         assert distance_of(body, robot, q, ["tool0"]) == pytest.approx(0.2)
         assert distance_of(body, robot, q, ["tool0", "wrist_3_link"]) <= 0.2
     assert distance_of(Sphere(0.1, xyz=tip), robot, q, ["tool0"]) == 0.0

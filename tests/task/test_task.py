@@ -133,7 +133,9 @@ STANDING = er.Box((0.06, 0.06, 0.16), xyz=(0.6, 0.2, 0.121), name="can")
 
 
 @pytest.mark.parametrize("bodies", [None, "capsules"])
-@pytest.mark.parametrize(("depth", "height", "solved"), [(0.005, 0.118, True), (0.005, 0.06, False), (0.07, 0.06, True)])
+@pytest.mark.parametrize(
+    ("depth", "height", "solved"), [(0.005, 0.118, True), (0.005, 0.06, False), (0.07, 0.06, True)]
+)
 def test_what_is_put_onto_a_table_may_be_in_it_by_the_stated_depth_alone(bodies, depth, height, solved):
     above = er.PoseGoal(er.Pose((0.6, 0.2, 0.205), rpy=(math.pi, 0.0, 0.0)), free_axis="z")
     place = er.PoseGoal(er.Pose((0.6, -0.2, height)), tip="can", free_axis="z")
@@ -163,7 +165,9 @@ def test_what_is_lifted_is_not_pushed_through_what_it_stands_on():
 
 
 def test_what_is_out_of_reach_is_not_taken(world):
-    with pytest.raises(EvenroadError, match=r"step 0 of the task attaches 'can', which is 0\.3\d* m from 'tool0' there"):
+    with pytest.raises(
+        EvenroadError, match=r"step 0 of the task attaches 'can', which is 0\.3\d* m from 'tool0' there"
+    ):
         Task([Attach("can"), MoveTo(HOME)]).plan(world, HOME)
 
 

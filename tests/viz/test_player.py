@@ -11,8 +11,8 @@ from evenroad.errors import NotAvailable, UnknownName
 from evenroad.robot import find_robot
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.urdf_xml import RobotFile
+from evenroad.viz.bodies import robot_parts
 from evenroad.viz.player import page_of, save_page
-from evenroad.viz.surfaces import surfaces_by_link
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +33,8 @@ def test_a_page_holds_the_joints_along_the_path_and_each_body_once(reach):
     np.testing.assert_allclose([first, last], np.transpose([expected[name] for name in moving]), atol=1e-5)
     assert data["sets"] == ["capsules"]
     assert [body["name"] for body in data["bodies"] if body["set"] == "scene"] == list(reach.world.scene.names)
-    for link, (vertices, _) in surfaces_by_link(robot.capsules).items():
+    for link, part in robot_parts(robot).items():
+        vertices = part.corners.reshape(-1, 3)
         (body,) = [each for each in data["bodies"] if each["name"] == link and each["set"] == "capsules"]
         kept = np.frombuffer(base64.b64decode(body["v"]), "<f4").reshape(-1, 3)
         np.testing.assert_allclose([kept.min(0), kept.max(0)], [vertices.min(0), vertices.max(0)], atol=1e-5)

@@ -20,8 +20,8 @@ OF_AN_ARM = er.plan(er.ArmWorld("ur5"), (0, -1.5, 0, -1.5, 0, 0), (0.5, -1.5, 0.
 class Page:
     address = "http://127.0.0.1:1234"
 
-    def __init__(self, world, result, plan, *, port):
-        self.planned = plan(result.start, result.goal)
+    def __init__(self, world, result, plan, file, *, port):
+        self.planned = plan(world, result.start, result.goal)
         self.done = []
 
     def serve(self):

@@ -4,7 +4,8 @@ import pytest
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from evenroad.robot import load_model
-from evenroad.viz.surfaces import link_surfaces, surface_of
+from evenroad.viz.bodies import robot_parts
+from evenroad.viz.surfaces import surface_of, tube
 
 AT = Pose.from_rpy((0.3, -0.2, 0.5), (0.4, -0.3, 1.1))
 
@@ -33,7 +34,16 @@ def test_a_link_is_shown_as_it_is_drawn_and_else_as_its_capsules(tmp_path):
         '<axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>'
     )
     model = load_model(tmp_path / "arm.urdf")
-    drawn, plain = link_surfaces(model.robot, model.file), link_surfaces(model.robot, None)
-    assert np.abs(drawn["tip"][0]).max() == pytest.approx(0.05)
-    assert np.abs(plain["tip"][0]).max() >= 0.2 - 1e-6
-    np.testing.assert_array_equal(drawn["base"][0], plain["base"][0])
+    drawn, plain = robot_parts(model.robot, model.file), robot_parts(model.robot)
+    assert np.abs(drawn["tip"].corners).max() == pytest.approx(0.05)
+    assert np.abs(plain["base"].corners).max() >= 0.2 - 1e-6
+    np.testing.assert_allclose(drawn["base"].corners, plain["base"].corners, atol=1e-6)
+
+
+def test_surfaces_turn_outward():
+    for shape in (Sphere(0.2), Box((0.2, 0.4, 0.6)), Cylinder(0.1, 0.5), Capsule((0, 0, -0.25), (0, 0, 0.25), 0.1)):
+        corners = surface_of(shape)[0][surface_of(shape)[1]]
+        faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        assert ((faces * corners.mean(axis=1)).sum(axis=1) >= -1e-12).all()
+    line = np.column_stack([np.linspace(0.0, 1.0, 5), np.zeros(5), np.zeros(5)])
+    assert np.hypot(*tube(line, 0.01)[0].T[1:]) == pytest.approx(0.01)

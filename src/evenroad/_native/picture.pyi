@@ -14,5 +14,6 @@ def paint(
     normals: Floats,
     colours: Floats,
     closed: Bools,
+    see_through: int,
     layers: Floats,
 ) -> npt.NDArray[np.uint8]: ...

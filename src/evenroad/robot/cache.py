@@ -138,9 +138,10 @@ def know(asked: object, files: dict[Path, tuple[int, ...]], model: RobotModel) -
 
 
 def file_of(robot: Robot) -> RobotFile | None:
-    """Return the file that a robot was loaded from in this process, whatever it holds or lets touch since; else None."""
+    """Return the file that a robot was loaded from in this process, if that is known."""
     for _, model, _ in reversed(list(_known.values())):
-        if (model.robot.name, model.robot.links, model.robot.joints) == (robot.name, robot.links, robot.joints):
+        own = model.robot
+        if (own.name, own.links, own.joints) == (robot.name, robot.links, robot.joints):
             return model.file
     return None
 

@@ -39,7 +39,8 @@ def core_of(body: Shape, depth: float, *, as_capsule: bool) -> Shape | None:
         return Capsule(tuple((a + inward).tolist()), tuple((b - inward).tolist()), radius, link=inside.link)
     match body:
         case Box():
-            return replace(body, size=tuple(_less(side, 2.0 * depth) for side in body.size))
+            x, y, z = (_less(side, 2.0 * depth) for side in body.size)
+            return replace(body, size=(x, y, z))
         case Sphere() | Capsule():
             return replace(body, radius=_less(body.radius, depth))
         case Cylinder():
@@ -68,12 +69,12 @@ def distance_of(body: Shape, robot: Robot, q: Floats, links: Collection[str]) ->
             along = np.array(capsule.a) + shares * np.subtract(capsule.b, capsule.a)
             points.append(along @ pose[:3, :3].T + pose[:3, 3])
             radii.append(np.full(_SAMPLES, capsule.radius))
-    places = np.concatenate(points)
+    sampled = np.concatenate(points)
     if isinstance(body, PointCloud | Mesh):
         corners = body.points if isinstance(body, PointCloud) else body.triangles.vertices
-        away = cdist(places, body.pose.apply(corners)).min(axis=1)
+        away = cdist(sampled, body.pose.apply(corners)).min(axis=1)
     else:
-        away = point_distance(body, places)
+        away = point_distance(body, sampled)
     return max(0.0, float((away - np.concatenate(radii)).min()))
 
 

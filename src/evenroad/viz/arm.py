@@ -17,10 +17,10 @@ from evenroad.robot.kinematics import link_poses
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import configuration_at
 from evenroad.viz import style
-from evenroad.viz.bodies import obstacle_part, rgb, robot_parts
+from evenroad.viz.bodies import joined, obstacle_part, rgb, robot_parts
 from evenroad.viz.camera import Camera, best_camera
-from evenroad.viz.stage import Part, Stage, part_of
 from evenroad.viz.sheet import Entry, Sheet
+from evenroad.viz.stage import Part, Stage, part_of
 from evenroad.viz.surfaces import tube
 
 SIZE, MOVING = (1000, 640), (720, 450)
@@ -34,21 +34,22 @@ _GHOSTS = (0.2, 0.4, 0.8)
 _MIDDLE = 0.6
 _SAMPLES, _THICK = 80, 0.006
 """Number of pieces of the tip's path, and their radius [m]."""
-_POINTS = 200
+_POINTS = 60
 """Number of corners of each link by which a side for the camera is chosen."""
-_NEAR, _MARGIN = 0.15, 0.02
-"""How far from the arm obstacles are shown, and the room around all: shares of the size of what the arm needs."""
+_NEAR, _EVERY = 0.15, 20
+"""How far from the arm obstacles must be shown: a share of what the arm needs; of its corners, every 20th counts."""
 
 
 @dataclass(frozen=True)
 class ArmScene:
-    """What pictures of one plan share: the bodies, the camera, and what stands still."""
+    """What pictures of one plan share: the bodies, the camera, and the links that move along the path."""
 
     world: ArmWorld
     links: dict[str, Part]
     obstacles: tuple[Part, ...]
     trails: tuple[Part, ...]
     stage: Stage
+    moving: frozenset[str] = frozenset()
 
     @classmethod
     def of(
@@ -62,17 +63,19 @@ class ArmScene:
         }
         obstacles = [obstacle_part(each) for each in world.scene.obstacles]
         camera, lowest = chosen_camera(result, world, links, obstacles, size)
-        return cls(world, links, tuple(obstacles), tuple(_trails(result, world)), Stage(camera, lowest))
+        trails = tuple(_trails(result, world))
+        return cls(world, links, tuple(obstacles), trails, Stage(camera, lowest), _moving(world, result))
 
     def picture(self, q: Floats, ghosts: Sequence[Part] = ()) -> Image.Image:
         """Return a picture of the arm at a configuration, (dim,), with translucent bodies."""
-        return self.stage.picture([*_posed(self.world, self.links, q), *self.obstacles, *self.trails, *ghosts])
+        solid = [*_posed(self.world, self.links, q), *self.trails]
+        return self.stage.picture([*solid, *self.obstacles, *ghosts], see_through=len(solid))
 
     def ghost(self, states: Sequence[Floats], colour: str, opacity: float, hidden: float = 0.0) -> Part:
         """Return translucent arms at configurations, (dim,) each, as one body."""
-        parts = [part for q in states for part in _posed(self.world, self.links, q)]
-        corners, normals = (np.concatenate([getattr(part, name) for part in parts]) for name in ("corners", "normals"))
-        return Part(corners, normals, rgb(colour), opacity, hidden)
+        moving = {link: part for link, part in self.links.items() if link in self.moving}
+        arms = joined([part for q in states for part in _posed(self.world, moving or self.links, q)])
+        return replace(arms, colour=rgb(colour), opacity=opacity, hidden=hidden)
 
 
 def chosen_camera(
@@ -86,10 +89,9 @@ def chosen_camera(
     shown = np.stack([result.start, result.goal]) if result.path is None else _along(result, world, 9)
     few = {link: _few(part) for link, part in links.items()}
     arms = np.stack([_corners(_posed(world, few, q)) for q in shown])
-    low, high = _bounds(arms, obstacles)
     before = np.concatenate([np.zeros((0, 3, 3)), *(part.corners for part in obstacles)])
-    camera = best_camera(arms[1::3].reshape(-1, 3), before, low, high, size)
-    return camera, min([low[2], *(float(part.corners[..., 2].min()) for part in obstacles)]) - 0.005
+    camera = best_camera(arms[1::3].reshape(-1, 3), before, _needed(arms, obstacles), size)
+    return camera, min([float(each[..., 2].min()) for each in (arms, before) if each.size]) - 0.005
 
 
 def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = None) -> Image.Image:
@@ -99,14 +101,16 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = 
     that touch in red.  The robot looks as `file`, or the file it was loaded from, draws it.
     """
     scene = ArmScene.of(result, world, file, SIZE)
-    start, goal = (scene.ghost([q], colour, _END, _HIDDEN) for q, colour in
-                   ((result.start, style.START), (result.goal, style.GOAL)))
+    start, goal = (
+        scene.ghost([q], colour, _END, _HIDDEN)
+        for q, colour in ((result.start, style.START), (result.goal, style.GOAL))
+    )
     if result.status is Status.START_INVALID:
         picture = _touching(scene, result.start).picture(result.start, (goal,))
     elif result.status is Status.GOAL_INVALID:
         picture = _touching(scene, result.goal).picture(result.goal, (start,))
     elif result.path is None:
-        picture = scene.picture(result.start, (start, goal))
+        picture = scene.picture(result.start, (goal,))
     else:
         middle, *between = configuration_at(result.path, world.space, np.array([_MIDDLE, *_GHOSTS]))
         trails = [replace(trail, opacity=0.999, hidden=_HIDDEN) for trail in scene.trails]
@@ -114,7 +118,7 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = 
         picture = scene.picture(middle, (ghosts, start, goal, *trails))
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
     if result.clearance is not None:
-        title += f"; {1e3 * result.clearance:.1f} mm from obstacles at least"
+        title += f"; keeps {1e3 * result.clearance:.1f} mm from obstacles"
     return Sheet.of_picture(picture, title, _legend(result, world)).image
 
 
@@ -150,6 +154,14 @@ def save_arm_gif(
 def _posed(world: ArmWorld, links: dict[str, Part], q: Floats) -> list[Part]:
     poses = link_poses(world.robot, q[np.newaxis])[0]
     return [part.moved(poses[world.robot.links.index(link)]) for link, part in links.items()]
+
+
+def _moving(world: ArmWorld, result: PlanResult) -> frozenset[str]:
+    """Return the links that are elsewhere at some waypoint than at the start."""
+    waypoints = np.stack([result.start, result.goal]) if result.path is None else result.path
+    poses = link_poses(world.robot, waypoints)
+    off = np.abs(poses - poses[0]).max(axis=(0, 2, 3))
+    return frozenset(link for link, most in zip(world.robot.links, off, strict=True) if most > 1e-6)
 
 
 def _few(part: Part) -> Part:
@@ -191,26 +203,30 @@ def _touching(scene: ArmScene, q: Floats) -> ArmScene:
     return replace(scene, links={link: shown(link, part) for link, part in scene.links.items()}, obstacles=obstacles)
 
 
-def _bounds(arms: Floats, obstacles: Iterable[Part]) -> tuple[Floats, Floats]:
-    """Return the corners, (3,) each, of the box shown: the arm, and obstacles as far as they are near it."""
+def _needed(arms: Floats, obstacles: Iterable[Part]) -> Floats:
+    """Return points, (p, 3), that a picture should show: of the arm, and of obstacles as far as they are near it."""
     low, high = arms.min(axis=(0, 1)), arms.max(axis=(0, 1))
     near = _NEAR * float((high - low).max())
-    least, most = low.copy(), high.copy()
+    points = [arms[:, ::_EVERY].reshape(-1, 3)]
     for part in obstacles:
         corners = part.corners.reshape(-1, 3)
         lower, upper = corners.min(axis=0), corners.max(axis=0)
         if (lower < high + near).all() and (upper > low - near).all():
-            least = np.minimum(least, np.maximum(lower, low - near))
-            most = np.maximum(most, np.minimum(upper, high + near))
-    margin = _MARGIN * float((most - least).max())
-    return least - margin, most + margin
+            sides = zip(np.maximum(lower, low - near), np.minimum(upper, high + near), strict=True)
+            points.append(np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 3))
+    return np.concatenate(points)
 
 
 def _legend(result: PlanResult, world: ArmWorld) -> list[Entry]:
     """Return names, colours and edge colours of the legend."""
     entries: list[Entry] = [("start", style.START, "white"), ("goal", style.GOAL, "white")]
     if result.path is not None:
-        entries += [("on its way", style.ARM[0], "white"), (f"path of {', '.join(tip_links(world.robot))}", style.PATH, None)]
+        entries += [
+            ("on its way", style.ARM[0], "white"),
+            (f"path of {', '.join(tip_links(world.robot))}", style.PATH, None),
+        ]
     elif result.status in (Status.START_INVALID, Status.GOAL_INVALID):
         entries.append(("in collision", style.COLLISION, "white"))
+    else:
+        entries[0] = ("start", style.ARM[0], "white")
     return entries

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from io import BytesIO
@@ -15,7 +15,7 @@ from evenroad._arrays import Floats, Ints
 from evenroad._files import atomic_write, cache_folder
 from evenroad._seal import read_sealed, sealed
 from evenroad.errors import EvenroadError
-from evenroad.geometry.shapes import Mesh
+from evenroad.geometry.shapes import Capsule, Mesh, Shape, Sphere
 from evenroad.robot import Robot
 from evenroad.robot.cache import file_of, key_of
 from evenroad.robot.load import read_robot
@@ -23,7 +23,7 @@ from evenroad.robot.scene import Obstacle
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.viz import style
 from evenroad.viz.stage import Part, part_of
-from evenroad.viz.surfaces import Surface, surface_of, surfaces_by_link
+from evenroad.viz.surfaces import surface_of
 
 CAPSULES, COLLISION, VISUAL = "capsules", "collision", "visual"
 """What a robot can be shown as; one that draws best comes last."""
@@ -43,14 +43,14 @@ def robot_parts(robot: Robot, file: RobotFile | None = None) -> dict[str, Part]:
     Without a file it is that of which the robot was loaded in this process.  A drawing that cannot be read is no reason
     to show nothing.
     """
-    shown = _coloured(robot, surfaces_by_link(robot.capsules))
+    shown = _numbered(robot, _by_link(robot.capsules))
     file = file_of(robot) if file is None else file
     return shown if file is None else shown | _drawn(robot, file, as_drawn=True)
 
 
 def robot_sets(robot: Robot, file: RobotFile | None) -> dict[str, dict[str, Part]]:
     """Return all that a robot can be shown as, by its name: each that differs from those before it."""
-    sets = {CAPSULES: _coloured(robot, surfaces_by_link(robot.capsules))}
+    sets = {CAPSULES: _numbered(robot, _by_link(robot.capsules))}
     for name, as_drawn in ((COLLISION, False), (VISUAL, True)) if file is not None else ():
         assert file is not None
         drawn = _drawn(robot, file, as_drawn=as_drawn)
@@ -62,7 +62,7 @@ def robot_sets(robot: Robot, file: RobotFile | None) -> dict[str, dict[str, Part
 def obstacle_part(obstacle: Obstacle) -> Part:
     """Return what is drawn of an obstacle; what belongs to the cell is grey."""
     colour = style.CELL if obstacle.cell else style.THING
-    return part_of(surface_of(obstacle.body), colour, closed=not isinstance(obstacle.body, Mesh))
+    return _part_of_shape(obstacle.body, colour)
 
 
 def rgb(colour: str) -> tuple[int, int, int]:
@@ -80,9 +80,33 @@ def indexed(part: Part) -> tuple[Floats, Floats, Ints]:
     return different[:, :3], different[:, 3:] / 127.0, index.reshape(-1, 3)
 
 
-def _coloured(robot: Robot, surfaces: Mapping[str, Surface]) -> dict[str, Part]:
-    parts = {link: part_of(surface, style.ARM[0], closed=True) for link, surface in surfaces.items()}
-    return _numbered(robot, {link: _simplified(part) for link, part in parts.items()})
+def _part_of_shape(shape: Shape, colour: tuple[int, int, int]) -> Part:
+    """Return a shape as a body; of a ball or capsule the normals are known: they lead away from its axis."""
+    surface = surface_of(shape)
+    if not isinstance(shape, Sphere | Capsule):
+        return part_of(surface, colour, closed=not isinstance(shape, Mesh))
+    (vertices, triangles), b = surface, np.zeros(3) if isinstance(shape, Sphere) else np.array(shape.b)
+    own, a = shape.pose.local(vertices), b if isinstance(shape, Sphere) else np.array(shape.a)
+    share = np.clip((own - a) @ (b - a) / max(float((b - a) @ (b - a)), 1e-18), 0.0, 1.0)
+    away = (own - a - share[:, np.newaxis] * (b - a)) @ shape.pose.rotation_matrix.T / shape.radius
+    return Part(vertices[triangles], away[triangles], colour, closed=True)
+
+
+def joined(parts: Sequence[Part]) -> Part:
+    """Return several bodies as one, which looks as the first of them."""
+    corners, normals = (np.concatenate([getattr(part, name) for part in parts]) for name in ("corners", "normals"))
+    return replace(parts[0], corners=corners, normals=normals, closed=all(part.closed for part in parts))
+
+
+def _by_link(shapes: Iterable[Shape]) -> dict[str, Part]:
+    """Return link -> the bodies that it carries, as one; nothing of a link whose mesh cannot be read."""
+    of_link: dict[str, list[Part]] = {}
+    for shape in shapes:
+        try:
+            of_link.setdefault(shape.link, []).append(_part_of_shape(shape, style.ARM[0]))
+        except EvenroadError:
+            of_link.pop(shape.link, None)
+    return {link: joined(parts) for link, parts in of_link.items() if any(len(part.corners) for part in parts)}
 
 
 def _numbered(robot: Robot, parts: Mapping[str, Part]) -> dict[str, Part]:
@@ -102,14 +126,13 @@ def _drawn(robot: Robot, file: RobotFile, *, as_drawn: bool) -> dict[str, Part]:
     content = read_sealed(path, key, "the drawing of a robot")
     if content is not None:
         with np.load(BytesIO(content)) as kept:
-            links, corners, normals = (kept[name] for name in ("links", "corners", "normals"))
-            cuts = kept["cuts"]
-        pieces = (np.split(each.astype(np.float64), cuts) for each in (corners, normals))
-        parts = {str(link): Part(*both, style.ARM[0]) for link, *both in zip(links, *pieces, strict=True)}
-        return _numbered(robot, parts)
-    surfaces = surfaces_by_link(urdf.shapes)
-    parts = {link: _simplified(part_of(surface, style.ARM[0])) for link, surface in surfaces.items()}
-    if sum(len(rows) for _, rows in surfaces.values()) > _MANY:
+            links, cuts = kept["links"].tolist(), kept["cuts"]
+            corners, normals = (np.split(kept[name].astype(np.float64), cuts) for name in ("corners", "normals"))
+        rows = zip(links, corners, normals, strict=True)
+        return _numbered(robot, {link: Part(corner, normal, style.ARM[0]) for link, corner, normal in rows})
+    whole = _by_link(urdf.shapes)
+    parts = {link: _simplified(part) for link, part in whole.items()}
+    if any(len(part.corners) > _MANY for part in whole.values()):
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
             with atomic_write(path) as stream:

@@ -34,7 +34,7 @@ _TICK, _LINE = 0.04, 3.0
 _FAR = 0.15
 """Distance from obstacles from which on a path is green [m]."""
 _HUES = np.array([(200, 40, 45), (235, 170, 40), (40, 160, 90)], dtype=float)
-_ENDS = {"start": style.START, "goal": style.GOAL}
+_TERMINALS = {"start": style.START, "goal": style.GOAL}
 
 Planner = Callable[[ArmWorld, Floats, Floats], PlanResult]
 """Function that returns a plan in a world from a start to a goal, (dim,) each."""
@@ -86,7 +86,7 @@ class ArmPage:
         sets = robot_sets(world.robot, file)
         self._arms = {name: self._add_arm(f"arm/{name}", parts) for name, parts in sets.items()}
         best = list(sets)[-1]
-        for end, colour in _ENDS.items():
+        for end, colour in _TERMINALS.items():
             self._arms[end] = self._add_arm(end, sets[best], colour, 0.35)
         self._add_panel(list(sets)[::-1])
         self._hands = {end: self._add_hand(end) for end in self._endpoints}
@@ -160,7 +160,7 @@ class ArmPage:
                 gui.add_slider(name, float(low[i]), float(high[i]), 0.001, float(np.clip(0.0, low[i], high[i])))
                 for i, name in enumerate(self.world.robot.group)
             ]
-            here = gui.add_button_group("take as", tuple(_ENDS))
+            here = gui.add_button_group("take as", tuple(_TERMINALS))
         for slider in self.joints:
             # Sliders that follow the path are moved by no browser.
             slider.on_update(lambda event: None if event.client is None else self._move_by_hand())
@@ -278,14 +278,14 @@ class ArmPage:
 
     def _show_shape(self) -> None:
         for name, arm in self._arms.items():
-            for handle in arm.values() if name not in _ENDS else ():
+            for handle in arm.values() if name not in _TERMINALS else ():
                 handle.visible = name == self.shape.value
 
     def _poses(self, q: Floats) -> Floats:
         return link_poses(self.world.robot, q)
 
     def _pose_shown(self, q: Floats) -> None:
-        for name in self._arms.keys() - _ENDS.keys():
+        for name in self._arms.keys() - _TERMINALS.keys():
             self._pose_arm(name, q)
 
     def _pose_arm(self, name: str, q: Floats) -> None:

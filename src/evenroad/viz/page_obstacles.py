@@ -23,8 +23,8 @@ _AT = (0.4, 0.0, 0.5)
 class PageObstacles:
     """What a page shows of a scene, and the panel that changes it.
 
-    `change` is asked with a scene after each change: it returns None, or why that scene cannot be, and then the change
-    is undone.
+    `change` is called with the scene after each change: it returns None, or why that scene cannot be, and then the
+    change is undone.
     """
 
     def __init__(self, server: Any, scene: Scene, change: Callable[[Scene], str | None]) -> None:

@@ -80,13 +80,13 @@ class Sheet:
     def __init__(self, size: tuple[int, int], title: str) -> None:
         self.image = Image.new("RGB", size, "white")
         self._draw = ImageDraw.Draw(self.image, "RGBA")
-        for i, line in enumerate(wrap(title, size[0] // 11)[:3]):
+        for i, line in enumerate(_lines(title, size[0])):
             self._text((size[0] / 2, 20 + 22 * i), line, 18)
 
     @classmethod
     def of_picture(cls, picture: Image.Image, title: str, entries: Sequence[Entry]) -> Sheet:
         """Return a sheet of a picture that fills its width."""
-        top = 16 + 22 * len(wrap(title, picture.width // 11)[:3])
+        top = 16 + 22 * len(_lines(title, picture.width))
         sheet = cls((picture.width, top + picture.height + 48), title)
         sheet.image.paste(picture, (0, top))
         sheet._legend(entries)
@@ -134,3 +134,7 @@ class Sheet:
 
     def _text(self, position: tuple[float, float], text: str, size: int, anchor: str = "mm") -> None:
         self._draw.text(position, text, fill=TEXT, font=ImageFont.load_default(size), anchor=anchor)
+
+
+def _lines(title: str, width: int) -> list[str]:
+    return wrap(title, width // 10, max_lines=3, placeholder=" ...")

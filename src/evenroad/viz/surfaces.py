@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
-from evenroad.errors import EvenroadError
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, PointCloud, Shape, Sphere, along_z
 
 Surface = tuple[Floats, Ints]
@@ -57,24 +56,6 @@ def tube(points: Floats, radius: float, sides: int = 8) -> Surface:
     return (points[:, np.newaxis] + radius * rings).reshape(-1, 3), _between_rings(len(points), sides)
 
 
-def joined(surfaces: Sequence[Surface]) -> Surface:
-    """Return several surfaces, one or more, as one."""
-    firsts = np.cumsum([0, *(len(vertices) for vertices, _ in surfaces)])
-    triangles = [rows + first for (_, rows), first in zip(surfaces, firsts, strict=False)]
-    return np.concatenate([vertices for vertices, _ in surfaces]), np.concatenate(triangles)
-
-
-def surfaces_by_link(shapes: Iterable[Shape]) -> dict[str, Surface]:
-    """Return link -> surface of the shapes that it carries; nothing of a link whose mesh cannot be read."""
-    of_link: dict[str, list[Surface]] = {}
-    for shape in shapes:
-        try:
-            of_link.setdefault(shape.link, []).append(surface_of(shape))
-        except EvenroadError:
-            of_link.pop(shape.link, None)
-    return {link: joined(parts) for link, parts in of_link.items() if sum(len(rows) for _, rows in parts)}
-
-
 def _two(length: float, up: Sequence[float] | Floats) -> Floats:
     """Return heights of a profile that goes up twice, in the mirror and as it is, with `length` between."""
     heights = 0.5 * length + np.array(up)
@@ -91,7 +72,7 @@ def _turned(across: Floats, up: Floats) -> Surface:
 
 
 def _between_rings(rings: int, sides: int) -> Ints:
-    """Return the triangles between rings of so many corners, seen from outside against the clock."""
+    """Return the triangles between rings of corners, seen from outside against the clock."""
     ring, side = (each.reshape(-1) for each in np.mgrid[0 : rings - 1, 0:sides])
     a, b = sides * ring + side, sides * ring + (side + 1) % sides
     return np.concatenate([np.stack([a, b, b + sides], axis=1), np.stack([a, b + sides, a + sides], axis=1)])

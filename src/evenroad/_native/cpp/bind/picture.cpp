@@ -42,7 +42,8 @@ nb::object nearest(nb::handle given, std::int64_t columns, std::int64_t rows) {
 }
 
 nb::object paint(nb::handle cameras, double scale, std::int64_t columns, std::int64_t rows, nb::handle studios,
-                 nb::handle corner, nb::handle normal, nb::handle colour, nb::handle closeds, nb::handle layer) {
+                 nb::handle corner, nb::handle normal, nb::handle colour, nb::handle closeds, std::int64_t see_through,
+                 nb::handle layer) {
   const FloatRows view(cameras, "camera"), studio(studios, "studio"), colours(colour, "colours"), ends(layer, "layers");
   const Array<const double, 3> corners(corner, "corners"), normals(normal, "normals");
   const Array<const bool, 1> closed(closeds, "closed");
@@ -52,6 +53,7 @@ nb::object paint(nb::handle cameras, double scale, std::int64_t columns, std::in
   require_below(static_cast<std::int64_t>(count), std::size_t{1} << 31, "the number of triangles");
   require_within(std::span<const double>(&scale, 1), 1e-6, 1e9, "scale");
   require_within(corners.span(), -1e6, 1e6, "corners");
+  require_below(see_through, count + 1, "see_through");
   require(shown > 0, "layers must have one or more rows");
   std::vector<picture::Layer> layers;
   std::size_t before = 0;
@@ -73,7 +75,8 @@ nb::object paint(nb::handle cameras, double scale, std::int64_t columns, std::in
                              vector_of(of, 4),
                              vector_of(of, 5),
                              {vector_of(of, 6), vector_of(of, 7), vector_of(of, 8)}};
-  const picture::Triangles triangles{rows_of(corners), rows_of(normals), colours.matrix(), closed.span()};
+  const picture::Triangles triangles{rows_of(corners), rows_of(normals), colours.matrix(), closed.span(),
+                                     static_cast<std::size_t>(see_through)};
   return as_numpy(without_gil([&] { return picture::paint(camera, room, triangles, layers); }),
                   {camera.rows, camera.columns, std::size_t{3}});
 }
@@ -84,7 +87,7 @@ void add_picture(nb::module_& module) {
   nb::module_ part = module.def_submodule("picture", "Drawing triangles in three dimensions.");
   part.def("nearest", &nearest, "flat"_a.none(), "columns"_a, "rows"_a);
   part.def("paint", &paint, "camera"_a.none(), "scale"_a, "columns"_a, "rows"_a, "studio"_a.none(), "corners"_a.none(),
-           "normals"_a.none(), "colours"_a.none(), "closed"_a.none(), "layers"_a.none());
+           "normals"_a.none(), "colours"_a.none(), "closed"_a.none(), "see_through"_a, "layers"_a.none());
 }
 
 }  // namespace evenroad::bind

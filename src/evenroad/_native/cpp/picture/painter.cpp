@@ -233,13 +233,15 @@ Vector drawn_over(Vector below, const Painter& painter, const Layer& layer, cons
   std::int32_t owner = -1;
   const auto samples = ours.samples(column, row);
   const bool before = solid.holds(column, row);
+  const std::size_t see_through = painter.triangles.see_through;
   const auto places = before ? solid.samples(column, row) : samples;
   for (std::size_t i = 0; i < SAMPLES; i++) {
     if (ours.found.owner[samples[i]] < 0) continue;
     owner = ours.found.owner[samples[i]];
     // A still body's double lies on the body: what is seen is nearer by half a percent.
     const bool seen = !before || ours.found.near[samples[i]] >= 1.005F * solid.found.near[places[i]];
-    share += layer.opacity * (seen ? 1.0 : layer.hidden);
+    const bool through = before && solid.found.owner[places[i]] >= static_cast<std::int32_t>(see_through);
+    share += layer.opacity * (seen ? 1.0 : through ? layer.hidden : 0.0);
   }
   if (share == 0.0) return below;
   share /= static_cast<double>(SAMPLES);

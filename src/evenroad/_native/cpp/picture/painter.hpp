@@ -40,6 +40,7 @@ struct Camera {
 struct Triangles {
   Matrix<const double> corners, normals, colours;
   std::span<const bool> closed;
+  std::size_t see_through;
 
   Vector corner(std::size_t triangle, std::size_t i) const { return of(corners, triangle, 3 * i); }
   Vector normal(std::size_t triangle, std::size_t i) const { return of(normals, triangle, 3 * i); }
@@ -52,7 +53,7 @@ struct Triangles {
 };
 
 /// Triangles up to a number, from where the layer before ends; of a translucent one `hidden` of its opacity is seen
-/// where a solid body hides it.
+/// where a solid triangle from `Triangles::see_through` on hides it.
 struct Layer {
   std::size_t end;
   double opacity, hidden;
