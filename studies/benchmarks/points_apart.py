@@ -1,0 +1,120 @@
+"""Which points plan best: success of candidates in two families of random worlds, world by world.
+
+    python -m studies.benchmarks.points_apart --use tuning -d 3 --worlds 60 --csv OUT.csv
+    python -m studies.benchmarks.points_apart --fair --use reporting -d 3 --worlds 150
+
+The family ``apart`` has start and goal at opposite faces: slots, forests, rooms with doors, caves, bars.  `--fair` is
+the periodic one: balls and boxes.  Roadmaps are ``k symmetrised``; start and goal are joined by the rule alone
+("rule"), and to the 100 nearest milestones as well, as a plan does ("plan").  All candidates see the same worlds.  A
+difference is from `--beside`, in points, paired by world, with its standard error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from studies.benchmarks.rows import parser_of, write_rows
+
+from evenroad._arrays import Bools
+from evenroad.errors import NotAvailable
+from evenroad_studies.bench.task import Problem
+from evenroad_studies.candidates import CANDIDATES
+from evenroad_studies.connected import connected
+from evenroad_studies.problems import fair
+from evenroad_studies.problems.apart import COUNTS, SIZES, Kind, Use, make
+
+KS = (4, 6, 10, 20)
+HOW = ("rule", "plan")
+CELLS = [f"{how} {k}" for how in HOW for k in KS]
+FIRST_FAIR = 1_200_000
+"""Number of the first periodic world: lower ones were looked at before."""
+Make = Callable[[int], Problem]
+
+
+def problems(use: Use, d: int, periodic: bool) -> Iterator[tuple[str, Make]]:
+    """Yield the kinds of worlds of a family, with what makes the problem of a number."""
+    if periodic:
+        stream = fair.Stream.TUNING if use is Use.TUNING else fair.Stream.REPORTING
+        for family in (fair.Family.BALLS, fair.Family.BOXES):
+            size = fair.SIZES[family, d][1]
+            yield (
+                family.name.lower(),
+                lambda i, f=family, s=size: fair.make_instance(stream, f, d, 50, s, FIRST_FAIR + i),
+            )
+    else:
+        for kind in Kind:
+            yield kind.name.lower(), lambda i, k=kind: make(use, k, d, SIZES[use, k, d], i)
+
+
+def measured(make_problem: Make, names: list[str], n: int, d: int, worlds: range) -> Bools:
+    """Return whether each candidate joins start and goal, (worlds, candidates, 2, ks)."""
+    found = np.zeros((len(worlds), len(names), 2, len(KS)), dtype=np.bool_)
+    for i, number in enumerate(worlds):
+        problem = make_problem(number)
+        for j, name in enumerate(names):
+            found[i, j] = connected(problem, CANDIDATES[name](n, d, number), KS)
+    return found
+
+
+def available(names: Sequence[str], n: int, d: int) -> list[str]:
+    """Return the candidates that have sets of this size."""
+    kept = []
+    for name in names:
+        try:
+            CANDIDATES[name](n, d, 0)
+        except NotAvailable:
+            continue
+        kept.append(name)
+    return kept
+
+
+def rows_of(found: Bools, names: list[str], beside: str) -> Iterator[dict[str, str]]:
+    """Yield the success of each candidate [%] and how much more that is than another's, with its standard error."""
+    base = found[:, names.index(beside)].astype(float)
+    for j, name in enumerate(names):
+        row = {"set": name, "worlds": str(len(found))}
+        here = found[:, j].astype(float)
+        more = here - base
+        error = more.std(axis=0, ddof=1) / np.sqrt(len(more))
+        for link, how in enumerate(HOW):
+            for at, k in enumerate(KS):
+                row[f"{how} {k}"] = f"{100 * here[:, link, at].mean():.1f}"
+                row[f"{how} {k} more"] = f"{100 * more[:, link, at].mean():+.1f}"
+                row[f"{how} {k} error"] = f"{100 * error[link, at]:.1f}"
+        yield row
+
+
+def main() -> None:
+    parser = parser_of(__doc__)
+    parser.add_argument("--use", choices=[use.name.lower() for use in Use], default="tuning")
+    parser.add_argument("--fair", action="store_true", help="periodic worlds instead")
+    parser.add_argument("-d", type=int, nargs="*", default=list(COUNTS))
+    parser.add_argument("-n", type=int, help="points; default: those of the calibration")
+    parser.add_argument("--worlds", type=int, default=60, help="of each kind")
+    parser.add_argument("--first", type=int, default=0, help="number of the first world")
+    parser.add_argument("--only", nargs="*", default=list(CANDIDATES))
+    parser.add_argument("--beside", default="even")
+    parser.add_argument("--csv", type=Path)
+    options = parser.parse_args()
+    use, rows = Use[options.use.upper()], []
+    worlds = range(options.first, options.first + options.worlds)
+    for d in options.d:
+        n = options.n or COUNTS[d]
+        names = available(options.only, n, d)
+        kinds = problems(use, d, options.fair)
+        found = {kind: measured(make_problem, names, n, d, worlds) for kind, make_problem in kinds}
+        found["all"] = np.concatenate(list(found.values()))
+        here = {"use": options.use, "family": "fair" if options.fair else "apart", "d": str(d), "n": str(n)}
+        for kind, each in found.items():
+            rows += [here | {"kind": kind} | row for row in rows_of(each, names, options.beside)]
+        for row in rows[-len(names) :]:
+            cells = [f"{row[c]:>5} {row[f'{c} more']:>5} ({row[f'{c} error']})" for c in CELLS]
+            print(f"d={d} n={n} {row['set']:16}", *cells, flush=True)
+        # After each dimension, so that a long run leaves what it has.
+        write_rows(options.csv, list(rows[0]), rows)
+
+
+if __name__ == "__main__":
+    main()
