@@ -9,6 +9,7 @@ import pytest
 from evenroad.planning.plan import plan as find_path
 from evenroad.planning.read_request import arm_request
 from evenroad.robot.kinematics import link_poses
+from evenroad.space.path import configuration_at
 from tests_peers.chromium import opened
 
 viser = pytest.importorskip("viser")
@@ -21,10 +22,10 @@ def page():
 
     query = arm_request("ur5", "box-reach", "home", "inside")
 
-    def plan(start, goal):
-        return find_path(query.world, start, goal[np.newaxis], seconds=0.5)
+    def plan(world, start, goal):
+        return find_path(world, start, goal[np.newaxis], seconds=0.5)
 
-    page = ArmPage(query.world, plan(query.start, query.goals[0]), plan, port=0)
+    page = ArmPage(query.world, plan(query.world, query.start, query.goals[0]), plan, port=0)
     threading.Thread(target=page.serve, daemon=True).start()
     yield page
     page.close()
@@ -37,15 +38,15 @@ def test_the_slider_moves_the_arm_and_the_browser_shows_it(page, tmp_path):
         time.sleep(6.0)
         before = tab.screenshot(path=tmp_path / "before.png")
         box = tab.locator("input[type=text]").first
-        box.fill("100")
+        box.fill("4")
         box.press("Enter")
         time.sleep(4.0)
         after = tab.screenshot(path=tmp_path / "after.png")
         asked = tab.requests
-    assert page.slider.value == 100.0
+    assert page.slider.value == 4.0
     assert before != after
     goal = link_poses(page.world.robot, page.result.goal[np.newaxis])[0]
-    for link, handle in page._arms["arm"].items():
+    for link, handle in page._arms["capsules"].items():
         np.testing.assert_allclose(handle.position, goal[page.world.robot.links.index(link), :3, 3], atol=1e-6)
     assert _changed(before, after) > 0.005
     # Nothing from outside of this computer: it works without a network.
@@ -76,15 +77,59 @@ def _changed(before, after):
 
 
 def test_a_goal_that_is_dragged_is_planned_again_at_least_twenty_times_a_second(page):
-    tip = page.world.robot.links.index(page._tip)
+    tip = page.world.robot.links.index(page._tips[-1])
     pose = link_poses(page.world.robot, page._endpoints["goal"][np.newaxis])[0, tip]
-    from evenroad.viz.page import _wxyz
+    from evenroad.viz.follow import wxyz_of
 
     began, moves = time.perf_counter(), 40
     for i in range(moves):
         away = pose[:3, 3] + [-0.002 * i, 0.0, 0.0]
-        result = page.move_endpoint("goal", away, _wxyz(pose[:3, :3]))
+        result = page.move_endpoint("goal", away, wxyz_of(pose[:3, :3]))
         place = link_poses(page.world.robot, result.goal[np.newaxis])[0, tip, :3, 3]
         assert result.solved
         np.testing.assert_allclose(place, away, atol=2e-3)
     assert moves / (time.perf_counter() - began) > 20.0
+
+
+def test_obstacles_are_added_moved_and_removed_and_the_plan_follows(page):
+    free = page.result.cost
+    page.obstacles.add("box")
+    assert page.world.scene.names[-1] == "box 0"
+    middle = configuration_at(page.result.path, page.world.space, np.array([0.3]))[0]
+    tip = link_poses(page.world.robot, middle[np.newaxis])[0, page.world.robot.links.index(page._tips[-1]), :3, 3]
+    page.obstacles.move("box 0", tip, (1.0, 0.0, 0.0, 0.0))
+    np.testing.assert_allclose(page.world.scene.obstacles[-1].xyz, tip)
+    assert page.result.solved
+    assert page.world.validate(page.result.path).all()
+    assert page.result.cost != free
+    page.obstacles.move("box 0", (0.0, 1e12, 0.0), (1.0, 0.0, 0.0, 0.0))
+    np.testing.assert_allclose(page.world.scene.obstacles[-1].xyz, tip)
+    page.obstacles.remove()
+    assert "box 0" not in page.world.scene.names
+    assert page.result.solved
+
+
+def test_sliders_of_joints_set_start_and_goal_and_a_path_is_coloured_by_clearance(page):
+    lines = {}
+    scene = page._server.scene
+    before, scene.add_line_segments = (
+        scene.add_line_segments,
+        lambda name, points, colours, **_: lines.update({name: colours}),
+    )
+    page.coloured.value = True
+    scene.add_line_segments = before
+    assert len(np.unique(lines["/path"].reshape(-1, 3), axis=0)) > 20
+    assert "from obstacles at least" in page.status.content
+    page.coloured.value = False
+    for slider, value in zip(page.joints, page.result.goal, strict=True):
+        slider.value = float(value) + 0.01
+    result = page.take_joints_as("goal")
+    np.testing.assert_allclose(result.goal, [slider.value for slider in page.joints])
+
+
+def test_what_is_played_moves_at_its_speed_and_stops_unless_it_loops(page):
+    page.loop.value, page.speed.value, page.slider.value = False, 4.0, 3.0
+    page._playing = True
+    time.sleep(1.5)
+    assert page.slider.value == page.slider.max
+    assert not page._playing

@@ -141,3 +141,8 @@ def test_a_joint_with_blanks_in_its_name_can_be_given_by_name(tmp_path):
         np.testing.assert_array_equal(configuration(robot, written), [0.5, -0.25])
     np.testing.assert_array_equal(configuration(robot, "the other one=-0.25"), [0, -0.25])
     refused(UnknownName, "'joint'", configuration, robot, "joint=0.5")
+
+
+def test_a_robot_without_named_states_says_where_they_would_come_from():
+    with pytest.raises(UnknownName, match="has no named states, as .* or give 7 numbers: shoulder_pan"):
+        configuration(load_robot("arm7"), "home")

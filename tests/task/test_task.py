@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import re
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from evenroad.errors import EvenroadError
 from evenroad.robot import HeldObject
 from evenroad.task import Attach, Detach, MoveTo, Task, Wait
 from evenroad.task.stage import touches
+from evenroad.trajectory.urscript import movej_script
 from tests.robot import oracle
 
 HOME = [0.0, -2.0, 1.9, -1.5, -math.pi / 2, 0.0]
@@ -217,6 +219,14 @@ def test_a_trajectory_has_names_and_limits_of_the_arm_and_keeps_the_constraints_
 def test_the_arm_waits_no_shorter_than_it_is_told(world):
     trajectory = Task([MoveTo([0.1, *HOME[1:]]), Wait(0.003)]).plan(world, HOME).trajectory()
     assert np.array_equal(trajectory.positions[-1], trajectory.positions[-2])
+
+
+def test_a_program_of_waypoints_waits_where_the_task_does(world):
+    there = [0.1, *HOME[1:]]
+    trajectory = Task([Wait(0.2), MoveTo(there), Wait(0.4), MoveTo(HOME), Wait(1.0)]).plan(world, HOME).trajectory()
+    calls = re.findall(r"^  (sleep|movej)\((.*)\)$", movej_script(trajectory), re.MULTILINE)
+    assert [name for name, _ in calls] == ["sleep", "movej", "sleep", "movej", "sleep"]
+    assert [float(value) for name, value in calls if name == "sleep"] == pytest.approx([0.2, 0.4, 1.0])
 
 
 def test_a_wait_that_no_trajectory_holds_is_refused(world):

@@ -182,8 +182,13 @@ def _from_pairs(robot: Robot, text: str, degrees: bool) -> Floats:
 def _from_list(robot: Robot, text: str, states: Mapping[str, object], degrees: bool) -> Floats:
     words = text.replace(",", " ").split()
     if len(words) == 1 and not _is_number(words[0]):
-        unknown = UnknownName.among("state", text.strip(), states)
-        raise UnknownName(f"{unknown}; or give {len(robot.group)} numbers: {','.join(robot.group)}")
+        numbers = f"{len(robot.group)} numbers: {','.join(robot.group)}"
+        if not states:
+            raise UnknownName(
+                f"unknown state {shown(text.strip())}: {robot.name!r} has no named states, as it has no SRDF: name some"
+                f" under `states:` of the scene, or give {numbers}"
+            )
+        raise UnknownName(f"{UnknownName.among('state', text.strip(), states)}; or give {numbers}")
     if len(words) != len(robot.group):
         raise InvalidValue(
             f"a configuration of {robot.name!r} has {len(robot.group)} numbers, {','.join(robot.group)};"

@@ -148,7 +148,7 @@ def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
             turns = 2.0 * np.pi * np.rint((still - part.positions[0]) / (2.0 * np.pi))
             part = replace(part, positions=part.positions + turns, waypoints=part.waypoints + turns)
             waypoints.append(part.waypoints[1:])
-            first = 0 if not rows["positions"][0].size and len(rows["positions"]) == 1 else 1
+            first = 0 if len(rows["positions"]) == 1 else 1
             for name, values in rows.items():
                 values.append(getattr(part, name)[first:])
     positions, velocities, accelerations = (np.concatenate(values) for values in rows.values())

@@ -26,6 +26,9 @@ _AT_START = 0.01
 _FASTEST = 3.14
 """Largest speed of a ``movej`` that the controller takes [rad/s]."""
 
+_SAME = 1e-6
+"""Largest distance of a state from the waypoint that it stands at [rad]."""
+
 _SHARES = (0.45, 0.2, 0.1, 0.05)
 """Shares of the shorter motion at a corner, tried in turn as blends; two corners never overlap."""
 
@@ -57,7 +60,7 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
     """Return a program of ``movej`` that drives to each waypoint of the path.
 
     Corners are rounded by `radii`; without these it stops at each.  All joints keep the limits of the slowest one.
-    Raises InvalidValue unless there are six joints.
+    Where the trajectory waits at a waypoint, the program sleeps.  Raises InvalidValue unless there are six joints.
     """
     names, _ = columns_of_ur(trajectory, order)
     path = trajectory.waypoints
@@ -66,9 +69,23 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
     waypoints = np.column_stack([columns[name] for name in names])
     radii = [*(trajectory.radii or np.zeros(len(path) - 2)), 0.0]
     fastest = f"a={min(trajectory.limits.acceleration):.6g}, v={min(*trajectory.limits.velocity, _FASTEST):.6g}"
-    rows = zip(waypoints[1:], radii, strict=True)
-    moves = [f"movej({_row(q)}, {fastest}, r={radius:.6g})" for q, radius in rows]
+    first, *waits = _waits(trajectory)
+    moves = [f"sleep({first:.6g})"] if first else []
+    for q, radius, wait in zip(waypoints[1:], radii, waits, strict=True):
+        moves.append(f"movej({_row(q)}, {fastest}, r={0.0 if wait else radius:.6g})")
+        moves += [f"sleep({wait:.6g})"] if wait else []
     return _program("evenroad_movej", waypoints[0], moves)
+
+
+def _waits(trajectory: Trajectory) -> list[float]:
+    """Return for how long the trajectory stands still at each of its waypoints [s]."""
+    positions, step = trajectory.positions, float(trajectory.times[1] - trajectory.times[0])
+    waits, waypoint = [0.0] * len(trajectory.waypoints), 0
+    for i in np.flatnonzero((positions[1:] == positions[:-1]).all(axis=1)):
+        near = np.abs(trajectory.waypoints[waypoint:] - positions[i]).max(axis=1) < _SAME
+        waypoint += int(np.argmax(near)) if near.any() else 0
+        waits[waypoint] += step
+    return waits
 
 
 def with_radii(trajectory: Trajectory, world: World, tip_at: Callable[[Floats], Floats]) -> Trajectory:

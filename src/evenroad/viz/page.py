@@ -23,6 +23,7 @@ from evenroad.viz import style
 from evenroad.viz.bodies import indexed, rgb, robot_sets
 from evenroad.viz.follow import follow, wxyz_of
 from evenroad.viz.page_obstacles import PageObstacles
+from evenroad.viz.player import clearances
 from evenroad.viz.stage import Part
 
 SAMPLES = 200
@@ -182,7 +183,10 @@ class ArmPage:
     ) -> dict[str, Any]:
         arm = {}
         for link, part in parts.items():
-            corners, _, triangles = indexed(part)
+            corners, normals, triangles = indexed(part)
+            if colour is not None:
+                # Where the arm itself is there, too, it is seen.
+                corners = corners - 0.002 * normals
             arm[link] = self._server.scene.add_mesh_simple(
                 f"/{name}/{link}",
                 corners.astype(np.float32),
@@ -224,21 +228,18 @@ class ArmPage:
         self._show_graph()
 
     def _show_path(self) -> None:
-        """Show the paths of the tips: red, or by how far the arm is from contact, and say where that is least."""
+        """Show the paths of the tips: red, or by how far the arm is from obstacles."""
         scene = self._server.scene
         if self.result.path is None:
             scene.remove_by_name("/path")
             return
         q = configuration_at(self.result.path, self.world.space, np.linspace(0.0, 1.0, SAMPLES))
         poses, colours = self._poses(q), np.tile(np.array(rgb(style.PATH)), (SAMPLES, 1))
-        if self.coloured.value:
-            distance = self.world.distance(q)
-            least = int(np.argmin(distance.metres))
-            near = f"{1e3 * distance.metres[least]:.1f} mm from contact at least"
-            pair = distance.pair[least]
-            said = near if pair is None else f"{near}: {pair[0]} and {pair[1]}"
-            self.status.content = f"**{self.result.status}**: {self.result.message}; {said}"
-            share = np.clip(distance.metres / _FAR, 0.0, 1.0) * (len(_HUES) - 1)
+        apart = clearances(self.world, q) if self.coloured.value else None
+        if apart is not None:
+            near = f"{1e3 * min(apart):.1f} mm from obstacles at least"
+            self.status.content = f"**{self.result.status}**: {self.result.message}; {near}"
+            share = np.clip(np.array(apart) / _FAR, 0.0, 1.0) * (len(_HUES) - 1)
             colours = np.stack([np.interp(share, np.arange(len(_HUES)), hue) for hue in _HUES.T], axis=1).astype(int)
         tips = [poses[:, self.world.robot.links.index(tip), :3, 3] for tip in self._tips]
         pieces = np.concatenate([np.stack([each[:-1], each[1:]], axis=1) for each in tips])

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from evenroad.errors import EvenroadError
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Box, PointCloud, Shape, Sphere
 from evenroad.robot import Obstacle, Scene
@@ -68,8 +69,12 @@ class PageObstacles:
     def move(self, name: str, position: Any, wxyz: Any) -> None:
         """Move an obstacle to a place, (3,) [m], and a unit quaternion."""
         x, y, z = (float(each) for each in position)
-        pose = Pose((x, y, z), tuple(matrix_of(np.array(wxyz)).ravel().tolist()))
-        moved = tuple(each.at(pose) if each.name == name else each for each in self.scene.obstacles)
+        try:
+            pose = Pose((x, y, z), tuple(matrix_of(np.array(wxyz)).ravel().tolist()))
+            moved = tuple(each.at(pose) if each.name == name else each for each in self.scene.obstacles)
+        except EvenroadError as error:
+            self.said.content = str(error)
+            return
         if self._try(replace(self.scene, obstacles=moved)):
             self._shown[name].position, self._shown[name].wxyz = (x, y, z), wxyz
 

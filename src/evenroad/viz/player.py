@@ -87,7 +87,7 @@ def page_of(result: PlanResult, *, file: RobotFile | None = None, timed: tuple[F
         "title": f"{result.status}: {result.message}",
         "timed": timed is not None,
         "times": _rounded(times, 4),
-        "clearance": _clearances(world, states),
+        "clearance": clearances(world, states),
     }
     data |= _of_arm(world, result, states, file) if isinstance(world, ArmWorld) else _of_map(world, states)
     # No text of a plan ends the script that holds it.
@@ -100,8 +100,8 @@ def _evenly(result: PlanResult, world: ArmWorld | DiskWorld) -> Floats:
     return configuration_at(result.path, world.space, np.linspace(0.0, 1.0, SAMPLES))
 
 
-def _clearances(world: Any, states: Floats) -> list[float] | None:
-    """Return a lower bound of the distance from obstacles at each state; None where it is not known."""
+def clearances(world: Any, states: Floats) -> list[float] | None:
+    """Return a lower bound of the distance from obstacles at each of some states, (n, dim), None if not known [m]."""
     if not isinstance(world, MeasuresPaths):
         return None
     bounds = [world.path_clearance(np.stack([state, state])) for state in states[:: len(states) // 120 + 1]]
