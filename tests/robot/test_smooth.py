@@ -55,6 +55,7 @@ def test_a_plan_is_drawn_tight_unless_quick_shortcuts_or_no_smoothing_are_wanted
     plans = {how: er.plan(world, path[0], path[-1], smooth=how) for how in (True, "quick", False)}
     raw = plans[False].path
     np.testing.assert_array_equal(plans["quick"].path, shorten(world, raw)[0])
+    np.testing.assert_array_equal(plans[True].path, smooth_apart(world, raw, batches=500)[0])
     assert plans[True].cost < plans["quick"].cost < plans[False].cost
     assert all(proved(world, each.path) for each in plans.values())
     said = "smooth must be True, False or \"quick\", got 'fast'"
@@ -79,6 +80,16 @@ def test_a_plan_keeps_five_millimetres_off_where_that_costs_two_percent_at_most(
         assert clearance(alone, world.scene, dense_states(world, apart, 5)).min() > 0.005
         assert er.ArmWorld(world.robot, world.scene).path_clearance(apart) >= 0.005
     assert kept > 0
+
+
+def test_where_the_start_sees_the_goal_a_plan_is_one_motion(paths):
+    world, found = paths
+    long = [path for path in found if world.validate(path[[0, -1]]).all()]
+    for path in long[:5]:
+        result = er.plan(world, path[0], path[-1])
+        assert len(result.milestone_path) == 2
+        assert result.cost <= 1.02 * length(world, path[[0, -1]])
+    assert long
 
 
 def test_who_improves_wants_the_shortest_path(paths):

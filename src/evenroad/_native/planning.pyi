@@ -12,6 +12,19 @@ class Checks:
 class Points:
     def __init__(self, points: Floats) -> None: ...
 
+class Drivers:
+    def __init__(self, samples: Points, steps: Points, pairs: Points, directions: Points) -> None: ...
+
+class Answer:
+    ended: Literal["paused", "spent", "not free", "solved"]
+    raw: Floats
+    path: Floats
+    raw_length: float
+    length: float
+    counts: tuple[int, int, int, int]
+    seconds: tuple[float, float]
+    def keep_apart(self, roomier: Checker, drivers: Drivers) -> None: ...
+
 class Trees:
     path: Floats
     goal: int
@@ -46,6 +59,15 @@ class Tree:
     def nearest(self, q: Floats) -> int: ...
     def remove_branch(self, node: int) -> None: ...
 
+def answer(
+    checker: Checker,
+    start: Floats,
+    goal: Floats,
+    drivers: Drivers,
+    motions: int,
+    seconds: float,
+    smoothing: Literal["none", "quick", "tight", "apart"],
+) -> Answer: ...
 def shorten(checks: Checks, path: Floats, pairs: Points, most_shortcuts: int) -> tuple[Floats, int]: ...
 def smooth(
     checks: Checks, path: Floats, pairs: Points, directions: Points, most_batches: int, proved: bool

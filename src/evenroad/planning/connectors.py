@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._native.planning import Improver, Points
+from evenroad._native.planning import Answer, Improver, Points, answer
 from evenroad.planning import arm_trees
 from evenroad.planning.plain_trees import grow_trees
-from evenroad.roadmap.connector import Connection, Connector
+from evenroad.roadmap.connector import Connection, Connector, Smooth
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.robot import ArmWorld
-from evenroad.robot.tree_sequences import cube_points, native_points, shifted_cube_points
+from evenroad.robot.tree_sequences import cube_points, drivers, drivers_by, native_points, shifted_cube_points
 from evenroad.space.batch import as_batch
 from evenroad.world import World
 from evenroad.world.gridmap.gridmap import DiskWorld
@@ -63,6 +63,31 @@ class ArmTrees:
         dim = len(start)
         samples = Points(shifted_cube_points(dim, variant)) if variant else native_points(cube_points, dim)
         return arm_trees.joined(inside, terminals, samples, most_motions, seconds)
+
+    def answer(
+        self,
+        world: ArmWorld,
+        start: Floats,
+        goal: Floats,
+        *,
+        variant: int,
+        most_motions: int,
+        seconds: float,
+        smooth: Smooth,
+    ) -> Answer:
+        """Return the smoothed path to one goal, (dim,), or why there is none, of one call of compiled code."""
+        inside, dim = self.inside or world, len(start)
+        by = drivers_by(Points(shifted_cube_points(dim, variant)), dim) if variant else drivers(dim)
+        smoothing: Literal["none", "quick", "tight", "apart"] = (
+            "quick" if smooth == "quick" else "none" if not smooth else "apart"
+        )
+        if self.shortest and smoothing == "apart":
+            smoothing = "tight"
+        found = answer(inside.checker, start, goal, by, most_motions, seconds, smoothing)
+        # Where a world is new, one with more room takes as long as a short plan.
+        if smoothing == "apart" and found.ended == "solved" and found.counts[0] > 2:
+            found.keep_apart(inside.roomier.checker, by)
+        return found
 
     def improver(
         self, world: Any, terminals: Floats, first: tuple[Floats, int, int], *, variant: int, is_smoothing: bool

@@ -12,17 +12,19 @@ from typing import Any, ClassVar
 import numpy as np
 
 from evenroad._call import explains_calls
+from evenroad._native.planning import Answer
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
-from evenroad.planning.connectors import CELLS, connector_of, trees_for
+from evenroad.planning.connectors import CELLS, ArmTrees, connector_of, trees_for
 from evenroad.planning.growing import GrowingPRM
 from evenroad.planning.improve import improved, rest_of
-from evenroad.roadmap.answer import connected, gave_up, refusal, shown_apart
+from evenroad.roadmap.answer import connected, gave_up, path_message, proof_of, refusal, shown_apart
 from evenroad.roadmap.attempt import NO_LIMIT, Attempt
-from evenroad.roadmap.connector import Connection, Connector
+from evenroad.roadmap.connector import Connection, Connector, require_smooth
 from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.query import Query
-from evenroad.roadmap.result import NO_POINTS, PlanResult
+from evenroad.roadmap.result import NO_POINTS, PlanResult, Status, make_result
+from evenroad.space.path import path_length
 from evenroad.world.gridmap.gridmap import DiskWorld
 
 TO_NEAREST = 300
@@ -101,7 +103,11 @@ def _growing(improve: bool) -> GrowingPRM:
 
 def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -> PlanResult:
     """Plan with a connector until there is a path, a proof that there is none, or the budget is spent."""
-    world = problem.world
+    world, variant, first = problem.world, _variant(problem.rng), None
+    if isinstance(connector, ArmTrees) and len(problem.goals) == 1 and not improve:
+        first = _answer(problem, connector, variant)
+        if first.ended == "solved":
+            return _solved(problem, connector, first)
     query = Query(
         problem.start,
         problem.goals,
@@ -113,9 +119,12 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
     attempt = Attempt(world, query, NO_POINTS, "none", connector.planner)
     if (refused := refusal(attempt)) is not None:
         return refused
-    variant = _variant(problem.rng)
     stages = [*connector.stages, (NO_LIMIT, False)]
-    connection = found = _connection(attempt, connector, stages[0][0], variant)
+    if first is None:
+        connection = found = _connection(attempt, connector, stages[0][0], variant)
+    else:
+        connection = found = Connection(first.raw, -1, *first.counts[:3])
+        attempt.take(found.motions, first.seconds[0])
     for number, ((most, quickly), (more, _)) in enumerate(pairwise(stages), 1):
         if connection.goal >= 0:
             break
@@ -138,6 +147,57 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
     if (left := attempt.left()) is None:
         return gave_up(attempt, connection)
     return _growing(improve).solve(rest_of(attempt, left))
+
+
+def _answer(problem: Problem, connector: ArmTrees, variant: int) -> Answer:
+    """Return what one call of compiled code finds, which most queries are answered by."""
+    require_smooth(problem.smooth)
+    budget, most = problem.budget, connector.stages[0][0]
+    world: Any = problem.world
+    return connector.answer(
+        world,
+        problem.start,
+        problem.goals[0],
+        variant=variant,
+        most_motions=most if budget.motions is None else min(most, budget.motions),
+        seconds=np.inf if budget.seconds is None else budget.seconds,
+        smooth=problem.smooth,
+    )
+
+
+def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult:
+    """Return the result of an answer with a path."""
+    world, start, goals, path, raw = problem.world, problem.start, problem.goals, found.path, found.raw
+    # Sums of more numbers have another order in NumPy, and so another last bit.
+    length, raw_length = (
+        native if len(points) == 2 else path_length(points, world.space)
+        for points, native in ((path, found.length), (raw, found.raw_length))
+    )
+    for array in (start, goals):
+        array.setflags(write=False)
+    nodes, configurations, motions, smoothing = found.counts
+    counts = dict(nodes=nodes, configurations_checked=configurations, edges_checked=motions)
+    search, shortcut = found.seconds
+    timings = {"search": search}
+    if problem.smooth:
+        counts["shortcut_motions"] = smoothing
+        timings["shortcut"] = shortcut
+    return make_result(
+        world,
+        start,
+        goals,
+        Status.SOLVED,
+        path_message(path, length, 0, 1),
+        planner=connector.planner,
+        goal_index=0,
+        path=path,
+        milestone_path=raw,
+        proof=proof_of(world),
+        cost=length,
+        milestone_cost=raw_length,
+        counts=counts,
+        timings=timings,
+    )
 
 
 def _variant(rng: RngLike) -> int:

@@ -158,6 +158,13 @@ class Attempt:
         self.motions_checked += found.motions
         return found if goal is None or found.goal < 0 else replace(found, goal=goal)
 
+    def take(self, motions: int, seconds: float) -> None:
+        """Count an earlier search: its motions, and its time."""
+        self.motions_checked += motions
+        self.watch.seconds["search"] = self.watch.seconds.get("search", 0.0) + seconds
+        self.began -= seconds
+        self.deadline -= seconds
+
     def elapsed(self) -> float:
         """Return the seconds since the query began."""
         return now() - self.began

@@ -6,9 +6,16 @@ from dataclasses import dataclass
 from typing import Any, Literal, Protocol, TypeAlias
 
 from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue, shown
 
 Smooth: TypeAlias = bool | Literal["quick"]
 """Whether a path is made shorter once it is found; "quick": by straight shortcuts alone."""
+
+
+def require_smooth(smooth: object) -> None:
+    """Raise InvalidValue unless this says whether a path is made shorter."""
+    if smooth not in (True, False, "quick"):
+        raise InvalidValue(f'smooth must be True, False or "quick", got {shown(smooth)}')
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints32
 from evenroad._checks import require_count, require_known
-from evenroad.errors import InvalidValue, shown
+from evenroad.errors import InvalidValue
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.connector import Connector, Smooth
+from evenroad.roadmap.connector import Connector, Smooth, require_smooth
 from evenroad.roadmap.search import FINDERS, Finder, find_any
 from evenroad.space import Space
 from evenroad.world import Apart
@@ -63,8 +63,7 @@ class Query:
 
     def __post_init__(self) -> None:
         require_known("search", self.search, FINDERS)
-        if self.smooth not in (True, False, "quick"):
-            raise InvalidValue(f'smooth must be True, False or "quick", got {shown(self.smooth)}')
+        require_smooth(self.smooth)
         if self.links is not None:
             require_count("links", self.links)
         for array in (self.start, self.goals):

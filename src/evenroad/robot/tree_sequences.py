@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._native.planning import Points
+from evenroad._native.planning import Drivers, Points
 from evenroad._shared import once
 
 Floats = npt.NDArray[np.float64]
@@ -29,6 +29,18 @@ def native_points(points: Callable[[int], Floats], number: int) -> Points:
     They are checked once, which takes longer than a short plan.
     """
     return Points(points(number))
+
+
+@once
+def drivers(dim: int) -> Drivers:
+    """Return the sequences that drive queries of arms of so many joints."""
+    return drivers_by(native_points(cube_points, dim), dim)
+
+
+def drivers_by(samples: Points, dim: int) -> Drivers:
+    """Return the same with other points that trees grow towards."""
+    others = native_points(ball_points, dim), native_points(share_pairs, PAIRS), native_points(sphere_points, dim)
+    return Drivers(samples, *others)
 
 
 @once

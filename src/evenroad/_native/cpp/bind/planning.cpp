@@ -1,9 +1,10 @@
 // evenroad._native.planning: trees and smoothing of arms.
+#include "bind/planning.hpp"
+
 #include <nanobind/stl/shared_ptr.h>
 
 #include <algorithm>
 
-#include "bind/arrays.hpp"
 #include "planning/improver.hpp"
 #include "planning/native_checks.hpp"
 #include "planning/path_proof.hpp"
@@ -19,20 +20,6 @@ using planning::NativeChecks;
 using planning::Path;
 using planning::TreePlanner;
 
-const char* in_words(planning::Growth growth) {
-  switch (growth) {
-    case planning::Growth::PAUSED:
-      return "paused";
-    case planning::Growth::SPENT:
-      return "spent";
-    case planning::Growth::NOT_FREE:
-      return "not free";
-    case planning::Growth::SOLVED:
-      return "solved";
-  }
-  return "";
-}
-
 const char* in_words(planning::Progress progress) {
   switch (progress) {
     case planning::Progress::PAUSED:
@@ -44,26 +31,6 @@ const char* in_words(planning::Progress progress) {
   }
   return "";
 }
-
-/// Points of an even sequence, (n, d) from -1 to 1: checked once, for all queries that they drive.
-struct Points {
-  FloatRows rows;
-  bool is_in_unit_cube;
-
-  explicit Points(nb::handle given) : rows(given, "points") {
-    require(rows.shape(0) >= 1, "points must not be empty");
-    require_within(rows.span(), -1.0, 1.0, "points");
-    is_in_unit_cube = std::ranges::all_of(rows.span(), [](double entry) { return entry >= 0.0; });
-  }
-
-  /// Return them; refuse others than those of this many columns, in the unit cube where they have to be.
-  Matrix<const double> of(std::size_t columns, bool of_unit_cube, const char* name) const {
-    require(rows.shape(1) == columns && (is_in_unit_cube || !of_unit_cube),
-            std::string(name) + " must be points of " + std::to_string(columns) + " dimensions" +
-                (of_unit_cube ? ", in the unit cube" : ""));
-    return rows.matrix();
-  }
-};
 
 /// A planner with the arrays that it reads.
 struct Trees {
@@ -259,6 +226,7 @@ void add_planning(nb::module_& module) {
   part.attr("CLEARANCES") = nb::make_tuple(planning::CLEARANCES[0], planning::CLEARANCES[1]);
   add_tree(part);
   add_improver(part);
+  add_queries(part);
 }
 
 }  // namespace evenroad::bind

@@ -48,7 +48,7 @@ Growth TreePlanner::grow(std::int64_t most_motions, std::int64_t batches) {
     if (idle_ > MOST_IDLE) return Growth::SPENT;
     // Bounds come from a path: by then the straight ways were tried.
     const Node goals = bound_ != nullptr ? 0 : std::min(static_cast<Node>(goals_.size()), MOST_STRAIGHT);
-    const bool is_solved = straight_ < goals ? join(0, 0, straight_++) : grow_once();
+    const bool is_solved = straight_ < goals ? join_straight(straight_++) : grow_once();
     if (is_solved) return Growth::SOLVED;
   }
 }
@@ -112,6 +112,20 @@ Node TreePlanner::other_end(std::size_t tree, Node found) const {
   const Tree &own = trees_[tree], &other = trees_[1 - tree];
   return bound_ == nullptr ? other.nearest(own[found])
                            : other.nearest_within(own[found], bound_->longest - own.cost(found));
+}
+
+/// Go from the start straight to a goal; return whether that makes a path, of one motion where it is proved as one.
+bool TreePlanner::join_straight(Node goal) {
+  const Node last = reach(0, 0, goal);
+  met_ = {last, last == NO_NODE ? NO_NODE : goal};
+  if (!have_met()) return false;
+  if (last != 0 && !is_spent() && checks_.is_proved(trees_[0][0], trees_[1][goal], PROOF)) {
+    met_[0] = 0;
+  } else if (!is_path_proved()) {
+    return false;
+  }
+  write_path();
+  return true;
 }
 
 /// Go from a node to one of the other tree; return whether that makes a path of which every motion is proved.

@@ -48,6 +48,7 @@ class TreePlanner {
   std::size_t growing_tree();
   bool grow_once();
   Node other_end(std::size_t tree, Node found) const;
+  bool join_straight(Node goal);
   bool join(std::size_t tree, Node found, Node other);
   Node reach(std::size_t tree, Node found, Node other);
   bool have_met() const { return met_[0] != NO_NODE; }
