@@ -33,7 +33,7 @@ def native_points(points: Callable[[int], Floats], number: int) -> Points:
 
 @once
 def drivers(dim: int) -> Drivers:
-    """Return the sequences that drive queries of arms of so many joints."""
+    """Return the sequences that drive the queries of an arm with `dim` joints."""
     return drivers_by(native_points(cube_points, dim), dim)
 
 
