@@ -5,9 +5,9 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet
+from evenroad.points import anneal as module
+from evenroad.points.anneal import first_rate, learning_rate, noise_over_rate
 from evenroad.points.measures import MEASURES, separation
-from evenroad_studies import anneal as module
-from evenroad_studies.anneal import first_rate, learning_rate, noise_over_rate
 from evenroad_studies.training.objective import parse_objective
 from tests.refused import refused
 

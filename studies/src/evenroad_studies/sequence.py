@@ -10,10 +10,10 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
+from evenroad.points.anneal import anneal
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.plain import Sobol
-from evenroad_studies.anneal import anneal
 from evenroad_studies.prefixes import SHORTEST, rooted_prefixes, worst_prefix
 
 MEASURE = "hickernell"

@@ -11,8 +11,8 @@ import pytest
 
 from evenroad.errors import EvenroadError, InvalidValue, WorkerLost
 from evenroad.points import load_points
+from evenroad.points.anneal import SCHEDULE, anneal
 from evenroad.points.measures import MEASURES
-from evenroad_studies.anneal import SCHEDULE, anneal
 from evenroad_studies.training import anneal_many
 from tests.refused import refused
 

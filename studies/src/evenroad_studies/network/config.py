@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from evenroad._arrays import set_fields
 from evenroad._checks import require_count, require_known, require_positive
 from evenroad.errors import InvalidValue
-from evenroad_studies.anneal import require_points_for
+from evenroad.points.anneal import require_points_for
 from evenroad_studies.training.objective import parse_objective
 
 STARTS = ("sobol", "kronecker", "halton", "korobov", "uniform")

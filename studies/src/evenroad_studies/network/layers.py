@@ -57,10 +57,11 @@ def add_product(a, b, out, scratch, bias):  # type: ignore[no-untyped-def]
 def forward(starts, neighbours, encoder, maps, biases, decoder, saved, scales, moves):  # type: ignore[no-untyped-def]
     """Write what the decoder says of every point into `moves`, (n, d); keep in `saved` what `backward` needs.
 
-    `starts` is (n, f), its last column 1, `neighbours` (n, k), `encoder` (f, w); `decoder`, (w + 1, d), has the bias as
-    its last row.  The five matrices of a layer in `maps`, (layers, 5, w, w), are the message's for x_i and x_j, the
-    update's for what is heard and for x_i, and its second; `biases` is (layers, 3, w).  `saved`, (layers + 1, 6, n, w),
-    holds a layer's input, the two parts of its messages, what is heard, and the update after its two maps.
+    `starts` is (n, f), its last column 1, `neighbours` (n, k), each row up to its first -1, `encoder` (f, w);
+    `decoder`, (w + 1, d), has the bias as its last row.  The five matrices of a layer in `maps`, (layers, 5, w, w), are
+    the message's for x_i and x_j, the update's for what is heard and for x_i, and its second; `biases` is
+    (layers, 3, w).  `saved`, (layers + 1, 6, n, w), holds a layer's input, the two parts of its messages, what is
+    heard, and the update after its two maps.
     """
     layers = maps.shape[0]
     n, width = saved.shape[2], saved.shape[3]
@@ -79,7 +80,10 @@ def forward(starts, neighbours, encoder, maps, biases, decoder, saved, scales, m
                 mine[c] += bias[c]
                 total[c] = ZERO
             for e in range(neighbours.shape[1]):
-                said = theirs[neighbours[i, e]]
+                j = neighbours[i, e]
+                if j < 0:
+                    break
+                said = theirs[j]
                 for c in range(width):
                     total[c] += max(mine[c] + said[c], ZERO)
         multiply(heard, maps[layer, 2], update)
@@ -155,6 +159,8 @@ def backward(starts, neighbours, encoder, maps, biases, decoder, saved, scales, 
             to[:] = ZERO
             for e in range(neighbours.shape[1]):
                 j = neighbours[i, e]
+                if j < 0:
+                    break
                 said, back = theirs[j], their_slope[j]
                 for c in range(width):
                     passed = given[c] if at[c] + said[c] > ZERO else ZERO

@@ -15,10 +15,10 @@ from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
+from evenroad.points.anneal import LOWEST, Annealed, Callback, anneal, first_rate, noise_over_rate
 from evenroad.points.measures import star_discrepancy
 from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
 from evenroad.points.samplers import draw
-from evenroad_studies.anneal import LOWEST, Annealed, Callback, anneal, first_rate, noise_over_rate
 from evenroad_studies.network.config import NetworkConfig
 from evenroad_studies.network.layers import adam_step, backward, forward
 from evenroad_studies.training.objective import Objective, parse_objective
@@ -61,11 +61,25 @@ class Network:
 
     def learn(self, slope: Floats, rate: float) -> None:
         """Do a step of Adam, given the slope of the objective in the last moves."""
+        self.step(self.slope_of(slope), rate)
+
+    def slope_of(self, slope: Floats) -> Weights:
+        """Return the slope of every weight, given that of the objective in the last moves; the next call changes it."""
         inputs, neighbours, saved, scales = self._last
         slope = np.ascontiguousarray(slope, np.float32)
         backward(inputs, neighbours, *self._parts, saved, scales, slope, self._slope_parts)
+        return self.slopes
+
+    def step(self, slope: Weights, rate: float) -> None:
+        """Do a step of Adam, given the slope of every weight."""
         self._step += 1
-        adam_step(self.weights, self.slopes, self._first, self._second, self._step, rate)
+        adam_step(self.weights, slope, self._first, self._second, self._step, rate)
+
+    def begin_anywhere(self, draws: np.random.Generator) -> None:
+        """Draw the decoder as the other maps are: what it says first has nothing to do with the starts."""
+        decoder = self._parts[3]
+        bound = 1.0 / math.sqrt(len(decoder) - 1)
+        decoder[:] = draws.uniform(-bound, bound, decoder.shape)
 
 
 def _split(flat: Weights, shapes: Sequence[tuple[int, ...]]) -> tuple[Weights, ...]:
@@ -178,7 +192,7 @@ def refine(
     objective : str or Objective, optional
         What to make small; by default what each set was made for (InvalidValue if its origin does not say).
     steps, callback
-        As for :func:`~evenroad_studies.anneal.anneal`, the steps counted over all sets.
+        As for :func:`~evenroad.points.anneal.anneal`, the steps counted over all sets.
     """
     require_count("steps", steps)
     total = steps * len(sets)

@@ -16,9 +16,9 @@ import numpy as np
 
 from evenroad._files import atomic_write, remove_abandoned_parts
 from evenroad.errors import BrokenFile, InvalidValue, shown
+from evenroad.points.anneal import SCHEDULE, Callback, anneal
 from evenroad.points.npz import load_points, save_points
 from evenroad.points.pointset import Origin, PointSet
-from evenroad_studies.anneal import SCHEDULE, Callback, anneal
 from evenroad_studies.training.objective import parse_objective
 from evenroad_studies.training.order import search_orders
 

@@ -16,8 +16,8 @@ import numpy as np
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, seed_of
 from evenroad.errors import InvalidValue, WorkerLost
+from evenroad.points.anneal import Callback, require_points_for
 from evenroad.points.pointset import Origin, PointSet
-from evenroad_studies.anneal import Callback, require_points_for
 from evenroad_studies.training.folder import (
     SetTask,
     claim_folder,
@@ -56,7 +56,7 @@ def anneal_many(
     Parameters
     ----------
     n, d, objective, steps
-        As for :func:`~evenroad_studies.anneal.anneal`; the objective may be text.
+        As for :func:`~evenroad.points.anneal.anneal`; the objective may be text.
     sets : int
         How many sets, >= 1.
     rng : int, SeedSequence or Generator

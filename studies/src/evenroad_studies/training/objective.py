@@ -26,11 +26,11 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.points.anneal import require_points_for
 from evenroad.points.measures import MEASURES
 from evenroad.points.measures.separation import log_riesz_of_columns
 from evenroad.points.pointset import as_unit_points
 from evenroad.points.randomise import ALL_SYMMETRIES, Symmetry
-from evenroad_studies.anneal import require_points_for
 from evenroad_studies.prefixes import PREFIXED, worst_prefix
 from evenroad_studies.sequence import usual_prefixes
 

@@ -18,9 +18,9 @@ from evenroad._arrays import Ints
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue, shown
+from evenroad.points.anneal import Annealed, Callback
 from evenroad.points.measures import star_discrepancy
 from evenroad.points.pointset import BELOW_ONE
-from evenroad_studies.anneal import Annealed, Callback
 
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 """Multiples of it modulo 1, from a random shift on, are the orders that the search begins with."""

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
+from evenroad.points.anneal import anneal
 from evenroad.points.bank import Bank, Trained
 from evenroad.points.bank.bank import DATA, INDEX, SEED
 from evenroad.points.measures import MEASURES
 from evenroad.points.pointset import PointSet
-from evenroad_studies.anneal import anneal
 from evenroad_studies.training import anneal_many
 from evenroad_studies.training.bank import MEASURED, Recipe, build, recipes, store
 from tests.refused import refused

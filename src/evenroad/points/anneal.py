@@ -8,7 +8,6 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_count
@@ -160,23 +159,28 @@ def _first_columns(n: int, d: int, start: npt.ArrayLike | None, draws: np.random
     return np.ascontiguousarray(np.clip(given.T, LOWEST, BELOW_ONE))
 
 
-@njit(cache=True)
-def _adam_step(columns, moments, gradient, noise, step, rate, spread, wrap):  # type: ignore[no-untyped-def]
+def _adam_step(
+    columns: Floats,
+    moments: tuple[Floats, Floats],
+    gradient: Floats,
+    noise: Floats,
+    step: int,
+    rate: float,
+    spread: float,
+    wrap: bool,
+) -> None:
     """Move `columns` (d, n) against `gradient` by Adam (Kingma and Ba 2015) and along `noise`; update both moments.
 
     `step` counts from 1.  Coordinates stay in [LOWEST, BELOW_ONE]: wrapped modulo 1 first if `wrap`, then clipped.
     """
     first, second = moments
-    first_scale = 1.0 / (1.0 - FIRST_DECAY**step)
-    second_scale = 1.0 / (1.0 - SECOND_DECAY**step)
-    d, n = columns.shape
-    for k in range(d):
-        for i in range(n):
-            slope = gradient[k, i]
-            first[k, i] = FIRST_DECAY * first[k, i] + (1.0 - FIRST_DECAY) * slope
-            second[k, i] = SECOND_DECAY * second[k, i] + (1.0 - SECOND_DECAY) * slope * slope
-            move = first[k, i] * first_scale / (math.sqrt(second[k, i] * second_scale) + TINY)
-            moved = columns[k, i] - rate * move + spread * noise[k, i]
-            if wrap:
-                moved -= math.floor(moved)
-            columns[k, i] = min(max(moved, LOWEST), BELOW_ONE)
+    first *= FIRST_DECAY
+    first += (1.0 - FIRST_DECAY) * gradient
+    second *= SECOND_DECAY
+    second += (1.0 - SECOND_DECAY) * gradient * gradient
+    first_scale, second_scale = 1.0 / (1.0 - FIRST_DECAY**step), 1.0 / (1.0 - SECOND_DECAY**step)
+    columns -= rate * (first * first_scale / (np.sqrt(second * second_scale) + TINY))
+    columns += spread * noise
+    if wrap:
+        columns -= np.floor(columns)
+    np.clip(columns, LOWEST, BELOW_ONE, out=columns)
