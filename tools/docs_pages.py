@@ -61,7 +61,15 @@ REFERENCE = {
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
     "pictures": ("Pictures", ("evenroad.viz.show", "evenroad.viz.plan", "evenroad.viz.arm")),
     "mazes": ("Mazes", ("evenroad.world.gridmap.load",)),
-    "adapters": ("Adapters", ("evenroad.adapters.ompl", "evenroad.adapters.klampt", "evenroad.adapters.mujoco")),
+    "adapters": (
+        "Adapters",
+        (
+            "evenroad.adapters.ompl",
+            "evenroad.adapters.klampt",
+            "evenroad.adapters.mujoco",
+            "evenroad.adapters.simulated",
+        ),
+    ),
     "errors": ("Errors", ("evenroad.errors",)),
 }
 """Page -> its title, and the modules whose public names it holds."""

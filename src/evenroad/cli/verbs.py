@@ -20,8 +20,9 @@ BAD_INPUT = 2
 
 VERBS = {
     "plan": ("evenroad.cli.plan:PlanDisk", "a path for a disk on a map, or for an arm in a scene (--robot)"),
+    "run": ("evenroad.cli.run:RunTask", "a task of several motions from its file, as one trajectory"),
     "roadmap": ("evenroad.cli.roadmap:MakeRoadmap", "a roadmap for one arm in its cell, good for every scene"),
-    "view": ("evenroad.cli.view:View", "a plan in the browser, as one HTML file that plays offline, or as a GIF"),
+    "view": ("evenroad.cli.view:View", "a plan in the browser, as one HTML file that plays offline, as PNG or GIF"),
     "send": ("evenroad.cli.send:Send", "a plan to a UR arm, checked; a dry run without --go"),
     "points": ("evenroad.cli.points:Points", "write a point set: shipped or constructed"),
     "measure": ("evenroad.cli.measure:Measure", "print every measure of a point set"),
@@ -43,7 +44,7 @@ ENTRY_POINTS = "evenroad.verbs"
 
 GROUPS = {
     "a path, from the plan to the robot": (
-        ("plan", "view", "send", "roadmap", "robot", "demo"),
+        ("plan", "view", "send", "run", "roadmap", "robot", "demo"),
         (
             "evenroad plan box-reach.yaml --robot ur5 --start home --goal inside",
             "evenroad view box-reach.json --html reach.html",

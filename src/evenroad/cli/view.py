@@ -1,4 +1,4 @@
-"""``evenroad view``: a plan, of an arm or of a disk, in the browser, as one HTML file, or as a GIF."""
+"""``evenroad view``: a plan, of an arm or of a disk, in the browser, as one HTML file, a picture, or a GIF."""
 
 from __future__ import annotations
 
@@ -34,8 +34,9 @@ SECONDS = 0.5
 class View(RobotOptions):
     """Show a plan: the arm in its scene, or the disk on its map, along the path.
 
-    With the extra [view] this computer serves a page on which you drag start and goal of an arm; the path is planned
-    again as they move.  Ctrl-C ends it.  Otherwise a page is written that plays offline, and opened in the browser.
+    With the extra [view] this computer serves a page on which you move start, goal and obstacles of an arm; the path is
+    planned again as they move.  Ctrl-C ends it.  Otherwise a page is written that plays offline, and opened in the
+    browser.
 
     Examples: evenroad view box-reach.json · evenroad view box-reach.json --html reach.html
     """
@@ -44,6 +45,8 @@ class View(RobotOptions):
     """A plan of evenroad plan (.json); or a scene (.yaml), with --robot."""
     html: Path | None = None
     """Write one file that plays offline: play, pause, speed, joints, clearance; nothing is opened."""
+    png: Path | None = None
+    """Write a picture of the whole plan to this file; nothing is opened."""
     gif: Path | None = None
     """Write an animation of an arm to this file; nothing is opened."""
     robot: str | None = None
@@ -62,7 +65,8 @@ class View(RobotOptions):
         """Write the files that are named, or show until Ctrl-C; return 0."""
         if not 0 <= self.port < 65536:
             raise InvalidValue(f"port must be from 0 to 65535, got {self.port}")
-        for option, file, suffix in (("--gif", self.gif, ".gif"), ("--html", self.html, ".html")):
+        named = (("--png", self.png, ".png"), ("--gif", self.gif, ".gif"), ("--html", self.html, ".html"))
+        for option, file, suffix in named:
             if file is not None:
                 if file.suffix.lower() != suffix:
                     raise InvalidValue(f"{option} must name a {suffix}, got {str(file)!r}")
@@ -71,11 +75,13 @@ class View(RobotOptions):
         if plan.changed:
             print(f"evenroad: the {' and '.join(plan.changed)} changed since this was planned", file=sys.stderr)
         arm = isinstance(plan.request.world, ArmWorld)
+        if self.png is not None:
+            self._save_picture(plan, self.png)
         if self.gif is not None:
             self._save_gif(plan, arm)
         if self.html is not None:
             self._save_page(plan, self.html)
-        if self.gif is None and self.html is None:
+        if all(file is None for _, file, _ in named):
             if arm and find_spec("viser") is not None:
                 self._serve(plan)
             else:
@@ -99,6 +105,16 @@ class View(RobotOptions):
         if plan.request.source is None and self.robot is not None:
             return RobotFile(find_robot(self.robot)[0])
         return plan.request.source
+
+    def _save_picture(self, plan: PlanFile, path: Path) -> None:
+        from evenroad.viz.arm import save_arm_picture
+        from evenroad.viz.plan import save_plan_picture
+
+        if isinstance(plan.request.world, ArmWorld):
+            save_arm_picture(path, plan.result, plan.request.world, self._file(plan))
+        else:
+            save_plan_picture(path, plan.result, plan.request.world)
+        print(f"wrote {path}")
 
     def _save_gif(self, plan: PlanFile, arm: bool) -> None:
         if not arm:

@@ -1,0 +1,74 @@
+"""``evenroad run``: a task of several steps from its file, as one trajectory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from evenroad._checks import require_positive
+from evenroad._files import require_writable_folder
+from evenroad._terminal import print_table
+from evenroad.cli.plan import RobotOptions
+from evenroad.errors import InvalidValue
+from evenroad.robot import ArmWorld, Scene, in_scene, load_model
+from evenroad.robot.given import as_scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunTask(RobotOptions):
+    """Plan a task: motions, and what a gripper does between them; write one trajectory.
+
+    The file names the robot, the scene, a start and steps; see evenroad.task.load_task.
+
+    Example: evenroad run task.yaml --robot ur5 -o task.json
+    """
+
+    task: tyro.conf.Positional[Path]
+    """The task, a .yaml."""
+    robot: str | None = None
+    """A URDF, xacro or MJCF file, or a name, in place of the one that the task names."""
+    scene: str | None = None
+    """A scene's file or name, in place of that of the task."""
+    out: Annotated[tuple[Path, ...], tyro.conf.arg(aliases=["-o"])] = ()
+    """Files for the trajectory: .json, .csv, .yaml (ROS 2), .mcap (a bag), .script or .movej.script (URScript)."""
+    speed: float = 1.0
+    """Share of the velocity limits, from 0 to 1."""
+    time: float | None = None
+    """Time limit of each motion, in seconds."""
+    seed: int = 0
+    """Seed of everything random."""
+
+    def run(self) -> int:
+        """Plan, write, report; return 0 if all steps can be done, else 1."""
+        from evenroad.task.task_file import load_task
+        from evenroad.trajectory.files import format_of, save_trajectories
+
+        require_positive("speed", self.speed, at_most=1.0)
+        for file in self.out:
+            format_of(file)
+            if file.resolve() == self.task.resolve():
+                raise InvalidValue(f"--out {file} would overwrite the task")
+            require_writable_folder(file)
+        said = load_task(self.task)
+        source = said.robot if self.robot is None else self.robot
+        if source is None:
+            raise InvalidValue(f"{self.task} names no robot: give --robot")
+        scene = as_scene(said.scene if self.scene is None else self.scene) if said.scene or self.scene else Scene()
+        world = ArmWorld(in_scene(load_model(source, **self.options()).robot, scene), scene)
+        done = said.task.plan(world, said.start, seconds=self.time, rng=self.seed)
+        for file in self.out:
+            # The trajectory of an earlier run must not pass for this one.
+            file.unlink(missing_ok=True)
+        rows = [("status", f"{done.status}: {done.message}"), ("time", f"{1e3 * done.timings['task']:.0f} ms")]
+        if done.solved:
+            trajectory = done.trajectory(speed=self.speed)
+            save_trajectories(self.out, trajectory)
+            rows.append(
+                ("trajectory", f"{trajectory.duration:.3f} s, {len(trajectory.times)} states, {trajectory.proof}")
+            )
+            rows += [("files", ", ".join(map(str, self.out)))] if self.out else []
+        print_table(rows)
+        return 0 if done.solved else 1

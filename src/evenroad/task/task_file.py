@@ -1,0 +1,146 @@
+"""Tasks from YAML files: the robot, what is around it, a start, and the steps."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from evenroad._call import explains_calls
+from evenroad._yaml import numbers, read_mapping, require_keys
+from evenroad.errors import EvenroadError, InvalidValue, shown
+from evenroad.robot.orientation_constraint import OrientationConstraint
+from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
+from evenroad.task.steps import Attach, Detach, MoveTo, Step, Wait
+from evenroad.task.task import Task
+
+_TO_POSES = ("tip", "frame", "free_axis", "tolerance")
+_OF_A_MOTION = ("goals", "poses", "approach", "retreat", "away", "upright", *_TO_POSES)
+
+
+@dataclass(frozen=True)
+class TaskFile:
+    """What the file of a task says: `robot` and `scene` as names or paths, `scene` also as a mapping; None if unsaid.
+
+    A path is of a file beside that of the task.
+    """
+
+    task: Task
+    start: str
+    robot: str | None = None
+    scene: str | Mapping[str, Any] | None = None
+
+
+@explains_calls
+def load_task(path: str | os.PathLike[str]) -> TaskFile:
+    """Return a task from its YAML file.
+
+    ::
+
+        robot: ur5                        # a name, or a file beside this one
+        scene: shelf.yaml                 # a name, a file, or what a scene's file says
+        start: home                       # as evenroad plan --start takes it
+        steps:
+          - move_to: {poses: ["0.5 0.2 0.142 3.14159 0 0"], free_axis: z, approach: 0.1}
+          - attach: can                   # or {object: can, link: tool0, touches: [...], depth: 0.005, reach: 0.1}
+          - move_to: {poses: ["0.5 -0.3 0.061 0 0 0"], tip: can, free_axis: z, retreat: 0.05,
+                      approach: 0.05, away: up}
+          - detach: {object: can, onto: [table]}
+          - wait: 0.5
+          - move_to: home                 # a goal, or {goals: [home, "0 -1.57 0 -1.57 0 0"], retreat: 0.1}
+
+    Poses are texts as ``--goal-pose`` takes them [m, rad]; with ``upright: 0.1`` the tip tilts by that at most.
+
+    Parameters
+    ----------
+    path : str or path-like
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing or no YAML.
+    UnknownName, InvalidValue
+        For a key or value that a task does not have; the text says in which step.
+    """
+    file = Path(path)
+    said = read_mapping(file, "task")
+    require_keys(said, ("start", "steps"), ("robot", "scene"), f"{file}")
+    steps = said["steps"]
+    if not isinstance(steps, list):
+        raise InvalidValue(f"steps in {file} must be a list, got {shown(steps)}")
+    made = []
+    for number, step in enumerate(steps):
+        try:
+            made.append(_step(step))
+        except EvenroadError as error:
+            raise type(error)(f"step {number} in {file}: {error}") from None
+    for name in ("robot", "start"):
+        if name in said and not isinstance(said[name], str):
+            raise InvalidValue(f"{name} in {file} must be a text, got {shown(said[name])}")
+    return TaskFile(Task(made), said["start"], _beside(file, said.get("robot")), _beside(file, said.get("scene")))
+
+
+def _beside(file: Path, source: Any) -> Any:
+    """Return a path beside the task's file, where there is one of this name."""
+    found = file.parent / source if isinstance(source, str) else None
+    return source if found is None or not found.is_file() else str(found)
+
+
+def _step(said: Any) -> Step:
+    """Return a step from ``{kind: what}``."""
+    if not isinstance(said, Mapping) or len(said) != 1:
+        raise InvalidValue(f"a step must be one of {', '.join(f'{kind}: ...' for kind in _STEPS)}, got {shown(said)}")
+    require_keys([str(key) for key in said], (), _STEPS, "a step")
+    ((kind, what),) = said.items()
+    return _STEPS[kind](what)
+
+
+def _move_to(what: Any) -> MoveTo:
+    if isinstance(what, str):
+        return MoveTo(what)
+    said = _mapping("move_to", what, (), _OF_A_MOTION)
+    goals: list[Any] = [str(each) for each in _texts("goals", said)]
+    tip, frame = str(said.get("tip", "")), str(said.get("frame", ""))
+    axis = as_axis("free_axis", said["free_axis"]) if "free_axis" in said else None
+    near, tilt, *_ = (*as_numbers("tolerance", str(said.get("tolerance", "0 0")), (1, 2)), 0.0)
+    for text in _texts("poses", said):
+        pose, turned = pose_of(str(text))
+        if axis is not None and not turned:
+            raise InvalidValue(f"free_axis needs a rotation, got the pose {shown(text)} without one")
+        goals.append(PoseGoal(pose, tip, frame, axis, not turned, near, tilt))
+    if not goals:
+        raise InvalidValue("move_to needs goals or poses")
+    lines = {name: said[name] for name in ("approach", "retreat", "away") if name in said}
+    upright = OrientationConstraint(numbers([said["upright"]], 1, "upright")[0]) if "upright" in said else None
+    return MoveTo(goals[0] if len(goals) == 1 else goals, constraints=upright, **lines)
+
+
+def _attach(what: Any) -> Attach:
+    said = {"object": what} if isinstance(what, str) else what
+    return Attach(**_mapping("attach", said, ("object",), ("link", "touches", "depth", "reach")))
+
+
+def _detach(what: Any) -> Detach:
+    said = {"object": what} if isinstance(what, str) else what
+    return Detach(**_mapping("detach", said, ("object",), ("onto",)))
+
+
+def _wait(what: Any) -> Wait:
+    return Wait(what)
+
+
+def _mapping(kind: str, what: Any, required: tuple[str, ...], optional: tuple[str, ...]) -> dict[str, Any]:
+    if not isinstance(what, Mapping):
+        raise InvalidValue(f"{kind} must have key: value pairs, got {shown(what)}")
+    require_keys([str(key) for key in what], required, optional, kind)
+    return dict(what)
+
+
+def _texts(name: str, said: Mapping[str, Any]) -> list[Any]:
+    given = said.get(name, [])
+    return given if isinstance(given, list) else [given]
+
+
+_STEPS: dict[str, Callable[[Any], Step]] = {"move_to": _move_to, "attach": _attach, "detach": _detach, "wait": _wait}
