@@ -23,7 +23,7 @@ from evenroad.viz.sheet import Entry, Sheet
 from evenroad.viz.stage import Part, Stage, part_of
 from evenroad.viz.surfaces import tube
 
-SIZE, MOVING = (1000, 640), (720, 450)
+SIZE, MOVING = (900, 580), (720, 450)
 """Width and height of a picture, and of one that moves [pixels]."""
 FRAMES, _FRAME, _PAUSE = 40, 80, 900
 """Number of frames of a moving picture, and milliseconds of each, and of the first and the last."""
@@ -36,8 +36,8 @@ _SAMPLES, _THICK = 80, 0.006
 """Number of pieces of the tip's path, and their radius [m]."""
 _POINTS = 60
 """Number of corners of each link by which a side for the camera is chosen."""
-_NEAR, _EVERY = 0.15, 20
-"""How far from the arm obstacles must be shown: a share of what the arm needs; of its corners, every 20th counts."""
+_NEAR, _EVERY = 0.15, 50
+"""How far from the arm obstacles must be shown: a share of what the arm needs; of its corners, every 50th counts."""
 
 
 @dataclass(frozen=True)

@@ -43,9 +43,10 @@ def robot_parts(robot: Robot, file: RobotFile | None = None) -> dict[str, Part]:
     Without a file it is that of which the robot was loaded in this process.  A drawing that cannot be read is no reason
     to show nothing.
     """
-    shown = _numbered(robot, _by_link(robot.capsules))
     file = file_of(robot) if file is None else file
-    return shown if file is None else shown | _drawn(robot, file, as_drawn=True)
+    drawn = {} if file is None else _drawn(robot, file, as_drawn=True)
+    rest = _by_link(each for each in robot.capsules if each.link not in drawn)
+    return _numbered(robot, drawn | rest)
 
 
 def robot_sets(robot: Robot, file: RobotFile | None) -> dict[str, dict[str, Part]]:
@@ -111,14 +112,16 @@ def _by_link(shapes: Iterable[Shape]) -> dict[str, Part]:
 
 def _numbered(robot: Robot, parts: Mapping[str, Part]) -> dict[str, Part]:
     """Return the bodies of a robot's links, in colours that differ between neighbours."""
-    shown = {link: part for link, part in parts.items() if link in robot.links}
-    return {link: replace(part, colour=style.ARM[i % 2]) for i, (link, part) in enumerate(shown.items())}
+    shown = [link for link in robot.links if link in parts]
+    return {link: replace(parts[link], colour=style.ARM[i % 2]) for i, link in enumerate(shown)}
 
 
 def _drawn(robot: Robot, file: RobotFile, *, as_drawn: bool) -> dict[str, Part]:
     """Return link -> what the robot's file draws of it, or checks of it; kept between runs, as meshes are large."""
     try:
         urdf = read_robot(replace(file, use_visuals=False, as_drawn=as_drawn))
+        if not any(isinstance(shape, Mesh) for shape in urdf.shapes):
+            return _numbered(robot, _by_link(urdf.shapes))
         key = f"{key_of(urdf, (), 'drawn')}|{_FORMAT}"
     except EvenroadError:
         return {}
