@@ -19,7 +19,7 @@ from evenroad.space.batch import as_batch
 from evenroad.world import World
 from evenroad.world.gridmap.gridmap import DiskWorld
 
-BEFORE_PROOF = 50_000
+BEFORE_PROOF = 20_000
 """Number of motions after which the world tries to prove that there is no path: more than hard queries need."""
 BEFORE_PROOF_OF_CELLS = 200_000
 """The same for a search of cells, which begins again after it."""

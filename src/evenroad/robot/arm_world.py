@@ -26,7 +26,7 @@ from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
 from evenroad.robot.planes import with_planes
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot, within_scene
-from evenroad.robot.scene import Scene, limits_in_words
+from evenroad.robot.scene import Scene, limits_in_words, smaller_scene
 from evenroad.robot.separated import apart
 from evenroad.robot.states import as_configuration
 from evenroad.space import JointSpace
@@ -112,10 +112,8 @@ class ArmWorld(OneOrMany):
                 )
         object.__setattr__(self, "scene", with_planes(self.scene, self.robot.planes, self.robot.links))
         if self.scene.near_ends:
-            raise InvalidValue(
-                f"scene {self.scene.name!r} allows contacts near start and goals, which a world does not know:"
-                " plan does, or give it allowed_near_ends(robot, scene, start_and_goals)"
-            )
+            which = f"scene {self.scene.name!r} allows contacts near start and goals, which a world does not know"
+            raise InvalidValue(f"{which}: plan does, or give it allowed_near_ends(robot, scene, start_and_goals)")
         made = prepared(self.robot)
         require_few_segments(self.resolution, made.longest / self.resolution)
         self.__dict__.update(_space=made.space, bounds=made.bounds, robot_tables=made.tables)
@@ -283,10 +281,14 @@ class ArmWorld(OneOrMany):
         obstacles = 2.0 * (PADDING * max(1.0, reach + self.clearance) + self.native_scene.added)
         return max(obstacles, pairs, 1e-6 * max(clouds, default=0.0))
 
-    def with_bodies(self, robot: Robot) -> Callable[[Floats], Bools]:
-        """Return a function that checks configurations, (n, dim), of a robot with other bodies or another group."""
+    def with_bodies(self, robot: Robot, spare: float = 0.0) -> Callable[[Floats], Bools]:
+        """Return a function that checks configurations, (n, dim), of a robot with other bodies or another group.
+
+        Obstacles reach less far by what they are to `spare`, or farther where that is less than 0 [m].
+        """
         # Ranges are those of the robot.
-        return replace(self, robot=robot, scene=replace(self.scene, limits={})).valid
+        scene = smaller_scene(self.scene, spare) if spare > 0.0 else replace(self.scene, limits={})
+        return replace(self, robot=robot, scene=scene, clearance=self.clearance + max(-spare, 0.0)).valid
 
     def fingerprint(self) -> str:
         """Return a text that is equal for worlds of equal robot, scene, resolution and clearance."""

@@ -9,18 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
 from evenroad.robot.kernel.moving_tree import moving_tree
+from evenroad.robot.kernel.native_robot import shape_speeds
 from evenroad.robot.kernel.placed_capsules import LARGEST_EXCESS, place_capsule, speed_bounds
 from evenroad.robot.prepared_robots import joint_space
 from evenroad.robot.robot import Robot
 
 SLACK = 1e-4
 """Distance by which bodies are thinner, besides four times the error of single precision [m]."""
+OF_SHAPES = 4e-4
+"""Distance by which obstacles are smaller, besides, where true shapes are tested: four times what corners left out of
+convex meshes add to these at most [m]."""
+FARTHEST = 0.5
+"""Cells that move shapes by more are never said to be clear [m]."""
 BEYOND = 1e-4
 """Distance that cells reach beyond the limits of joints, where rounding may put a configuration [rad or m]."""
 _SLOWEST = 0.05
@@ -33,12 +40,14 @@ _AT_ONCE = 65_536
 class Bodies:
     """A robot whose `capsules` are tested in a scene, and the largest error of these checks, >= 0 [m].
 
-    `in_scene` returns which configurations, (n, dim), of such a robot are free there: (n,).
+    `in_scene` returns which configurations, (n, dim), of such a robot are free there: (n,).  A distance besides says by
+    how much the obstacles are smaller [m].  `shapes` are true shapes of the links, and capsules around them.
     """
 
     robot: Robot
-    in_scene: Callable[[Robot], Callable[[Floats], Bools]]
+    in_scene: Callable[..., Callable[[Floats], Bools]]
     margin: float
+    shapes: Robot | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,14 +109,13 @@ def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], mo
     first = first_links(bodies.robot, len(reach))
     if not first.capsules:
         return None
-    cells = _cells_around(first, configuration[: len(reach)], np.array(reach), most)
-    thin = thinner(first, 0.5 * cells.size, SLACK + 4.0 * bodies.margin)
-    if not thin.capsules:
+    cells = cells_around(first, configuration[: len(reach)], np.array(reach), most)
+    if bodies.shapes is None and not thinner(first, 0.5 * cells.size, SLACK + 4.0 * bodies.margin).capsules:
         return None
     # Imported here, as most plans need no proof.
     from scipy.ndimage import label
 
-    number = _joined(label(_free_cells(bodies.in_scene(thin), cells))[0], cells.whole)
+    number = _joined(label(_free_cells(bodies, first, cells))[0], cells.whole)
     cell = cells.cell(configuration[: len(reach)])
     # A configuration in no cell, or in a blocked one, contradicts the check.
     if cell is None or number[cell] == 0:
@@ -146,6 +154,7 @@ def first_links(robot: Robot, joints: int) -> Robot:
         capsules=tuple(capsule for capsule in robot.capsules if capsule.link not in behind),
         pairs=tuple(pair for pair in robot.pairs if behind.isdisjoint(pair)),
         group=group,
+        planes=(),
         hulls=(),
         resting=(),
         inner=None,
@@ -158,11 +167,8 @@ def thinner(robot: Robot, half: Floats, slack: float) -> Robot:
 
     `half`, (dim,), are half the sides of a cell [rad or m].
     """
-    tree = moving_tree(robot)
-    placed = [place_capsule(capsule, tree) for capsule in robot.capsules]
-    moved = speed_bounds(tree, placed, [], robot)[0] @ half
     kept = []
-    for capsule, far in zip(robot.capsules, moved.tolist(), strict=True):
+    for capsule, far in zip(robot.capsules, (_speeds(robot) @ half).tolist(), strict=True):
         radius = capsule.radius - far - slack
         # Spheres that cover it are larger, unless it is one.
         radius /= 1.0 if capsule.a == capsule.b else LARGEST_EXCESS
@@ -170,7 +176,63 @@ def thinner(robot: Robot, half: Floats, slack: float) -> Robot:
     return replace(robot, capsules=tuple(kept))
 
 
-def _cells_around(first: Robot, configuration: Floats, reach: Floats, most: int) -> Cells:
+def _speeds(robot: Robot) -> Floats:
+    """Return how fast joints move the segments of capsules at most, (capsules, dim) [m/rad or m/m]."""
+    tree = moving_tree(robot)
+    return speed_bounds(tree, [place_capsule(capsule, tree) for capsule in robot.capsules], [], robot)[0]
+
+
+class CellTests:
+    """What is known of cells of the `first` links of some bodies: which are blocked, and which free, throughout.
+
+    Capsules are thinner by how far half a cell moves them.  True shapes stay as they are, and obstacles are smaller by
+    that: so a point of the one stays in the other.
+    """
+
+    def __init__(self, bodies: Bodies, first: Robot) -> None:
+        self._bodies, self._first, self._slack = bodies, first, SLACK + 4.0 * bodies.margin
+        true, tree = bodies.shapes, moving_tree(first)
+        self._links: list[tuple[Robot, Floats]] = []
+        """Of each moving link that has true shapes a robot of it alone, and how fast joints move it."""
+        for link in dict.fromkeys(capsule.link for capsule in first.capsules) if true is not None else ():
+            of_link: dict[str, Any] = {
+                what: tuple(each for each in getattr(true, what) or () if each.link == link)
+                for what in ("capsules", "inner", "shapes")
+            }
+            robot = replace(first, pairs=(), padding=(), **of_link)
+            speeds = shape_speeds(robot, tree, {link: 0})[0]
+            if of_link["shapes"] and speeds.any():
+                self._links.append((robot, speeds))
+
+    def unblocked(self, half: Floats, middles: Floats) -> Bools:
+        """Return which cells, of these middles, (n, dim), and half sides, (dim,), are not blocked throughout."""
+        free, thin = np.ones(len(middles), dtype=np.bool_), thinner(self._first, half, self._slack)
+        if thin.capsules:
+            free &= self._bodies.in_scene(thin)(middles)
+        for robot, speeds in self._links:
+            far = float(speeds @ half) + self._slack + OF_SHAPES
+            free[free] = self._bodies.in_scene(robot, far)(middles[free])
+        return free
+
+    def clear(self, half: Floats, middles: Floats) -> Bools:
+        """Return which cells are free throughout, as far as obstacles go, or capsules where there are no true shapes.
+
+        No proof relies on it.
+        """
+        if not self._links:
+            thick = [
+                replace(capsule, radius=capsule.radius + far)
+                for capsule, far in zip(self._first.capsules, (_speeds(self._first) @ half).tolist(), strict=True)
+            ]
+            return self._bodies.in_scene(replace(self._first, capsules=tuple(thick)))(middles)
+        free = np.ones(len(middles), dtype=np.bool_)
+        for robot, speeds in self._links:
+            far = float(speeds @ half)
+            free[free] = far < FARTHEST and self._bodies.in_scene(robot, -far)(middles[free])
+        return free
+
+
+def cells_around(first: Robot, configuration: Floats, reach: Floats, most: int) -> Cells:
     """Return about `most` cells around a configuration; where a joint wraps, at most the whole circle."""
     space = joint_space(first)
     period = space.flat.period
@@ -188,12 +250,13 @@ def _cells_around(first: Robot, configuration: Floats, reach: Floats, most: int)
     return Cells(low, high, count, period)
 
 
-def _free_cells(valid: Callable[[Floats], Bools], cells: Cells) -> Bools:
-    middles, shape = cells.middles, tuple(cells.count.tolist())
+def _free_cells(bodies: Bodies, first: Robot, cells: Cells) -> Bools:
+    middles, shape, tests = cells.middles, tuple(cells.count.tolist()), CellTests(bodies, first)
     free = np.empty(int(np.prod(shape)), dtype=bool)
     for begin in range(0, len(free), _AT_ONCE):
         rows = np.unravel_index(np.arange(begin, min(begin + _AT_ONCE, len(free))), shape)
-        free[begin : begin + _AT_ONCE] = valid(np.stack([middles[k][row] for k, row in enumerate(rows)], axis=1))
+        places = np.stack([middles[k][row] for k, row in enumerate(rows)], axis=1)
+        free[begin : begin + _AT_ONCE] = tests.unblocked(0.5 * cells.size, places)
     return free.reshape(shape)
 
 

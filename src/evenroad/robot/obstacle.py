@@ -9,7 +9,7 @@ from struct import Struct
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._arrays import Floats, set_fields
+from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import FARTHEST, as_batch, require_positive
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
@@ -22,6 +22,8 @@ MARGIN = 0.02
 
 _ROW = Struct("16d")
 _NUMBERS = {kind: number for number, kind in enumerate(PRIMITIVES)}
+_LESS = {"box": (2.0, 2.0, 2.0), "sphere": (1.0,), "cylinder": (1.0, 2.0), "capsule": (1.0,)}
+"""Kind -> how many times a distance its dimensions lose where its surface is moved inwards by that."""
 
 
 @dataclass(frozen=True)
@@ -162,6 +164,20 @@ def box_rows(size: npt.ArrayLike, xyz: npt.ArrayLike, xyzw: npt.ArrayLike | None
         raise InvalidValue(f"xyzw must be one quaternion a box, of a norm > 0, got {shown(xyzw)}")
     rows[:, 4:13] = rotations_from_quaternions(turns[:, [3, 0, 1, 2]]).reshape(-1, 9)
     return rows
+
+
+def smaller_rows(rows: Floats, by: float) -> tuple[Floats, Bools]:
+    """Return the rows of obstacles, (n, 16), that reach less far by a distance [m], and of which anything is left.
+
+    A ball of that radius about any point of them lies in the obstacle as it was.
+    """
+    kinds, less = rows[:, 0].astype(int), np.zeros((len(PRIMITIVES), 3))
+    for kind, of in _LESS.items():
+        less[_NUMBERS[kind], : len(of)] = of
+    small = rows.copy()
+    small[:, 1:4] -= by * less[kinds]
+    left = ((small[:, 1:4] > 0.0) | (less[kinds] == 0.0)).all(axis=1)
+    return small[left], left
 
 
 def boxes_of(rows: Floats, names: Sequence[str]) -> tuple[Obstacle, ...]:

@@ -23,7 +23,7 @@ from evenroad.robot.obstacle import MARGIN as MARGIN
 from evenroad.robot.obstacle import Cut as Cut
 from evenroad.robot.obstacle import Obstacle as Obstacle
 from evenroad.robot.obstacle import Seen as Seen
-from evenroad.robot.obstacle import box_rows, boxes_of
+from evenroad.robot.obstacle import box_rows, boxes_of, smaller_rows
 
 Bodies: TypeAlias = "Sequence[Obstacle | Shape]"
 
@@ -269,6 +269,17 @@ class Scene:
             allowed=frozenset((link, name) for link, name in self.allowed if name not in names),
             near_ends=frozenset(each for each in self.near_ends if each[1] not in names),
         )
+
+
+def smaller_scene(scene: Scene, by: float) -> Scene:
+    """Return a scene for checks alone: its obstacles reach less far by a distance [m]; clouds and meshes are gone."""
+    rows, left = smaller_rows(scene.rows, by)
+    solid = [name for number, name in enumerate(scene.names) if number not in dict(scene.surfaces)]
+    names = tuple(name for name, is_left in zip(solid, left.tolist(), strict=True) if is_left)
+    made = Scene(name=scene.name)
+    del made.__dict__["obstacles"]
+    set_fields(made, allowed=frozenset(each for each in scene.allowed if each[1] in names), rows=rows, names=names)
+    return made
 
 
 def _as_obstacles(bodies: object, others: Sequence[Obstacle], scene: str) -> tuple[Obstacle, ...]:

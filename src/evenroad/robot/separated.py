@@ -15,6 +15,7 @@ from evenroad.robot.locked import BEYOND, Bodies, Piece, piece_of
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.pose_task import PoseTask
 from evenroad.robot.robot import Robot
+from evenroad.robot.split_cells import is_cut_off
 from evenroad.robot.walls import pieces_between_walls
 from evenroad.world.protocol import Apart
 
@@ -29,6 +30,10 @@ THOROUGH = (
     (3, (0.35, 0.35, np.inf), 500_000),
 )
 """These take tenths of a second."""
+
+SPLIT, MOST_SPLIT = 2, 200_000
+"""So many joints are also looked at with cells that are split where it matters, and with how many cells at most: some
+ways are closed by millimetres.  Where a way is clear it takes some milliseconds to say so."""
 
 MOST_GOALS = 4
 """Cells around a goal show what those around the start do not; around no more goals than these."""
@@ -56,8 +61,8 @@ class InScene(Protocol):
     @property
     def clearance(self) -> float: ...  # noqa: D102
 
-    def with_bodies(self, robot: Robot) -> Callable[[Floats], Bools]:
-        """Return a check of configurations, (n, dim), for a robot with other bodies."""
+    def with_bodies(self, robot: Robot, spare: float = 0.0) -> Callable[[Floats], Bools]:
+        """Return a check of configurations, (n, dim), for a robot with other bodies, obstacles smaller by `spare`."""
 
 
 def apart(
@@ -79,8 +84,7 @@ def apart(
     bodies, others = outer_bodies(world), False
     names: tuple[str, ...] = ()
     if robot.inner is not None:
-        inner = Bodies(replace(robot, capsules=robot.inner, inner=None, shapes=()), world.with_bodies, world.margin)
-        names, others = shown_by(inner, start, goals, tasks, tries)
+        names, others = shown_by(inner_bodies(world), start, goals, tasks, tries)
     truly = bool(names) or robot.inner is None
     if not names and not robot.shapes:
         names, others = shown_by(bodies, start, goals, tasks, tries)
@@ -103,6 +107,13 @@ def apart(
         found = "the posture found cannot" if len(goals) == 1 else f"none of the {len(goals)} postures found can"
         return Apart(f"{found} be reached: {alone} (shown for {of}); others may be", proved=False)
     return Apart(f"{PROVED}: {alone} (shown for {of})", proved=True)
+
+
+def inner_bodies(world: InScene) -> Bodies:
+    """Return bodies inside of the robot's true shapes, and these shapes."""
+    robot = world.robot
+    within = replace(robot, capsules=robot.inner or (), inner=None, shapes=())
+    return Bodies(within, world.with_bodies, world.margin, robot)
 
 
 def outer_bodies(world: InScene) -> Bodies:
@@ -135,7 +146,9 @@ def shown_by(
     for joints, reach, cells in tries:
         if joints > len(group):
             break
-        piece = piece_of(bodies, start, reach, cells)
+        if joints == SPLIT and unreached and is_cut_off(bodies, start, np.array(unreached), joints, MOST_SPLIT):
+            unreached = []
+        piece = piece_of(bodies, start, reach, cells) if unreached or undecided else None
         if piece is not None:
             unreached = [goal for goal in unreached if piece.holds(goal)]
             undecided = [task for task in undecided if not is_beyond(piece, *task)]

@@ -90,17 +90,28 @@ class _PlacedParts:
         return around @ self.rotation.T + self.translation if len(around) else self.endpoints
 
 
-def _shapes(robot: Robot, tree: MovingTree, number: dict[str, int]) -> dict[str, npt.NDArray[np.generic]]:
-    """Return the parts of all true shapes, body by body, and how fast each coordinate moves those of each body."""
+def _placed(robot: Robot, tree: MovingTree, number: dict[str, int]) -> list[_PlacedParts]:
     placed = []
     for parts in sorted((each for each in robot.shapes if each.link in number), key=lambda each: number[each.link]):
         at = tree.links[parts.link]
         placed.append(_PlacedParts(parts, at.rotation, at.translation, at.frame))
-    speeds = np.zeros((len(number), len(robot.group)))
+    return placed
+
+
+def shape_speeds(robot: Robot, tree: MovingTree, number: dict[str, int]) -> Floats:
+    """Return how fast each coordinate moves the true shapes of each body at most, (bodies, dim) [m/rad or m/m]."""
+    speeds, placed = np.zeros((len(number), len(robot.group))), _placed(robot, tree, number)
     hulls = [PlacedHulls(each.frame, ((each.endpoints[np.newaxis], 0.0),)) for each in placed]
     for each, row in zip(placed, speed_bounds(tree, hulls, [], robot)[0], strict=True):
         body = number[each.parts.link]
         speeds[body] = np.maximum(speeds[body], row)
+    return speeds
+
+
+def _shapes(robot: Robot, tree: MovingTree, number: dict[str, int]) -> dict[str, npt.NDArray[np.generic]]:
+    """Return the parts of all true shapes, body by body, and how fast each coordinate moves those of each body."""
+    placed = _placed(robot, tree, number)
+    speeds = shape_speeds(robot, tree, number)
     counts = [each.parts.corners.shape[:2] for each in placed]
     of_part = np.repeat(np.arange(len(placed)), [parts for parts, _ in counts])
     corners = [each.parts.corners.reshape(-1, 3) @ each.rotation.T + each.translation for each in placed]
