@@ -15,8 +15,8 @@ from evenroad.robot.separated import inner_bodies
 from evenroad.robot.split_cells import is_cut_off
 from tests.robot.kernel_arms import random_rotation, random_scene, random_tree, walk
 from tests.robot.mesh_arms import write_fork_arm
-from tests.robot.test_locked import at, flat_arm, free_places, posts
-from tests.robot.test_true_shapes import as_meshes, solids
+from tests.robot.post_scenes import at, flat_arm, free_places, posts
+from tests.robot.solid_scenes import as_meshes, solids
 from tests.robot.urdf_texts import joint, link, urdf, write
 
 

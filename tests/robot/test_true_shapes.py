@@ -14,9 +14,10 @@ from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot_roadmap.static_scene import require_same_robot
 from tests.refused import refused
-from tests.robot.kernel_arms import edge, proof_edge, random_rotation, states_along
+from tests.robot.kernel_arms import edge, proof_edge, states_along
 from tests.robot.mesh_arms import fork, write_fork_arm
 from tests.robot.shape_oracle import shape_clearance
+from tests.robot.solid_scenes import as_meshes, solids
 from tests.robot.surface_scenes import from_trimesh
 from tests.robot.urdf_texts import joint, link, urdf
 
@@ -35,38 +36,11 @@ def arm(tmp_path_factory):
     return replace(robot, pairs=()), read_urdf(folder / "arm.urdf").shapes
 
 
-def solids(seed, count=10):
-    """Boxes, balls, cylinders and capsules at random places around the arm, turned and not."""
-    rng = np.random.default_rng(seed)
-    kinds = ("box", "sphere", "cylinder", "capsule")
-    made = []
-    for i in range(count):
-        shape = kinds[i % 4]
-        size = tuple(rng.uniform(0.01, 0.15, {"box": 3, "sphere": 1}.get(shape, 2)))
-        angle, away = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(0.25, 0.7)
-        place = (away * np.cos(angle), away * np.sin(angle), rng.uniform(0.2, 1.0))
-        rotation = np.eye(3).ravel().tolist() if i % 3 == 0 else random_rotation(rng)
-        made.append(Obstacle.of(f"solid{i}", shape, size, place, tuple(rotation)))
-    return Scene(tuple(made), name=f"solids{seed}")
-
-
 def points(seed, count=60):
     rng = np.random.default_rng(seed)
     angle, away = rng.uniform(0.0, 2.0 * np.pi, count), rng.uniform(0.25, 0.7, count)
     places = np.stack([away * np.cos(angle), away * np.sin(angle), rng.uniform(0.2, 1.0, count)], axis=1)
     return Scene((Obstacle("cloud", PointCloud(places, 0.012)),), name="points")
-
-
-def as_meshes(scene):
-    """The boxes of a scene as closed meshes."""
-    boxes = [each for each in scene.obstacles if isinstance(each.body, Box)]
-    return Scene(
-        tuple(
-            Obstacle(each.name, Mesh(from_trimesh(trimesh.creation.box(each.body.size)), pose=each.body.pose))
-            for each in boxes
-        ),
-        name="meshes",
-    ), Scene(tuple(boxes), name="boxes")
 
 
 BOXES = as_meshes(solids(3, 80))
