@@ -255,8 +255,8 @@ def _free_cells(bodies: Bodies, first: Robot, cells: Cells) -> Bools:
     free = np.empty(int(np.prod(shape)), dtype=bool)
     for begin in range(0, len(free), _AT_ONCE):
         rows = np.unravel_index(np.arange(begin, min(begin + _AT_ONCE, len(free))), shape)
-        places = np.stack([middles[k][row] for k, row in enumerate(rows)], axis=1)
-        free[begin : begin + _AT_ONCE] = tests.unblocked(0.5 * cells.size, places)
+        q = np.stack([middles[k][row] for k, row in enumerate(rows)], axis=1)
+        free[begin : begin + _AT_ONCE] = tests.unblocked(0.5 * cells.size, q)
     return free.reshape(shape)
 
 

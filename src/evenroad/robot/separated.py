@@ -33,7 +33,7 @@ THOROUGH = (
 
 SPLIT, MOST_SPLIT = 2, 200_000
 """So many joints are also looked at with cells that are split where it matters, and with how many cells at most: some
-ways are closed by millimetres.  Where a way is clear it takes some milliseconds to say so."""
+passages are closed by millimetres.  Where one is clear it takes some milliseconds to say so."""
 
 MOST_GOALS = 4
 """Cells around a goal show what those around the start do not; around no more goals than these."""

@@ -1,8 +1,8 @@
-"""Proofs that the first joints cannot pass, by cells that are split only where a way may lead through them.
+"""Infeasibility proofs by cells that are split only where a path may lead through them.
 
-A cell is blocked if everything in it is, and clear if nothing is.  All others lie on ways that nobody knows of: those
-on the ways with the fewest of them are split, until start and goal are apart or joined by clear cells (D. Zhu and
-J.-C. Latombe, 1991).
+A cell is blocked if everything in it is, and clear if nothing is.  Of all others nothing is known: those on the paths
+with the fewest of them are split, until start and goal are apart or joined by clear cells (D. Zhu and J.-C. Latombe,
+1991).
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from evenroad.robot.locked import Bodies, Cells, CellTests, cells_around, first_
 COARSE = 500
 """Number of cells at first, for each joint squared."""
 MORE = 1.5
-"""Cells are split on all ways with at most so many times as many unknown cells as the best way."""
+"""Cells are also split on paths that have more unknown cells than the best one, by this factor at most."""
 CLEAR = 1e-7
-"""What a clear cell counts on a way; an unknown one counts 1."""
+"""What a clear cell counts on a path; an unknown one counts 1."""
 DEEPEST = 12
 """Largest number of times a cell is split."""
 
@@ -79,9 +79,9 @@ class _Leaves:
                     for other in [each for each in levels if each <= level]:
                         keys, cells = sorted_keys[other]
                         wanted = self.keys(other, beside >> (level - other))
-                        place = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-                        same = keys[place] == wanted
-                        yield mine[same], cells[place[same]]
+                        index = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+                        same = keys[index] == wanted
+                        yield mine[same], cells[index[same]]
 
 
 def is_cut_off(bodies: Bodies, start: Floats, goals: Floats, joints: int, most: int) -> bool:
@@ -106,8 +106,8 @@ def is_cut_off(bodies: Bodies, start: Floats, goals: Floats, joints: int, most: 
             middles = cells.low + (here + 0.5) * size
             kept = tests.unblocked(0.5 * size, middles)
             leaves.add(np.full(int(kept.sum()), depth), here[kept], tests.clear(0.5 * size, middles[kept]))
-        ends = [leaves.find(start[:joints])], [leaves.find(goal[:joints]) for goal in goals]
-        if min(map(min, ends)) < 0:
+        terminals = [leaves.find(start[:joints])], [leaves.find(goal[:joints]) for goal in goals]
+        if min(map(min, terminals)) < 0:
             # A free configuration in no cell contradicts the checks.
             return False
         one, two = map(np.concatenate, zip(*leaves.neighbours(), strict=True))
@@ -116,12 +116,12 @@ def is_cut_off(bodies: Bodies, start: Floats, goals: Floats, joints: int, most: 
         graph = coo_matrix((counts[columns], (rows, columns)), shape=(len(leaves),) * 2).tocsr()
         # Pairs of one size come twice.
         graph.data = counts[graph.indices]
-        away, left = (dijkstra(graph, indices=end, min_only=True) for end in ends)
-        ways = away + left - counts
-        least = float(ways.min())
+        away, left = (dijkstra(graph, indices=cells_of, min_only=True) for cells_of in terminals)
+        through = away + left - counts
+        least = float(through.min())
         if np.isinf(least):
             return True
-        split = ~leaves.clear & (ways <= MORE * least + 1.0) & (leaves.level < DEEPEST)
+        split = ~leaves.clear & (through <= MORE * least + 1.0) & (leaves.level < DEEPEST)
         if least < 0.5 or not split.any() or len(leaves) + (len(corner) - 1) * int(split.sum()) > most:
             return False
         level = np.repeat(leaves.level[split] + 1, len(corner))
