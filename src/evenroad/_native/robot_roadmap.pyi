@@ -3,8 +3,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._arrays import Bools, Floats, Ints32
+from evenroad._arrays import Bools, Floats, Ints, Ints32
 from evenroad._native.planning import Checks
+from evenroad._native.robot import Checker
 
 Int8s: TypeAlias = npt.NDArray[np.int8]
 
@@ -51,3 +52,6 @@ class ProvedSearch:
         moved: Checks,
     ) -> None: ...
     def go_on(self, most_motions: int, batches: int) -> Literal["found", "no path", "not free", "spent", "paused"]: ...
+
+def rows_joined(walls: Checker, inside: Checker, pool: Floats, from_row: int, rows: Ints, early: Floats) -> Ints: ...
+def scenes_free(checkers: list[Checker], q: Floats) -> Ints32: ...

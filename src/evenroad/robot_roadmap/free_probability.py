@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, Ints32
+from evenroad._native.robot import Checker
+from evenroad._native.robot import Scene as NativeScene
+from evenroad._native.robot_roadmap import scenes_free
 from evenroad._threads import in_order
-from evenroad.robot import ArmWorld, Robot, Scene
+from evenroad.robot import Robot
 from evenroad.robot.kinematics import capsule_endpoints, link_poses
+from evenroad.robot.obstacle import box_rows
+from evenroad.robot.prepared_robots import prepared
 
 BOXES = (3, 30)
 """Range of the number of boxes in a random scene, the last number not included."""
@@ -30,6 +34,10 @@ TRIES = 100
 
 SEEN = 2000
 """Number of configurations that the reach is measured on."""
+
+
+AT_ONCE = 512
+"""Number of configurations that a thread tests at once."""
 
 
 class Surroundings(NamedTuple):
@@ -63,29 +71,35 @@ def free_probability(
 
     The boxes stand anywhere within the robot's reach; they depend on no task.
     """
-    bare, around = replace(robot, pairs=()), Surroundings.of(robot, q)
-    free = np.zeros(len(q))
-    drawn = ((ArmWorld(bare, random_scene(*around, rng)), q) for _ in range(scenes))
-    for i, results in enumerate(in_order(ArmWorld.valid, drawn)):
-        free += results
-        progress((i + 1) / scenes)
-    return free / scenes
+    around = Surroundings.of(robot, q)
+    # What is random is drawn first: the result is the same however many threads there are.
+    drawn = [among(robot, box_rows(*random_boxes(around, rng), None)) for _ in range(scenes)]
+    parts = np.array_split(q, -(-len(q) // AT_ONCE))
+    free: list[Ints32] = []
+    for counts in in_order(scenes_free, ((drawn, part) for part in parts)):
+        free.append(counts)
+        progress(len(free) / len(parts))
+    shares: Floats = np.concatenate(free) / scenes
+    return shares
 
 
-def random_scene(base: Floats, low: Floats, high: Floats, reach: float, rng: np.random.Generator) -> Scene:
-    """Return random boxes between two corners, (3,), of sizes in proportion to the reach [m]."""
+def among(robot: Robot, boxes: Floats) -> Checker:
+    """Return the checks of a robot among boxes, (n, 16), as :func:`evenroad.robot.obstacle.box_rows` gives them."""
+    made = prepared(robot)
+    tested = np.ones((len(made.tables.capsules), len(boxes)), dtype=np.bool_)
+    return Checker(made.native, NativeScene(made.native, boxes, tested, [], None, 0.0), 1.0, 0.0, False)
+
+
+def random_boxes(around: Surroundings, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Return extents and centres of random boxes within a reach, of sizes in proportion to it, (m, 3) each [m]."""
     least, small, large, most = HALF_EXTENTS
-    typical = rng.uniform(np.log(small), np.log(large))
-    boxes: list[tuple[Floats, Floats]] = []
-    volume = 0.0
-    for _ in range(int(rng.integers(*BOXES))):
-        half = reach * np.clip(np.exp(rng.normal(typical, 0.5, 3)), least, most)
-        for _ in range(TRIES):
-            centre = rng.uniform(low, high)
-            if np.hypot(*(centre - base)[:2]) >= CLEAR * reach:
-                break
-        volume += float(np.prod(2.0 * half))
-        if volume > FULL * reach**3:
+    typical, count = rng.uniform(np.log(small), np.log(large)), int(rng.integers(*BOXES))
+    half = around.reach * np.clip(np.exp(rng.normal(typical, 0.5, (count, 3))), least, most)
+    centres = rng.uniform(around.low, around.high, (count, 3))
+    for _ in range(TRIES - 1):
+        on_axis = np.hypot(*(centres - around.base)[:, :2].T) < CLEAR * around.reach
+        if not on_axis.any():
             break
-        boxes.append((2.0 * half, centre))
-    return Scene.of_boxes(*np.array(boxes).reshape(-1, 2, 3).swapaxes(0, 1), name="random")
+        centres[on_axis] = rng.uniform(around.low, around.high, (on_axis.sum(), 3))
+    kept = np.cumsum(np.prod(2.0 * half, axis=1)) <= FULL * around.reach**3
+    return 2.0 * half[kept], centres[kept]

@@ -7,16 +7,17 @@ queries of no particular task: the tip of the robot is inside random boxes of fi
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad._native.robot import Checker
+from evenroad._native.robot_roadmap import rows_joined
 from evenroad._threads import in_order
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.kinematics import capsule_endpoints, link_poses
-from evenroad.robot_roadmap.free_probability import Surroundings
+from evenroad.robot_roadmap.free_probability import Surroundings, among
 
 HALF_EXTENTS = ((0.12, 0.25), (0.1, 0.22), (0.1, 0.22))
 """Ranges of a passage's half depth, half width and half height, as shares of the reach."""
@@ -38,17 +39,13 @@ INSIDE = 0.7
 IN_ONE = 4
 """Largest number of queries in one passage."""
 
-FIRST = 2048
-"""Number of first candidates that each query is tried to be joined to at any distance."""
+OWNERS = 4096
+"""Number of configurations, the first of a pool, that passages are put around."""
 
-NEAR = 1000
-"""Number of nearest candidates, of those that follow, that each query is tried to be joined to, too."""
-
-STEP = 0.3
-"""Resolution of the motions that are tried; nothing is proved here [rad]."""
-
-EARLY = (0.05, 0.1, 0.2)
-"""Shares of a motion at which it is checked first: most that leave a passage touch its walls at once."""
+EARLY = np.array([0.05, 0.1, 0.2])
+"""Shares of a motion at which it is checked first: most that leave a passage touch its walls at once.  Those that do
+not are checked at sixteen states; nothing is proved here.
+"""
 
 BATCH = 64
 """Number of passages that are drawn at once."""
@@ -85,7 +82,6 @@ def hard_queries(
     robot: Robot,
     cell: Scene,
     pool: Floats,
-    scaled: Floats,
     candidates: Ints,
     count: int,
     rng: np.random.Generator,
@@ -93,83 +89,52 @@ def hard_queries(
 ) -> Visibility:
     """Return which candidates are visible from `count` random hard queries; fewer where hardly any is free.
 
-    Queries and candidates are rows of a pool, (n, dim).  `scaled` is the pool in the metric that decides which
-    candidates are near.
+    Queries and candidates are rows of a pool, (n, dim).
     """
     if not count:
         return no_visibility()
     around = Surroundings.of(robot, pool)
-    tips = tips_of(robot, pool)
-    body, radii = body_of(robot, pool)
-    bare, inside = replace(robot, pairs=()), ArmWorld(robot, cell, resolution=STEP)
+    tips = tips_of(robot, pool[:OWNERS])
+    body, radii = body_of(robot, pool[:OWNERS])
+    inside = ArmWorld(robot, cell)
     pool = inside.space.wrapped(pool)
-    # Threads share this: it is made before they start.
-    inside.valid(pool[:1])
-    scaled = np.ascontiguousarray(scaled.T)
     own_of: list[int] = []
 
-    def queries() -> Iterator[tuple[ArmWorld, int]]:
+    def queries() -> Iterator[tuple[Checker, int]]:
         drawn = TRIES * count if tips.shape[1] else 0
         while len(own_of) < count and drawn > 0:
-            owns, which = rng.integers(len(pool), size=BATCH), rng.integers(tips.shape[1], size=BATCH)
+            owns, which = rng.integers(len(tips), size=BATCH), rng.integers(tips.shape[1], size=BATCH)
             drawn -= BATCH
             batch = passages_around(tips[owns, which], around, rng)
             for i in np.flatnonzero(~batch.touched_by(body[owns], radii)).tolist():
                 if len(own_of) == count:
                     return
                 own = int(owns[i])
-                # The pool is free of these already.
-                world = ArmWorld(bare, batch.walls(i), resolution=STEP)
-                if not world.valid(pool[own : own + 1])[0]:
+                # The pool is free of robot and static scene already.
+                passage = among(inside.robot, batch.walls(i))
+                if not passage.valid(pool[own]):
                     continue
                 others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))
-                others = rng.permutation(others[world.valid(pool[others])])[: IN_ONE - 1]
+                others = rng.permutation(others[passage.valid(pool[others])])[: IN_ONE - 1]
                 for end in np.unique(np.append(others, own))[: count - len(own_of)].tolist():
                     own_of.append(end)
-                    yield world, end
+                    yield passage, end
+
+    def seen(passage: Checker, end: int) -> Ints:
+        """Return which candidates a straight motion joins to a query."""
+        return rows_joined(passage, inside.checker, pool, end, candidates, EARLY)
 
     found: list[Ints] = []
     pairs = 0
-    for seen in in_order(lambda world, end: _seen(world, inside, pool, scaled, candidates, end), queries()):
-        found.append(seen)
-        pairs += len(seen) * len(robot.pairs)
+    for rows in in_order(seen, queries()):
+        found.append(rows)
+        pairs += len(rows) * len(robot.pairs)
         progress(min(max(len(found) / count, pairs / MOST_SEEN), 1.0))
         if pairs > MOST_SEEN and len(found) >= FEWEST:
             break
     if not found:
         return no_visibility()
     return Visibility(np.array(own_of[: len(found)]), np.cumsum([0, *map(len, found)]), np.concatenate(found))
-
-
-def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, candidates: Ints, end: int) -> Ints:
-    """Return which candidates a straight motion joins to a query, except itself: of the first ones and the near ones.
-
-    `world` has the passage alone, `inside` robot and static scene; `scaled` is (dim, n).
-    """
-    first, later = candidates[:FIRST], candidates[FIRST:]
-    if len(later) > NEAR:
-        squared = np.zeros(len(later))
-        for positions in scaled:
-            apart = positions[later] - positions[end]
-            apart *= apart
-            squared += apart
-        later = later[np.argpartition(squared, NEAR)[:NEAR]]
-    return joined_to(world, inside, pool, end, np.append(first, later))
-
-
-def joined_to(passage: ArmWorld, inside: ArmWorld, pool: Floats, end: int, rows: Ints) -> Ints:
-    """Return which of some rows of a pool, (n, dim), a straight motion joins to the row `end`.
-
-    The query is free of the passage, and the whole pool is free in `inside`, with robot and static scene.
-    """
-    rows = rows[rows != end]
-    towards = passage.space.flat.difference(pool[end], pool[rows])
-    for share in EARLY:
-        free = passage.valid(pool[end] + share * towards)
-        rows, towards = rows[free], towards[free]
-    for world in (passage, inside):
-        rows = rows[world.motion_valid(np.broadcast_to(pool[end], (len(rows), pool.shape[1])), pool[rows])]
-    return rows
 
 
 def last_links(robot: Robot) -> list[int]:
@@ -195,13 +160,12 @@ def body_of(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
 
 
 class Passages(NamedTuple):
-    """Boxes without their sides to -x: centres, (m, 3), axes, (m, 3, 3), and the same as quaternions, (m, 4), half
-    extents, (m, 3), positions and half extents of their walls, (m, 5, 3) each.
+    """Boxes without their sides to -x: centres, (m, 3), axes, (m, 3, 3), half extents, (m, 3), and positions and half
+    extents of their walls, (m, 5, 3) each.
     """
 
     centre: Floats
     turn: Floats
-    xyzw: Floats
     half: Floats
     positions: Floats
     sizes: Floats
@@ -224,11 +188,12 @@ class Passages(NamedTuple):
         inside: Bools = x & y & z
         return inside
 
-    def walls(self, i: int) -> Scene:
-        """Return the walls of a passage."""
-        centres = self.centre[i] + self.positions[i] @ self.turn[i].T
-        turned = np.broadcast_to(self.xyzw[i], (len(centres), 4))
-        return Scene.of_boxes(2.0 * self.sizes[i], centres, xyzw=turned, name="narrow passage")
+    def walls(self, i: int) -> Floats:
+        """Return the walls of a passage as boxes, (5, 16), see :func:`evenroad.robot.obstacle.box_rows`."""
+        rows = np.zeros((len(_SIDES), 16))
+        rows[:, 1:4], rows[:, 4:13] = 2.0 * self.sizes[i], self.turn[i].reshape(9)
+        rows[:, 13:] = self.centre[i] + self.positions[i] @ self.turn[i].T
+        return rows
 
 
 def passages_around(tips: Floats, around: Surroundings, rng: np.random.Generator) -> Passages:
@@ -243,11 +208,9 @@ def passages_around(tips: Floats, around: Surroundings, rng: np.random.Generator
     above = rng.random(len(tips)) < UPWARDS
     # A quarter of a turn about y: what would open towards the robot opens above.
     turn[above] = turn[above] @ np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
-    sine, cosine, nothing = np.sin(0.5 * angle), np.cos(0.5 * angle), np.zeros(len(tips))
-    xyzw = np.where(above, (-sine, cosine, sine, cosine), (nothing, nothing, sine, cosine)).T
     half = around.reach * rng.uniform(_LEAST, _MOST, (len(tips), 3))
     off = half * rng.uniform(-0.5, 0.5, (len(tips), 3))
     centre = tips - np.einsum("mij,mj->mi", turn, off)
     half_walls = half[:, np.newaxis]
     sizes = np.where(_SIDES == 0.0, half_walls, WALL * around.reach)
-    return Passages(centre, turn, xyzw, half, _SIDES * half_walls, sizes)
+    return Passages(centre, turn, half, _SIDES * half_walls, sizes)

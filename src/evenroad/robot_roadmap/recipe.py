@@ -18,11 +18,13 @@ from evenroad.robot_roadmap.free_probability import free_probability
 from evenroad.robot_roadmap.narrow_passages import Visibility, hard_queries
 from evenroad.robot_roadmap.turns import TURN, OneTurn
 
-CHOICE, FEWEST = 16, 4096
+CHOICE, FEWEST = 8, 4096
 """Number of free configurations per milestone to choose from, and the least number of all."""
 
-LIKELY = 0.5
-"""Share of them, the most probably free ones, that hard queries are tried to be joined to: hardly another is chosen."""
+LIKELY, FEWEST_LIKELY = 0.3, 2048
+"""Share of them, the most probably free ones, that hard queries are tried to be joined to, and their least number:
+hardly another is chosen.
+"""
 
 MOST_DRAWN = 1 << 20
 """Number of configurations after which no more are drawn; fewer free ones than wanted are then enough."""
@@ -90,8 +92,7 @@ def precomputed(
         world.robot,
         world.scene,
         pool,
-        weights * pool,
-        np.flatnonzero(chance >= np.quantile(chance, 1.0 - LIKELY)),
+        np.flatnonzero(chance >= np.quantile(chance, max(1.0 - max(LIKELY, FEWEST_LIKELY / len(pool)), 0.0))),
         recipe.hard_queries,
         passage_rng,
         lambda share: progress("narrow passages", share),

@@ -1,4 +1,5 @@
 // evenroad._native.robot_roadmap: a robot's roadmap in a scene, and its search.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -7,12 +8,14 @@
 #include "bind/arrays.hpp"
 #include "planning/native_checks.hpp"
 #include "robot_roadmap/proved_search.hpp"
+#include "robot_roadmap/visibility.hpp"
 
 namespace evenroad::bind {
 
 namespace {
 
 using planning::NativeChecks;
+using robot::Checker;
 using robot_roadmap::Check;
 using robot_roadmap::Graph;
 using robot_roadmap::HalfEdge;
@@ -177,6 +180,40 @@ nb::object next_check(Search& search) {
                         is_milestone ? from : row(search.to()));
 }
 
+/// Return which rows of a pool, (n, dim), a straight motion joins to row `from`, see robot/visibility.hpp.
+nb::object rows_joined(const Checker& walls, const Checker& inside, nb::handle pool, std::int64_t from, nb::handle rows,
+                       nb::handle early) {
+  require(&walls.robot() == &inside.robot(), "both checkers must be of one robot");
+  const auto dim = static_cast<std::size_t>(inside.robot().dim());
+  const FloatRows given(pool, "pool");
+  const Matrix<const double> all = given.of_shape({given.shape(0), dim}).matrix();
+  const Array<const std::int64_t, 1> asked(rows, "rows");
+  const Floats shares(early, "early");
+  require_below(from, all.rows, "from"), require_below(asked.span(), all.rows, "rows");
+  require_within(shares.span(), 0.0, 1.0, "early");
+  std::vector<double> entered(dim);
+  const auto is_inside = [&](std::int64_t row) { return robot::enter(all[row], inside.robot().bounds, entered); };
+  require(is_inside(from) && std::ranges::all_of(asked.span(), is_inside), "pool must be within the joints' limits");
+  return as_row(without_gil([&] {
+    return robot_roadmap::rows_joined({walls, inside}, all, static_cast<std::size_t>(from), asked.span(),
+                                      shares.span());
+  }));
+}
+
+/// Return in how many of the scenes of some checkers each configuration, (n, dim), touches no obstacle.
+nb::object scenes_free(nb::list checkers, nb::handle q) {
+  std::vector<const Checker*> all;
+  for (nb::handle each : checkers) all.push_back(value_of<Checker*>(each, "checkers"));
+  require(!all.empty(), "checkers must be one or more");
+  for (const Checker* each : all) {
+    require(&each->robot() == &all[0]->robot(), "checkers must be of one robot");
+  }
+  const FloatRows given(q, "q");
+  const Matrix<const double> rows =
+      given.of_shape({given.shape(0), static_cast<std::size_t>(all[0]->robot().dim())}).matrix();
+  return as_row(without_gil([&] { return robot_roadmap::scenes_free(all, rows); }));
+}
+
 }  // namespace
 
 void add_robot_roadmap(nb::module_& module) {
@@ -233,6 +270,8 @@ void add_robot_roadmap(nb::module_& module) {
         const Search& own = search.search();
         return nb::make_tuple(own.configurations, own.motions, search.batches());
       });
+  part.def("rows_joined", &rows_joined);
+  part.def("scenes_free", &scenes_free);
 }
 
 }  // namespace evenroad::bind

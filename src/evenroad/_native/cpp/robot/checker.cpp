@@ -76,11 +76,10 @@ void Workspace::set_all(std::span<const double> q) {
 
 namespace {
 
-Mask blocked_lanes(Workspace& workspace, const Lengths& lengths, Wanted wanted, Contact* found) {
+Mask meeting_anything(Workspace& workspace, const Lengths& lengths, Wanted wanted, Contact* found) {
   const Robot& robot = workspace.checker.robot();
   const Scene& scene = workspace.checker.scene();
   Places& places = workspace.places;
-  places.place(robot, lengths, workspace.states);
   Mask mask = meeting_obstacles(robot, lengths, scene, places, wanted, found);
   if (is_enough(mask, wanted)) return mask;
   if (!scene.surfaces.empty()) {
@@ -90,7 +89,17 @@ Mask blocked_lanes(Workspace& workspace, const Lengths& lengths, Wanted wanted, 
   return meeting_itself(robot, lengths, places, mask, wanted, found);
 }
 
+Mask blocked_lanes(Workspace& workspace, const Lengths& lengths, Wanted wanted, Contact* found) {
+  workspace.places.place(workspace.checker.robot(), lengths, workspace.states);
+  return meeting_anything(workspace, lengths, wanted, found);
+}
+
 }  // namespace
+
+Mask blocked_where_placed(Workspace& workspace, Wanted wanted) {
+  workspace.counts.batches++;
+  return meeting_anything(workspace, *workspace.lengths, wanted, nullptr);
+}
 
 Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted) {
   workspace.counts.batches++;

@@ -107,6 +107,9 @@ Mask take_rows(Workspace& workspace, Matrix<const double> rows, std::size_t firs
 Mask blocked(Workspace& workspace, Wanted wanted);
 Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted);
 
+/// The same where the workspace's places are those of the states already.
+Mask blocked_where_placed(Workspace& workspace, Wanted wanted);
+
 /// Write which rows, (n, dim), are within bounds and free.
 void configurations_free(const Checker& checker, Matrix<const double> rows, std::span<bool> free);
 
