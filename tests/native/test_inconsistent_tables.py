@@ -85,7 +85,7 @@ def members(of, node):
 
 
 CALLABLES = tuple(callables())
-CLASSES = [each.owner for each in CALLABLES if each.makes]
+CLASSES = list(dict.fromkeys(each.owner for each in CALLABLES if each.owner))
 
 
 @dataclass
@@ -115,7 +115,8 @@ class Fuzzer:
         self.made = defaultdict(list)
         for name, calls in recorded.items():
             for arguments in calls:
-                self.made[name].append(place_of(name)(*arguments))
+                made = place_of(name)(*arguments)
+                self.made[self.class_of(made)].append(made)
         self.accepted = set()
         self.sizes = (1,)
 
@@ -170,6 +171,8 @@ class Fuzzer:
         """A tuple, a list or a dictionary."""
         if kind == "Mapping":
             return {}
+        if kind == "Literal":
+            return ast.literal_eval(self.pick(parts.elts))
         if kind == "tuple" and not isinstance(parts.elts[-1], ast.Constant):
             values = tuple(self.drawn(part, each) for each in parts.elts)
             return values[:-1] if self.rng.random() < 0.02 else values
@@ -178,8 +181,8 @@ class Fuzzer:
         return tuple(values) if kind == "tuple" else values
 
     def arguments(self, called):
-        """Random ones, or mutants of those with which the package made an instance."""
-        known = self.recorded.get(called.makes)
+        """Random ones, or mutants of those with which the package called."""
+        known = self.recorded.get(called.makes or called.name)
         if not known:
             return [self.drawn(called.name.split(".")[0], each) for each in called.arguments]
         share = self.pick((0.0, 0.05, 0.3))
@@ -267,7 +270,7 @@ def place_of(name):
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
-    """With what the package makes a robot, surfaces and a scene, what improves a path, and a disk on a map."""
+    """With what the package makes a robot, surfaces and a scene, answers a query, improves a path, makes a disk."""
     calls = defaultdict(list)
     with pytest.MonkeyPatch.context() as patch:
         for name in ("Robot", "Surface", "Scene"):
@@ -275,6 +278,7 @@ def recorded(tmp_path_factory):
         patch.setattr(_native.planning, "Improver", recording("planning.Improver", calls))
         patch.setattr("evenroad.world.gridmap.gridmap.Disk", recording("world.Disk", calls))
         patch.setattr("evenroad.robot.arm_world.Checker", recording("robot.Checker", calls))
+        patch.setattr("evenroad.planning.connectors.answer", recording("planning.answer", calls))
         robot = load_robot(write_fork_arm(tmp_path_factory.mktemp("fork")))
         rng = np.random.default_rng(4)
         cloud = PointCloud(rng.random((40, 3)), 0.01)
@@ -284,13 +288,14 @@ def recorded(tmp_path_factory):
         ends = np.stack([START, GOAL])
         first = np.stack([START, START + 0.1, GOAL]), 0, 10
         ARM_TREES.improver(box_world(), ends, first, variant=0, is_smoothing=True)
+        ARM_TREES.answer(box_world(), START, GOAL, variant=0, most_motions=100, seconds=1.0, smooth="tight")
         for resolution in (0.1, 0.5):
             GridMap(rng.random((20, 30)) < 0.1, resolution=resolution).world(0.4).valid(np.zeros((1, 2)))
     return dict(calls)
 
 
 def recording(name, calls):
-    """A class of the kernel that notes with what its instances are made."""
+    """A class or function of the kernel that notes with what it is called."""
     made = place_of(name)
 
     class Recording:
