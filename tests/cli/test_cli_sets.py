@@ -94,7 +94,7 @@ def test_json_has_the_same_measures(run):
 
 
 def test_a_lattice_is_recognised_by_its_points_and_others_are_none(run):
-    np.save("set.npy", draw("even", 128, 3, rng=5).points)
+    np.save("set.npy", draw("korobov", 128, 3, rng=5).points)
     record = json.loads(run("measure", "set.npy", "--json")[1])
     assert record["lattice_neighbours"] == 7
     assert 1.0 < record["lattice_minima_ratio"] < 1.3

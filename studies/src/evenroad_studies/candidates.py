@@ -111,17 +111,6 @@ def inset(share: float, make: Draw, n: int, d: int, world: int) -> Floats:
     return 0.5 + share * (make(n, d, world) - 0.5)
 
 
-def spaced(part: float, make: Draw, n: int, d: int, world: int) -> Floats:
-    """Return points drawn in by a part of their spacing n^(-1/d) at every face, but to no less than one half."""
-    return inset(max(1.0 - 2.0 * part * n ** (-1.0 / d), 0.5), make, n, d, world)
-
-
-def moved(noise: float, make: Draw, n: int, d: int, world: int) -> Floats:
-    """Return points with Gaussian noise of a part of their spacing, on the torus."""
-    random = np.random.default_rng([world, n, d])
-    return (make(n, d, world) + noise * n ** (-1.0 / d) * random.standard_normal((n, d))) % 1.0
-
-
 _SLOW: Mapping[str, Draw] = {
     "centroidal": partial(voronoi, 2.0),
     "holes": partial(voronoi, 8.0),
@@ -135,8 +124,8 @@ CANDIDATES: dict[str, Draw] = {
     **{name: partial(_pooled, make) for name, make in _SLOW.items()},
 }
 """Name -> how the set of a world is drawn."""
-for _name in ("korobov", "sobol", "halton", "lattice", "growing", "hickernell", "poisson"):
-    for _part in (0.05, 0.1, 0.15, 0.2):
-        CANDIDATES[f"{_name} h{_part:g}"] = partial(spaced, _part, CANDIDATES[_name])
-    for _share in (0.95, 0.9, 0.85, 0.8):
-        CANDIDATES[f"{_name} {_share:g}"] = partial(inset, _share, CANDIDATES[_name])
+CANDIDATES |= {
+    f"{name} {share:g}": partial(inset, share, CANDIDATES[name])
+    for name in ("even", "sobol", "hickernell")
+    for share in (0.95, 0.9, 0.85)
+}

@@ -66,11 +66,11 @@ class TestKorobov(SamplerContract):
             assert self.sampler.draw(n, 2).n == n
 
 
-@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("d", [2, 5])
 def test_even_sets_are_both_of_low_discrepancy_and_well_separated(d):
     even = draw("even", 60, d)
     random = [draw("uniform", 60, d, rng=seed) for seed in range(20)]
-    assert separation(even, periodic=True) > 2 * max(separation(each, periodic=True) for each in random)
+    assert separation(even, periodic=True) > 1.8 * max(separation(each, periodic=True) for each in random)
     discrepancy = MEASURES["average_squared"].rooted
     assert discrepancy(even) < 0.5 * min(map(discrepancy, random))
 

@@ -1,4 +1,4 @@
-"""The default: a Korobov lattice, in many dimensions scrambled Sobol points, contracted for sparse roadmaps."""
+"""The default: A_d* in three and four dimensions, else rank-1 lattices with good projections."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import Symmetry
-from evenroad.points.samplers.korobov import Korobov, rank_one_vector
+from evenroad.points.samplers.korobov import Korobov
+from evenroad.points.samplers.lattice import Lattice
 from evenroad.points.samplers.plain import Sobol
+from evenroad.points.samplers.rank_one import rank_one_vector
 
-TURNED_FROM = 6
-"""Dimension from which on `even` permutes the axes of each set; below, ten neighbours are 2 d and span all."""
-
-SOBOL_FROM = 10
-"""Dimension from which on `even` is scrambled Sobol points: there no lattice solves more."""
+IN_ALL_DIRECTIONS, MOST = (3, 4), 2**20
+"""Dimensions in which `even` is A_d*, up to this number of points: it takes several times their memory."""
 
 CONTRACTED_FROM = 7
 """Dimension from which on the points of a sparse roadmap are contracted to the middle of a box."""
@@ -31,32 +30,30 @@ CONTRACTION = 0.85
 
 @dataclass(frozen=True)
 class Even(Korobov):
-    """Our default: a Korobov lattice, from ten dimensions on scrambled Sobol points.
+    """Our default: the lattice A_d* in three and four dimensions, else a rank-1 lattice with good projections.
 
-    ``studies/docs/results.md`` has the evidence for the lattice.  Where n has few multipliers, as many multiples of 24,
-    the generating vector is that of :func:`~evenroad.points.samplers.korobov.rank_one_vector`.  From six
-    dimensions on axes mostly differ in weight, as the joints of an arm do.  The short vectors of the lattice may then
-    lie in axes of little weight, and with k < 2 d neighbours the roadmap falls apart into sheets.  So each set there
-    has a random order of the axes.
+    A point of A_d* has 2 (d + 1) nearest neighbours in all directions, where the four and mostly the six nearest of a
+    rank-1 lattice lie in a plane or in space.  From five dimensions on that costs more in the spread of projections
+    than it gains.  There each set has a random order of the axes: these may differ in weight, as the joints of an arm
+    do.  ``studies/docs/which-points.md`` has the evidence.
     """
 
     name = "even"
-    about = "our default: a shifted rank-1 lattice, from d = 10 on scrambled Sobol"
-    # Sobol's; a lattice is shifted as it is drawn.
-    symmetries = frozenset({Symmetry.PERMUTATION})
-    turned_from = TURNED_FROM
+    about = "our default: the lattice A_d* in d = 3 and 4, else a rank-1 lattice with good projections"
+    # A lattice is shifted as it is drawn; A_d* does not match across faces.
+    symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
+    turned_from = 3
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return n points, shape (n, d); limits are those of :class:`Korobov`, of :class:`Sobol` from d = 10 on."""
+        """Return n points, shape (n, d); limits are those of :class:`Korobov`."""
         n, d = require_count("n", n), require_count("d", d)
-        if d < SOBOL_FROM:
-            return super().draw(n, d, rng=rng)
-        return Sobol().draw(n, d, rng=rng).with_origin(family=self.name, method="scrambled Sobol")
+        if d in IN_ALL_DIRECTIONS and n <= MOST:
+            return Lattice().draw(n, d, rng=rng).with_origin(family=self.name)
+        return super().draw(n, d, rng=rng)
 
     def _vector(self, n: int, d: int) -> tuple[Sequence[int], str]:
-        vector, text = super()._vector(n, d)
-        better = rank_one_vector(n, d)
-        return (vector, text) if better == tuple(vector) else (better, f"z={' '.join(map(str, better))}")
+        vector = rank_one_vector(n, d)
+        return vector, f"z={' '.join(map(str, vector))}"
 
 
 def contracted(points: PointSet, share: float = CONTRACTION) -> PointSet:

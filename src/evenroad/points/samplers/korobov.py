@@ -19,7 +19,6 @@ from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
-from evenroad.points.measures.rank_one import minima_ratio
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import ALL_SYMMETRIES
 
@@ -117,12 +116,12 @@ def _searched(n: int, d: int) -> int:
 
 def _candidates(n: int, d: int) -> Ints:
     """Return the multipliers that are tried, each the smallest of the four of its lattice."""
-    tried = islice(_multipliers(n), max(FEWEST_TRIED, WORK // (n // 2 * d)))
+    tried = islice(multipliers(n), max(FEWEST_TRIED, WORK // (n // 2 * d)))
     pairs = ((a, pow(a, -1, n)) for a in tried)
     return np.array(sorted({min(a, n - a, b, n - b) for a, b in pairs}), dtype=np.int64)
 
 
-def _powers(multipliers: Ints, n: int, d: int) -> Floats:
+def powers(multipliers: Ints, n: int, d: int) -> Floats:
     """Return the generating vectors, (m, d)."""
     vectors = np.empty((len(multipliers), d))
     power = np.ones_like(multipliers)
@@ -132,7 +131,7 @@ def _powers(multipliers: Ints, n: int, d: int) -> Floats:
     return vectors
 
 
-def _multipliers(n: int) -> Iterator[int]:
+def multipliers(n: int) -> Iterator[int]:
     """Yield each number of 1 .. n/2 that has no common divisor with n, in an order whose every part is spread out.
 
     Steps of the golden ratio: regular steps would land near fractions with small denominators, which are bad.
@@ -153,7 +152,7 @@ def _least_energy(candidates: Ints, n: int, d: int) -> int:
     All partial sums grow together, and a candidate is dropped when its sum exceeds the whole energy of a promising
     one.  The first coordinate of point j is j / n, so the decisive short distances come early.
     """
-    vectors, half = _powers(candidates, n, d), n // 2
+    vectors, half = powers(candidates, n, d), n // 2
     log_sums = np.full(len(candidates), -np.inf)
     limit = np.inf
     first, looks = 1, 0
@@ -188,13 +187,13 @@ def _log_energies(vectors: Floats, n: int, first: int, last: int) -> Floats:
         gap -= np.multiply(multiple, n, out=multiple)
         squared += np.multiply(gap, gap, out=gap)
     shortest = squared.min(axis=1)
-    terms = _integer_power(shortest[:, np.newaxis] / squared, d)
+    terms = integer_power(shortest[:, np.newaxis] / squared, d)
     if 2 * last == n:
         terms[:, -1] *= 0.5
     return np.log(terms.sum(axis=1)) - d * np.log(shortest)
 
 
-def _integer_power(base: Floats, exponent: int) -> Floats:
+def integer_power(base: Floats, exponent: int) -> Floats:
     """Return base**exponent, exponent >= 1, by repeated squaring: several times faster than NumPy's power."""
     result = np.ones_like(base)
     while exponent:
@@ -203,62 +202,3 @@ def _integer_power(base: Floats, exponent: int) -> Floats:
         base = base * base
         exponent //= 2
     return result
-
-
-POOR = 1.5
-"""Ratio of the last successive minimum to the first above which a Korobov lattice is not good enough."""
-
-STARTS, SWEEPS = 4, 20
-"""Number of descents, the first from the Korobov lattice, and the most sweeps over all axes in each."""
-
-
-@lru_cache(maxsize=1024)
-def rank_one_vector(n: int, d: int) -> tuple[int, ...]:
-    """Return the generating vector of the best Korobov lattice or, where that is poor, one of a smaller energy.
-
-    Descents of the periodic Riesz energy, s = 2d, in which axis after axis tries all numbers without common divisor
-    with n, or as many as the search for a multiplier may.  n is 1 .. 2**26 and d 1 .. 16, else InvalidValue.
-    """
-    multiplier = korobov_generator(n, d)
-    powers = tuple(pow(multiplier, i, n) for i in range(d))
-    # In the plane every vector that begins with 1 is one of powers.
-    return powers if d <= 2 or minima_ratio(n, powers) <= POOR else _descended(n, powers)
-
-
-def _descended(n: int, powers: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the vector of least energy of all descents."""
-    d, random = len(powers), np.random.default_rng([n, len(powers)])
-    half, most = n // 2, max(FEWEST_TRIED, WORK // (8 * n * d))
-    units = np.array([i for i in range(1, half + 1) if gcd(i, n) == 1])
-    tried = units if len(units) <= most else np.sort(random.choice(units, most, replace=False))
-    steps = np.arange(1, half + 1)
-    of_tried = _squared(tried[:, np.newaxis] * steps, n)
-    best, least = powers, np.inf
-    for start in range(STARTS):
-        z = np.array([1, *random.choice(units, d - 1)] if start else powers)
-        for _ in range(SWEEPS):
-            before, energy = z.copy(), np.inf
-            for axis in range(1, d):
-                others = sum(_squared(steps * z[i], n) for i in range(d) if i != axis)
-                energies = _logs_of_energies(others + of_tried, d)
-                energy = _logs_of_energies((others + _squared(steps * z[axis], n))[np.newaxis], d)[0]
-                if energies.min() < energy - TIE:
-                    z[axis] = tried[energies <= energies.min() + TIE][0]
-                    energy = energies.min()
-            if (z == before).all():
-                break
-        if energy < least - TIE:
-            best, least = tuple(z.tolist()), energy
-    return best
-
-
-def _squared(multiples: Ints, n: int) -> Floats:
-    """Return the squared distances from the nearest multiple of n."""
-    rest = multiples % n
-    return np.minimum(rest, n - rest).astype(np.float64) ** 2
-
-
-def _logs_of_energies(squared: Floats, d: int) -> Floats:
-    """Return the logs of the sums of squared distance^(-d) over the rows."""
-    shortest = squared.min(axis=1, keepdims=True)
-    return np.asarray(np.log(((shortest / squared) ** d).sum(axis=1)) - d * np.log(shortest[:, 0]))

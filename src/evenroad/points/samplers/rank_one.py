@@ -1,0 +1,124 @@
+"""Rank-1 lattices for roadmaps: points that keep apart, and whose projections do so as well.
+
+A lattice of least energy alone may be poor in projections: of 512 points in four dimensions, the best Korobov lattice
+has pairs of axes in which the points lie on a quarter as many lines as they could.  A wall with a gap bounds two or
+three axes only, so what passes there is decided in a projection.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from itertools import islice
+from math import gcd
+
+import numpy as np
+
+from evenroad._arrays import Floats, Ints
+from evenroad.errors import InvalidValue
+from evenroad.points.samplers.korobov import MAX_N, TIE, integer_power, korobov_generator, multipliers, powers
+
+EVENNESS = 2.0
+"""Weight of the discrepancy beside the energy, both as logs: chosen in tuning worlds of ``points_apart``."""
+
+STARTS, SWEEPS = 3, 20
+"""Number of descents, the first from the best powers, and the most sweeps over all axes in each."""
+
+LARGEST = 2**14
+"""Number of points up to which vectors that are no powers are searched."""
+
+TRIED, FEWEST_TRIED = 2 * 10**6, 32
+"""Number of points of all lattices that a step of a descent examines, for each axis, and least number of lattices."""
+
+WORK, FEWEST_POWERS = 3 * 10**7, 8
+"""Number of coordinates that the search among powers examines, and least number of multipliers."""
+
+BLOCK = 2**14
+"""Number of points of a lattice that are examined together."""
+
+
+@lru_cache(maxsize=1024)
+def rank_one_vector(n: int, d: int) -> tuple[int, ...]:
+    """Return the generating vector of small energy and discrepancy; in the plane that of :class:`Korobov`.
+
+    The score is log(E) / (2 d) + :data:`EVENNESS` log(W), with E the periodic Riesz energy, s = 2d, and W the
+    wrap-around L2 discrepancy, which is the root of the mean square of Hickernell's over all shifts.  Axis after axis
+    tries all numbers without common divisor with n, or as many as :data:`TRIED` allows.  InvalidValue if n > 2**26.
+    """
+    if n > MAX_N:
+        raise InvalidValue(f"n must be at most {MAX_N} for a lattice, got {n}")
+    if n <= 3 or d <= 2:
+        multiplier = korobov_generator(n, d)
+        return tuple(pow(multiplier, axis, n) for axis in range(d))
+    count = max(FEWEST_POWERS, WORK // (n // 2 * d))
+    candidates = powers(np.array(sorted(islice(multipliers(n), count)), dtype=np.int64), n, d).astype(np.int64)
+    scores = [_score(*_sums(each, n), n, d) for each in candidates]
+    best = tuple(candidates[_first_least(np.array(scores))].tolist())
+    return best if n > LARGEST else _descended(n, best)
+
+
+def _descended(n: int, first: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the vector of the least score of all descents, one of them from `first`."""
+    d, random = len(first), np.random.default_rng([n, len(first)])
+    most = max(FEWEST_TRIED, TRIED // (n * (d - 1)))
+    units = np.array([i for i in range(1, n // 2 + 1) if gcd(i, n) == 1])
+    tried = units if len(units) <= most else np.sort(random.choice(units, most, replace=False))
+    steps = np.arange(1, n // 2 + 1)
+    of_tried = _terms(tried, steps, n)
+    best, least = first, np.inf
+    for start in range(STARTS):
+        z = np.array([1, *random.choice(units, d - 1)] if start else first)
+        score, before = np.inf, np.inf
+        for _ in range(SWEEPS):
+            for axis in range(1, d):
+                squared, kernel = _terms(np.delete(z, axis), steps, n)
+                others = squared.sum(axis=0), kernel.prod(axis=0)
+                scores = _score(*_summed(others[0] + of_tried[0], others[1] * of_tried[1], steps, n, d), n, d)
+                own = _terms(z[[axis]], steps, n)
+                score = _score(*_summed(others[0] + own[0], others[1] * own[1], steps, n, d), n, d)[0]
+                if scores.min() < score - TIE:
+                    z[axis], score = tried[_first_least(scores)], scores.min()
+            if score > before - TIE:
+                break
+            before = score
+        if score < least - TIE:
+            best, least = tuple(z.tolist()), score
+    return best
+
+
+def _first_least(scores: Floats) -> int:
+    """Return the first of the least scores: rounding does not choose between mirrored lattices."""
+    return int(np.flatnonzero(scores <= scores.min() + TIE)[0])
+
+
+def _terms(vector: Ints, steps: Ints, n: int) -> tuple[Floats, Floats]:
+    """Return for each number of a vector and each step what the axis adds to a squared distance, and its kernel."""
+    gaps = steps * vector[:, np.newaxis] % n / n
+    gaps = np.minimum(gaps, 1.0 - gaps)
+    return gaps * gaps, 1.5 - gaps * (1.0 - gaps)
+
+
+def _summed(squared: Floats, kernel: Floats, steps: Ints, n: int, d: int) -> tuple[Floats, Floats]:
+    """Return the sums over all differences, each of which stands for its mirror image, too: rows of (m, steps)."""
+    # In units of the spacing, so that nothing overflows, whatever d is.
+    energy = integer_power(n ** (-2.0 / d) / squared, d)
+    if 2 * steps[-1] == n:
+        energy[..., -1] *= 0.5
+        return 2.0 * energy.sum(axis=-1), 2.0 * kernel.sum(axis=-1) - kernel[..., -1]
+    return 2.0 * energy.sum(axis=-1), 2.0 * kernel.sum(axis=-1)
+
+
+def _sums(vector: Ints, n: int) -> tuple[Floats, Floats]:
+    """Return the sums of one lattice, in blocks."""
+    energy, kernel = np.zeros(()), np.zeros(())
+    for first in range(1, n // 2 + 1, BLOCK):
+        steps = np.arange(first, min(n // 2, first + BLOCK - 1) + 1)
+        squared, kernels = _terms(vector, steps, n)
+        more = _summed(squared.sum(axis=0), kernels.prod(axis=0), steps, n, len(vector))
+        energy, kernel = energy + more[0], kernel + more[1]
+    return energy, kernel
+
+
+def _score(energy: Floats, kernel: Floats, n: int, d: int) -> Floats:
+    uneven = (1.5**d + kernel) / n - (4.0 / 3.0) ** d
+    logs = np.log(np.maximum(energy, 1e-300)) / (2 * d) + 0.5 * EVENNESS * np.log(np.maximum(uneven, 1e-300))
+    return np.asarray(logs)
