@@ -32,7 +32,7 @@ def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike 
     """Return n points of the space's cube: `even`, but others in SE(3) and for sparse roadmaps.
 
     In SE(3) evenness gains nothing: points there are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
-    points.  In a box of seven or more dimensions, for a rule of at most 6 neighbours, they are contracted to the
+    points.  In a box of four or more dimensions, for a rule of at most 6 neighbours, they are contracted to the
     middle.
     """
     # Imported late: most plans draw no points.

@@ -54,7 +54,7 @@ class TestDrawnIn:
     def test_the_set_says_so(self):
         origin = contracted(draw("even", 8, 12, rng=1)).origin
         assert origin.family == "even"
-        assert origin.method.endswith("axes permuted, shifted, drawn in to 0.85")
+        assert origin.method.endswith("axes permuted, shifted, drawn in to 0.9")
 
     def test_corners_stay_in_the_cube(self):
         corner = PointSet(np.full((1, 5), np.nextafter(1.0, 0.0)))

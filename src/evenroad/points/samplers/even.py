@@ -21,10 +21,10 @@ from evenroad.points.samplers.rank_one import rank_one_vector
 IN_ALL_DIRECTIONS, MOST = (3, 4), 2**20
 """Dimensions in which `even` is A_d*, up to this number of points: it takes several times their memory."""
 
-CONTRACTED_FROM = 7
+CONTRACTED_FROM = 4
 """Dimension from which on the points of a sparse roadmap are contracted to the middle of a box."""
 
-CONTRACTION = 0.85
+CONTRACTION = 0.9
 """Factor by which the points of a sparse roadmap are contracted to the middle."""
 
 
@@ -60,7 +60,7 @@ def contracted(points: PointSet, share: float = CONTRACTION) -> PointSet:
     """Return the points contracted to the middle of the cube by a factor, 0 < share <= 1.
 
     Motions between them are shorter, which pays where each point has few neighbours:
-    ``studies/docs/sparse-roadmaps.md`` has the evidence.
+    ``studies/docs/which-points.md`` has the evidence.
     """
     method = f"{points.origin.method}, drawn in to {share:g}"
     return PointSet(0.5 + share * (points.points - 0.5), points.origin).with_origin(method=method)
