@@ -253,7 +253,7 @@ class Growing(SequenceEngine):
 
 
 class Even(FamilyEngine):
-    """Sets of the default sampler, Korobov lattices up to nine dimensions."""
+    """Sets of the default sampler: lattices of any n and d."""
 
     family = "even"
 

@@ -101,7 +101,8 @@ def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
 
 @pytest.mark.parametrize(("d", "rule", "near"), [
     (10, KNearest(4), True), (12, KNearest(6), True), (10, KNearest(7), False), (7, KNearest(4), True),
-    (6, KNearest(4), True), (4, KNearest(6), True), (3, KNearest(4), False), (10, Radius(0.5), False), (10, None, False),
+    (6, KNearest(4), True), (4, KNearest(6), True), (3, KNearest(4), False),
+    (10, Radius(0.5), False), (10, None, False),
 ])  # fmt: skip
 def test_in_a_box_of_many_dimensions_points_of_a_sparse_roadmap_are_drawn_in(d, rule, near):
     points = draw("even", 30, d, rng=3)

@@ -72,7 +72,7 @@ def test_even_sets_are_both_of_low_discrepancy_and_well_separated(d):
     random = [draw("uniform", 60, d, rng=seed) for seed in range(20)]
     assert separation(even, periodic=True) > 1.8 * max(separation(each, periodic=True) for each in random)
     discrepancy = MEASURES["average_squared"].rooted
-    assert discrepancy(even) < 0.5 * min(map(discrepancy, random))
+    assert discrepancy(even) < 0.8 * min(map(discrepancy, random))
 
 
 SMALL = [(n, d) for n in (2, 3, 4, 5, 6, 8, 12, 25, 30, 37, 64) for d in (1, 2, 3, 5, 9)]

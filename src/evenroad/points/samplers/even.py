@@ -49,7 +49,7 @@ class Even(Korobov):
         n, d = require_count("n", n), require_count("d", d)
         if d in IN_ALL_DIRECTIONS and n <= MOST:
             return Lattice().draw(n, d, rng=rng).with_origin(family=self.name)
-        return super().draw(n, d, rng=rng)
+        return super().draw(n, d, rng=rng).with_origin(objective="")
 
     def _vector(self, n: int, d: int) -> tuple[Sequence[int], str]:
         vector = rank_one_vector(n, d)
