@@ -223,6 +223,7 @@ void add_shapes(Robot& robot, const GivenRobot& given) {
 
 void add_pairs(Robot& robot, const GivenRobot& given, const std::vector<Around>& balls) {
   const Shapes shapes{given};
+  require(given.pairs.bodies.size() % 2 == 0, "pairs.bodies must have two columns");
   for (std::size_t p = 0; 2 * p < given.pairs.bodies.size(); p++) {
     const int a = index(given.pairs.bodies[2 * p], balls.size(), "pairs.bodies");
     const int b = index(given.pairs.bodies[2 * p + 1], balls.size(), "pairs.bodies");
