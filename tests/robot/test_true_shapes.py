@@ -67,6 +67,17 @@ def test_verdicts_next_to_contact_are_those_of_the_solids(arm, name):
     assert np.array_equal(world.valid(some)[clear], apart[clear] > 0.0)
 
 
+@pytest.mark.parametrize("name", ["solids", "others"])
+def test_no_verdict_next_to_contact_depends_on_what_was_asked_before(arm, name):
+    world, rng = ArmWorld(arm[0], SCENES[name][0]), np.random.default_rng(9)
+    q = np.concatenate(edge(world, world.space.from_cube(rng.random((1500, world.space.dim))), 80))
+    q = np.concatenate([q, q + rng.normal(0.0, 1e-4, q.shape), q + rng.normal(0.0, 1e-2, q.shape)])
+    valid = world.valid(q)
+    for _ in range(4):
+        order = rng.permutation(len(q))
+        assert np.array_equal(ArmWorld(arm[0], SCENES[name][0]).valid(q[order]), valid[order])
+
+
 def test_capsules_call_more_blocked_and_never_less(arm):
     robot, _ = arm
     q = ArmWorld(robot).space.from_cube(np.random.default_rng(6).random((3000, 3)))

@@ -28,6 +28,9 @@ struct Touching {
   bool operator[](std::size_t lane) const { return (lanes >> lane & 1U) != 0; }
 };
 
+/// How many neighbouring lanes, from the first on, are of use only if all of them are free.
+enum class Together : std::uint8_t { ONE, TWO, THREE };
+
 /// What was asked for so far: motions, configurations, and batches of sixteen.
 struct Counts {
   std::int64_t motions = 0, configurations = 0, batches = 0;
@@ -46,8 +49,9 @@ class MotionChecks {
   /// Coordinate k of the configuration in a lane, for `touching`, which leaves it as it is.
   double& state(std::size_t k, std::size_t lane) { return states_[k * LANES + lane]; }
 
-  /// Return which of the sixteen configurations touch something.
-  virtual Touching touching() = 0;
+  /// Return which of the sixteen configurations touch something.  Those that do not matter, as bits, count as touching;
+  /// where one of a group of neighbours touches something, so many as are together, all may count.
+  virtual Touching touching(std::uint32_t idle = 0, Together together = Together::ONE) = 0;
 
   /// Return whether a motion between configurations within bounds is free at its states.
   virtual bool is_free(ConstConfiguration a, ConstConfiguration b, Known known) = 0;

@@ -32,7 +32,9 @@ Answer NativeChecks::counted(Answer answer) {
   return answer;
 }
 
-Touching NativeChecks::touching() { return counted(Touching{robot::blocked(*workspace_, robot::Wanted::ALL)}); }
+Touching NativeChecks::touching(std::uint32_t idle, Together together) {
+  return counted(Touching{robot::blocked(*workspace_, static_cast<robot::Wanted>(together), idle)});
+}
 
 bool NativeChecks::is_free(ConstConfiguration a, ConstConfiguration b, Known known) {
   return counted(robot::motion_free(*workspace_, a, b, static_cast<robot::Known>(known)));

@@ -12,7 +12,7 @@ class NativeChecks final : public MotionChecks {
  public:
   explicit NativeChecks(std::shared_ptr<const robot::Checker> checker);
 
-  Touching touching() override;
+  Touching touching(std::uint32_t idle, Together together) override;
   bool is_free(ConstConfiguration a, ConstConfiguration b, Known known) override;
   bool is_free_coarsely(ConstConfiguration a, ConstConfiguration b) override;
   bool is_proved(ConstConfiguration a, ConstConfiguration b, ProofLimits limits) override;

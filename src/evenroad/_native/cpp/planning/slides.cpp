@@ -18,6 +18,9 @@ constexpr double AHEAD = 0.2;
 /// The states beside a place are so far towards the neighbours, as a share of the way.
 constexpr double BESIDE = 0.4;
 
+/// The lanes of the first place, and all.
+constexpr std::uint32_t STATES_OF_ONE = 7, ALL_LANES = 0xFFFF;
+
 /// So many of the places that are free are looked at closely, the one with the shortest way first.
 constexpr int TRIED = 2;
 
@@ -37,16 +40,16 @@ void Slides::slide(std::size_t i, std::size_t number) {
   const auto [before, after] = write_ahead(a, here, b);
   if (write_direction(a, b, checks_.joints, direction_) > (before + after) * (1.0 - fineness.bend)) return;
   const double most = (before + after) * (1.0 - fineness.worth_while);
-  bool is_any_open = false;
+  std::uint32_t idle = ALL_LANES;
   for (std::size_t place = 0; place < CANDIDATES; place++) {
     const bool is_within =
         write_candidate(candidates_[place], here, CANDIDATES * number + place, std::min(before, after));
     write_states(place, a, b);
     candidates_[place].is_open = is_within && candidates_[place].length <= most;
-    is_any_open |= candidates_[place].is_open;
+    if (candidates_[place].is_open) idle &= ~(STATES_OF_ONE << STATES * place);
   }
-  if (!is_any_open) return;
-  const Touching touching = checks_.touching();
+  if (idle == ALL_LANES) return;
+  const Touching touching = checks_.touching(idle, Together::THREE);
   checks_.counts.configurations += static_cast<std::int64_t>(LANES);
   // Sixteen states, as of a motion.
   checks_.counts.motions++;

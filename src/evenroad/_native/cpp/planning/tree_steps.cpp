@@ -21,6 +21,8 @@ constexpr double BALL_SHARE = 1.5, LARGEST_BALL = 2.0;
 /// So many steps of the sequence are rounds apart.
 constexpr std::size_t APART = 1279;
 
+constexpr std::uint32_t ALL_LANES = 0xFFFF;
+
 /// Shifts of an even sequence of their own: multiples of the golden ratio, one more for each coordinate.
 constexpr double GOLDEN = 0.6180339887498949;
 
@@ -104,7 +106,7 @@ std::span<const Step> TreeSteps::extension(const Tree& tree, Node closest) {
 std::span<const Step> TreeSteps::ball_steps(Tree& tree, std::size_t side, Node closest, std::size_t most,
                                             MotionChecks& checks) {
   std::array<bool, STEPS_AT_ONCE> is_kept{};
-  bool is_any_kept = false;
+  std::uint32_t idle = ALL_LANES;
   for (std::size_t i = 0; i < most; i++) {
     Step& step = offered_[i];
     step.origin = i % 2 == 1 ? closest : tree.least_tried();
@@ -113,15 +115,16 @@ std::span<const Step> TreeSteps::ball_steps(Tree& tree, std::size_t side, Node c
     next_step_++;
     for (std::size_t k = 0; k < here.size(); k++) step.target[k] = here[k] + radii_[k] * ball[k];
     bring_inside(step.target, joints_);
-    is_any_kept |= is_kept[i] = is_allowed(tree, side, step);
+    is_kept[i] = is_allowed(tree, side, step);
+    if (is_kept[i]) idle &= ~(3U << 2 * i);
     write_direction(here, step.target, joints_, direction_);
     for (std::size_t k = 0; k < here.size(); k++) {
       checks.state(k, 2 * i) = here[k] + 0.5 * direction_[k];
       checks.state(k, 2 * i + 1) = step.target[k];
     }
   }
-  if (!is_any_kept) return {};
-  const Touching touching = checks.touching();
+  if (idle == ALL_LANES) return {};
+  const Touching touching = checks.touching(idle, Together::TWO);
   checks.counts.configurations += static_cast<std::int64_t>(2 * most);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < most; i++) {

@@ -76,37 +76,39 @@ void Workspace::set_all(std::span<const double> q) {
 
 namespace {
 
-Mask meeting_anything(Workspace& workspace, const Lengths& lengths, Wanted wanted, Contact* found) {
+Mask meeting_anything(Workspace& workspace, const Lengths& lengths, Mask settled, Wanted wanted, Contact* found) {
   const Robot& robot = workspace.checker.robot();
   const Scene& scene = workspace.checker.scene();
   Places& places = workspace.places;
-  Mask mask = meeting_obstacles(robot, lengths, scene, places, wanted, found);
+  Mask mask = meeting_obstacles(robot, lengths, scene, places, settled, wanted, found);
   if (is_enough(mask, wanted)) return mask;
   if (!scene.surfaces.empty()) {
-    mask |= meeting_surfaces(robot, lengths, scene, places, mask, wanted, found);
+    mask |= with_others(meeting_surfaces(robot, lengths, scene, places, mask, wanted, found), wanted);
     if (is_enough(mask, wanted)) return mask;
   }
   return meeting_itself(robot, lengths, places, mask, wanted, found);
 }
 
-Mask blocked_lanes(Workspace& workspace, const Lengths& lengths, Wanted wanted, Contact* found) {
+Mask blocked_lanes(Workspace& workspace, const Lengths& lengths, Mask settled, Wanted wanted, Contact* found) {
   workspace.places.place(workspace.checker.robot(), lengths, workspace.states);
-  return meeting_anything(workspace, lengths, wanted, found);
+  return meeting_anything(workspace, lengths, settled, wanted, found);
 }
 
 }  // namespace
 
 Mask blocked_where_placed(Workspace& workspace, Wanted wanted) {
   workspace.counts.batches++;
-  return meeting_anything(workspace, *workspace.lengths, wanted, nullptr);
+  return meeting_anything(workspace, *workspace.lengths, 0, wanted, nullptr);
 }
 
-Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted) {
+Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted, Mask settled) {
   workspace.counts.batches++;
-  return blocked_lanes(workspace, lengths, wanted, nullptr);
+  return blocked_lanes(workspace, lengths, settled, wanted, nullptr);
 }
 
-Mask blocked(Workspace& workspace, Wanted wanted) { return blocked(workspace, *workspace.lengths, wanted); }
+Mask blocked(Workspace& workspace, Wanted wanted, Mask settled) {
+  return blocked(workspace, *workspace.lengths, wanted, settled);
+}
 
 /// Write sixteen configurations, and return the mask of those that are out of bounds.
 Mask take_rows(Workspace& workspace, Matrix<const double> rows, std::size_t first, std::size_t count) {
@@ -146,7 +148,7 @@ Contact find_contact(const Checker& checker, std::span<const double> q) {
   const Borrowed workspace = checker.borrow();
   workspace->set_all(q);
   Contact found;
-  blocked_lanes(*workspace, checker.lengths(), Wanted::FIRST, &found);
+  blocked_lanes(*workspace, checker.lengths(), 0, Wanted::FIRST, &found);
   return found;
 }
 

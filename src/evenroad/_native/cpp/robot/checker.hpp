@@ -103,9 +103,10 @@ struct Workspace {
 /// these are brought within.
 Mask take_rows(Workspace& workspace, Matrix<const double> rows, std::size_t first, std::size_t count);
 
-/// Return the mask of the sixteen states that touch something; with Wanted::FIRST of some of them.
-Mask blocked(Workspace& workspace, Wanted wanted);
-Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted);
+/// Return the mask of the sixteen states that touch something, or are settled, with those wanted together with them;
+/// with Wanted::FIRST of some of them.
+Mask blocked(Workspace& workspace, Wanted wanted, Mask settled = 0);
+Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted, Mask settled = 0);
 
 /// The same where the workspace's places are those of the states already.
 Mask blocked_where_placed(Workspace& workspace, Wanted wanted);

@@ -13,8 +13,6 @@ namespace {
 constexpr int PLANES = 12;  // so many are tried for each two hulls before they are left to double precision
 /// Planes for all lanes at once cost as much as a search in one lane for each so many corners, and so many more.
 constexpr int CORNERS_OF_A_LANE = 12, CORNERS_OF_PLANES = 32;
-/// By how much, of the lengths that they come of, single precision may have distances wrong: thirty roundings.
-constexpr float SLACK = 2e-6F;
 constexpr float FAR = 1e30F;
 /// Half extents of boxes [m], and squares of sines in triangles, are taken for at least that: so all stays finite.
 constexpr float THIN = 1e-4F, FLAT = 1e-7F, LEAST_SQUARE = 1e-30F;
@@ -34,11 +32,6 @@ struct RelativePose16 {
   /// Return a direction in the first body's frame as the second sees it.
   EVENROAD_INLINE Vec3x16 turned_back(Vec3x16 v) const { return combine(rows[0], v.x, rows[1], v.y, rows[2], v.z); }
 };
-
-/// Return how far a body reaches from the origin of its frame, at most.
-float reach_of(const Node& root) {
-  return std::abs(root.centre[0]) + std::abs(root.centre[1]) + std::abs(root.centre[2]) + root.radius;
-}
 
 RelativePose16 relative_pose(const PlacedFrame& a, const PlacedFrame& b) {
   const Vec3x16 apart = b.origin - a.origin;
@@ -171,13 +164,12 @@ Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const No
 
 }  // namespace
 
-Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked, Wanted wanted) {
+Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked, Wanted wanted,
+                   KeptOfPairs* kept) {
   const HullTree<float>&tree = first.tree, &other = second.tree;
   const RelativePose16 pose = relative_pose(first.frame, second.frame);
-  const Vec3x16 apart = abs(second.frame.origin - first.frame.origin);
-  const float size = reach_of(tree.nodes[first.root]) + reach_of(other.nodes[second.root]);
   // How near is wrong by no more than single precision loses of the lengths that it comes of.
-  const Floats16 near = spread(margin) + (apart.x + apart.y + apart.z + size) * SLACK;
+  const Floats16 near = spread(margin) + lost(first, second);
   struct Waiting {
     int a, b;
     Mask lanes;
@@ -188,7 +180,18 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
   Mask placed = 0;
   const auto leaves_meet = [&](int a, int b, int lane, PlaneNormal& plane) {
     if ((placed >> lane & 1) == 0) poses[lane] = relative_pose(first.frame, second.frame, lane), placed |= 1U << lane;
-    return leaves_near(tree, a, other, b, poses[lane], margin, plane);
+    Vec3 point;
+    const bool near = leaves_near(tree, a, other, b, poses[lane], margin, plane, point);
+    if (kept == nullptr) return near;
+    if (!near) {
+      const double* at = plane.at;
+      kept->of(a, b).normal = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
+    } else if (tree.nodes[a].is_leaf()) {
+      // Of what is around a body no point need be of the body.
+      Kept& of_all = kept->of(first.root, second.root);
+      of_all.point = point, of_all.has_point = true;
+    }
+    return near;
   };
   Mask meeting = 0;
   for (int count = 1; count > 0;) {
@@ -209,6 +212,9 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
       if (left == 0) continue;
     }
     if (p.is_leaf() && q.is_leaf()) {
+      if (kept != nullptr)
+        left = not_apart_across(kept->of(a, b).normal, {tree, a, first.frame}, {other, b, second.frame}, near, left);
+      if (left == 0) continue;
       if (CORNERS_OF_A_LANE * std::popcount(left) >= CORNERS_OF_PLANES + p.points.size() + q.points.size())
         left = not_apart(pose, tree, p, other, q, near, left);
       for (; left != 0; left &= left - 1) {

@@ -218,7 +218,8 @@ HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, co
     if (aside > other_near * other_near || other_aside > near * near) continue;
     if (p.is_leaf() && q.is_leaf()) {
       PlaneNormal none;
-      if (leaves_near(tree, a, tree, b, pose, margin, none)) return {a, b};
+      Vec3 nowhere;
+      if (leaves_near(tree, a, tree, b, pose, margin, none, nowhere)) return {a, b};
     } else if (q.is_leaf() || (!p.is_leaf() && p.radius >= q.radius)) {
       for (int child : p.children) waiting[count++] = {child, b};
     } else {
@@ -230,7 +231,7 @@ HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, co
 
 template <class T>
 bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, int second, const RelativePose& pose,
-                 double margin, PlaneNormal& plane) {
+                 double margin, PlaneNormal& plane, Vec3& point) {
   const HullNode<T>&a = tree.nodes[first], &b = other.nodes[second];
   const double* m = pose.rotation;
   Simplex simplex;
@@ -249,6 +250,7 @@ bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, i
       for (int axis = 0; axis < 3; axis++) plane.at[axis] = turned_back[axis];
       return false;
     }
+    point = {static_cast<float>(p.place[0]), static_cast<float>(p.place[1]), static_cast<float>(p.place[2])};
     if (simplex.size > 0 && length - gap < 1e-6 * length + SAME) return true;
     Vector& apart = simplex.corners[simplex.size++];
     for (int axis = 0; axis < 3; axis++) {
@@ -267,7 +269,7 @@ bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, i
   template HullTree<T> make_hull_tree(const GivenHulls&);                                                  \
   template HullContact find_hull_contact(const HullTree<T>&, int, int, const RelativePose&, double);       \
   template bool leaves_near(const HullTree<T>&, int, const HullTree<T>&, int, const RelativePose&, double, \
-                            PlaneNormal&);
+                            PlaneNormal&, Vec3&);
 EVENROAD_HULLS_OF(float)
 EVENROAD_HULLS_OF(double)
 

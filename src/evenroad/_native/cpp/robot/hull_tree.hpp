@@ -102,9 +102,10 @@ struct PlaneNormal {
 };
 
 /// Return whether two leaves, each of a tree, come within a margin; apart is only what a plane separates.  The search
-/// begins with a plane, if one is given, and writes the one that separates them.
+/// begins with a plane, if one is given, and writes the one that separates them, or else a point of the first that is
+/// about nearest to the second.
 template <class T>
 bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, int second, const RelativePose& pose,
-                 double margin, PlaneNormal& plane);
+                 double margin, PlaneNormal& plane, Vec3& point);
 
 }  // namespace evenroad::robot

@@ -89,11 +89,11 @@ Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body,
 }
 
 Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Scene& scene, int number,
-                   float near, Mask asked, Wanted wanted) {
+                   float near, Mask asked, Wanted wanted, KeptOfPairs* kept) {
   const Obstacle& obstacle = scene.obstacles[number];
   const PlacedFrame there = placed(obstacle);
   const Mask meeting = hulls_meeting({robot.shapes, body.shape, places.frames[body.frame]},
-                                     {scene.hulls, number, there}, near, asked, wanted);
+                                     {scene.hulls, number, there}, near, asked, wanted, kept);
   if (meeting != 0 && wanted == Wanted::FIRST) return meeting;
   // Only what is smaller than the body can be inside.
   const HullNode<float>& root = robot.shapes.nodes[body.shape];
@@ -101,9 +101,8 @@ Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, c
   return meeting | shape_enclosing(robot, places, body, there.origin, asked & ~meeting);
 }
 
-Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Wanted wanted,
-                       Contact* found) {
-  Mask blocked = 0;
+Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
+                       Wanted wanted, Contact* found) {
   const int blocks = static_cast<int>(scene.blocks.size());
   const std::span<const float> samples = robot.samples;
   Open waiting[MOST_OPEN];
@@ -113,12 +112,12 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
     for (const auto& [b, obstacle, capsule, lanes] : all) {
       const Mask asked = lanes & ~(blocked | touching);
       if (asked == 0) continue;
-      const Mask meeting =
-          shape_meeting(robot, places, robot.bodies[b], scene, obstacle, lengths.shapes[b], asked, wanted);
+      const Mask meeting = shape_meeting(robot, places, robot.bodies[b], scene, obstacle, lengths.shapes[b], asked,
+                                         wanted, &places.kept);
       if (found != nullptr && (blocked | touching) == 0 && meeting != 0) {
         *found = {Contact::With::OBSTACLE, capsule, scene.obstacles[obstacle].number};
       }
-      touching |= meeting;
+      touching |= with_others(meeting, wanted);
       if (is_enough(blocked | touching, wanted)) break;
     }
     return touching;
@@ -164,7 +163,7 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
             continue;
           }
           if (found != nullptr && blocked == 0 && meeting != 0) *found = {Contact::With::OBSTACLE, i, obstacle.number};
-          blocked |= meeting;
+          blocked |= with_others(meeting, wanted);
           if (is_enough(blocked, wanted)) return blocked;
         }
       }
@@ -172,14 +171,23 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
         const int k = std::countr_zero(opened), obstacle = number * LANES + k;
         Mask asked = open[k] & ~blocked;
         if (asked == 0) continue;
-        const Mask surely =
-            inside_meeting(robot, places, robot.bodies[b], scene.obstacles[obstacle], lengths.shapes[b], asked, wanted);
+        const Told told = told_by(places.kept.of(robot.bodies[b].shape, obstacle),
+                                  {robot.shapes, robot.bodies[b].shape, places.frames[robot.bodies[b].frame]},
+                                  {scene.hulls, obstacle, placed(scene.obstacles[obstacle])}, lengths.shapes[b], asked);
+        asked &= ~told.apart;
+        if (asked == 0) continue;
+        const Mask open = asked & ~with_others(told.near, wanted);
+        Mask surely = told.near;
+        if (open != 0 && !is_enough(surely, wanted)) {
+          surely |= inside_meeting(robot, places, robot.bodies[b], scene.obstacles[obstacle], lengths.shapes[b], open,
+                                   wanted);
+        }
         if (found != nullptr && blocked == 0 && surely != 0) {
           *found = {Contact::With::OBSTACLE, first[k], scene.obstacles[obstacle].number};
         }
-        blocked |= surely;
+        blocked |= with_others(surely, wanted);
         if (is_enough(blocked, wanted)) return blocked;
-        asked &= ~surely;
+        asked &= ~blocked;
         if (asked == 0) continue;
         if (count == MOST_OPEN) {
           blocked |= decide(waiting, blocked);

@@ -21,13 +21,14 @@ struct Contact {
 };
 
 /// Return the mask of lanes in which a body meets an obstacle: a capsule of it, and its true shape where that is known.
-/// `found`, where it is given, is the first contact.
-Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Wanted wanted,
-                       Contact* found = nullptr);
+/// Lanes that are `blocked` are not looked at; they are returned, too.  `found`, where it is given, is the first
+/// contact.
+Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
+                       Wanted wanted, Contact* found = nullptr);
 
 /// Return the mask of those lanes asked for in which the true shape of a body comes within `near` of an obstacle.
 Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Scene& scene, int number,
-                   float near, Mask asked, Wanted wanted);
+                   float near, Mask asked, Wanted wanted, KeptOfPairs* kept = nullptr);
 
 /// Return the mask of those lanes asked for in which a surface of a body's true shape goes around a place of the scene.
 Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body, Vec3x16 place, Mask asked);

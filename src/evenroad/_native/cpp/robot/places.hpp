@@ -1,6 +1,8 @@
 // Where frames, bodies and capsules are at sixteen configurations.
 #pragma once
 
+#include <array>
+
 #include "robot/robot.hpp"
 
 namespace evenroad::robot {
@@ -23,10 +25,32 @@ struct PlacedCapsule {
   Box16 around;
 };
 
+/// What decided about two nodes of trees of hulls last.
+struct Kept {
+  int first = -1, second = -1;
+  Vec3 normal;  // of a plane that separated them, in the frame of the second; 0 where none is known
+  Vec3 point;   // of the first that was near the second, in the frame of the first
+  bool has_point = false;
+};
+
+class KeptOfPairs {
+ public:
+  /// Return where that of two nodes is kept; what is there of others is forgotten.
+  Kept& of(int first, int second) {
+    Kept& kept = kept_[static_cast<std::size_t>(37 * first + second) % kept_.size()];
+    if (kept.first != first || kept.second != second) kept = {first, second, {}, {}, false};
+    return kept;
+  }
+
+ private:
+  std::array<Kept, 512> kept_;
+};
+
 struct Places {
   std::vector<PlacedFrame> frames;  // the root's first
   std::vector<PlacedBody> bodies;
   std::vector<PlacedCapsule> capsules;
+  KeptOfPairs kept, kept_of_itself;  // of true shapes and obstacles, of hulls of the robot: no answer depends on them
 
   /// Room for a robot's places, with those that no joint moves.
   explicit Places(const Robot& robot);

@@ -38,7 +38,7 @@ Mask capsules_touching(const PlacedCapsule& a, const PlacedCapsule& b, const Cap
   return below_zero(squared_distance(a, b, pair) - reach * reach);
 }
 
-Mask meeting_itself(const Robot& robot, const Lengths& lengths, const Places& places, Mask blocked, Wanted wanted,
+Mask meeting_itself(const Robot& robot, const Lengths& lengths, Places& places, Mask blocked, Wanted wanted,
                     Contact* found) {
   const int by_hulls = robot.first_hull_pair();
   for (int p = 0; p < static_cast<int>(robot.body_pairs.size()); p++) {
@@ -69,7 +69,7 @@ Mask meeting_itself(const Robot& robot, const Lengths& lengths, const Places& pl
           continue;
         }
         if (found != nullptr && blocked == 0 && touching != 0) *found = {Contact::With::ITSELF, -1, k};
-        blocked |= touching;
+        blocked |= with_others(touching, wanted);
         if (is_enough(blocked, wanted)) return blocked;
       }
     }
@@ -78,9 +78,9 @@ Mask meeting_itself(const Robot& robot, const Lengths& lengths, const Places& pl
     const float margin = lengths.hull_margins[p - by_hulls];
     const Mask meeting = hulls_meeting({robot.hulls, robot.bodies[a].hulls, places.frames[robot.bodies[a].frame]},
                                        {robot.hulls, robot.bodies[b].hulls, places.frames[robot.bodies[b].frame]},
-                                       margin, undecided, wanted);
+                                       margin, undecided, wanted, &places.kept_of_itself);
     if (found != nullptr && blocked == 0 && meeting != 0) *found = {Contact::With::ITSELF, -1, first_undecided};
-    blocked |= meeting;
+    blocked |= with_others(meeting, wanted);
     if (is_enough(blocked, wanted)) return blocked;
   }
   return blocked;

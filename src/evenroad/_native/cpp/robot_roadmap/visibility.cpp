@@ -10,7 +10,7 @@ using namespace robot;
 namespace {
 
 Mask meeting_walls(const Checker& walls, Places& places, Wanted wanted) {
-  return meeting_obstacles(walls.robot(), walls.lengths(), walls.scene(), places, wanted, nullptr);
+  return meeting_obstacles(walls.robot(), walls.lengths(), walls.scene(), places, 0, wanted, nullptr);
 }
 
 /// Keep of the rows those whose motions touch no wall at a share of their ways, (n, dim).
