@@ -1,35 +1,39 @@
-"""Verdicts on robots among obstacles against coal, on the triangles of the makers' files.
+"""Verdicts on robots among obstacles against coal, on the triangles of the makers' files, and against MuJoCo's hulls.
 
-    python -m studies.benchmarks.obstacle_truth OUT.csv ROBOT.urdf FOLDER ...
+    python -m studies.benchmarks.obstacle_truth OUT.csv ROBOT.urdf FOLDER ... [--count 2000]
+    python -m studies.benchmarks.obstacle_truth OUT.csv --table
 
 For each robot, in three scenes of twenty boxes, balls and cylinders at random: how many configurations that we call
-free touch an obstacle by more than `DEEP` in coal (uniform ones, others bisected to our edge of contact), how many
-that coal calls free by `CLEAR` are blocked here, with the makers' shapes and with capsules, and the time of a verdict.
-Links are not tested against each other.
+free touch an obstacle by more than `DEEP` (uniform ones, others bisected to our edge of contact), how many that coal
+calls free are blocked here, with the makers' shapes and with capsules, the volume of what stands for the robot, and
+the time of a verdict.  Links are not tested against each other.  ``--table`` prints the rows as docs/robots.md has
+them.
 """
 
 from __future__ import annotations
 
+import csv
+import os
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import coal
 import numpy as np
-import pinocchio
-from studies.benchmarks.robot_truth import Truth, at_contact
-from studies.benchmarks.rows import row_per_robot
+from studies.benchmarks.rows import parser_of, row_per_robot
 
 from evenroad.geometry import rotation_from_rpy
-from evenroad.robot import ArmWorld, Scene, load_robot
+from evenroad.robot import ArmWorld, Robot, Scene, load_model
 from evenroad.robot.scene import Obstacle
 
-COUNT, SCENES = 700, 3
+SCENES = 3
 DEEP, CLEAR = 6e-6, 5e-4
 """What single precision may cost is some micrometres; what coal calls free by this must be free [m]."""
 FIELDS = (
-    *("robot", "dim", "parts", "configurations", "blocked", "truth_blocked", "free_that_touch"),
-    *("at_contact", "at_contact_that_touch", "beyond", "beyond_capsules", "us", "us_capsules", "note"),
+    *("robot", "dim", "parts", "configurations", "truth_blocked", "blocked", "blocked_capsules"),
+    *("beyond", "beyond_capsules", "clear_yet_blocked", "clear_yet_blocked_capsules"),
+    *("free_that_touch", "at_contact", "at_contact_that_touch", "hulls_that_touch"),
+    *("volume", "volume_capsules", "us", "us_capsules", "load_s", "note"),
 )
 
 
@@ -39,7 +43,7 @@ def random_scene(seed: int, reach: float, floor: float) -> Scene:
     made: list[Obstacle] = []
     while len(made) < 20:
         kind = ("box", "sphere", "cylinder")[len(made) % 3]
-        size = tuple(rng.uniform(0.01, 0.12, {"box": 3, "sphere": 1}.get(kind, 2)) * reach)
+        size = tuple(rng.uniform(0.02, 0.25, {"box": 3, "sphere": 1}.get(kind, 2)) * reach)
         place = rng.uniform(-0.8, 0.8, 3) * reach
         if np.linalg.norm(place) > floor + float(np.linalg.norm(size)):
             turn = rotation_from_rpy(*rng.uniform(-3.0, 3.0, 3))
@@ -47,8 +51,10 @@ def random_scene(seed: int, reach: float, floor: float) -> Scene:
     return Scene(tuple(made), name=f"random{seed}")
 
 
-def solid(obstacle: Obstacle, margin: float) -> tuple[coal.CollisionGeometry, coal.Transform3s]:
+def solid(obstacle: Obstacle, margin: float):
     """Return an obstacle as coal has it, by a negative margin smaller, of which coal's meshes know nothing."""
+    import coal
+
     less = min(margin, 0.0)
     more = {"box": (2 * less,) * 3, "sphere": (less,), "cylinder": (less, 2 * less)}[obstacle.shape]
     size = np.add(obstacle.size, more).tolist()
@@ -56,73 +62,207 @@ def solid(obstacle: Obstacle, margin: float) -> tuple[coal.CollisionGeometry, co
     return made, coal.Transform3s(np.reshape(obstacle.rotation, (3, 3)), np.array(obstacle.xyz))
 
 
-def touching(truth: Truth, scene: Scene, q: np.ndarray, margin: float) -> np.ndarray:
+def touching(truth, scene: Scene, q: np.ndarray, margin: float) -> np.ndarray:
     """Return which configurations come within `margin` of an obstacle in coal, or deeper than a negative one, (n,)."""
+    import coal
+
     request, result = coal.CollisionRequest(), coal.CollisionResult()
     request.security_margin = max(margin, 0.0)
     request.enable_contact = True
     items, solids = truth.geometry.geometryObjects, [solid(each, margin) for each in scene.obstacles]
-    for item in items:
-        item.geometry.computeLocalAABB()
+    rotation, shift = truth.places(q)
     hits = np.zeros(len(q), dtype=bool)
-    for row, values in enumerate(q):
-        pinocchio.framesForwardKinematics(truth.model, truth.data, truth._state(values))
-        for item in items:
-            place = truth.data.oMi[item.parentJoint] * item.placement
-            here = coal.Transform3s(place.rotation, place.translation)
-            middle = place.act(np.array(item.geometry.aabb_center))
-            for made, there in solids:
-                result.clear()
-                if np.linalg.norm(middle - there.getTranslation()) > item.geometry.aabb_radius + 2.0:
-                    continue
-                if coal.collide(item.geometry, here, made, there, request, result):
-                    hits[row] = True
-                    break
-            if hits[row]:
-                break
+    for row, i, k in near_pairs(truth, scene, rotation, shift):
+        if not hits[row]:
+            result.clear()
+            here = coal.Transform3s(rotation[row, i], shift[row, i])
+            hits[row] = bool(coal.collide(items[i].geometry, here, *solids[k], request, result))
     return hits
 
 
-def measured(file: Path, rng: np.random.Generator) -> dict[str, object]:
-    """Return the row of one robot."""
-    robot = load_robot(file)
-    robot = replace(robot, pairs=(), pairs_given=True)
-    capsules = replace(robot, shapes=())
-    held = {
+def near_pairs(truth, scene: Scene, rotation: np.ndarray, shift: np.ndarray) -> list[list[int]]:
+    """Return configurations, bodies and obstacles, a row each, whose balls come within a millimetre."""
+    middles, radii = truth.balls()
+    centres = np.einsum("nbij,bj->nbi", rotation, middles) + shift
+    places = np.array([each.xyz for each in scene.obstacles])
+    # A ball around a cylinder of this radius and length is smaller than that of a box of these sides.
+    around = np.array([np.linalg.norm(each.size) for each in scene.obstacles])
+    apart = np.linalg.norm(centres[:, :, np.newaxis] - places, axis=3)
+    return np.argwhere(apart < radii[:, np.newaxis] + around + 1e-3).tolist()
+
+
+class Hulls:
+    """The convex bodies of a robot among obstacles in MuJoCo, which knows the convex hull of a mesh."""
+
+    def __init__(self, truth, scene: Scene) -> None:
+        import coal
+        import mujoco
+
+        from evenroad.geometry.mesh import TriangleMesh
+
+        spec, self.geoms = mujoco.MjSpec(), {}
+        for i, item in enumerate(truth.geometry.geometryObjects):
+            shape, kind, size, name = item.geometry, None, [1.0] * 3, ""
+            if isinstance(shape, coal.BVHModelBase):
+                corners = shape.vertices()
+                faces = np.array([[shape.tri_indices(t)[k] for k in range(3)] for t in range(shape.num_tris)])
+                if TriangleMesh(corners, faces).is_convex:
+                    kind, name = mujoco.mjtGeom.mjGEOM_MESH, f"mesh{i}"
+                    spec.add_mesh(name=name, uservert=corners.ravel().tolist())
+            elif isinstance(shape, coal.Box):
+                kind, size = mujoco.mjtGeom.mjGEOM_BOX, shape.halfSide.tolist()
+            elif isinstance(shape, coal.Sphere):
+                kind, size = mujoco.mjtGeom.mjGEOM_SPHERE, [shape.radius] * 3
+            elif isinstance(shape, coal.Cylinder):
+                kind, size = mujoco.mjtGeom.mjGEOM_CYLINDER, [shape.radius, shape.halfLength, 1.0]
+            if kind is not None:
+                self.geoms[i] = len(self.geoms)
+                spec.worldbody.add_geom(type=kind, size=size, **({"meshname": name} if name else {}))
+        for each in scene.obstacles:
+            size = np.multiply(each.size, {"box": 0.5, "cylinder": (1.0, 0.5)}.get(each.shape, 1.0)).tolist()
+            kind = getattr(mujoco.mjtGeom, f"mjGEOM_{each.shape.upper()}")
+            quaternion = np.zeros(4)
+            mujoco.mju_mat2Quat(quaternion, np.array(each.rotation))
+            spec.worldbody.add_geom(type=kind, size=[*size, 1.0, 1.0][:3], pos=each.xyz, quat=quaternion)
+        self.model = spec.compile()
+        self.data = mujoco.MjData(self.model)
+        mujoco.mj_kinematics(self.model, self.data)
+        self.own = [(self.data.geom_xmat[g].reshape(3, 3).copy(), self.data.geom_xpos[g].copy())
+                    for g in range(len(self.geoms))]  # fmt: skip
+        self.truth, self.scene = truth, scene
+
+    def touching(self, q: np.ndarray) -> np.ndarray:
+        """Return which configurations have a convex body deeper than `DEEP` in an obstacle, (n,)."""
+        import mujoco
+
+        rotation, shift = self.truth.places(q)
+        hits = np.zeros(len(q), dtype=bool)
+        for row, i, k in near_pairs(self.truth, self.scene, rotation, shift):
+            if not hits[row] and i in self.geoms:
+                g = self.geoms[i]
+                turn, place = self.own[g]
+                self.data.geom_xmat[g] = (rotation[row, i] @ turn).ravel()
+                self.data.geom_xpos[g] = rotation[row, i] @ place + shift[row, i]
+                hits[row] = mujoco.mj_geomDistance(self.model, self.data, g, len(self.own) + k, 1e-3, None) < -DEEP
+        return hits
+
+
+def volumes(model) -> tuple[float, float]:
+    """Return what stands for the robot with shapes, and with capsules, in parts of its shapes' volume."""
+    from scipy.spatial import ConvexHull
+
+    own = sum(body.shape_volume for body in model.bodies)
+    wider = 0.0
+    for part in model.robot.shapes:
+        if part.of == "hull":
+            # The hull without its least corners, and what lies within its radius of it.
+            hull = ConvexHull(part.corners[0])
+            wider += hull.area * part.radius
+    return 1.0 + wider / own, sum(body.capsule_volume for body in model.bodies) / own
+
+
+def seconds(world: ArmWorld, q: np.ndarray) -> float:
+    """Return the processor's seconds of one verdict: the least of three passes."""
+    took = []
+    for _ in range(3):
+        began = time.process_time()
+        world.valid(q)
+        took.append(time.process_time() - began)
+    return min(took) / len(q)
+
+
+def held_joints(robot: Robot) -> dict[str, float]:
+    """Return the values of the joints that are not planned for."""
+    return {
         joint.name: robot.held.get(joint.name, joint.neutral)
         for joint in robot.joints
         if joint.kind != "fixed" and joint.mimic is None and joint.name not in robot.group
     }
-    truth = Truth(file, robot.group, held)
-    total: dict[str, float] = dict.fromkeys(FIELDS[3:-1], 0)
+
+
+def measured(file: Path, count: int) -> dict[str, object]:
+    """Return the row of one robot."""
+    from studies.benchmarks.robot_truth import Truth, at_contact
+
+    rng = np.random.default_rng(0)
+    began = time.process_time()
+    model = load_model(file)
+    loaded = time.process_time() - began
+    robot = replace(model.robot, pairs=(), pairs_given=True, resting=())
+    capsules = replace(robot, shapes=())
+    truth = Truth(file, robot.group, held_joints(robot))
+    total: dict[str, float] = dict.fromkeys(FIELDS[3:15], 0)
+    took: list[tuple[float, float]] = []
     for seed in range(SCENES):
         reach = min(ArmWorld(robot).robot_tables.reach, 1.5)
         scene = random_scene(seed, reach, 0.35 * reach)
         world, of_capsules = ArmWorld(robot, scene), ArmWorld(capsules, scene)
-        q = world.space.from_cube(rng.random((COUNT, world.space.cube_dim)))
+        q = world.space.from_cube(rng.random((count // SCENES, world.space.cube_dim)))
         free, wide = world.valid(q), of_capsules.valid(q)
-        for key, each in (("us", world), ("us_capsules", of_capsules)):
-            began = time.perf_counter()
-            each.valid(q)
-            total[key] += 1e6 * (time.perf_counter() - began) / COUNT / SCENES
-        clear = ~touching(truth, scene, q, CLEAR)
-        total["configurations"] += COUNT
-        total["blocked"] += int((~free).sum())
-        total["truth_blocked"] += int(touching(truth, scene, q, 0.0).sum())
-        total["free_that_touch"] += int(touching(truth, scene, q[free], -DEEP).sum())
-        total["beyond"] += int((clear & ~free).sum())
-        total["beyond_capsules"] += int((clear & ~wide).sum())
+        took.append((seconds(world, q), seconds(of_capsules, q)))
+        # What is farther than the margin touches neither, and what does not touch is nowhere deep.
+        near = touching(truth, scene, q, CLEAR)
+        hits = near.copy()
+        hits[near] = touching(truth, scene, q[near], 0.0)
+        total["configurations"] += len(q)
+        for key, value in (
+            ("truth_blocked", hits), ("blocked", ~free), ("blocked_capsules", ~wide),
+            ("beyond", ~free & ~hits), ("beyond_capsules", ~wide & ~hits),
+            ("clear_yet_blocked", ~free & ~near), ("clear_yet_blocked_capsules", ~wide & ~near),
+        ):  # fmt: skip
+            total[key] += int(value.sum())
+        hulls = Hulls(truth, scene)
+        total["free_that_touch"] += int(touching(truth, scene, q[free & hits], -DEEP).sum())
+        total["hulls_that_touch"] += int(hulls.touching(q[free]).sum())
         if free.any() and not free.all():
-            edge = at_contact(world, q[free], q[~free], COUNT, rng)
+            edge = at_contact(world, q[free], q[~free], count // SCENES, rng)
             total["at_contact"] += len(edge)
             total["at_contact_that_touch"] += int(touching(truth, scene, edge, -DEEP).sum())
-    parts = sum(len(each.corners) for each in robot.shapes)
-    return {"robot": file.stem, "dim": len(robot.group), "parts": parts, **{k: round(v, 2) for k, v in total.items()}}
+            total["hulls_that_touch"] += int(hulls.touching(edge).sum())
+    of = total["configurations"]
+    shares = {key: round(100.0 * total[key] / of, 2) for key in FIELDS[4:9]}
+    volume, volume_capsules = volumes(model)
+    us, us_capsules = 1e6 * np.mean(took, axis=0)
+    return {
+        "robot": file.stem, "dim": len(robot.group), "parts": sum(len(each.corners) for each in robot.shapes),
+        **{key: int(value) for key, value in total.items()}, **shares,
+        "volume": round(volume, 3), "volume_capsules": round(volume_capsules, 2),
+        "us": round(float(us), 3), "us_capsules": round(float(us_capsules), 3), "load_s": round(loaded, 1),
+    }  # fmt: skip
+
+
+def table(rows: Sequence[dict[str, str]]) -> str:
+    """Return the rows as a table of a page."""
+    head = ("robot", "joints", "in truth", "capsules", "shapes", "volume", "time", "touching")
+    lines = [f"| {' | '.join(head)} |", "|" + "---|" * len(head)]
+    for row in (row for row in rows if not row["note"]):
+        wrong = sum(int(row[key] or 0) for key in ("free_that_touch", "at_contact_that_touch", "hulls_that_touch"))
+        cells = (
+            *(row["robot"], row["dim"], f"{float(row['truth_blocked']):.1f}"),
+            *(f"+{float(row[key]):.2f}" for key in ("beyond_capsules", "beyond")),
+            f"{float(row['volume_capsules']):.2f}, {float(row['volume']):.3f}",
+            f"{float(row['us']) / float(row['us_capsules']):.2f}",
+            f"{wrong} of {int(row['configurations']) + int(row['at_contact'] or 0)}",
+        )
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
 
 
 def main() -> None:
-    """Write a row for each robot as soon as it is there."""
-    row_per_robot(FIELDS, "*.urdf", lambda file: measured(file, np.random.default_rng(0)), lambda file: file.stem)
+    """Write a row for each robot as soon as it is there, or print the table of a file's rows."""
+    parser = parser_of(__doc__)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("robots", type=Path, nargs="*")
+    parser.add_argument("--count", type=int, default=2000)
+    parser.add_argument("--table", action="store_true")
+    given = parser.parse_args()
+    if given.table:
+        with given.out.open(newline="") as stream:
+            print(table(list(csv.DictReader(stream))))
+        return
+    os.nice(5)
+    paths = [given.out, *given.robots]
+    row_per_robot(FIELDS, "*.urdf", lambda file: measured(file, given.count), lambda file: file.stem, paths)
 
 
 if __name__ == "__main__":

@@ -95,10 +95,9 @@ class Truth:
         items = self.geometry.geometryObjects
         request, result = coal.CollisionRequest(), coal.CollisionResult()
         request.enable_contact = True
-        for item in items:
-            item.geometry.computeLocalAABB()
-        middles = [np.array(item.geometry.aabb_center) for item in items]
-        radii = np.array([item.geometry.aabb_radius for item in items])
+        middles, radii = self.balls()
+        rotation, shift = self.places(q)
+        centres = np.einsum("nbij,bj->nbi", rotation, middles) + shift
         every = [
             (column, i, k)
             for column, (first, second) in enumerate(self.pairs)
@@ -106,18 +105,31 @@ class Truth:
             for k in self.of_link[second]
         ]
         _, one, two = np.array(every).T
-        for row, values in enumerate(q):
-            pinocchio.framesForwardKinematics(self.model, self.data, self._state(values))
-            places = [self.data.oMi[item.parentJoint] * item.placement for item in items]
-            centres = np.array([place.act(middle) for place, middle in zip(places, middles, strict=True)])
-            solid = [coal.Transform3s(place.rotation, place.translation) for place in places]
-            near = np.linalg.norm(centres[one] - centres[two], axis=1) <= radii[one] + radii[two]
+        for row in range(len(q)):
+            solid = [coal.Transform3s(*place) for place in zip(rotation[row], shift[row], strict=True)]
+            near = np.linalg.norm(centres[row, one] - centres[row, two], axis=1) <= radii[one] + radii[two]
             for column, i, k in np.array(every)[near].tolist():
                 result.clear()
                 if not hits[row, column]:
                     pair = items[i].geometry, solid[i], items[k].geometry, solid[k]
                     hits[row, column] = bool(coal.collide(*pair, request, result))
         return hits
+
+    def balls(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return centres, (bodies, 3), and radii of balls around the bodies, in their frames."""
+        geometries = [item.geometry for item in self.geometry.geometryObjects]
+        for each in geometries:
+            each.computeLocalAABB()
+        return np.array([each.aabb_center for each in geometries]), np.array([each.aabb_radius for each in geometries])
+
+    def places(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return where the bodies are: rotations, (n, bodies, 3, 3), and translations."""
+        items, found = self.geometry.geometryObjects, []
+        for values in q:
+            pinocchio.framesForwardKinematics(self.model, self.data, self._state(values))
+            found.append([self.data.oMi[item.parentJoint] * item.placement for item in items])
+        rotation = np.array([[place.rotation for place in row] for row in found]).reshape(len(q), len(items), 3, 3)
+        return rotation, np.array([[place.translation for place in row] for row in found]).reshape(*rotation.shape[:3])
 
     def _state(self, values: np.ndarray) -> np.ndarray:
         known = dict(zip(self.group, values.tolist(), strict=True)) | self.held

@@ -29,9 +29,13 @@ def row_per_robot(
     pattern: str,
     measured: Callable[[Path], dict[str, Any]],
     named: Callable[[Path], str],
+    paths: Sequence[Path] = (),
 ) -> None:
-    """Append a row for each robot to the CSV that the command names, as soon as it is there; folders are searched."""
-    out, given = Path(sys.argv[1]), list(map(Path, sys.argv[2:]))
+    """Append a row for each robot to a CSV as soon as it is there; folders are searched.
+
+    Of the paths the first is the CSV; default: those of the command line.
+    """
+    out, *given = paths or map(Path, sys.argv[1:])
     files = [file for path in given for file in (sorted(path.rglob(pattern)) if path.is_dir() else [path])]
     with out.open("a", newline="") as stream:
         writer = csv.DictWriter(stream, columns)

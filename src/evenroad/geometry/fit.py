@@ -29,6 +29,8 @@ _LOOKED_AT = 300
 """Number of triangles by which splits of one part are compared."""
 _SHOWN = 2000
 """Number of triangles by which parts are compared."""
+_COMPARED = 128
+"""Number of directions in which corners of parts are compared."""
 
 
 def fit_capsules(shape: Shape) -> tuple[Capsule, ...]:
@@ -93,12 +95,13 @@ def _around_box(size: Floats) -> list[tuple[Floats, Floats, float]]:
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """Triangles, (t, 3, 3), a capsule around them, and the two parts of their best split, if any.
+    """Triangles, (t, 3), between points, a capsule around them, and the two parts of their best split, if any.
 
-    `outer`, (n, 3), are corners of the hull of some of them, around which the capsule is: it only compares splits.
+    `outer`, (n, 3), are outer corners of some of them, around which the capsule is: it only compares splits.
     """
 
-    corners: Floats
+    points: Floats
+    triangles: Ints
     outer: Floats
     capsule: Fitted
     halves: tuple[_Part, ...] = ()
@@ -118,8 +121,7 @@ def capsules_around_mesh(vertices: Floats, triangles: Ints) -> list[Fitted]:
     link that is thick at both ends gains nothing before its second split.  A split divides triangles by their centres
     along a coordinate or principal axis.  A capsule is convex, so it contains triangles whose corners it contains.
     """
-    corners = divided(vertices[triangles])
-    parts = [_splittable(_part(corners))]
+    parts = [_splittable(_part(*divided(vertices, triangles)))]
     found = [parts]
     while len(parts) < MOST_CAPSULES:
         best = max(range(len(parts)), key=lambda i: parts[i].gain)
@@ -131,14 +133,14 @@ def capsules_around_mesh(vertices: Floats, triangles: Ints) -> list[Fitted]:
         parts = [*parts[:best], *halves, *parts[best + 1 :]]
         found.append(parts)
     chosen = min(map(_merged, found), key=_cost)
-    return [capsule_around(part.corners.reshape(-1, 3)) for part in chosen]
+    return [capsule_around(used(part.points, part.triangles)) for part in chosen]
 
 
 def _merged(parts: list[_Part]) -> list[_Part]:
     """Return the parts after joining pairs of them while that lowers the cost."""
     for i, j in itertools.combinations(range(len(parts)), 2):
-        both = np.concatenate([parts[i].corners, parts[j].corners])
-        joined = _part(both, np.concatenate([parts[i].outer, parts[j].outer]))
+        both = np.concatenate([parts[i].triangles, parts[j].triangles])
+        joined = _part(parts[i].points, both, np.concatenate([parts[i].outer, parts[j].outer]))
         fewer = [part for k, part in enumerate(parts) if k not in (i, j)] + [joined]
         if _cost(fewer) < _cost(parts):
             return _merged(fewer)
@@ -152,17 +154,35 @@ def _cost(parts: list[_Part]) -> float:
 
 def _splittable(part: _Part) -> _Part:
     """Return the part with the best split tried."""
-    below = best_cut(part.corners, lambda side: volume(rough_capsule_around(side.reshape(-1, 3))))
+    corners = part.points[part.triangles]
+    below = best_cut(corners, lambda side: volume(rough_capsule_around(side.reshape(-1, 3))))
     if below is None:
         return part
-    return replace(part, halves=tuple(_part(part.corners[side]) for side in (below, ~below)))
+    return replace(part, halves=tuple(_part(part.points, part.triangles[side]) for side in (below, ~below)))
 
 
-def _part(corners: Floats, points: Floats | None = None) -> _Part:
-    """Return a part of these triangles; `points` are corners of their hull, if known."""
-    shown = corners[:: max(1, len(corners) // _SHOWN)].reshape(-1, 3)
-    outer = extreme(shown if points is None else points)
-    return _Part(corners, outer, rough_capsule_around(outer))
+def _part(points: Floats, triangles: Ints, known: Floats | None = None) -> _Part:
+    """Return a part of these triangles; the corners of their hull are among those that are `known`, if any are."""
+    shown = triangles[:: max(1, len(triangles) // _SHOWN)]
+    outer = farthest(used(points, shown), _COMPARED) if known is None else known
+    return _Part(points, triangles, outer, rough_capsule_around(outer))
+
+
+def farthest(points: Floats, count: int) -> Floats:
+    """Return those of points, (n, 3), that are farthest along one of some directions, spread over the sphere."""
+    # A spiral by the golden angle.
+    z = 1.0 - (2.0 * np.arange(count) + 1.0) / count
+    turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
+    around = np.sqrt(1.0 - z**2)
+    directions = np.stack([around * np.cos(turn), around * np.sin(turn), z], axis=1)
+    return points[np.unique((directions @ points.T).argmax(axis=1))]
+
+
+def used(points: Floats, triangles: Ints) -> Floats:
+    """Return the points, (n, 3), that are corners of triangles, each once."""
+    is_used = np.zeros(len(points), dtype=np.bool_)
+    is_used[triangles] = True
+    return points[is_used]
 
 
 def best_cut(corners: Floats, cost: Callable[[Floats], float]) -> Bools | None:
@@ -170,10 +190,11 @@ def best_cut(corners: Floats, cost: Callable[[Floats], float]) -> Bools | None:
     None without a cut.
     """
     centres = corners.mean(axis=1)
-    _, _, axes = np.linalg.svd(centres - centres.mean(axis=0), full_matrices=len(centres) < 3)
+    relative = centres - centres.mean(axis=0)
+    longest = np.linalg.eigh(relative.T @ relative)[1][:, -1]
     shown = slice(None, None, max(1, len(corners) // _LOOKED_AT))
     least, best = math.inf, None
-    for axis in (*np.eye(3), axes[0]):
+    for axis in (*np.eye(3), longest):
         along = centres @ axis
         for cut in _CUTS:
             below = along < along.min() + cut * np.ptp(along)
@@ -186,21 +207,23 @@ def best_cut(corners: Floats, cost: Callable[[Floats], float]) -> Bools | None:
     return best
 
 
-def divided(corners: Floats, share: float = _LONGEST_EDGE) -> Floats:
-    """Return triangles, (t, 3, 3), of the same surface with edges of at most this share of its extent."""
-    longest = share * float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+def divided(points: Floats, triangles: Ints, share: float = _LONGEST_EDGE) -> tuple[Floats, Ints]:
+    """Return the same surface with edges of at most this share of its extent: points, (n, 3), triangles, (t, 3)."""
+    longest = share * float(np.ptp(used(points, triangles), axis=0).max())
     done = []
-    while len(corners):
-        lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+    while len(triangles):
+        corners = points[triangles]
+        lengths = np.linalg.norm(corners - corners[:, [1, 2, 0]], axis=2)
         long = lengths.max(axis=1) > longest
-        done.append(corners[~long])
+        done.append(triangles[~long])
         # Turned so that the longest edge runs from the first to the second corner.
         first = lengths[long].argmax(axis=1)[:, np.newaxis]
-        turned = np.take_along_axis(corners[long], ((first + np.arange(3)) % 3)[:, :, np.newaxis], axis=1)
-        a, b, c = turned[:, 0], turned[:, 1], turned[:, 2]
-        middle = 0.5 * (a + b)
-        corners = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
-    return np.concatenate(done)
+        a, b, c = np.take_along_axis(triangles[long], (first + np.arange(3)) % 3, axis=1).T
+        # Two triangles at one edge have a middle each.
+        middle = len(points) + np.arange(len(a))
+        points = np.concatenate([points, 0.5 * (points[a] + points[b])])
+        triangles = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return points, np.concatenate(done)
 
 
 SAMPLES = 1 << 15
@@ -218,22 +241,23 @@ def capsule_around(points: Floats) -> Fitted:
     """
     from scipy.optimize import minimize
 
-    points = extreme(points)
-    centre, axes = _starts(points)
-    frame = _frame(min(axes, key=lambda axis: volume(_smallest_on(points, centre, axis[np.newaxis]))))
+    # Some outer points find the axis; the capsule on it is around all.
+    outer = farthest(points, 2 * _COMPARED)
+    centre, axes = _starts(outer)
+    frame = _frame(min(axes, key=lambda axis: volume(_smallest_on(outer, centre, axis[np.newaxis]))))
     best = _smallest_on(points, centre, frame[:1])
     size = float(np.ptp(points, axis=0).max()) or 1.0
 
-    def moved(x: Floats) -> Fitted:
+    def moved(x: Floats, around: Floats) -> Fitted:
         tilted = frame[0] + x[0] * frame[1] + x[1] * frame[2]
         origin = centre + size * (x[2] * frame[1] + x[3] * frame[2])
-        return _smallest_on(points, origin, (tilted / np.linalg.norm(tilted))[np.newaxis])
+        return _smallest_on(around, origin, (tilted / np.linalg.norm(tilted))[np.newaxis])
 
     steps = np.vstack([np.zeros(4), 0.1 * np.eye(4)])
     options = dict(maxiter=200, xatol=1e-4, fatol=1e-4 * volume(best), initial_simplex=steps)
     search: Any = minimize
-    found = search(lambda x: volume(moved(x)), np.zeros(4), method="Nelder-Mead", options=options)
-    return min((best, moved(found.x)), key=volume)
+    found = search(lambda x: volume(moved(x, outer)), np.zeros(4), method="Nelder-Mead", options=options)
+    return min((best, moved(found.x, points)), key=volume)
 
 
 def rough_capsule_around(points: Floats) -> Fitted:
@@ -283,17 +307,6 @@ def _frame(axis: Floats) -> Floats:
     second = np.cross(first, helper)
     second /= np.linalg.norm(second)
     return np.stack([first, second, np.cross(first, second)])
-
-
-def extreme(points: Floats) -> Floats:
-    """Return the corners of the convex hull: a capsule that contains those contains all points."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        return points[np.sort(ConvexHull(points).vertices)]
-    except QhullError:
-        # All in one plane, or fewer than four.
-        return np.unique(points, axis=0)
 
 
 def union_volume(capsules: Sequence[Capsule]) -> float:

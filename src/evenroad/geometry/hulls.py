@@ -9,10 +9,10 @@ from functools import cached_property
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad.errors import InvalidValue
-from evenroad.geometry.fit import best_cut, divided, extreme
-from evenroad.geometry.mesh import TriangleMesh, closed_parts
+from evenroad.geometry.fit import best_cut, divided, farthest, used
+from evenroad.geometry.mesh import TriangleMesh, closed_parts, extreme
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 SIDES = 32
@@ -23,10 +23,8 @@ _THINNED, _SHARE = 3e-4, 5e-3
 """Largest height of a corner that thinning removes [m], and in parts of the hull's extent."""
 _MOST_CORNERS = 2048
 """Largest number of corners of a convex mesh that gets a closer hull: of more, one would take gigabytes."""
-_SIDES_TRIED = 8
+_SIDES_TRIED = 4
 _ROUNDING = 1e-9
-_AS_LARGE = 1e-4
-"""Largest share of its hull's volume by which a convex mesh differs from the hull."""
 _DEEP = 1e-6
 """Depth in a hull from which on its convex mesh fills it [m]; a proof keeps a hundred times that."""
 _MOST_COMPARED = 10_000_000
@@ -79,31 +77,26 @@ def thinned(corners: Floats, little: float) -> tuple[Floats, float]:
     """
     from scipy.spatial import ConvexHull, QhullError
 
-    kept = np.unique((corners @ _directions(_FEW // 2).T).argmax(axis=0))
+    few, out = farthest(corners, _FEW // 2), corners
     while True:
-        few = corners[kept]
         try:
             hull = ConvexHull(few)
         except QhullError:
             return corners, 0.0
-        beyond = corners @ hull.equations[:, :3].T + hull.equations[:, 3]
-        most = beyond.max(axis=0)
+        beyond = out @ hull.equations[:, :3].T + hull.equations[:, 3]
+        # What is inside stays there: the hull only grows.
+        is_out = beyond.max(axis=1) > _ROUNDING
+        out, beyond = out[is_out], beyond[is_out]
+        most = beyond.max(axis=0, initial=0.0)
         if most.max() <= little:
             break
-        kept = np.union1d(kept, beyond[:, most > max(0.7 * most.max(), little)].argmax(axis=0))
-    out = beyond.max(axis=1) > _ROUNDING
+        added = beyond[:, most > max(0.7 * most.max(), little)].argmax(axis=0)
+        few = np.concatenate([few, out[np.unique(added)]])
     # The nearest side is one of those that a point is farthest beyond; any of them bounds its distance.
-    sides = few[hull.simplices[np.argsort(-beyond[out], axis=1)[:, :_SIDES_TRIED]]]
-    nearest = [distances(corners[out], sides[:, k]) for k in range(sides.shape[1])]
+    tried = np.argpartition(-beyond, _SIDES_TRIED - 1, axis=1)[:, :_SIDES_TRIED] if len(out) else np.zeros((0, 1), int)
+    sides = few[hull.simplices[tried]]
+    nearest = [distances(out, sides[:, k]) for k in range(sides.shape[1])]
     return few, float(np.min(nearest, axis=0).max(initial=_ROUNDING))
-
-
-def _directions(count: int) -> Floats:
-    """Return unit vectors spread over the sphere, (count, 3): a spiral by the golden angle."""
-    z = 1.0 - (2.0 * np.arange(count) + 1.0) / count
-    turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
-    around = np.sqrt(1.0 - z**2)
-    return np.stack([around * np.cos(turn), around * np.sin(turn), z], axis=1)
 
 
 def distances(points: Floats, sides: Floats) -> Floats:
@@ -125,12 +118,23 @@ class Piece:
     """A hull around convex `parts`, (k, corners, 3) [m], widened by `radius`.
 
     Parts are the triangles of a mesh; a closed convex mesh, and any other shape, is one part.  For a cylinder that is a
-    prism inside, and the hull is a prism around it.
+    prism inside, and the hull is a prism around it.  The parts' corners are `points`, (n, 3), by their `rows`, (k, c).
     """
 
     hull: Hull
-    parts: Floats
+    points: Floats
+    rows: Ints
     radius: float = 0.0
+
+    @classmethod
+    def solid(cls, hull: Hull, points: Floats, radius: float = 0.0) -> Piece:
+        """Return a piece of one part."""
+        return cls(hull, points, np.arange(len(points))[np.newaxis], radius)
+
+    @cached_property
+    def parts(self) -> Floats:
+        """The corners of all parts."""
+        return self.points[self.rows]
 
 
 def piece_of(shape: Shape) -> Piece:
@@ -148,31 +152,17 @@ def piece_of(shape: Shape) -> Piece:
         caps = (-0.5, 0.5) * np.array(shape.length)
         points = np.concatenate([np.c_[ring, np.full(SIDES, end)] for end in caps])
     elif isinstance(shape, Mesh):
-        mesh = shape.triangles
-        piece = _piece_around(shape.pose.apply(mesh.vertices)[mesh.triangles], shape.link)
-        if not is_convex(mesh):
-            return piece
+        mesh = shape.triangles.compact
+        hull = _hull_around(shape.pose.apply(mesh.outer), shape.link)
+        if not mesh.is_convex:
+            return Piece(hull, shape.pose.apply(mesh.vertices), mesh.triangles)
         # Split, it would lose its inside, and gain nothing.
-        hull = replace(piece.hull, solid=_is_on_its_hull(mesh))
-        return Piece(hull, extreme(piece.parts.reshape(-1, 3))[np.newaxis])
+        return Piece.solid(replace(hull, solid=_is_on_its_hull(mesh)), shape.pose.apply(mesh.outer))
     else:
         raise InvalidValue(f"no hull is made around a {shape}")
     corners = shape.pose.apply(points * (outward, outward, 1.0))
     hull = hull_around(corners, radius, shape.link, solid=isinstance(shape, Box))
-    return Piece(hull, shape.pose.apply(points)[np.newaxis], radius)
-
-
-def is_convex(mesh: TriangleMesh) -> bool:
-    """Return whether a mesh is closed and fills its hull, but for a ten-thousandth of the volume."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    corners = mesh.vertices[mesh.triangles]
-    try:
-        whole = float(ConvexHull(corners.reshape(-1, 3)).volume)
-    except QhullError:
-        return False
-    own = abs(float(np.linalg.det(corners - corners.mean(axis=(0, 1))).sum())) / 6.0
-    return abs(own - whole) <= _AS_LARGE * whole and bool(closed_parts(mesh)[0].all())
+    return Piece.solid(hull, shape.pose.apply(points), radius)
 
 
 def _is_on_its_hull(mesh: TriangleMesh) -> bool:
@@ -184,7 +174,7 @@ def _is_on_its_hull(mesh: TriangleMesh) -> bool:
     from scipy.spatial import ConvexHull
 
     corners = mesh.vertices[mesh.triangles]
-    sides = np.unique(ConvexHull(mesh.vertices).equations.round(12), axis=0)
+    sides = np.unique(ConvexHull(mesh.outer).equations.round(12), axis=0)
     if len(corners) * len(sides) > _MOST_COMPARED or not closed_parts(mesh)[1]:
         return False
     return all(float((-sides[:, :3] @ triangle.T - sides[:, 3:]).max(axis=1).min()) <= _DEEP for triangle in corners)
@@ -197,19 +187,24 @@ def halves(piece: Piece) -> tuple[Piece, ...]:
     if len(piece.parts) == 1 and len(piece.hull.points) < len(piece.parts[0]) <= _MOST_CORNERS:
         points, beyond = thinned(piece.parts[0], 0.25 * piece.hull.radius)
         hull = hull_around(points, beyond, piece.hull.link, solid=piece.hull.solid)
-        return (Piece(hull, piece.parts),)
-    corners = divided(piece.parts) if piece.parts.shape[1] == 3 else piece.parts[:0]
-    below = best_cut(corners, _box_volume) if len(corners) > 1 else None
+        return (Piece.solid(hull, piece.points),)
+    if piece.rows.shape[1] != 3:
+        return (piece,)
+    points, rows = divided(piece.points, piece.rows)
+    below = best_cut(points[rows], _box_volume) if len(rows) > 1 else None
     if below is None:
         return (piece,)
-    return tuple(_piece_around(corners[side], piece.hull.link) for side in (below, ~below))
+    link = piece.hull.link
+    sides = (rows[below], rows[~below])
+    return tuple(Piece(_hull_around(extreme(used(points, side)), link), points, side) for side in sides)
 
 
-def _piece_around(corners: Floats, link: str) -> Piece:
-    points, beyond = extreme(corners.reshape(-1, 3)), 0.0
+def _hull_around(points: Floats, link: str) -> Hull:
+    """Return a hull around the corners of another, of fewer corners where it has many."""
+    beyond = 0.0
     if len(points) > _FEW:
         points, beyond = thinned(points, max(_THINNED, _SHARE * float(np.ptp(points, axis=0).max())))
-    return Piece(hull_around(points, beyond, link), corners)
+    return hull_around(points, beyond, link)
 
 
 def _box_volume(corners: Floats) -> float:

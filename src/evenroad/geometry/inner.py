@@ -89,11 +89,6 @@ def _in_cylinder(radius: float, half: float) -> list[Fitted]:
     return [(-end, end, half) for end in endpoints]
 
 
-def _proper(corners: Floats) -> Floats:
-    """Return triangles, (t, 3, 3), without those of two equal corners."""
-    return corners[(corners != np.roll(corners, 1, axis=1)).any(axis=2).all(axis=1)]
-
-
 def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
     """Return balls inside the closed, consistently oriented parts of a mesh; none where its orientation is unclear."""
     from scipy.spatial import cKDTree
@@ -102,12 +97,15 @@ def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
     # Where sides do not tell nobody knows what is solid.
     if not turned or not closed.any():
         return []
-    corners = _proper(mesh.vertices[mesh.triangles][closed])
+    mesh = mesh.compact
+    proper = (mesh.triangles != np.roll(mesh.triangles, 1, axis=1)).all(axis=1)
+    rows = mesh.triangles[closed & proper]
+    corners = mesh.vertices[rows]
     middles = _points_inside(corners)
     if not len(middles):
         return []
-    surface = divided(corners, _FINE)
-    points = np.concatenate([surface.reshape(-1, 3), surface.mean(axis=1)])
+    points, rows = divided(mesh.vertices, rows, _FINE)
+    points = np.concatenate([points, points[rows].mean(axis=1)])
     away = cKDTree(points, balanced_tree=False, compact_nodes=False).query(middles)[0]
     centroids = corners.mean(axis=1)
     reach = 1e-9 + np.linalg.norm(corners - centroids[:, np.newaxis], axis=2).max(axis=1)

@@ -17,7 +17,7 @@ from evenroad.geometry.mesh import TriangleMesh
 
 Fitted = tuple[Floats, Floats, float]
 """End points a and b, each (3,), and radius of a capsule."""
-_FORMAT = 1
+_FORMAT = 2
 """Version of what is kept: it counts up when the same mesh gets other capsules."""
 _FEW = 300
 """Number of triangles up to which fitting is quicker than reading."""

@@ -16,6 +16,8 @@ from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_batch, as_row, require_positive
 from evenroad.errors import InvalidValue
 
+_AS_LARGE = 1e-4
+"""Largest share of its hull's volume by which a convex mesh differs from the hull."""
 _FLAT = 5e-7
 """Half of the thickness that a flat mesh gets for its hull [m]."""
 
@@ -66,11 +68,37 @@ class TriangleMesh:
         return "".join(sha256(array.tobytes()).hexdigest() for array in (self.vertices, self.triangles))
 
     @cached_property
+    def compact(self) -> TriangleMesh:
+        """The same triangles; of their corners those at one place are one, and there are no others."""
+        used = np.zeros(len(self.vertices), dtype=np.bool_)
+        used[self.triangles] = True
+        places, number = np.unique(self.vertices[used], axis=0, return_inverse=True)
+        found = TriangleMesh(places, number.reshape(-1)[(np.cumsum(used) - 1)[self.triangles]], self.name)
+        set_fields(found, compact=found)
+        return found
+
+    @property
     def welded(self) -> Ints:
         """The triangles, (t, 3), by numbers of places: corners at one place have one number, whatever their rows."""
-        _, number = np.unique(self.vertices, axis=0, return_inverse=True)
-        found: Ints = number.reshape(-1)[self.triangles]
-        return found
+        return self.compact.triangles
+
+    @cached_property
+    def outer(self) -> Floats:
+        """The corners of the convex hull, (k, 3)."""
+        return extreme(self.compact.vertices)
+
+    @cached_property
+    def is_convex(self) -> bool:
+        """Whether it is closed and fills its hull, but for a ten-thousandth of the volume."""
+        from scipy.spatial import ConvexHull, QhullError
+
+        try:
+            whole = float(ConvexHull(self.outer).volume)
+        except QhullError:
+            return False
+        corners = self.vertices[self.triangles]
+        own = abs(float(np.linalg.det(corners - corners.mean(axis=(0, 1))).sum())) / 6.0
+        return abs(own - whole) <= _AS_LARGE * whole and bool(closed_parts(self)[0].all())
 
     def __hash__(self) -> int:
         return hash((self.name, self.digest))
@@ -79,6 +107,17 @@ class TriangleMesh:
         if not isinstance(other, TriangleMesh):
             return NotImplemented
         return self is other or (self.name, self.digest) == (other.name, other.digest)
+
+
+def extreme(points: Floats) -> Floats:
+    """Return the corners of the convex hull of points, (n, 3): what is convex and contains those contains all."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return points[np.sort(ConvexHull(points).vertices)]
+    except QhullError:
+        # All in one plane, or fewer than four.
+        return np.unique(points, axis=0)
 
 
 def merged(meshes: tuple[TriangleMesh, ...]) -> TriangleMesh:
@@ -106,7 +145,7 @@ def volume_of(mesh: TriangleMesh) -> float:
     from scipy.spatial import ConvexHull, QhullError
 
     try:
-        return float(ConvexHull(corners.reshape(-1, 3)).volume)
+        return float(ConvexHull(mesh.outer).volume)
     except QhullError:
         return 0.0
 

@@ -9,8 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from evenroad._arrays import Floats, set_fields
-from evenroad.geometry.fit import extreme
-from evenroad.geometry.hulls import is_convex, piece_of, thinned
+from evenroad.geometry.hulls import piece_of, thinned
 from evenroad.geometry.mesh import closed_parts
 from evenroad.geometry.pose import Vector
 from evenroad.geometry.shapes import Capsule, Cylinder, Mesh, Shape, Sphere
@@ -73,15 +72,14 @@ def _parts(shape: Shape) -> tuple[Parts, ...]:
     if not isinstance(shape, Mesh):
         piece = piece_of(shape)
         return (Parts(piece.parts, shape.link, shape.kind, piece.radius),)
-    mesh = shape.triangles
+    mesh = shape.triangles.compact
+    around, beyond = thinned(shape.pose.apply(mesh.outer), LITTLE)
+    if mesh.is_convex:
+        return (Parts(around[np.newaxis], shape.link, "hull", beyond),)
     corners = shape.pose.apply(mesh.vertices)[mesh.triangles]
-    if is_convex(mesh):
-        points, beyond = thinned(extreme(corners.reshape(-1, 3)), LITTLE)
-        return (Parts(points[np.newaxis], shape.link, "hull", beyond),)
     closed, turned = closed_parts(mesh)
     # Where sides do not tell inside from outside nobody knows what is solid.
     closed &= turned
-    around, beyond = thinned(extreme(corners.reshape(-1, 3)), LITTLE)
     return tuple(
         Parts(_single(corners[these]), shape.link, "mesh", closed=bool(inside), around=around, beyond=beyond)
         for these, inside in ((closed, True), (~closed, False))

@@ -23,6 +23,7 @@ from evenroad.robot.distance import MOST, WITH, Distance
 from evenroad.robot.given import as_robot, as_scene
 from evenroad.robot.kernel.native_scene import native_scene
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
+from evenroad.robot.obstacle import MOST_CLEARANCE
 from evenroad.robot.planes import with_planes
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot, within_scene
@@ -36,9 +37,6 @@ from evenroad.world.bisection import require_few_segments
 from evenroad.world.clearance import largest_kept
 from evenroad.world.one_or_many import OneOrMany, is_one, one_or_many
 from evenroad.world.protocol import Apart
-
-MOST_CLEARANCE = 1.0
-"""Largest clearance that a world can have [m]."""
 
 VALIDATION_TOLERANCE = 1e-6
 """Distance from contact down to which `ArmWorld.validate` proves a motion free [m].  Checks in single precision keep

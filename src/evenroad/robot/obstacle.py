@@ -20,7 +20,9 @@ MARGIN = 0.02
 """Default distance from the robot up to which points of a scan belong to it [m]."""
 
 
-_ROW = Struct("16d")
+MOST_CLEARANCE = 1.0
+"""Largest clearance that an obstacle or a world can have [m]."""
+_ROW = Struct("17d")
 _NUMBERS = {kind: number for number, kind in enumerate(PRIMITIVES)}
 _LESS = {"box": (2.0, 2.0, 2.0), "sphere": (1.0,), "cylinder": (1.0, 2.0), "capsule": (1.0,)}
 """Kind -> how many times a distance its dimensions lose where its surface is moved inwards by that."""
@@ -65,7 +67,8 @@ class Obstacle:
     `body` is a box, sphere, cylinder, capsule, mesh, or cloud of radius > 0, with its pose in the frame of the robot's
     root link; others, and what is fixed to a link, are refused (InvalidValue).  `cell` says whether it is part of the
     fixed cell, the same for every task of this installation; `seen`, where the robot stands that is in a cloud itself;
-    `cuts`, what else is taken out of the cloud.
+    `cuts`, what else is taken out of the cloud.  Robots keep `clearance` away from it, 0 to 1 [m], beside the clearance
+    of their world.
     """
 
     name: str
@@ -73,8 +76,9 @@ class Obstacle:
     cell: bool = False
     seen: Seen | None = None
     cuts: tuple[Cut, ...] = ()
+    clearance: float = 0.0
     row: bytes = field(init=False, repr=False, compare=False)
-    """Sixteen doubles for native code, see ``kernel/native_scene.py``; none for clouds and meshes."""
+    """Seventeen doubles for native code, see ``kernel/native_scene.py``; none for clouds and meshes."""
 
     def __post_init__(self) -> None:
         body = along_z(self.body) if isinstance(self.body, Capsule) else self.body
@@ -86,10 +90,13 @@ class Obstacle:
             body = replace(body, source=body.triangles, scale=(1.0, 1.0, 1.0))
         if body.link:
             raise InvalidValue(f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}")
+        if self.clearance != 0.0:
+            of = f"clearance of obstacle {self.name!r}"
+            set_fields(self, clearance=require_positive(of, self.clearance, or_zero=True, at_most=MOST_CLEARANCE))
         # Now rather than for every world: an obstacle is in many scenes.
         size, row = (*body.size, 0.0, 0.0)[:3], b""
         if body.kind in PRIMITIVES:
-            row = _ROW.pack(_NUMBERS[body.kind], *size, *body.pose.rotation, *body.pose.xyz)
+            row = _ROW.pack(_NUMBERS[body.kind], *size, *body.pose.rotation, *body.pose.xyz, self.clearance)
         set_fields(self, body=body, row=row)
 
     @classmethod
@@ -141,15 +148,15 @@ class Obstacle:
 
 
 def box_rows(size: npt.ArrayLike, xyz: npt.ArrayLike, xyzw: npt.ArrayLike | None) -> Floats:
-    """Return the rows of boxes of these full extents, centres and quaternions, (n, 16); see :attr:`Scene.rows`.
+    """Return the rows of boxes of these full extents, centres and quaternions, (n, 17); see :attr:`Scene.rows`.
 
     Raises InvalidValue for arrays of other shapes, or with entries that are not allowed.
     """
     extents, centres = as_batch("size", size, 3), as_batch("xyz", xyz, 3)
     if len(extents) != len(centres):
         raise InvalidValue(f"size and xyz must have one row a box, got {len(extents)} and {len(centres)}")
-    rows = np.zeros((len(extents), 16))
-    rows[:, 1:4], rows[:, 13:] = extents, centres
+    rows = np.zeros((len(extents), 17))
+    rows[:, 1:4], rows[:, 13:16] = extents, centres
     if len(rows) and not (extents.min() > 0.0 and extents.max() <= FARTHEST):
         raise InvalidValue(f"size must be > 0 and at most {FARTHEST:g}, got from {extents.min()} to {extents.max()}")
     if len(rows) and not np.abs(centres).max() <= FARTHEST:
@@ -181,8 +188,8 @@ def smaller_rows(rows: Floats, by: float) -> tuple[Floats, Bools]:
 
 
 def boxes_of(rows: Floats, names: Sequence[str]) -> tuple[Obstacle, ...]:
-    """Return the boxes of rows, (n, 16), as obstacles of these names."""
+    """Return the boxes of rows, (n, 17), as obstacles of these names."""
     return tuple(
-        Obstacle.of(name, Box.kind, row[1:4], row[13:], row[4:13])
+        Obstacle.of(name, Box.kind, row[1:4], row[13:16], row[4:13])
         for name, row in zip(names, rows.tolist(), strict=True)
     )

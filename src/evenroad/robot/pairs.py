@@ -167,11 +167,7 @@ class _Samples:
         self.looked_at = np.arange(0)
         poses = _sampled_poses(robot)
         self._poses = {link: poses[:, robot.links.index(link)] for link in pieces}
-        # A body that rests on another touches it, though rounding may part the two.
-        self._parts, self._resting = (
-            hull_trees({link: [(p.parts, p.radius + more) for p in of] for link, of in pieces.items()})
-            for more in (0.0, 0.5 * _RESTING)
-        )
+        self._parts = hull_trees({link: [(p.parts, p.radius) for p in of] for link, of in pieces.items()})
 
     def judge(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], str]:
         """Return the pairs whose shapes touch in all samples, or in all of the group, each with which of the two.
@@ -197,7 +193,7 @@ class _Samples:
             self.touching[first, second] = rows[inside]
             wrong[first, second] = rows[~inside]
             if np.isin(self.looked_at, rows).all():
-                touching = self._touching(self._resting, first, second, every)
+                touching = self._rest(first, second, every)
                 if touching[of_group].all():
                     always[first, second] = TOUCHING if touching.all() else HELD_TOUCHING
                     wrong[first, second] = rows[:0]
@@ -250,6 +246,11 @@ class _Samples:
                     for half in (halves(piece) if i in leaves else (piece,))
                 ]
         return left
+
+    def _rest(self, first: str, second: str, rows: Ints) -> Bools:
+        """Return where two bodies touch or rest on each other, though rounding may part the two, (n,)."""
+        wider = {link: [(p.parts, p.radius + 0.5 * _RESTING) for p in self._shapes[link]] for link in (first, second)}
+        return self._touching(hull_trees(wider), first, second, rows)
 
     def _touching(self, trees: HullTrees, first: str, second: str, rows: Ints) -> Bools:
         return self._contacts(trees, first, second, rows)[:, 0] >= 0

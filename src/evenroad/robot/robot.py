@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 
-import numpy as np
-
 from evenroad._arrays import set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_known
@@ -240,7 +238,7 @@ def pieces_of(robot: Robot) -> dict[str, list[Piece]]:
     """Return the hulls of every link that has a body; its capsules where it has no hulls."""
     pieces: dict[str, list[Piece]] = {}
     for hull in robot.hulls:
-        pieces.setdefault(hull.link, []).append(Piece(hull, hull.points[np.newaxis], hull.radius))
+        pieces.setdefault(hull.link, []).append(Piece.solid(hull, hull.points, hull.radius))
     own = set(pieces)
     for capsule in robot.capsules:
         if capsule.link not in own:

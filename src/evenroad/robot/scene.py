@@ -164,12 +164,12 @@ class Scene:
 
     @cached_property
     def rows(self) -> Floats:
-        """The obstacles but clouds and meshes, (n, 16), as the native kernel takes them.
+        """The obstacles but clouds and meshes, (n, 17), as the native kernel takes them.
 
         Their kind; full extents of a box, or radius and length without caps, and zeros [m]; rotation to the root link's
-        frame, row by row; centre in that frame [m].
+        frame, row by row; centre in that frame [m]; clearance [m].
         """
-        return np.frombuffer(b"".join([obstacle.row for obstacle in self.obstacles])).reshape(-1, 16)
+        return np.frombuffer(b"".join([obstacle.row for obstacle in self.obstacles])).reshape(-1, 17)
 
     @cached_property
     def surfaces(self) -> tuple[tuple[int, Obstacle], ...]:
@@ -204,6 +204,8 @@ class Scene:
         for each in self.obstacles:
             numbers = (*each.size, *each.xyz, *each.rotation)
             content = (fingerprint_of(each.body),) if each.shape not in PRIMITIVES else ()
+            # What has none is as before there were any.
+            content += (each.clearance,) if each.clearance else ()
             rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))  # -0.0 is 0.0
         return fingerprint_of(rows, self.allowed, *sorted(self.near_ends))
 
@@ -237,6 +239,39 @@ class Scene:
             more += each if isinstance(each, list | tuple) else [each]
         added = _as_obstacles(more, self.obstacles, self.name)
         return replace(self, obstacles=(*self.obstacles, *added), allowed=self.allowed.union(allowed))
+
+    def with_clearance(self, clearance: Mapping[str, float]) -> Scene:
+        """Return the scene with obstacles from which robots keep more away.
+
+        Parameters
+        ----------
+        clearance : mapping of str to float
+            Obstacle -> distance to keep, 0 to 1 [m], beside the clearance of a world and the padding of links.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        UnknownName
+            If there is no such obstacle.
+        InvalidValue
+            If a distance is not such a number.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> scene = er.load_scene("box-reach").with_clearance({"floor": 0.01})
+        >>> scene.obstacles[scene.names.index("floor")].clearance
+        0.01
+        """
+        if not isinstance(clearance, Mapping):
+            raise InvalidValue(f"clearance must be a mapping, obstacle -> metres, got {shown(clearance)}")
+        for name in clearance:
+            require_known(f"obstacle of scene {self.name!r}:", name, self.names)
+        changed = (replace(each, clearance=clearance.get(each.name, each.clearance)) for each in self.obstacles)
+        return replace(self, obstacles=tuple(changed))
 
     def without(self, *names: str) -> Scene:
         """Return the scene without some obstacles, and without what was allowed to touch them.

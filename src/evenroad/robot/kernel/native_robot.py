@@ -12,7 +12,7 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, Ints
 from evenroad._native import robot as native
 from evenroad.geometry.parts import Parts, spread
-from evenroad.robot.kernel.hull_trees import hull_trees
+from evenroad.robot.kernel.hull_trees import hull_arrays
 from evenroad.robot.kernel.moving_tree import MovingTree
 from evenroad.robot.kernel.placed_capsules import PlacedCapsule, PlacedHulls, speed_bounds
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
@@ -32,7 +32,7 @@ def robot_arrays(robot: Robot, tables: RobotTables, bounds: Floats) -> dict[str,
     frames, capsules = tables.tree.frames, tables.capsules
     bodies = list(dict.fromkeys(capsule.link for capsule in capsules))
     number = {link: i for i, link in enumerate(bodies)}
-    trees = hull_trees({link: placed.leaves for link, placed in tables.hulls.items()})
+    trees = {link: i for i, link in enumerate(tables.hulls)}
     return {
         "frames": {
             "parent": _ints([frame.parent for frame in frames]),
@@ -45,7 +45,7 @@ def robot_arrays(robot: Robot, tables: RobotTables, bounds: Floats) -> dict[str,
         },
         "bodies": {
             "frame": _ints([tables.tree.links[link].frame for link in bodies]),
-            "hulls": _ints([trees.roots.get(link, -1) for link in bodies]),
+            "hulls": _ints([trees.get(link, -1) for link in bodies]),
         },
         "capsules": _capsules(capsules, number, dict(robot.padding))
         | {"speeds": np.ascontiguousarray(tables.speeds.T)},
@@ -54,12 +54,7 @@ def robot_arrays(robot: Robot, tables: RobotTables, bounds: Floats) -> dict[str,
             "by_hulls": _ints([tables.by_hulls]),
             "speeds": np.ascontiguousarray(tables.pair_speeds.T),
         },
-        "hulls": {
-            "children": trees.children,
-            "spans": trees.spans,
-            "boxes": trees.boxes,
-            "points": trees.points,
-        },
+        "hulls": hull_arrays([placed.leaves for placed in tables.hulls.values()]),
         "shapes": _shapes(robot, tables.tree, number),
         "limits": {
             "bounds": np.ascontiguousarray(bounds),

@@ -32,9 +32,9 @@ def native_scene(
         assert isinstance(body, PointCloud | Mesh)  # all others have rows
         if not tested[:, number].any():
             continue
-        if (surface := surface_of(body, reach)) is not None:
+        if (surface := surface_of(body, reach, obstacle.clearance)) is not None:
             surfaces.append((surface, number, np.ascontiguousarray(tested[:, number])))
-            bodies.append(body)
+            bodies.append((body, obstacle.clearance))
     around = surfaces_around(tuple(bodies), reach) if len(bodies) >= MANY else None
     solid = tested if not scene.surfaces else np.delete(tested, [number for number, _ in scene.surfaces], axis=1)
     made = native.Scene(robot, scene.rows, np.ascontiguousarray(solid), surfaces, around, clearance)

@@ -33,9 +33,11 @@ _CUBE = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))[np.concatenate(
 
 
 @lru_cache(maxsize=64)
-def surface_of(body: PointCloud | Mesh, reach: float) -> native.Surface | None:
-    """Return what a robot of this reach can touch of a body, None where that is nothing; kept for the next scene."""
-    solid, turned = np.zeros((0, 3, 3)), False
+def surface_of(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) -> native.Surface | None:
+    """Return what a robot of this reach can touch of a body that is larger by a clearance, None where that is nothing;
+    kept for the next scene.
+    """
+    solid, turned, reach = np.zeros((0, 3, 3)), False, reach + clearance
     if isinstance(body, PointCloud):
         points, radius = body.pose.apply(body.points), body.radius
         near = points[np.linalg.norm(points, axis=1) <= reach + radius][:, np.newaxis]
@@ -49,13 +51,13 @@ def surface_of(body: PointCloud | Mesh, reach: float) -> native.Surface | None:
         # All that the robot can reach is inside.
         near = solid = reach * _CUBE
     padding = PADDING * (float(np.linalg.norm(near, axis=2).max()) + radius)
-    return native.Surface(np.ascontiguousarray(near), radius + padding, solid, turned, reach)
+    return native.Surface(np.ascontiguousarray(near), radius + clearance + padding, solid, turned, reach)
 
 
 @lru_cache(maxsize=4)
-def surfaces_around(bodies: tuple[PointCloud | Mesh, ...], reach: float) -> native.Surface:
-    """Return the grid around several bodies that can be reached; kept, as they are."""
-    return native.Surface.around([surface_of(body, reach) for body in bodies])
+def surfaces_around(bodies: tuple[tuple[PointCloud | Mesh, float], ...], reach: float) -> native.Surface:
+    """Return the grid around several bodies that can be reached, each with its clearance; kept, as they are."""
+    return native.Surface.around([surface_of(body, reach, clearance) for body, clearance in bodies])
 
 
 def _within_reach(corners: Floats, reach: float) -> Floats:

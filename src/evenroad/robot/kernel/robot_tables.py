@@ -163,7 +163,7 @@ def _fixed_contact(
                 if segment_distance(*endpoints)[0] >= capsules[i].radius + capsules[k].radius:
                     continue
                 trees = hull_trees({link: hulls[link].leaves for link in (a, b) if link in hulls})
-                if len(trees.roots) < 2 or contacts(trees, a, b, here, here)[0, 0] >= 0:
+                if len(trees.bodies) < 2 or contacts(trees, a, b, here, here)[0, 0] >= 0:
                     return a, b
     return None
 

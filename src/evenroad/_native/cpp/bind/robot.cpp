@@ -20,7 +20,6 @@ constexpr double FARTHEST = 1e9;
 constexpr double MOST_STATES = 1e9;
 
 using robot::Checker;
-using robot::HullTree;
 using robot::Robot;
 using robot::Scene;
 using robot::Surface;
@@ -67,8 +66,9 @@ void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle ca
   const auto by_hulls = of_pairs.span<std::int64_t>("by_hulls"), around = of_shapes.span<std::int64_t>("around_first");
   require(by_hulls.size() == 1, "pairs.by_hulls must be one number");
   given.pairs = {of_pairs.span<std::int64_t, 2>("bodies"), by_hulls[0]};
-  given.hulls = {of_hulls.span<std::int64_t, 2>("children"), of_hulls.span<std::int64_t, 2>("spans"),
-                 of_hulls.span<double, 2>("boxes"), of_hulls.span<double, 2>("points")};
+  given.hulls = {of_hulls.span<std::int64_t>("first_part"),
+                 {of_hulls.span<std::int64_t>("first_point"), of_hulls.span<double, 2>("points"),
+                  of_hulls.span<double>("widths"), {}, {}}};
   given.shapes = {
       of_shapes.span<std::int64_t>("body"),
       {of_shapes.span<std::int64_t>("first_point"), of_shapes.span<double, 2>("points"),
@@ -90,28 +90,50 @@ void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle ca
   new (self) Robot(robot::make_robot(given));
 }
 
-void make_hull_tree(HullTree<double>* self, nb::handle children, nb::handle spans, nb::handle boxes,
-                    nb::handle points) {
-  const Array<const std::int64_t, 2> of_children(children, "children"), of_spans(spans, "spans");
-  const Array<const double, 2> of_boxes(boxes, "boxes"), of_points(points, "points");
-  new (self) HullTree<double>(
-      robot::make_hull_tree<double>({of_children.span(), of_spans.span(), of_boxes.span(), of_points.span()}));
+/// Trees over the hulls of some bodies.
+struct HullTrees {
+  robot::HullTree<double> tree;
+  std::vector<int> roots, first_part;  // of the bodies
+
+  int root(int body) const {
+    require(0 <= body && body < static_cast<int>(roots.size()), "bodies must be numbers of bodies");
+    return roots[body];
+  }
+};
+
+void make_hull_trees(HullTrees* self, nb::handle first_part, nb::handle first_point, nb::handle points,
+                     nb::handle widths) {
+  const Array<const std::int64_t, 1> of_part(first_part, "first_part"), of_point(first_point, "first_point");
+  const Array<const double, 2> of_points(points, "points");
+  const Array<const double, 1> of_widths(widths, "widths");
+  HullTrees made;
+  made.roots =
+      add_trees(made.tree, {of_part.span(), {of_point.span(), of_points.span(), of_widths.span(), {}, {}}});
+  made.first_part.assign(of_part.span().begin(), of_part.span().end());
+  new (self) HullTrees(std::move(made));
 }
 
-/// Return for each pose of a second body in the frame of a first, (n, 12), two leaves that touch, or -1 twice: (n, 2).
-nb::object hull_contacts(const HullTree<double>& tree, int first, int second, nb::handle poses) {
+/// Return centre and radius of a ball around a body, (4,).
+nb::object ball_of(const HullTrees& trees, int body) {
+  const auto& node = trees.tree.nodes[trees.root(body)];
+  return as_numpy(std::vector<double>{node.centre[0], node.centre[1], node.centre[2], node.radius}, {4});
+}
+
+/// Return for each pose of a second body in the frame of a first, (n, 12), two hulls that touch, or -1 twice: (n, 2).
+nb::object hull_contacts(const HullTrees& trees, int first, int second, nb::handle poses) {
   const Array<const double, 2> given(poses, "poses");
   const Matrix<const double> rows = given.of_shape({given.shape(0), 12}).matrix();
-  const int nodes = static_cast<int>(tree.nodes.size());
-  require(0 <= first && first < nodes && 0 <= second && second < nodes, "roots must be numbers of nodes");
+  const int one = trees.root(first), two = trees.root(second);
   std::vector<std::int64_t> found(2 * rows.rows);
   without_gil([&] {
     for (std::size_t n = 0; n < rows.rows; n++) {
       robot::RelativePose pose;
       std::copy_n(&rows(n, 0), 9, pose.rotation);
       std::copy_n(&rows(n, 9), 3, pose.translation);
-      const robot::HullContact contact = robot::find_hull_contact(tree, first, second, pose, 0.0);
-      found[2 * n] = contact.first, found[2 * n + 1] = contact.second;
+      const robot::HullContact contact = robot::find_hull_contact(trees.tree, one, two, pose, 0.0);
+      const bool touch = contact.first >= 0;
+      found[2 * n] = touch ? trees.tree.parts[contact.first] - trees.first_part[first] : -1;
+      found[2 * n + 1] = touch ? trees.tree.parts[contact.second] - trees.first_part[second] : -1;
     }
   });
   return as_numpy(std::move(found), {rows.rows, 2});
@@ -141,7 +163,7 @@ void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle t
                 nb::object around, double clearance) {
   require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");
   const FloatRows rows(obstacles, "obstacles");
-  require(rows.shape(1) == sizeof(robot::GivenObstacle) / sizeof(double), "obstacles must have 16 numbers each");
+  require(rows.shape(1) == sizeof(robot::GivenObstacle) / sizeof(double), "obstacles must have 17 numbers each");
   std::vector<robot::GivenObstacle> given(rows.shape(0));
   if (!given.empty()) __builtin_memcpy(given.data(), rows.data(), given.size() * sizeof(robot::GivenObstacle));
   const Array<const bool, 2> flags(tested, "tested");
@@ -292,8 +314,10 @@ void add_robot(nb::module_& module) {
   nb::class_<Robot>(part, "Robot")
       .def("__init__", &make_robot, nb::arg("frames"), nb::arg("bodies"), nb::arg("capsules"), nb::arg("pairs"),
            nb::arg("hulls"), nb::arg("shapes"), nb::arg("limits"));
-  nb::class_<HullTree<double>>(part, "HullTree")
-      .def("__init__", &make_hull_tree, nb::arg("children"), nb::arg("spans"), nb::arg("boxes"), nb::arg("points"))
+  nb::class_<HullTrees>(part, "HullTrees")
+      .def("__init__", &make_hull_trees, nb::arg("first_part"), nb::arg("first_point"), nb::arg("points"),
+           nb::arg("widths"))
+      .def("ball", &ball_of, nb::arg("body"))
       .def("contacts", &hull_contacts, nb::arg("first"), nb::arg("second"), nb::arg("poses"));
   nb::class_<Surface>(part, "Surface")
       .def("__init__", &make_surface, nb::arg("corners"), nb::arg("radius"), nb::arg("solid"), nb::arg("turned"),

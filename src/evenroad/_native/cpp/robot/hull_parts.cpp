@@ -28,13 +28,34 @@ template <class T>
 struct Builder {
   HullTree<T>& tree;
   const GivenParts& given;
+  int first_part;
+  std::vector<int> order;       // of the parts, numbered from the first
   std::vector<Box> boxes;       // around parts
   std::vector<double> reaches;  // of parts, from the middles of their boxes
-  std::vector<int> order;
 
-  void measure(int part) {
-    Box& box = boxes[part];
-    const double width = given.widths[part], *disc = given.discs.data() + 3 * part;
+  Builder(HullTree<T>& tree, const GivenParts& given, Range parts)
+      : tree(tree),
+        given(given),
+        first_part(parts.first),
+        order(parts.size()),
+        boxes(parts.size()),
+        reaches(parts.size()) {
+    std::iota(order.begin(), order.end(), 0);
+    for (const int number : order) measure(number);
+  }
+
+  /// Return the axis of a part's disc, as long as its radius.
+  std::array<double, 3> disc_of(int part) const {
+    if (given.discs.empty()) return {0, 0, 0};
+    const double* disc = given.discs.data() + 3 * static_cast<std::size_t>(part);
+    return {disc[0], disc[1], disc[2]};
+  }
+
+  void measure(int number) {
+    Box& box = boxes[number];
+    const int part = first_part + number;
+    const double width = given.widths[part];
+    const auto disc = disc_of(part);
     const double radius = std::hypot(disc[0], disc[1], disc[2]);
     const std::int64_t first = given.first_point[part], end = given.first_point[part + 1];
     double wide[3];
@@ -49,11 +70,16 @@ struct Builder {
     for (std::int64_t i = first; i < end; i++) {
       double away[3];
       for (int k = 0; k < 3; k++) away[k] = given.points[3 * i + k] - 0.5 * (box.low[k] + box.high[k]);
-      reaches[part] = std::max(reaches[part], std::hypot(away[0], away[1], away[2]) + width + radius);
+      reaches[number] = std::max(reaches[number], std::hypot(away[0], away[1], away[2]) + width + radius);
     }
   }
 
-  double middle(int part, int axis) const { return 0.5 * (boxes[part].low[axis] + boxes[part].high[axis]); }
+  double middle(int number, int axis) const { return 0.5 * (boxes[number].low[axis] + boxes[number].high[axis]); }
+
+  void add_nodes(int count) {
+    tree.nodes.resize(tree.nodes.size() + count);
+    tree.parts.resize(tree.nodes.size(), -1);
+  }
 
   /// Write the node of the parts from a first to one before an end in the order.
   void fill(int number, int first, int end) {
@@ -76,12 +102,13 @@ struct Builder {
     }
     node.radius = static_cast<T>(radius * (1.0 + 1e-7) + ROUNDING);
     if (end - first == 1) {
-      const int part = order[first];
-      const double* disc = given.discs.data() + 3 * part;
+      const int part = first_part + order[first];
+      const auto disc = disc_of(part);
       const double length = std::hypot(disc[0], disc[1], disc[2]);
       node.width = static_cast<T>(given.widths[part]), node.disc = static_cast<T>(length);
       for (int k = 0; k < 3 && length > 0; k++) node.axis[k] = static_cast<T>(disc[k] / length);
-      node.encloses = given.enclosing[part];
+      node.encloses = !given.enclosing.empty() && given.enclosing[part];
+      tree.parts[number] = part;
       const int before = static_cast<int>(tree.points.size());
       for (std::int64_t i = given.first_point[part]; i < given.first_point[part + 1]; i++) {
         const double* p = given.points.data() + 3 * i;
@@ -95,7 +122,7 @@ struct Builder {
         return x != y ? x < y : a < b;
       });
       const int below = static_cast<int>(tree.nodes.size());
-      tree.nodes.resize(tree.nodes.size() + 2);
+      add_nodes(2);
       fill(below, first, halfway), fill(below + 1, halfway, end);
       node.children[0] = below, node.children[1] = below + 1;
     }
@@ -153,27 +180,41 @@ std::optional<int> windings(const HullTree<float>& tree, int root, const double 
 template <class T>
 int add_parts(HullTree<T>& tree, const GivenParts& given, Range parts) {
   const std::size_t count = given.widths.size();
-  if (given.first_point.size() != count + 1 || given.discs.size() != 3 * count || given.enclosing.size() != count ||
-      parts.size() < 1 || parts.first < 0 || parts.end > static_cast<int>(count)) {
+  if (given.first_point.size() != count + 1 || (!given.discs.empty() && given.discs.size() != 3 * count) ||
+      (!given.enclosing.empty() && given.enclosing.size() != count) || parts.size() < 1 || parts.first < 0 ||
+      parts.end > static_cast<int>(count)) {
     throw std::invalid_argument("arrays of parts must be equally long");
   }
   for (int part = parts.first; part < parts.end; part++) {
     const std::int64_t first = given.first_point[part], end = given.first_point[part + 1];
     if (first < 0 || first >= end || 3 * end > static_cast<std::int64_t>(given.points.size()) ||
-        (given.enclosing[part] && end - first != 3)) {
+        (!given.enclosing.empty() && given.enclosing[part] && end - first != 3)) {
       throw std::invalid_argument("parts.first_point must rise, within parts.points");
     }
   }
-  Builder<T> builder{tree, given, std::vector<Box>(count), std::vector<double>(count), std::vector<int>(parts.size())};
-  std::iota(builder.order.begin(), builder.order.end(), parts.first);
-  for (const int part : builder.order) builder.measure(part);
+  Builder<T> builder(tree, given, parts);
   const int root = static_cast<int>(tree.nodes.size());
-  tree.nodes.emplace_back();
+  builder.add_nodes(1);
   builder.fill(root, 0, parts.size());
   return root;
 }
 
 template int add_parts(HullTree<float>&, const GivenParts&, Range);
+
+template <class T>
+std::vector<int> add_trees(HullTree<T>& tree, const GivenHulls& given) {
+  const auto count = static_cast<std::int64_t>(given.parts.widths.size());
+  std::vector<int> roots;
+  for (std::size_t body = 0; body + 1 < given.first_part.size(); body++) {
+    const std::int64_t first = given.first_part[body], end = given.first_part[body + 1];
+    if (first < 0 || first >= end || end > count) throw std::invalid_argument("hulls.first_part must rise");
+    roots.push_back(add_parts(tree, given.parts, {static_cast<int>(first), static_cast<int>(end)}));
+  }
+  return roots;
+}
+
+template std::vector<int> add_trees(HullTree<float>&, const GivenHulls&);
+template std::vector<int> add_trees(HullTree<double>&, const GivenHulls&);
 
 void add_around(HullTree<float>& tree, int root, std::span<const double> points, Range of, double width) {
   HullNode<float>& node = tree.nodes[root];

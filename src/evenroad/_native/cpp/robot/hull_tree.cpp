@@ -119,19 +119,6 @@ Vector first_way(const HullNode<T>& a, const HullNode<T>& b, const RelativePose&
   return way;
 }
 
-/// Return how deep the tree below each node is, leaves 1; children come after their parents.
-template <class T>
-int depth_of(const HullTree<T>& tree) {
-  std::vector<int> depths(tree.nodes.size(), 1);
-  int deepest = 0;
-  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
-    const auto& node = tree.nodes[i];
-    if (!node.is_leaf()) depths[i] = 1 + std::max(depths[node.children[0]], depths[node.children[1]]);
-    deepest = std::max(deepest, depths[i]);
-  }
-  return deepest;
-}
-
 }  // namespace
 
 template <class T>
@@ -152,49 +139,7 @@ void HullTree<T>::take_points(HullNode<T>& leaf, Range of) {
 }
 
 template void HullTree<float>::take_points(HullNode<float>&, Range);
-
-template <class T>
-HullTree<T> make_hull_tree(const GivenHulls& given) {
-  const std::size_t count = given.boxes.size() / 8, points = given.points.size() / 3;
-  if (given.children.size() != 2 * count || given.spans.size() != 2 * count) {
-    throw std::invalid_argument("hulls.children and hulls.spans must be as long as hulls.boxes");
-  }
-  HullTree<T> tree;
-  for (std::size_t i = 0; i < points; i++) {
-    const double* p = given.points.data() + 3 * i;
-    tree.points.push_back({static_cast<T>(p[0]), static_cast<T>(p[1]), static_cast<T>(p[2])});
-  }
-  for (std::size_t i = 0; i < count; i++) {
-    const std::int64_t a = given.children[2 * i], b = given.children[2 * i + 1];
-    const std::int64_t first = given.spans[2 * i], end = given.spans[2 * i + 1];
-    const auto after = [&](std::int64_t child) {
-      return static_cast<std::int64_t>(i) < child && child < static_cast<std::int64_t>(count);
-    };
-    const bool leaf = a == -1 && b == -1;
-    if (!leaf && !(after(a) && after(b))) throw std::invalid_argument("hulls.children must come after their parents");
-    if (leaf && !(0 <= first && first < end && end <= static_cast<std::int64_t>(points))) {
-      throw std::invalid_argument("hulls.spans must lie within hulls.points");
-    }
-    const double* box = given.boxes.data() + 8 * i;
-    HullNode<T> node{{static_cast<int>(a), static_cast<int>(b)},
-                     {},
-                     {},
-                     {},
-                     {},
-                     static_cast<T>(box[6]),
-                     static_cast<T>(box[7]),
-                     0,
-                     {},
-                     {},
-                     false};
-    for (int axis = 0; axis < 3; axis++) node.centre[axis] = static_cast<T>(box[axis]);
-    for (int axis = 0; axis < 3; axis++) node.half[axis] = static_cast<T>(box[3 + axis]);
-    if (leaf) tree.take_points(node, {static_cast<int>(first), static_cast<int>(end)});
-    tree.nodes.push_back(node);
-  }
-  if (2 * depth_of(tree) > DEEPEST) throw std::invalid_argument("trees of hulls must be less deep");
-  return tree;
-}
+template void HullTree<double>::take_points(HullNode<double>&, Range);
 
 template <class T>
 HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, const RelativePose& pose, double margin) {
@@ -266,7 +211,6 @@ bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, i
 }
 
 #define EVENROAD_HULLS_OF(T)                                                                               \
-  template HullTree<T> make_hull_tree(const GivenHulls&);                                                  \
   template HullContact find_hull_contact(const HullTree<T>&, int, int, const RelativePose&, double);       \
   template bool leaves_near(const HullTree<T>&, int, const HullTree<T>&, int, const RelativePose&, double, \
                             PlaneNormal&, Vec3&);

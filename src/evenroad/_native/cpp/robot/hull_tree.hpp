@@ -38,6 +38,7 @@ struct HullNode {
 template <class T>
 struct HullTree {
   std::vector<HullNode<T>> nodes;
+  std::vector<int> parts;  // of each node that is a leaf, which part it is
   std::vector<HullPoint<T>> points;
   std::vector<Vec3x16> blocks;  // points again, the last of a leaf repeated: of trees in single precision alone
 
@@ -45,33 +46,31 @@ struct HullTree {
   void take_points(HullNode<T>& leaf, Range of);
 };
 
-/// Nodes as Python names them.
-struct GivenHulls {
-  std::span<const std::int64_t> children, spans;  // (nodes, 2) each
-  std::span<const double> boxes;                  // (nodes, 8): centre, half extents, radius, width
-  std::span<const double> points;                 // (points, 3)
-};
-
 /// Convex parts as Python names them: a part is what is round about the hull of its points, by a ball and by a disc.
 struct GivenParts {
   std::span<const std::int64_t> first_point;  // of each part, then the number of points
   std::span<const double> points;             // (points, 3)
   std::span<const double> widths;             // of the balls
-  std::span<const double> discs;              // (parts, 3): the axis, as long as the disc's radius
-  std::span<const bool> enclosing;            // whether it is a triangle of a closed surface
+  std::span<const double> discs;              // (parts, 3): the axis, as long as the disc's radius; or none
+  std::span<const bool> enclosing;            // whether it is a triangle of a closed surface; or none is
+};
+
+/// Bodies of hulls as Python names them.
+struct GivenHulls {
+  std::span<const std::int64_t> first_part;  // of each body, then the number of parts
+  GivenParts parts;
 };
 
 /// Pairs of nodes that may wait: at most the depths of both trees together.
 constexpr int DEEPEST = 96;
 
-/// Return trees; std::invalid_argument unless children come after their parents, and no tree is deeper than half of
-/// DEEPEST.
-template <class T>
-HullTree<T> make_hull_tree(const GivenHulls& given);
-
 /// Add a tree over some parts, and return its root; std::invalid_argument if sizes do not fit, or there are none.
 template <class T>
 int add_parts(HullTree<T>& tree, const GivenParts& given, Range parts);
+
+/// Add a tree for each body, and return their roots; std::invalid_argument as add_parts.
+template <class T>
+std::vector<int> add_trees(HullTree<T>& tree, const GivenHulls& given);
 
 /// Let a root have a hull of some points around it, within whose width all leaves lie.
 void add_around(HullTree<float>& tree, int root, std::span<const double> points, Range of, double width);

@@ -155,7 +155,8 @@ void add_fixed_spheres(Robot& robot, const GivenRobot& given) {
 }
 
 std::vector<Around> add_bodies(Robot& robot, const GivenRobot& given) {
-  const std::size_t count = given.bodies.frame.size(), nodes = robot.hulls.nodes.size();
+  const std::size_t count = given.bodies.frame.size();
+  const std::vector<int> roots = add_trees(robot.hulls, given.hulls);
   require(given.bodies.hulls.size() == count, "bodies.hulls must be as long as bodies.frame");
   std::vector<Around> balls;
   int capsule = 0;
@@ -168,7 +169,7 @@ std::vector<Around> add_bodies(Robot& robot, const GivenRobot& given) {
               false,
               {},
               {}};
-    if (given.bodies.hulls[b] >= 0) body.hulls = index(given.bodies.hulls[b], nodes, "bodies.hulls");
+    if (given.bodies.hulls[b] >= 0) body.hulls = roots[index(given.bodies.hulls[b], roots.size(), "bodies.hulls")];
     const auto& owner = given.capsules.body;
     while (capsule < static_cast<int>(owner.size()) && owner[capsule] == static_cast<std::int64_t>(b)) capsule++;
     body.capsules.end = capsule;
@@ -282,7 +283,6 @@ Robot make_robot(const GivenRobot& given) {
   robot.bounds = {row(0), row(1), row(2)};
   robot.padding = given.padding, robot.reach = given.reach;
   robot.frames = make_frames(given, dim);
-  robot.hulls = make_hull_tree<float>(given.hulls);
   add_capsules(robot, given);
   add_pairs(robot, given, add_bodies(robot, given));
   add_shapes(robot, given);

@@ -44,6 +44,7 @@ Exact exact(const GivenObstacle& given, double reach) {
   } else {
     made.rounding = given.size[0];
   }
+  made.rounding += given.clearance;
   std::copy_n(given.translation, 3, made.centre);
   std::copy_n(given.rotation, 9, made.rotation);
   std::copy_n(extents, 3, made.half);

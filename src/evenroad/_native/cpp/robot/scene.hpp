@@ -37,6 +37,7 @@ struct GivenObstacle {
   double kind;     // as below
   double size[3];  // full extents of a box; radius and length without caps of the others [m]
   double rotation[9], translation[3];
+  double clearance;  // by which it is larger, round its edges [m]
 };
 enum class GivenKind : std::uint8_t { BOX, SPHERE, CYLINDER, CAPSULE };
 
