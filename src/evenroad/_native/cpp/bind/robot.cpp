@@ -67,8 +67,11 @@ void make_robot(Robot* self, nb::handle frames, nb::handle bodies, nb::handle ca
   require(by_hulls.size() == 1, "pairs.by_hulls must be one number");
   given.pairs = {of_pairs.span<std::int64_t, 2>("bodies"), by_hulls[0]};
   given.hulls = {of_hulls.span<std::int64_t>("first_part"),
-                 {of_hulls.span<std::int64_t>("first_point"), of_hulls.span<double, 2>("points"),
-                  of_hulls.span<double>("widths"), {}, {}}};
+                 {of_hulls.span<std::int64_t>("first_point"),
+                  of_hulls.span<double, 2>("points"),
+                  of_hulls.span<double>("widths"),
+                  {},
+                  {}}};
   given.shapes = {
       of_shapes.span<std::int64_t>("body"),
       {of_shapes.span<std::int64_t>("first_point"), of_shapes.span<double, 2>("points"),
@@ -107,8 +110,7 @@ void make_hull_trees(HullTrees* self, nb::handle first_part, nb::handle first_po
   const Array<const double, 2> of_points(points, "points");
   const Array<const double, 1> of_widths(widths, "widths");
   HullTrees made;
-  made.roots =
-      add_trees(made.tree, {of_part.span(), {of_point.span(), of_points.span(), of_widths.span(), {}, {}}});
+  made.roots = add_trees(made.tree, {of_part.span(), {of_point.span(), of_points.span(), of_widths.span(), {}, {}}});
   made.first_part.assign(of_part.span().begin(), of_part.span().end());
   new (self) HullTrees(std::move(made));
 }
