@@ -63,8 +63,13 @@ def solid(obstacle: Obstacle, margin: float):
 
 
 def touching(truth, scene: Scene, q: np.ndarray, margin: float) -> np.ndarray:
-    """Return which configurations come within `margin` of an obstacle in coal, or deeper than a negative one, (n,)."""
+    """Return which configurations come within `margin` of an obstacle in coal, or deeper than a negative one, (n,).
+
+    A mesh is a surface for coal; an obstacle that is wholly inside of a closed one touches, too.
+    """
     import coal
+
+    from evenroad.geometry.hulls import winding_number
 
     request, result = coal.CollisionRequest(), coal.CollisionResult()
     request.security_margin = max(margin, 0.0)
@@ -77,6 +82,9 @@ def touching(truth, scene: Scene, q: np.ndarray, margin: float) -> np.ndarray:
             result.clear()
             here = coal.Transform3s(rotation[row, i], shift[row, i])
             hits[row] = bool(coal.collide(items[i].geometry, here, *solids[k], request, result))
+            if not hits[row] and i in truth.surfaces:
+                middle = rotation[row, i].T @ (solids[k][1].getTranslation() - shift[row, i])
+                hits[row] = abs(winding_number(truth.surfaces[i], middle)) > 0.5
     return hits
 
 
@@ -98,17 +106,13 @@ class Hulls:
         import coal
         import mujoco
 
-        from evenroad.geometry.mesh import TriangleMesh
-
         spec, self.geoms = mujoco.MjSpec(), {}
         for i, item in enumerate(truth.geometry.geometryObjects):
             shape, kind, size, name = item.geometry, None, [1.0] * 3, ""
             if isinstance(shape, coal.BVHModelBase):
-                corners = shape.vertices()
-                faces = np.array([[shape.tri_indices(t)[k] for k in range(3)] for t in range(shape.num_tris)])
-                if TriangleMesh(corners, faces).is_convex:
+                if i in truth.convex:
                     kind, name = mujoco.mjtGeom.mjGEOM_MESH, f"mesh{i}"
-                    spec.add_mesh(name=name, uservert=corners.ravel().tolist())
+                    spec.add_mesh(name=name, uservert=shape.vertices().ravel().tolist())
             elif isinstance(shape, coal.Box):
                 kind, size = mujoco.mjtGeom.mjGEOM_BOX, shape.halfSide.tolist()
             elif isinstance(shape, coal.Sphere):
@@ -187,6 +191,10 @@ def measured(file: Path, count: int) -> dict[str, object]:
     rng = np.random.default_rng(0)
     began = time.process_time()
     model = load_model(file)
+    wide = [joint.name for joint in model.robot.joints if joint.kind == "prismatic" and joint.upper - joint.lower > 5.0]
+    if not set(wide).isdisjoint(model.robot.group):
+        # A base that drives metres away from all obstacles is not planned for.
+        model = load_model(file, group=[name for name in model.robot.group if name not in wide])
     loaded = time.process_time() - began
     robot = replace(model.robot, pairs=(), pairs_given=True, resting=())
     capsules = replace(robot, shapes=())

@@ -20,6 +20,7 @@ import numpy as np
 import pinocchio
 from studies.benchmarks.rows import row_per_robot
 
+from evenroad.geometry.mesh import TriangleMesh, closed_parts
 from evenroad.planning.arm_trees import connect, shorten
 from evenroad.robot import ArmWorld, Scene, load_model
 from evenroad.robot.pairs import CONTAINED
@@ -66,6 +67,21 @@ class Truth:
         for i, item in enumerate(self.geometry.geometryObjects):
             self.of_link.setdefault(self.model.frames[item.parentFrame].name, []).append(i)
         self.pairs = self._pairs(ET.parse(file).getroot())
+        self.surfaces: dict[int, np.ndarray] = {}
+        self.convex: set[int] = set()
+        for i, item in enumerate(self.geometry.geometryObjects):
+            if isinstance(item.geometry, coal.BVHModelBase):
+                self._note_surface(i, item.geometry)
+
+    def _note_surface(self, i: int, of: coal.BVHModelBase) -> None:
+        """Note the triangles, (t, 3, 3), of a closed mesh, and whether it is convex."""
+        rows = [of.tri_indices(t) for t in range(of.num_tris)]
+        mesh = TriangleMesh(of.vertices(), np.array([[row[k] for k in range(3)] for row in rows]))
+        closed, turned = closed_parts(mesh)
+        if turned and closed.any():
+            self.surfaces[i] = mesh.vertices[mesh.triangles[closed]]
+        if mesh.is_convex:
+            self.convex.add(i)
 
     def _pairs(self, root: ET.Element) -> list[tuple[str, str]]:
         above, moves = {}, {}
