@@ -203,7 +203,7 @@ class Scene:
         rows = set()
         for each in self.obstacles:
             numbers = (*each.size, *each.xyz, *each.rotation)
-            content = (fingerprint_of(each.body),) if each.shape not in PRIMITIVES else ()
+            content: tuple[str | float, ...] = (fingerprint_of(each.body),) if each.shape not in PRIMITIVES else ()
             # What has none is as before there were any.
             content += (each.clearance,) if each.clearance else ()
             rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))  # -0.0 is 0.0

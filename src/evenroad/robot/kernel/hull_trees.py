@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ Leaves = Sequence[tuple[Floats, float]]
 """Hulls of one body: the corners of some, (hulls, corners, 3), in its frame, and by how much each is widened [m]."""
 
 
-def hull_arrays(bodies: Iterable[Leaves]) -> dict[str, Floats | Ints]:
+def hull_arrays(bodies: Iterable[Leaves]) -> dict[str, Any]:
     """Return the hulls of bodies as the native kernel takes them."""
     every = list(bodies)
     leaves = [leaf for of_body in every for leaf in of_body]
