@@ -16,6 +16,7 @@ FUNCTIONS = {
     "ArmRoadmap.save": "evenroad.robot_roadmap.file:save_arm_roadmap",
     "PlanResult.plot": "evenroad.viz.result:plot_result",
     "plan.planner": "evenroad.robot_roadmap.file:load_roadmap",
+    "PlanResult.load": "evenroad.io:load_plan",
     "PlanResult.save": "evenroad.io:save_result",
     "PlanResult.trajectory": "evenroad.trajectory.arm:trajectory_of",
     "Trajectory.save": "evenroad.trajectory.files:save_trajectory",

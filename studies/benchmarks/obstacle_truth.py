@@ -236,14 +236,15 @@ def measured(file: Path, count: int) -> dict[str, object]:
         **{key: int(value) for key, value in total.items()}, **shares,
         "volume": round(volume, 3), "volume_capsules": round(volume_capsules, 2),
         "us": round(float(us), 3), "us_capsules": round(float(us_capsules), 3), "load_s": round(loaded, 1),
+        "note": "; ".join(truth.notes),
     }  # fmt: skip
 
 
 def table(rows: Sequence[dict[str, str]]) -> str:
-    """Return the rows as a table of a page."""
+    """Return the rows as a table of a page: percent blocked, in truth and beyond it; volume and time in parts."""
     head = ("robot", "joints", "in truth", "capsules", "shapes", "volume", "time", "touching")
     lines = [f"| {' | '.join(head)} |", "|" + "---|" * len(head)]
-    for row in (row for row in rows if not row["note"]):
+    for row in (row for row in rows if row["us"]):
         wrong = sum(int(row[key] or 0) for key in ("free_that_touch", "at_contact_that_touch", "hulls_that_touch"))
         cells = (
             *(row["robot"], row["dim"], f"{float(row['truth_blocked']):.1f}"),

@@ -18,6 +18,7 @@ from pathlib import Path
 import coal
 import numpy as np
 import pinocchio
+import trimesh
 from studies.benchmarks.rows import row_per_robot
 
 from evenroad.geometry.mesh import TriangleMesh, closed_parts
@@ -69,12 +70,29 @@ class Truth:
         self.pairs = self._pairs(ET.parse(file).getroot())
         self.surfaces: dict[int, np.ndarray] = {}
         self.convex: set[int] = set()
+        self.notes: list[str] = []
         for i, item in enumerate(self.geometry.geometryObjects):
             if isinstance(item.geometry, coal.BVHModelBase):
-                self._note_surface(i, item.geometry)
+                self._note_surface(i, item)
 
-    def _note_surface(self, i: int, of: coal.BVHModelBase) -> None:
-        """Note the triangles, (t, 3, 3), of a closed mesh, and whether it is convex."""
+    def _note_surface(self, i: int, item: pinocchio.GeometryObject) -> None:
+        """Note the triangles, (t, 3, 3), of a closed mesh, and whether it is convex.
+
+        They are those of trimesh's reader: coal 3.0.3 mixes up the corners of a file of several meshes, as of an
+        iCub's head.
+        """
+        read = trimesh.load(item.meshPath, force="mesh", process=False)
+        corners, known = np.array(read.vertices) * item.meshScale, item.geometry.vertices()
+        if np.allclose([corners.min(axis=0), corners.max(axis=0)], [known.min(axis=0), known.max(axis=0)], atol=1e-6):
+            model = coal.BVHModelOBBRSS()
+            model.beginModel(len(read.faces), len(corners))
+            model.addVertices(corners)
+            model.addTriangles(np.array(read.faces))
+            model.endModel()
+            item.geometry = model
+        else:
+            self.notes.append(f"{Path(item.meshPath).name} as coal reads it")
+        of = item.geometry
         rows = [of.tri_indices(t) for t in range(of.num_tris)]
         mesh = TriangleMesh(of.vertices(), np.array([[row[k] for k in range(3)] for row in rows]))
         closed, turned = closed_parts(mesh)

@@ -143,3 +143,21 @@ def test_without_what_reads_a_file_the_extra_is_named(tmp_path, monkeypatch):
     (tmp_path / "one.dae").write_text(ASCII_STL)
     monkeypatch.setitem(sys.modules, "collada", None)
     refused(NotAvailable, r"one.dae needs the extra: pip install 'evenroad\[dae\]'", load_mesh, tmp_path / "one.dae")
+
+
+def test_points_beside_triangles_are_refused_since_they_would_touch_nothing(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.Scene([trimesh.creation.box(), trimesh.PointCloud(CORNERS)])
+    scene.export(tmp_path / "room.glb")
+    refused(BrokenFile, "8 points beside its triangles", load_mesh, tmp_path / "room.glb")
+
+
+def test_a_binary_stl_is_read_as_trimesh_does_and_one_that_is_cut_off_is_refused(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    (tmp_path / "ball.stl").write_bytes(ball.export(file_type="stl"))
+    mesh, expected = load_mesh(tmp_path / "ball.stl"), trimesh.load(tmp_path / "ball.stl", process=False)
+    np.testing.assert_array_equal(mesh.vertices[mesh.triangles], expected.vertices[expected.faces])
+    assert len(mesh.compact.vertices) == len(ball.vertices)
+    (tmp_path / "cut.stl").write_bytes(ball.export(file_type="stl")[:-10])
+    refused(BrokenFile, "cut.stl", load_mesh, tmp_path / "cut.stl")

@@ -10,6 +10,7 @@ from evenroad.geometry import Box, Sphere
 from evenroad.robot import load_robot
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.scene import Scene
+from evenroad.robot_roadmap.static_scene import require_agrees
 from tests.refused import refused
 from tests.robot.kernel_arms import edge, random_scene, ur5
 from tests.robot.mesh_arms import write_fork_arm
@@ -78,3 +79,31 @@ def test_padding_is_refused_where_it_is_none():
     refused(InvalidValue, "the padding of 'tool0' must be a finite number >= 0", robot.with_padding, {"tool0": -0.01})
     refused(InvalidValue, "must be at most 1", robot.with_padding, {"tool0": 2.0})
     refused(InvalidValue, "padding must be a mapping", robot.with_padding, 0.01)
+
+
+@pytest.mark.parametrize("what", ["primitives", "points", "triangles", "true shapes"])
+def test_from_an_obstacle_with_a_clearance_robots_keep_that_much_more_away(what, fork):
+    scenes = {"points": cloud_scene(3, 200), "triangles": scene_of(all_sorts(2))}
+    scene = scenes.get(what, random_scene(4, 8, spread=0.6))
+    robot = replace(fork if what == "true shapes" else ur5(), pairs=())
+    name = scene.names[0]
+    alone = replace(scene, allowed=frozenset((link, other) for link in robot.links for other in scene.names[1:]))
+    plain, roomy = ArmWorld(robot, alone), ArmWorld(robot, alone.with_clearance({name: PADDING}))
+    q = plain.space.from_cube(np.random.default_rng(1).random((300, plain.dim)))
+    before, after = plain.distance(q).metres, roomy.distance(q).metres
+    near = before < 1.0
+    np.testing.assert_allclose(after[near], np.maximum(before[near] - PADDING, 0.0), atol=BAND)
+    assert not roomy.valid(q[before < PADDING - BAND]).any()
+    assert roomy.valid(q[before > PADDING + BAND]).all()
+
+
+def test_a_clearance_of_an_obstacle_is_read_checked_and_part_of_what_a_scene_is():
+    entry = {"shape": "box", "size": [0.1, 0.1, 0.1], "clearance": 0.02}
+    scene = Scene({"obstacles": {"glass": entry}})
+    assert scene.obstacles[0].clearance == 0.02
+    assert scene.fingerprint() != scene.with_clearance({"glass": 0.0}).fingerprint()
+    with pytest.raises(InvalidValue, match="with a clearance of 0.02 m, in the roadmap's"):
+        require_agrees(scene.with_clearance({"glass": 0.0}), scene)
+    refused(InvalidValue, "clearance", scene.with_clearance, {"glass": -0.1})
+    refused(UnknownName, "glass", scene.with_clearance, {"gless": 0.1})
+    refused(InvalidValue, "clearance", Scene, {"obstacles": {"glass": entry | {"clearance": 3}}})

@@ -66,7 +66,7 @@ BROKEN = {
     "an unknown key": (GOOD + "colour: red\n", UnknownName,
         "key of the scene .*'colour'; known: allowed, attach, limits, name, obstacles, states"),
     "an unknown key of an obstacle": (a("shape: sphere, radius: 1, size: 2"), UnknownName,
-        "key of obstacle 'a' in .*'size'; known: cell, radius, rpy, shape, xyz, xyzw"),
+        "key of obstacle 'a' in .*'size'; known: cell, clearance, radius, rpy, shape, xyz, xyzw"),
     "an unknown shape": (a("shape: cone"), UnknownName,
         "shape of obstacle 'a' in .*'cone'; known: box, capsule, cloud, cylinder, height_map, mesh, plane, sphere"),
     "a shape that is no name": (a("shape: [box]"), UnknownName, r"shape of obstacle 'a' in .*\['box'\]; known: box"),

@@ -72,8 +72,8 @@ class TriangleMesh:
         """The same triangles; of their corners those at one place are one, and there are no others."""
         used = np.zeros(len(self.vertices), dtype=np.bool_)
         used[self.triangles] = True
-        places, number = np.unique(self.vertices[used], axis=0, return_inverse=True)
-        found = TriangleMesh(places, number.reshape(-1)[(np.cumsum(used) - 1)[self.triangles]], self.name)
+        corners, number = np.unique(self.vertices[used], axis=0, return_inverse=True)
+        found = TriangleMesh(corners, number.reshape(-1)[(np.cumsum(used) - 1)[self.triangles]], self.name)
         set_fields(found, compact=found)
         return found
 

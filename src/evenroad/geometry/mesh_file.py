@@ -83,7 +83,14 @@ def _parts(file: Path) -> tuple[float, list[tuple[str, Floats, Ints]]]:
         unit = 1.0 if scene.units is None else trimesh.units.unit_conversion(scene.units, "meters")
         keys = [scene.graph[node][1] for node in scene.graph.nodes_geometry]
         require_few_triangles(sum(len(getattr(scene.geometry[key], "faces", ())) for key in keys), file.stat().st_size)
-        solid = [each for each in scene.dump() if isinstance(each, trimesh.Trimesh)]
+        every = scene.dump()
+        solid = [each for each in every if isinstance(each, trimesh.Trimesh)]
+        points = sum(len(each.vertices) for each in every if isinstance(each, trimesh.PointCloud))
+        if solid and points:
+            raise BrokenFile(
+                f"the mesh {file} has {points} points beside its triangles, which would touch nothing: save them as a"
+                " cloud in a file of their own"
+            )
         return unit, [
             (str(each.metadata["node"]), np.array(each.vertices, dtype=float), np.array(each.faces, dtype=np.int64))
             for each in solid

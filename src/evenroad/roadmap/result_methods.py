@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from evenroad._above import above
 from evenroad._arrays import Floats
@@ -97,6 +97,38 @@ class ResultMethods:
         <Status.SOLVED: 'solved'>
         """
         above("PlanResult.save")(self, path)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Return a plan that was saved, without its world, origin and searched graph.
+
+        Parameters
+        ----------
+        path : str or path-like
+            A ``.json`` of :meth:`save` or ``evenroad plan``; :func:`evenroad.io.load_plan` also returns the query.
+
+        Returns
+        -------
+        PlanResult
+
+        Raises
+        ------
+        BrokenFile
+            If the file is missing, or is no such plan.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> result = er.plan(er.GridMap(np.zeros((20, 30), dtype=bool)).world(2), (3, 3), (27, 17))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     result.save(f"{folder}/plan.json")
+        ...     er.PlanResult.load(f"{folder}/plan.json").cost == result.cost
+        True
+        """
+        plan: Self = above("PlanResult.load")(path)[0]
+        return plan
 
     def plot(self, path: str | os.PathLike[str] | None = None, *, world: World | None = None) -> Any:
         """Return a picture of the plan, a PIL image, which a notebook shows; save it if a file is named.

@@ -204,7 +204,6 @@ class Scene:
         for each in self.obstacles:
             numbers = (*each.size, *each.xyz, *each.rotation)
             content: tuple[str | float, ...] = (fingerprint_of(each.body),) if each.shape not in PRIMITIVES else ()
-            # What has none is as before there were any.
             content += (each.clearance,) if each.clearance else ()
             rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))  # -0.0 is 0.0
         return fingerprint_of(rows, self.allowed, *sorted(self.near_ends))
@@ -262,8 +261,8 @@ class Scene:
         Examples
         --------
         >>> import evenroad as er
-        >>> scene = er.load_scene("box-reach").with_clearance({"floor": 0.01})
-        >>> scene.obstacles[scene.names.index("floor")].clearance
+        >>> scene = er.load_scene("box-reach").with_clearance({"box top": 0.01})
+        >>> scene.obstacles[scene.names.index("box top")].clearance
         0.01
         """
         if not isinstance(clearance, Mapping):

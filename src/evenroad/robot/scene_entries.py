@@ -20,17 +20,23 @@ from evenroad.robot.scan import without_shapes
 from evenroad.robot.scene import MARGIN, Cut, Obstacle, Seen
 from evenroad.robot.scene_objects import objects_of
 
-_OPTIONAL = ("xyz", "rpy", "xyzw", "cell")
+_OPTIONAL = ("xyz", "rpy", "xyzw", "cell", "clearance")
 _OF_A_CLOUD = ("seen_at", "margin", "cut")
 PLANE, HEIGHTS = "plane", "height_map"
 
 
 def obstacles_of(name: str, entry: dict[str, Any], path: Path) -> tuple[Obstacle, ...]:
-    """Return the obstacles of an entry: one, or those of the file that it includes."""
-    if "include" not in entry:
-        return (obstacle_of(name, entry, path),)
+    """Return the obstacles of an entry, one or those of the file that it includes, with its clearance."""
     where = f"obstacle {name!r} in {path}"
-    require_keys(entry, ("include",), ("xyz", "rpy", "xyzw", "cell", "joints", "convex"), where)
+    made = _included(name, entry, path, where) if "include" in entry else (obstacle_of(name, entry, path),)
+    if "clearance" not in entry:
+        return made
+    (clearance,) = numbers(entry["clearance"], 1, f"clearance of {where}")
+    return tuple(replace(each, clearance=clearance) for each in made)
+
+
+def _included(name: str, entry: dict[str, Any], path: Path, where: str) -> tuple[Obstacle, ...]:
+    require_keys(entry, ("include",), (*_OPTIONAL, "joints", "convex"), where)
     joints = mapping_of(entry.get("joints"), f"joints of {where}")
     values = {joint: numbers(value, 1, f"joint {joint!r} of {where}")[0] for joint, value in joints.items()}
     file = _file({"file": entry["include"]}, path, where)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from itertools import islice
 from typing import Any
 
@@ -111,7 +111,7 @@ def _scene_record(scene: Scene) -> dict[str, Any]:
     return dict(
         name=scene.name,
         obstacles=[
-            (o.name, o.shape, _size(o), o.xyz, o.rotation, o.cell, getattr(_surface(o), "name", ""))
+            (o.name, o.shape, _size(o), o.xyz, o.rotation, o.cell, getattr(_surface(o), "name", ""), o.clearance)
             for o in scene.obstacles
         ],
         allowed=sorted(scene.allowed),
@@ -147,16 +147,17 @@ def _scene(path: Path, arrays: Arrays) -> Scene:
     record = read_json(path, "scene", arrays["scene"], _SCENE)
     points, triangles = (iter(arrays[name]) for name in _SURFACES)
 
+    # Files of earlier versions have no clearance.
     def obstacle(
-        name: str, shape: str, size: list[float], xyz: Any, rotation: Any, cell: bool, surface: str
+        name: str, shape: str, size: list[float], xyz: Any, rotation: Any, cell: bool, surface: str, more: float = 0.0
     ) -> Obstacle:
         pose = Pose(tuple(xyz), tuple(rotation))
         if shape == PointCloud.kind:
-            return Obstacle(name, PointCloud(_rows(points, size[1]), size[0], pose=pose), cell)
+            return Obstacle(name, PointCloud(_rows(points, size[1]), size[0], pose=pose), cell, clearance=more)
         if shape == Mesh.kind:
             mesh = TriangleMesh(_rows(points, size[0]), _rows(triangles, size[1]), surface)
-            return Obstacle(name, Mesh(mesh, pose=pose), cell)
-        return Obstacle.of(name, shape, size, xyz, rotation, cell)
+            return Obstacle(name, Mesh(mesh, pose=pose), cell, clearance=more)
+        return replace(Obstacle.of(name, shape, size, xyz, rotation, cell), clearance=more)
 
     return Scene(
         tuple(obstacle(*fields) for fields in record["obstacles"]),

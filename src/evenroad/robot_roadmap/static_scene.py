@@ -36,10 +36,11 @@ def require_agrees(static: Scene, scene: Scene) -> Scene:
     fixed = {obstacle.name: obstacle for obstacle in static.obstacles}
     named = {obstacle.name for obstacle in scene.obstacles}
     for obstacle in scene.obstacles:
-        if obstacle.name in fixed and obstacle.body != fixed[obstacle.name].body:
+        made = fixed.get(obstacle.name, obstacle)
+        if obstacle.body != made.body or obstacle.clearance > made.clearance:
             raise InvalidValue(
                 f"obstacle {obstacle.name!r} of scene {scene.name!r} is a {_text(obstacle)}, in the roadmap's static"
-                f" scene a {_text(fixed[obstacle.name])}: build the roadmap for the scene as it is"
+                f" scene a {_text(made)}: build the roadmap for the scene as it is"
             )
     forbidden = sorted(pair for pair in static.allowed if pair[1] in named and pair not in scene.allowed)
     if forbidden:
@@ -86,13 +87,14 @@ def _narrower(static: Scene, scene: Scene) -> dict[str, tuple[float, float]]:
 
 
 def _text(obstacle: Obstacle) -> str:
+    apart = f" with a clearance of {obstacle.clearance:g} m" if obstacle.clearance else ""
     if obstacle.shape not in PRIMITIVES:
-        return str(obstacle.body)
+        return f"{obstacle.body}{apart}"
     size, xyz = (", ".join(f"{value:g}" for value in values) for values in (obstacle.size, obstacle.xyz))
     turned = ""
     if obstacle.rotation != NO_ROTATION:
         turned = f" turned by [{', '.join(f'{value:.4g}' for value in obstacle.rotation)}]"
-    return f"{obstacle.shape} of {size} at ({xyz}){turned}"
+    return f"{obstacle.shape} of {size} at ({xyz}){turned}{apart}"
 
 
 def require_same_robot(made: Robot, static: Scene, given: Robot) -> None:

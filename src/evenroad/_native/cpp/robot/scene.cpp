@@ -90,7 +90,7 @@ void write_extents(const Exact& o, double (&extents)[3]) {
     const double* row = o.rotation + 3 * axis;
     if (o.form == Form::CYLINDER) {
       const double upright = std::abs(row[2]);
-      extents[axis] = upright * o.half[2] + std::sqrt(std::max(1.0 - upright * upright, 0.0)) * o.half[0];
+      extents[axis] = upright * o.half[2] + std::sqrt(std::max(1.0 - upright * upright, 0.0)) * o.half[0] + o.rounding;
       continue;
     }
     extents[axis] = 0;
