@@ -84,7 +84,9 @@ def touching(truth, scene: Scene, q: np.ndarray, margin: float) -> np.ndarray:
             hits[row] = bool(coal.collide(items[i].geometry, here, *solids[k], request, result))
             if not hits[row] and i in truth.surfaces:
                 middle = rotation[row, i].T @ (solids[k][1].getTranslation() - shift[row, i])
-                hits[row] = abs(winding_number(truth.surfaces[i], middle)) > 0.5
+                low, high = truth.boxes[i]
+                if (middle >= low).all() and (middle <= high).all():
+                    hits[row] = abs(winding_number(truth.surfaces[i], middle)) > 0.5
     return hits
 
 

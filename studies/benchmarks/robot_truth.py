@@ -69,6 +69,7 @@ class Truth:
             self.of_link.setdefault(self.model.frames[item.parentFrame].name, []).append(i)
         self.pairs = self._pairs(ET.parse(file).getroot())
         self.surfaces: dict[int, np.ndarray] = {}
+        self.boxes: dict[int, tuple[np.ndarray, np.ndarray]] = {}
         self.convex: set[int] = set()
         self.notes: list[str] = []
         for i, item in enumerate(self.geometry.geometryObjects):
@@ -92,12 +93,11 @@ class Truth:
             item.geometry = model
         else:
             self.notes.append(f"{Path(item.meshPath).name} as coal reads it")
-        of = item.geometry
-        rows = [of.tri_indices(t) for t in range(of.num_tris)]
-        mesh = TriangleMesh(of.vertices(), np.array([[row[k] for k in range(3)] for row in rows]))
+        mesh = TriangleMesh(corners, np.array(read.faces))
         closed, turned = closed_parts(mesh)
         if turned and closed.any():
             self.surfaces[i] = mesh.vertices[mesh.triangles[closed]]
+            self.boxes[i] = self.surfaces[i].min(axis=(0, 1)), self.surfaces[i].max(axis=(0, 1))
         if mesh.is_convex:
             self.convex.add(i)
 

@@ -174,7 +174,7 @@ def box_rows(size: npt.ArrayLike, xyz: npt.ArrayLike, xyzw: npt.ArrayLike | None
 
 
 def smaller_rows(rows: Floats, by: float) -> tuple[Floats, Bools]:
-    """Return the rows of obstacles, (n, 16), that reach less far by a distance [m], and of which anything is left.
+    """Return the rows of obstacles, (n, 17), that reach less far by a distance [m], and of which anything is left.
 
     A ball of that radius about any point of them lies in the obstacle as it was.
     """

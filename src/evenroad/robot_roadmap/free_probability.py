@@ -84,7 +84,7 @@ def free_probability(
 
 
 def among(robot: Robot, boxes: Floats) -> Checker:
-    """Return the checks of a robot among boxes, (n, 16), as :func:`evenroad.robot.obstacle.box_rows` gives them."""
+    """Return the checks of a robot among boxes, (n, 17), as :func:`evenroad.robot.obstacle.box_rows` gives them."""
     made = prepared(robot)
     tested = np.ones((len(made.tables.capsules), len(boxes)), dtype=np.bool_)
     return Checker(made.native, NativeScene(made.native, boxes, tested, [], None, 0.0), 1.0, 0.0, False)

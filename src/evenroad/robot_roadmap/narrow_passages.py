@@ -189,10 +189,10 @@ class Passages(NamedTuple):
         return inside
 
     def walls(self, i: int) -> Floats:
-        """Return the walls of a passage as boxes, (5, 16), see :func:`evenroad.robot.obstacle.box_rows`."""
-        rows = np.zeros((len(_SIDES), 16))
+        """Return the walls of a passage as boxes, (5, 17), see :func:`evenroad.robot.obstacle.box_rows`."""
+        rows = np.zeros((len(_SIDES), 17))
         rows[:, 1:4], rows[:, 4:13] = 2.0 * self.sizes[i], self.turn[i].reshape(9)
-        rows[:, 13:] = self.centre[i] + self.positions[i] @ self.turn[i].T
+        rows[:, 13:16] = self.centre[i] + self.positions[i] @ self.turn[i].T
         return rows
 
 

@@ -159,7 +159,7 @@ std::unique_ptr<Surface> surface_around(nb::list surfaces) {
   return std::make_unique<Surface>(robot::make_surface_around(all));
 }
 
-/// A scene is given its obstacles, (n, 16), its surfaces, each with its number and the capsules tested against it, and
+/// A scene is given its obstacles, (n, 17), its surfaces, each with its number and the capsules tested against it, and
 /// the grid around these, or None.
 void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle tested, nb::list surfaces,
                 nb::object around, double clearance) {
