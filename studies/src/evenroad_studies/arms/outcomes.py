@@ -19,7 +19,6 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad_studies.arms.problems import PREFIXES, robot_and_generator, stream_of
 from evenroad_studies.arms.scenes import GENERATORS
 from evenroad_studies.bench.rows import Rows
-from evenroad_studies.bench.task import PROTOCOL
 
 
 class Way(NamedTuple):
@@ -140,6 +139,12 @@ def _shared(some: Ints, others: Ints) -> tuple[Ints, Ints]:
     _, mine, theirs = np.intersect1d(codes[: len(some)], codes[len(some) :], return_indices=True)
     return mine, theirs
 
+
+PROTOCOL = 7
+"""Counted up when the same draw of the same sampler would plan otherwise.
+
+What is kept is older than today's `even`: its rows are of the set that is called `korobov` now.
+"""
 
 _NAMES = ("protocol", "generators", "ways", "sizes", "problems", "draws", "ran", "solved", "costs", "hash")
 
