@@ -222,7 +222,7 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
       if (many && (beside(surface.grid, of.capsule.centre, of.half + reach) & open) == 0) continue;
       const NearAndSure told = ask(surface, of);
       Mask here = told.sure & ~blocked;
-      if ((meeting | here) == 0 || wanted == Wanted::ALL || shaped) {
+      if ((meeting | here) == 0 || wanted != Wanted::FIRST || shaped) {
         const Mask near = told.near & open & ~(blocked | meeting | told.sure);
         here |= touching_lanes(surface, of, capsule.one_by_squared, near, shaped ? Wanted::ALL : wanted);
       }
