@@ -29,6 +29,8 @@ from evenroad.space.path import resample
 
 COUNT = 2000
 PATHS = 10
+NO_AREA = 1e-12
+"""Triangles of a mesh file up to this area are none [m²]."""
 FIELDS = (
     *(
         "robot",
@@ -80,10 +82,12 @@ class Truth:
         """Note the triangles, (t, 3, 3), of a closed mesh, and whether it is convex.
 
         They are those of trimesh's reader: coal 3.0.3 mixes up the corners of a file of several meshes, as of an
-        iCub's head.
+        iCub's head.  Slivers are left out: coal calls spheres near them in contact, as deep as their radius.
         """
         read = trimesh.load(item.meshPath, force="mesh", process=False)
-        corners, known = np.array(read.vertices) * item.meshScale, item.geometry.vertices()
+        read.apply_scale(item.meshScale)
+        read.update_faces(read.area_faces > NO_AREA)
+        corners, known = np.array(read.vertices), item.geometry.vertices()
         if np.allclose([corners.min(axis=0), corners.max(axis=0)], [known.min(axis=0), known.max(axis=0)], atol=1e-6):
             model = coal.BVHModelOBBRSS()
             model.beginModel(len(read.faces), len(corners))
