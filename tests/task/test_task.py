@@ -3,6 +3,7 @@
 import itertools
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -173,10 +174,11 @@ def test_what_is_out_of_reach_is_not_taken(world):
         Task([Attach("can"), MoveTo(HOME)]).plan(world, HOME)
 
 
-def test_what_is_taken_and_let_go_at_once_stays_where_it_is(world):
+def test_what_is_taken_and_let_go_at_once_stays_where_it_is_and_keeps_its_clearance(world):
+    world = replace(world, scene=world.scene.with_clearance({"can": 0.01}))
     result = Task([Attach("can", reach=1.0), Detach("can"), MoveTo([0.1, *HOME[1:]])]).plan(world, HOME)
     (part,) = result.parts
-    assert part.world.scene.obstacles[-1].name == "can"
+    assert (part.world.scene.obstacles[-1].name, part.world.scene.obstacles[-1].clearance) == ("can", 0.01)
     np.testing.assert_allclose(part.world.scene.obstacles[-1].xyz, CAN.pose.xyz, atol=1e-12)
 
 

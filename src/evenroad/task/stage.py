@@ -29,7 +29,8 @@ class Stage:
 
     `near_start` are contacts, (link, obstacle), that are not tested on the straight line of the next motion from here:
     of the gripper with what it has put down, of what it has taken with what that stood on.  `empty` is the robot with
-    nothing attached by the task, and `depths` says how deep such contacts of what is held may be [m].
+    nothing attached by the task, `depths` says how deep such contacts of what is held may be, and `clearances` what an
+    object keeps from the robot where it is put down [m].
     """
 
     world: ArmWorld
@@ -37,6 +38,7 @@ class Stage:
     empty: Robot
     near_start: Contacts = frozenset()
     depths: Mapping[str, float] = field(default_factory=dict)
+    clearances: Mapping[str, float] = field(default_factory=dict)
 
     def with_contacts(self, contacts: Contacts) -> ArmWorld:
         """Return the world in which some contacts are not tested; of what is held they may not be deep.
@@ -75,7 +77,9 @@ class Stage:
         body = replace(found[0].body, pose=frame.inverse() @ found[0].body.pose)
         held = HeldObject(step.object, body, link, touching)
         attached = replace(scene.without(step.object), attached=(*scene.attached, held))
-        stage = replace(self, world=_world(self, attached), depths={**self.depths, step.object: step.depth})
+        depths = {**self.depths, step.object: step.depth}
+        clearances = {**self.clearances, step.object: found[0].clearance}
+        stage = replace(self, world=_world(self, attached), depths=depths, clearances=clearances)
         # What it stood on, it may touch until it is lifted.
         stood = frozenset((step.object, each) for each in stage.touched(step.object))
         return replace(stage, near_start=self.near_start | stood)
@@ -90,6 +94,7 @@ class Stage:
         body = held[step.object].body
         frame = pose_of(robot, self.q, held[step.object].link)
         placed = Obstacle(step.object, replace(body, pose=frame @ body.pose, link=WORLD))
+        placed = replace(placed, clearance=self.clearances.get(step.object, 0.0))
         left = tuple(each for each in scene.attached if each.name != step.object)
         allowed = frozenset(each for each in scene.allowed if each[0] != step.object)
         scene = replace(scene, obstacles=(*scene.obstacles, placed), attached=left, allowed=allowed)
