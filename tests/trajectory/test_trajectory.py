@@ -69,6 +69,20 @@ def test_a_straight_line_takes_no_longer_than_its_longest_joint():
     assert made.deviation < 1e-9
 
 
+def test_between_its_states_it_moves_as_its_path_does():
+    path = zigzag(3, dim=2)
+    trajectory = make_trajectory(path, Limits((1.0, 1.0), (2.0, 2.0)), deviation=0.01)
+    assert np.allclose(trajectory.at(trajectory.times), trajectory.positions, rtol=0.0, atol=1e-12)
+    between = np.random.default_rng(0).uniform(0.0, trajectory.duration, (5, 40))
+    positions = trajectory.at(between)
+    assert positions.shape == (5, 40, 2)
+    assert max(distance_to(path, q) for q in positions.reshape(-1, 2)) <= trajectory.deviation + 1e-4
+    finer = make_trajectory(path, Limits((1.0, 1.0), (2.0, 2.0)), deviation=0.01, step=0.001)
+    assert np.abs(trajectory.at(np.minimum(finer.times, trajectory.duration)) - finer.positions).max() < 0.01
+    for wrong in (-1e-9, trajectory.duration + 1e-6, np.nan, "soon", [0.0, [1.0]]):
+        refused(InvalidValue, "t must be from 0 to", trajectory.at, wrong)
+
+
 def test_without_deviation_it_stops_at_every_corner():
     limits = Limits((1.0, 1.0), (2.0, 2.0))
     made = make_trajectory([[0, 0], [1, 0], [1, 1], [0, 1]], limits, deviation=0.0)

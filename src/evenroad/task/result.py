@@ -14,7 +14,8 @@ from evenroad.errors import InvalidValue
 from evenroad.roadmap import PlanResult, Status
 from evenroad.task.motion import Motion
 from evenroad.task.steps import MoveTo, Step, Wait
-from evenroad.trajectory.trajectory import MOST_STATES, Trajectory
+from evenroad.trajectory.make import MOST_STATES
+from evenroad.trajectory.trajectory import Trajectory
 
 
 @dataclass(frozen=True, eq=False, repr=False)

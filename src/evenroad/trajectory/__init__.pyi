@@ -5,5 +5,5 @@ from evenroad.trajectory.files import load_trajectory as load_trajectory
 from evenroad.trajectory.files import save_trajectory as save_trajectory
 from evenroad.trajectory.limits import Limits as Limits
 from evenroad.trajectory.limits import limits_of as limits_of
+from evenroad.trajectory.make import make_trajectory as make_trajectory
 from evenroad.trajectory.trajectory import Trajectory as Trajectory
-from evenroad.trajectory.trajectory import make_trajectory as make_trajectory

@@ -17,8 +17,9 @@ from evenroad.robot.constraint import Constraint
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.orientation_constraint import OrientationConstraint, OrientationWorld
 from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of
+from evenroad.trajectory.make import DEVIATION, STEP, make_trajectory
 from evenroad.trajectory.tip_constraints import constrained_world
-from evenroad.trajectory.trajectory import DEVIATION, STEP, Trajectory, make_trajectory
+from evenroad.trajectory.trajectory import Trajectory
 from evenroad.trajectory.urscript import with_radii
 from evenroad.world import World
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
-from evenroad.trajectory.trajectory import Trajectory, drivable
+from evenroad.trajectory.make import drivable
+from evenroad.trajectory.trajectory import Trajectory
 from evenroad.world import World
 
 CYCLES = (0.008, 0.002)

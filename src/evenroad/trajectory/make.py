@@ -1,0 +1,206 @@
+"""The fastest trajectory along a path, within limits, and checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicHermiteSpline
+
+from evenroad._arrays import Bools, Floats
+from evenroad._checks import as_batch, require_positive
+from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.trajectory.blends import rounded
+from evenroad.trajectory.limits import Limits
+from evenroad.trajectory.timing import TimeLaw, fastest, paused, slowed
+from evenroad.trajectory.trajectory import Trajectory
+from evenroad.world import ValidatesPaths, World
+
+STEP = 0.008
+"""Time between two states of a trajectory [s]: the cycle of a UR controller, 125 Hz."""
+
+DEVIATION = 0.05
+"""Default for the largest deviation at a corner [rad or m]."""
+
+_FINER = 8
+"""Number of states per step at which limits are checked."""
+
+_SAME = 1e-9
+"""Distance in every joint below which two waypoints are equal [rad or m]."""
+
+MOST_STATES = 1_000_000
+"""Largest number of states, more than two hours at 125 Hz."""
+
+_HALVINGS = 6
+"""Number of times that a blend in collision is halved; then the robot stops at the corner."""
+
+
+def make_trajectory(
+    path: npt.ArrayLike,
+    limits: Limits,
+    *,
+    world: World | None = None,
+    names: Sequence[str] | None = None,
+    held: Mapping[str, float] | None = None,
+    controller: Sequence[str] = (),
+    deviation: float = DEVIATION,
+    step: float = STEP,
+) -> Trajectory:
+    """Return the fastest trajectory along a path with rounded corners.
+
+    Corners become arcs of circles (Kunz and Stilman 2012), with the fastest times within velocities and accelerations
+    (Pham and Pham 2018).  Where jerk is limited, the motion is averaged over the largest ``2 acceleration / jerk``,
+    which keeps all limits.  An arc in collision becomes smaller; where a small one still collides, the robot stops.
+
+    Parameters
+    ----------
+    path : array_like, shape (p, dim)
+        Waypoints joined by straight motions, p >= 2, at least two of them different.
+    limits : Limits
+    world : World, optional
+        Checks the trajectory, by its strict check if it has one.  Default: no check.
+    names : sequence of str, optional
+        Names of the joints; default ``joint_1``, ...
+    held, controller : mapping of str to float, sequence of str, optional
+        As of :class:`Trajectory`.
+    deviation : float
+        Largest distance from the path, >= 0 [rad or m]; 0 stops at every corner.
+    step : float
+        Time between two states, > 0 [s].
+
+    Returns
+    -------
+    Trajectory
+        Its duration is a whole number of steps.
+
+    Raises
+    ------
+    InvalidValue
+        If all waypoints are equal, an argument is out of range, or there would be a million states.
+    NotAvailable
+        If the trajectory is not free, or violates limits or deviation; mostly the path itself is not free then.
+    """
+    deviation = require_positive("deviation", deviation, or_zero=True)
+    step = require_positive("step", step)
+    waypoints = as_batch("path", path, len(limits.velocity))
+    waypoints = _apart(waypoints)
+    if len(waypoints) < 2:
+        raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
+    joints = tuple(names) if names is not None else tuple(f"joint_{i + 1}" for i in range(waypoints.shape[1]))
+    if len(joints) != waypoints.shape[1]:
+        raise InvalidValue(f"names must be {waypoints.shape[1]}, one a joint, got {len(joints)}")
+    window = 0.0 if limits.jerk is None else float(np.max(2.0 * np.divide(limits.acceleration, limits.jerk)))
+    cuts = np.full(len(waypoints), deviation)
+    for halved in range(_HALVINGS + 1):
+        curve = rounded(waypoints, cuts)
+        law = _on_steps(paused(fastest(curve, limits), window), limits, window, step)
+        fine = np.linspace(0.0, law.duration + window, _FINER * round((law.duration + window) / step) + 1)
+        states = _averaged(law, window, fine)
+        off = _distance_to(waypoints, states[0])
+        positions = states[0][::_FINER]
+        free, proof = drivable(world, positions)
+        bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[off > deviation + 1e-6]])
+        if len(bad) == 0:
+            break
+        cuts = _less(cuts, curve.corners, law.length_at(bad - 0.5 * window), stop=halved >= _HALVINGS - 1)
+    else:
+        raise NotAvailable(f"the trajectory is not proved free, or not near enough to its path, at {bad[0]:.3f} s")
+    highest = _shares(states, limits)
+    if limits.jerk is not None:
+        highest["jerk"] = float(np.max(np.abs(np.diff(states[2], axis=0)) / fine[1] / limits.jerk))
+    return Trajectory(
+        names=joints,
+        times=fine[::_FINER],
+        positions=positions,
+        velocities=states[1][::_FINER],
+        accelerations=states[2][::_FINER],
+        waypoints=waypoints,
+        limits=limits,
+        deviation=float(np.max(off)),
+        stops=len(curve.stops),
+        highest=highest,
+        held=dict(held or {}),
+        controller=tuple(controller),
+        proof=proof,
+    )
+
+
+def _apart(path: Floats) -> Floats:
+    """Return a path without repeated waypoints, up to rounding; the first and the last stay as they are."""
+    kept: list[Floats] = []
+    for position in path:
+        if not kept or np.max(np.abs(position - kept[-1])) > _SAME:
+            kept.append(position)
+    if len(kept) > 1:
+        kept[-1] = path[-1]
+    return np.array(kept).reshape(-1, path.shape[1])
+
+
+def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeLaw:
+    """Return a law that keeps its limits between grid points, too, and ends on a whole step."""
+    within = law.times[:-1, None] + np.diff(law.times)[:, None] * np.linspace(0.0, 1.0 - 1e-9, _FINER)
+    shares = _shares(law.at(within.ravel()), limits)
+    law = slowed(law, max(1.0, shares["velocity"], math.sqrt(shares["acceleration"])))
+    steps = max(math.ceil((law.duration + window) / step - 1e-9), math.floor(window / step) + 1)
+    if steps > MOST_STATES:
+        raise InvalidValue(
+            f"the trajectory would take {law.duration + window:.4g} s in steps of {step:g} s, more than"
+            f" {MOST_STATES} of them: take longer steps, or move faster"
+        )
+    while True:
+        law = slowed(law, (steps * step - window) / law.duration)
+        fine = np.linspace(0.0, law.duration + window, _FINER * steps + 1)
+        if max(_shares(law.at(fine), limits).values()) <= 1.0:
+            return law
+        steps += 1
+
+
+def _averaged(law: TimeLaw, window: float, t: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return positions, velocities and accelerations, (n, dim) each, averaged over the `window` before each time."""
+    if window == 0.0:
+        return law.at(t)
+    grid = np.linspace(-window, law.duration + window, len(t) + 1)
+    position, velocity, _ = law.at(grid)
+    travelled = CubicHermiteSpline(grid, position, velocity).antiderivative()
+    (position, velocity, _), (position_before, velocity_before, _) = law.at(t), law.at(t - window)
+    positions = (travelled(t) - travelled(t - window)) / window
+    positions[[0, -1]] = position[[0, -1]]
+    return positions, (position - position_before) / window, (velocity - velocity_before) / window
+
+
+def _shares(states: tuple[Floats, Floats, Floats], limits: Limits) -> dict[str, float]:
+    """Return the largest share of velocity and of acceleration that states use."""
+    used = {"velocity": states[1], "acceleration": states[2]}
+    return {kind: float(np.max(np.abs(rows) / getattr(limits, kind))) for kind, rows in used.items()}
+
+
+def _distance_to(path: Floats, points: Floats) -> Floats:
+    """Return the distances of points, (n, dim), from a path, (p, dim): (n,)."""
+    nearest = np.full(len(points), np.inf)
+    for a, b in pairwise(path):
+        along = b - a
+        share = np.clip((points - a) @ along / (along @ along), 0.0, 1.0)
+        nearest = np.minimum(nearest, np.linalg.norm(points - a - share[:, None] * along, axis=1))
+    return nearest
+
+
+def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:
+    """Return which motions from state to state are free, (n - 1,), and the proof."""
+    if world is None:
+        return np.ones(len(positions) - 1, dtype=bool), "unchecked"
+    if isinstance(world, ValidatesPaths):
+        return world.validate(positions), world.proof
+    return world.motion_valid(positions[:-1], positions[1:]), str(getattr(world, "proof", "resolution"))
+
+
+def _less(cuts: Floats, corners: Floats, lengths: Floats, *, stop: bool) -> Floats:
+    """Return `cuts`, (p,), smaller at the corners nearest to the given lengths."""
+    if len(corners) == 0:
+        return cuts
+    near = 1 + np.unique(np.argmin(np.abs(lengths[:, None] - corners), axis=1))
+    cuts = cuts.copy()
+    cuts[near] = 0.0 if stop else 0.5 * cuts[near]
+    return cuts
