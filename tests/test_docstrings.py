@@ -15,7 +15,7 @@ MODULES = ("qmc", "spaces", "io", "testing")
 
 OF_PLANNERS = {
     *("apart", "connect", "connect_anew", "may_connect", "shorten", "explain_start", "with_bodies"),
-    *("solve", "validate", "motion_certified", "path_clearance", "fingerprint"),
+    *("solve", "validate", "motion_certified", "path_clearance", "nearest_along", "fingerprint"),
 }
 """Methods by which planners and files ask a world; users have `result` and `er.plan` for them."""
 

@@ -51,7 +51,9 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
         "length",
         "milestone_cost",
         "proof",
+        "bodies",
         "clearance",
+        "nearest",
         "goal_index",
         "planner",
         "rule",
@@ -173,7 +175,9 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
             timings={str(phase): float(value) for phase, value in record["timings"].items()},
         )
         # A file has no world that could measure them.
-        set_fields(result, clearance=record.get("clearance"), length=record.get("length"))
+        pair = record.get("nearest")
+        set_fields(result, nearest=None if pair is None else (str(pair[0]), str(pair[1])))
+        set_fields(result, **{name: record.get(name) for name in ("clearance", "length", "bodies")})
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         why = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
         raise BrokenFile(f"{path} is not a plan of evenroad: {why}") from error

@@ -7,6 +7,7 @@ import pytest
 import trimesh
 from PIL import Image
 
+import evenroad as er
 from evenroad.robot import ArmWorld, in_scene, load_robot, load_scene
 from evenroad.robot.certified import CertifiedWorld
 from tests.robot.urdf_texts import SPHERE, joint, link, two_joints, urdf
@@ -53,7 +54,11 @@ def test_without_a_number_of_points_trees_plan_and_say_what_is_proved(answer, tm
     assert (record["planner"], record["proof"], record["rule"]) == ("trees", "certified", "none")
     assert record["counts"]["nodes"] > 2
     assert f"trees: {record['counts']['nodes']} nodes, {record['counts']['edges_checked']} motions" in shown
-    assert "certified: the robot's bodies touch nothing anywhere along the" in shown
+    assert "certified: the robot's capsules touch nothing anywhere along the" in shown
+    assert "at least, between '{}' and '{}'".format(*record["nearest"]) in " ".join(shown.split())
+    loaded = er.PlanResult.load(tmp_path / "a.json")
+    assert (loaded.bodies, loaded.nearest) == ("capsules", tuple(record["nearest"]))
+    assert "certified (capsules)" in repr(loaded)
     assert "milestones" not in shown
     # More time gives a path that is no longer, the same command the same files.
     best, shown = answer(*arm_arguments(time=0.2), "--improve", out="best")

@@ -126,3 +126,6 @@ def test_a_path_tells_a_clearance_that_it_keeps_and_hardly_more():
     along = np.concatenate([a + np.linspace(0.0, 1.0, 60)[:, np.newaxis] * (b - a) for a, b in pairwise(result.path)])
     nearest = clearance(replace(world.robot, pairs=()), scene, along).min()
     assert result.clearance < nearest < result.clearance + 0.002
+    # Without the pair that it names it has more room.
+    without = ArmWorld(world.robot, replace(scene, allowed=scene.allowed | {result.nearest}))
+    assert without.path_clearance(result.path) > result.clearance + 1e-4

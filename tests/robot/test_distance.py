@@ -11,6 +11,7 @@ from evenroad.robot import load_robot
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf import read_urdf
+from evenroad.space.path import resample
 from tests.refused import refused
 from tests.robot.kernel_arms import edge, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.mesh_arms import write_fork_arm
@@ -102,6 +103,24 @@ def test_the_pair_is_the_one_that_is_nearest():
         assert farther.pair != (first, second)
         assert farther.metres >= metres[row]
     assert {second in robot.links for _, second in pairs} == {True, False}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_pair_that_is_nearest_along_a_path_is_the_oracles(seed):
+    robot, scene = replace(ur5(), pairs=()), random_scene(5)
+    world = ArmWorld(ur5(), scene)
+    rng = np.random.default_rng(seed)
+    drawn = world.space.from_cube(rng.random((400, 6)))
+    path = drawn[ArmWorld(robot, scene).distance(drawn).metres.argmax()] + 0.05 * rng.normal(size=(4, 6)).cumsum(axis=0)
+    least = {}
+    for link in robot.links:
+        alone = replace(robot, capsules=tuple(each for each in robot.capsules if each.link == link))
+        for each in scene.obstacles:
+            among = replace(scene, obstacles=(each,))
+            least[link, each.name] = clearance(alone, among, resample(path, world.space, 1e-3)[0]).min()
+    found = world.nearest_along(path)
+    assert 0.0 < least[found] < min(of for (link, _), of in least.items() if link != robot.links[0]) + 1e-4
+    assert ArmWorld(robot, scene).path_clearance(path) == pytest.approx(least[found], abs=2e-4)
 
 
 def test_one_configuration_has_one_distance_and_a_batch_has_many():

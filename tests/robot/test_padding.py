@@ -10,6 +10,7 @@ from evenroad.geometry import Box, Sphere
 from evenroad.robot import load_robot
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.scene import Scene
+from evenroad.robot_roadmap.build import build_roadmap
 from evenroad.robot_roadmap.static_scene import require_agrees
 from tests.refused import refused
 from tests.robot.kernel_arms import edge, random_scene, ur5
@@ -60,21 +61,26 @@ def test_padding_is_kept_all_along_what_is_proved_and_from_what_lies_beyond_the_
     )
 
 
-def test_links_are_tested_against_each_other_as_they_are_and_what_stands_still_is_padded_too():
+def test_links_are_tested_against_each_other_as_they_are_and_so_is_what_stands_still():
     robot = load_robot("ur5")
     padded = robot.with_padding(dict.fromkeys(robot.links, 0.05))
     q = ArmWorld(robot).space.from_cube(np.random.default_rng(4).random((2000, 6)))
     np.testing.assert_array_equal(ArmWorld(padded).valid(q), ArmWorld(robot).valid(q))
     table = Scene([Box((1, 1, 0.1), xyz=(0, 0, -0.17), name="table")])
-    assert ArmWorld(robot, table).fixed_contact is None
-    assert ArmWorld(padded, table).fixed_contact == ("base_link", "table")
+    for world in (ArmWorld(robot, table), ArmWorld(padded, table), ArmWorld(robot, table, clearance=0.05)):
+        assert world.fixed_contact is None
+    higher = Scene([Box((1, 1, 0.1), xyz=(0, 0, -0.05), name="table")])
+    assert "allowed: {table: [base_link]}" in ArmWorld(padded, higher).explain("home")
     # The last word stays, 0 takes it back, and a tool brings its own.
     assert padded.with_padding(dict.fromkeys(robot.links, 0.0)).padding == ()
     assert robot.with_tool(robot.with_padding({"tool0": 0.01}), "tool0", prefix="t_").padding == (("t_tool0", 0.01),)
 
 
-def test_padding_is_refused_where_it_is_none():
+def test_padding_is_refused_where_it_is_none_and_by_a_roadmap_that_was_made_with_another():
     robot = load_robot("ur5")
+    made = build_roadmap(ArmWorld(robot), 16)
+    with pytest.raises(InvalidValue, match="link 'tool0' had a padding of 0 m, now 0.01 m"):
+        made.within(ArmWorld(robot.with_padding({"tool0": 0.01})))
     refused(UnknownName, "unknown link of 'ur5': 'tip'", robot.with_padding, {"tip": 0.01})
     refused(InvalidValue, "the padding of 'tool0' must be a finite number >= 0", robot.with_padding, {"tool0": -0.01})
     refused(InvalidValue, "must be at most 1", robot.with_padding, {"tool0": 2.0})

@@ -23,7 +23,7 @@ DEFAULT_N = 512
 
 PROOFS = {
     "exact": "exact: no motion touches anything, up to rounding",
-    "certified": "certified: the robot's bodies touch nothing anywhere along the path",
+    "certified": "certified: the robot's {} touch nothing anywhere along the path",
     "resolution": "resolution: motions are free at states close together; what lies between them is not seen",
 }
 
@@ -143,9 +143,10 @@ def print_plan(result: PlanResult, files: Iterable[str], more: Sequence[tuple[st
         after = f"{first.cost:.6g} after {1e3 * first.seconds:.1f} ms"
         rows.append(("improved", f"from {after}, in {counts['rounds']} rounds"))
     if result.proof is not None:
-        rows.append(("proved", PROOFS[result.proof]))
+        rows.append(("proved", PROOFS[result.proof].format(result.bodies)))
     if result.clearance is not None:
-        rows.append(("clearance", f"{result.clearance:.6g} at least"))
+        between = "" if result.nearest is None else ", between {!r} and {!r}".format(*result.nearest)
+        rows.append(("clearance", f"{result.clearance:.6g} at least{between}"))
     # Few digits, so that all phases fit into one line.
     times = {phase: 1e3 * seconds for phase, seconds in result.timings.items()}
     if times:

@@ -63,6 +63,19 @@ def parts_of(shapes: Iterable[Shape]) -> tuple[Parts, ...]:
     return tuple(parts for shape in every if shape.link in sharp for parts in _parts(shape))
 
 
+def kinds_in_words(robot_parts: Iterable[Parts], capsules: Iterable[Capsule]) -> str:
+    """Return the kinds of a robot's bodies, as ``hulls, meshes and capsules``: its parts, and capsules of other links.
+
+    A mesh that is convex is a hull.
+    """
+    parts = tuple(robot_parts)
+    links = {each.link for each in parts}
+    kinds = {{"mesh": "meshes", "box": "boxes"}.get(each.of, f"{each.of}s") for each in parts}
+    alone = {"capsules"} if any(each.link not in links for each in capsules) else set()
+    words = [*sorted(kinds - {"capsules"}), *(kinds & {"capsules"} | alone)]
+    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
+
+
 def _parts(shape: Shape) -> tuple[Parts, ...]:
     if isinstance(shape, Cylinder):
         axis = shape.pose.rotation_matrix[:, 2]

@@ -16,7 +16,7 @@ from evenroad.roadmap.certificate import Certificate
 from evenroad.roadmap.result_methods import ResultMethods
 from evenroad.space import Space
 from evenroad.space.path import path_length
-from evenroad.world import MeasuresPaths, World
+from evenroad.world import MeasuresPaths, NamesNearest, World
 
 NO_POINTS = Origin(family="none", method="no points")
 """Origin of a result whose planner draws no points."""
@@ -160,12 +160,22 @@ class PlanResult(ResultMethods):
     def clearance(self) -> float | None:
         """Lower bound of the path's distance from all obstacles; None where the world cannot measure it.
 
-        For a disk in map units, exact within 1e-3 pixels; for an arm in metres, proved for its capsules, within 0.1 mm,
+        For a disk in map units, exact within 1e-3 pixels; for an arm in metres, proved for its `bodies`, within 0.1 mm,
         and 1 m at most.  It is computed on first use: for an arm in some milliseconds.
         """
         if self.path is None or not isinstance(self.world, MeasuresPaths):
             return None
         return self.world.path_clearance(self.path)
+
+    @cached_property
+    def nearest(self) -> tuple[str, str] | None:
+        """The link and the obstacle that come nearest to each other along the path.
+
+        None where all is farther than 1 m, or the world does not say.  It is computed on first use.
+        """
+        if self.path is None or not isinstance(self.world, NamesNearest):
+            return None
+        return self.world.nearest_along(self.path)
 
     @cached_property
     def gap(self) -> float | None:
@@ -193,7 +203,7 @@ class PlanResult(ResultMethods):
         """Return what a notebook shows."""
         rows = {"status": f"{self.status}: {self.message}", "planner": self.planner}
         if self.cost is not None:
-            rows |= {"cost": f"{self.cost:.6g}", "proved": str(self.proof)}
+            rows |= {"cost": f"{self.cost:.6g}", "proved": self._proved}
         rows["time"] = f"{1e3 * self.seconds:.1f} ms"
         return as_html(rows, self.path)
 

@@ -39,6 +39,19 @@ class ResultMethods:
             return None
         return path_length(self.path, self.world.space)
 
+    @cached_property
+    def bodies(self) -> str | None:
+        """The kinds of the robot's bodies that the answer is about, as ``hulls and meshes`` or ``capsules``.
+
+        None of what is no arm.
+        """
+        return getattr(self.world, "bodies", None)
+
+    @property
+    def _proved(self) -> str:
+        """What is shown, and about which bodies."""
+        return str(self.proof) if self.bodies is None else f"{self.proof} ({self.bodies})"
+
     def resample(self, step: float) -> Floats:
         """Return states along the path.
 
@@ -205,7 +218,7 @@ class ResultMethods:
     def __repr__(self) -> str:
         parts = [str(self.status)]
         if self.path is not None:
-            parts += [f"{len(self.path)} waypoints", str(self.proof)]
+            parts += [f"{len(self.path)} waypoints", self._proved]
         if self.cost is not None:
             parts.insert(1, f"cost {self.cost:.4g}")
         took = self.seconds

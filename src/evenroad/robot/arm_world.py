@@ -19,7 +19,7 @@ from evenroad._native.robot import Scene as NativeScene
 from evenroad._shared import once_property
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import PointCloud
-from evenroad.robot.distance import MOST, WITH, Distance
+from evenroad.robot.distance import ArmDistances
 from evenroad.robot.given import as_robot, as_scene
 from evenroad.robot.kernel.native_scene import native_scene
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
@@ -34,25 +34,21 @@ from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import SLACK
 from evenroad.world.bisection import require_few_segments
-from evenroad.world.clearance import largest_kept
-from evenroad.world.one_or_many import OneOrMany, is_one, one_or_many
+from evenroad.world.one_or_many import OneOrMany, one_or_many
 from evenroad.world.protocol import Apart
 
 VALIDATION_TOLERANCE = 1e-6
-"""Distance from contact down to which `ArmWorld.validate` proves a motion free [m].  Checks in single precision keep
-about twice that distance, so it refuses hardly any motion that touches nothing.
-"""
+"""Distance from contact down to which `ArmWorld.validate` proves a motion free [m]; checks keep about twice that."""
 
 
 @explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
-class ArmWorld(OneOrMany):
+class ArmWorld(ArmDistances, OneOrMany):
     """The configurations in which a robot touches neither a scene's obstacles nor itself.
 
-    Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested against each other
-    as capsules, in the robot's pairs, and where these touch as the robot's convex hulls, if it has any; against
-    obstacles a capsule is replaced by spheres that cover it, of at most 1.10 times its radius (`excess`), so nothing is
-    called free where the capsule touches.
+    Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested as capsules.  Where
+    these touch, convex hulls decide about two links, and the shapes of the robot's file about a link and an obstacle.
+    Of a link without any, spheres that cover its capsules do, of at most 1.10 times their radius (`excess`).
 
     A motion is divided into ``n = ceil(distance / resolution)`` segments and free if all n + 1 ends of segments are.
     What lies between two states is not checked: `validate` proves the motions of a path with no gap.
@@ -184,51 +180,14 @@ class ArmWorld(OneOrMany):
         return self.checker.motion_valid(*as_batch_pair(a, b, self._space.dim))
 
     @once_property
-    def _measuring(self) -> Checker:
-        """The native checks of this world as it is without a clearance, with the obstacles up to 1 m farther."""
-        made = prepared(self.robot)
-        scene = native_scene(made.native, made.tables, self.robot.links, self.scene, MOST)
-        return Checker(made.native, scene, self.resolution, 0.0, False)
-
-    @once_property
     def roomier(self) -> ArmWorld:
         """The same world with 5 mm more clearance, which paths keep where they can."""
         return replace(self, clearance=min(self.clearance + 0.005, MOST_CLEARANCE))
 
-    def distance(self, q: Any) -> Distance:
-        """Return how far the robot is from contact, and which two bodies are nearest.
-
-        Bodies are those that the world plans with, without its clearance: capsules, against obstacles the spheres that
-        cover them, or what decides in their place.  The distance is never larger than theirs, and some micrometres
-        smaller at most.  Pairs that may touch do not count, nor what no joint moves.
-
-        Parameters
-        ----------
-        q : array_like, shape (n, dim) or (dim,), mapping or str
-            Configurations within the limits; a mapping or a named state is one.
-
-        Returns
-        -------
-        Distance
-            ``metres`` and ``pair``, of one configuration or of each.
-
-        Raises
-        ------
-        InvalidValue
-            As `valid`, or if a configuration is outside of the limits.
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> er.ArmWorld("ur5", "box-reach").distance("home").pair
-        ('forearm_link', 'wrist_2_link')
-        """
-        batch = as_batch("q", self._row(q)[np.newaxis] if is_one(q) else q, self._space.dim)
-        metres, nearest = self._measuring.distances(batch, MOST)
-        if (outside := np.flatnonzero(np.isnan(metres))).size:
-            raise InvalidValue(f"q has no distance in row {outside[0]}: {self.explain(batch[outside[0]])}")
-        pairs = [self._names(WITH[kind], *numbers) if kind else None for kind, *numbers in nearest.tolist()]
-        return Distance(float(metres[0]), pairs[0]) if is_one(q) else Distance(metres, pairs)
+    @property
+    def bodies(self) -> str:
+        """The kinds of bodies that the robot touches obstacles with, see `Robot.bodies`."""
+        return self.robot.bodies
 
     @property
     def proof(self) -> str:
@@ -260,14 +219,6 @@ class ArmWorld(OneOrMany):
         """
         terminals = as_batch("start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim)
         return apart(self, terminals[0], terminals[1:], quickly=quickly)
-
-    def path_clearance(self, path: Floats) -> float | None:
-        """Return the distance from obstacles that a path, (p, dim), is proved to keep, to 0.1 mm; None if none [m]."""
-
-        def keeps(distance: float) -> bool:
-            return bool(replace(self, clearance=distance).validate(path).all())
-
-        return largest_kept(keeps, self.clearance, MOST_CLEARANCE, 1e-4)
 
     @property
     def margin(self) -> float:
@@ -305,7 +256,10 @@ class ArmWorld(OneOrMany):
                 beyond = max(low - value, value - high)
                 limits = limits_in_words(self.scene, name, low, high)
                 return f"joint {name!r} is at {value:g}, {beyond:.3g} outside {limits}"
-        bodies = self.fixed_contact or self._touching(row)
+        if (bodies := self.fixed_contact) is not None and bodies[1] in self.scene.names:
+            advice = f"if it stands there, allow it: in the scene, allowed: {{{bodies[1]}: [{bodies[0]}]}}"
+            return f"{bodies[0]!r} touches {bodies[1]!r} wherever the joints are; {advice}"
+        bodies = bodies or self._touching(row)
         if bodies is None:
             return "it is free"
         if self.clearance:
@@ -319,7 +273,7 @@ class ArmWorld(OneOrMany):
         """Return, as `explain`, why a robot cannot start from a configuration, (dim,), and for a scan what helps."""
         reason = self.explain(q)
         clouds = (each.name for each in self.scene.obstacles if isinstance(each.body, PointCloud))
-        if not any(reason.endswith(f" touches {name!r}") for name in clouds):
+        if not any(f" touches {name!r}" in reason for name in clouds):
             return reason
         return (
             f"the robot stands in its scan, {reason}: seen_at, with where it stood, takes its own points out of a"

@@ -1,8 +1,26 @@
-"""Distance: how far a robot is from contact, and which two bodies are nearest."""
+"""Distance: how far a robot is from contact, and which two bodies are nearest; of a configuration and along a path."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad._native.robot import Checker
+from evenroad._shared import once_property
+from evenroad.errors import InvalidValue
+from evenroad.robot.kernel.native_scene import native_scene
+from evenroad.robot.obstacle import MOST_CLEARANCE
+from evenroad.robot.prepared_robots import prepared
+from evenroad.robot.robot import Robot
+from evenroad.robot.scene import Scene
+from evenroad.space import JointSpace
+from evenroad.space.batch import as_batch
+from evenroad.space.path import resample
+from evenroad.world.clearance import largest_kept
+from evenroad.world.one_or_many import is_one
 
 
 class Distance(NamedTuple):
@@ -25,3 +43,80 @@ MOST = 1.0
 
 WITH = ("nothing", "obstacle", "surface", "itself")
 """With what something is in contact, as the native kernel numbers it."""
+
+
+class ArmDistances:
+    """Distances of :class:`ArmWorld`."""
+
+    if TYPE_CHECKING:
+        robot: Robot
+        scene: Scene
+        resolution: float
+        clearance: float
+        explain: Any
+        _row: Any
+        _names: Any
+
+        @property
+        def space(self) -> JointSpace: ...  # noqa: D102
+
+    @once_property
+    def _measuring(self) -> Checker:
+        """The native checks of this world as it is without a clearance, with the obstacles up to 1 m farther."""
+        made = prepared(self.robot)
+        scene = native_scene(made.native, made.tables, self.robot.links, self.scene, MOST)
+        return Checker(made.native, scene, self.resolution, 0.0, False)
+
+    def distance(self, q: Any) -> Distance:
+        """Return how far the robot is from contact, and which two bodies are nearest.
+
+        Bodies are those that the world plans with, without its clearance: capsules, against obstacles the spheres that
+        cover them, or what decides in their place.  The distance is never larger than theirs, and some micrometres
+        smaller at most.  Pairs that may touch do not count, nor what no joint moves.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, dim) or (dim,), mapping or str
+            Configurations within the limits; a mapping or a named state is one.
+
+        Returns
+        -------
+        Distance
+            ``metres`` and ``pair``, of one configuration or of each.
+
+        Raises
+        ------
+        InvalidValue
+            As `valid`, or if a configuration is outside of the limits.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.ArmWorld("ur5", "box-reach").distance("home").pair
+        ('forearm_link', 'wrist_2_link')
+        """
+        batch = as_batch("q", self._row(q)[np.newaxis] if is_one(q) else q, self.space.dim)
+        metres, pairs = self._distances(batch)
+        if (outside := np.flatnonzero(np.isnan(metres))).size:
+            raise InvalidValue(f"q has no distance in row {outside[0]}: {self.explain(batch[outside[0]])}")
+        return Distance(float(metres[0]), pairs[0]) if is_one(q) else Distance(metres, pairs)
+
+    def _distances(self, q: Floats, *, to_itself: bool = True) -> Distance:
+        """Return the distances of configurations, (n, dim); without `to_itself` those from obstacles alone."""
+        metres, nearest = self._measuring.distances(q, MOST, to_itself)
+        return Distance(metres, [self._names(WITH[kind], *of) if kind else None for kind, *of in nearest.tolist()])
+
+    def nearest_along(self, path: Floats) -> tuple[str, str] | None:
+        """Return the link and the obstacle that come nearest to each other along a path, (p, dim); None beyond 1 m."""
+        metres, pairs = self._distances(resample(path, self.space, self.resolution / 4.0)[0], to_itself=False)
+        pair: tuple[str, str] | None = pairs[int(metres.argmin())]
+        return pair
+
+    def path_clearance(self, path: Floats) -> float | None:
+        """Return the distance from obstacles that a path, (p, dim), is proved to keep, to 0.1 mm; None if none [m]."""
+
+        def keeps(distance: float) -> bool:
+            world: Any = self
+            return bool(replace(world, clearance=distance).validate(path).all())
+
+        return largest_kept(keeps, self.clearance, MOST_CLEARANCE, 1e-4)

@@ -11,7 +11,9 @@ from evenroad._above import above
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._rng import RngLike
+from evenroad.geometry.parts import Parts, kinds_in_words
 from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import Capsule
 
 if TYPE_CHECKING:
     from evenroad.robot.pose_goal import PoseGoal
@@ -25,6 +27,9 @@ class RobotMethods:
     name: str
     links: tuple[str, ...]
     group: tuple[str, ...]
+    if TYPE_CHECKING:
+        capsules: tuple[Capsule, ...]
+        shapes: tuple[Parts, ...]
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -206,6 +211,14 @@ class RobotMethods:
         """
         padded: Self = above("Robot.with_padding")(self, padding)
         return padded
+
+    @property
+    def bodies(self) -> str:
+        """The kinds of bodies that decide what touches an obstacle: ``capsules``, or as ``hulls, meshes and capsules``.
+
+        A link without shapes of its own is its capsules.
+        """
+        return kinds_in_words(self.shapes, self.capsules)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r}, {self.dof} joints, {len(self.links)} links)"

@@ -142,7 +142,11 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
     if ours != theirs:
         yield _lists("tested pairs", ours, theirs)
     if made.shapes != given.shapes:
-        yield "the shapes that decide where its capsules touch an obstacle differ: read both with the same bodies"
+        both = f"its {made.bodies}, now with its {given.bodies}"
+        yield f"it touched obstacles with {both}: read both with the same bodies"
+    was, now = dict(made.padding), dict(given.padding)
+    for link in sorted(link for link in was.keys() | now.keys() if was.get(link) != now.get(link)):
+        yield f"link {link!r} had a padding of {was.get(link, 0.0):g} m, now {now.get(link, 0.0):g} m"
     held = held_values(given)
     for name, value in held_values(made).items():
         if held.get(name) != value:

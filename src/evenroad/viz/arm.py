@@ -119,6 +119,8 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = 
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
     if result.clearance is not None:
         title += f"; keeps {1e3 * result.clearance:.1f} mm from obstacles"
+    if result.nearest is not None:
+        title += ": {} from {}".format(*result.nearest)
     return Sheet.of_picture(picture, title, _legend(result, world)).image
 
 

@@ -7,6 +7,7 @@ from evenroad.world.protocol import Apart as Apart
 from evenroad.world.protocol import Explains as Explains
 from evenroad.world.protocol import ExplainsStarts as ExplainsStarts
 from evenroad.world.protocol import MeasuresPaths as MeasuresPaths
+from evenroad.world.protocol import NamesNearest as NamesNearest
 from evenroad.world.protocol import ShowsApart as ShowsApart
 from evenroad.world.protocol import ValidatesPaths as ValidatesPaths
 from evenroad.world.protocol import World as World

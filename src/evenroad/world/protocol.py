@@ -67,6 +67,14 @@ class MeasuresPaths(Protocol):
         """Return a lower bound of the distance of a path, (p, dim), from all obstacles; None if unknown."""
 
 
+@runtime_checkable
+class NamesNearest(Protocol):
+    """A world that names what comes nearest to contact."""
+
+    def nearest_along(self, path: Floats) -> tuple[str, str] | None:
+        """Return the names of the robot's body and the obstacle that come nearest along a path, (p, dim)."""
+
+
 @dataclass(frozen=True)
 class Apart:
     """A proof that no path leads from a start to its goals."""

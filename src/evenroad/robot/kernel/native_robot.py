@@ -166,6 +166,7 @@ def _capsules(
         "half": np.array([capsule.half for capsule in capsules]),
         "radius": np.array([capsule.radius for capsule in capsules]),
         "covering": np.array([capsule.cover.radius for capsule in capsules]),
-        "padding": np.array([padding.get(capsule.link, 0.0) for capsule in capsules]),
+        # What does not move cannot keep away.
+        "padding": np.array([padding.get(capsule.link, 0.0) if capsule.frame else 0.0 for capsule in capsules]),
         "samples": np.concatenate([np.array(capsule.cover.positions) for capsule in capsules]),
     }

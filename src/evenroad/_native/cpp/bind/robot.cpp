@@ -287,13 +287,13 @@ nb::tuple in_words(const robot::Contact& contact) {
 
 /// Return the least distances of configurations, (n, dim), and of what they are, (n, 3): the kind, a capsule, and the
 /// number of an obstacle or of a pair.
-nb::tuple distances(const Checker& checker, nb::handle q, double most) {
+nb::tuple distances(const Checker& checker, nb::handle q, double most, bool to_itself) {
   const FloatRows given(q, "q");
   const Matrix<const double> rows = given.of_shape({given.shape(0), dim(checker)}).matrix();
   require_within({&most, 1}, 0.0, FARTHEST, "most");
   std::vector<double> metres(rows.rows);
   std::vector<robot::Contact> nearest(rows.rows);
-  without_gil([&] { robot::write_distances(checker, rows, most, metres, nearest); });
+  without_gil([&] { robot::write_distances(checker, rows, most, to_itself, metres, nearest); });
   std::vector<std::int64_t> numbers;
   for (const robot::Contact& each : nearest) {
     numbers.insert(numbers.end(), {static_cast<std::int64_t>(each.with), each.capsule, each.other});

@@ -5,10 +5,10 @@ namespace evenroad::robot {
 
 namespace {
 
-Contact find_fixed_contact(const Robot& robot, const Scene& scene, double clearance) {
+Contact find_fixed_contact(const Robot& robot, const Scene& scene) {
   const auto [capsule, obstacle] = scene.fixed_contact;
   if (capsule >= 0) return {Contact::With::OBSTACLE, capsule, obstacle};
-  return scene.surfaces.empty() ? Contact{} : fixed_surface_contact(robot, scene, Places(robot), clearance);
+  return scene.surfaces.empty() ? Contact{} : fixed_surface_contact(robot, scene, Places(robot));
 }
 
 }  // namespace
@@ -20,7 +20,7 @@ Checker::Checker(std::shared_ptr<const Robot> robot, std::shared_ptr<const Scene
       resolution_(resolution),
       clearance_(clearance),
       lengths_(clearance > 0 ? robot_->lengths.enlarged(static_cast<float>(clearance)) : robot_->lengths),
-      fixed_contact_(find_fixed_contact(*robot_, *scene_, clearance)),
+      fixed_contact_(find_fixed_contact(*robot_, *scene_)),
       never_free_(touches_itself || fixed_contact_.with != Contact::With::NOTHING) {}
 
 Checker::~Checker() = default;

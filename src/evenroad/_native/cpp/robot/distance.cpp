@@ -123,8 +123,8 @@ void offer_itself(const Robot& robot, const Places& places, Nearest& nearest) {
 
 }  // namespace
 
-void write_distances(const Checker& checker, Matrix<const double> rows, double most, std::span<double> metres,
-                     std::span<Contact> nearest) {
+void write_distances(const Checker& checker, Matrix<const double> rows, double most, bool to_itself,
+                     std::span<double> metres, std::span<Contact> nearest) {
   const Robot& robot = checker.robot();
   const Scene& scene = checker.scene();
   const Borrowed workspace = checker.borrow();
@@ -134,7 +134,7 @@ void write_distances(const Checker& checker, Matrix<const double> rows, double m
     workspace->places.place(robot, robot.lengths, workspace->states);
     Nearest found{spread(static_cast<float>(most)), {}};
     offer_obstacles(robot, scene, workspace->places, found);
-    offer_itself(robot, workspace->places, found);
+    if (to_itself) offer_itself(robot, workspace->places, found);
     offer_surfaces(robot, scene, workspace->places, found);
     for (std::size_t lane = 0; lane < count; lane++) {
       const float least = found.least[lane];

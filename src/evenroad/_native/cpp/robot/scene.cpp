@@ -161,7 +161,7 @@ double add(Scene& scene, const Exact& o, int number) {
 
 /// Return whether the true shape of a body that does not move touches an obstacle, which is a little smaller then: a
 /// base that stands on a table does not.
-bool base_touches(const Robot& robot, const Places& places, const Body& body, Exact o, double clearance) {
+bool base_touches(const Robot& robot, const Places& places, const Body& body, Exact o, double margin) {
   double extents[3];
   write_extents(o, extents);
   const double less = STANDS + 2.0 * OBSTACLE_PADDING *
@@ -174,7 +174,7 @@ bool base_touches(const Robot& robot, const Places& places, const Body& body, Ex
   }
   Scene alone;
   add(alone, o, 0);
-  return shape_meeting(robot, places, body, alone, 0, static_cast<float>(clearance), 1, Wanted::FIRST) != 0;
+  return shape_meeting(robot, places, body, alone, 0, static_cast<float>(margin), 1, Wanted::FIRST) != 0;
 }
 
 }  // namespace
@@ -214,13 +214,13 @@ Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, M
   const Places places(robot);
   for (const FixedSphere& sphere : robot.fixed_spheres) {
     for (std::size_t k = 0; k < kept.size() && scene.fixed_contact.first < 0; k++) {
-      const double near = sphere.radius + clearance + kept[k].rounding;
+      // Without a clearance: what does not move cannot keep away.
+      const double near = sphere.radius + kept[k].rounding;
       if (!tested(sphere.capsule, scene.obstacles[k].number)) continue;
       const Capsule& capsule = robot.capsules[sphere.capsule];
       if (squared_distance(kept[k], sphere.centre) < near * near &&
-          (robot.bodies[capsule.body].shape < 0 ||
-           base_touches(robot, places, robot.bodies[capsule.body], kept[k],
-                        clearance + robot.lengths.shapes[capsule.body] - robot.padding))) {
+          (robot.bodies[capsule.body].shape < 0 || base_touches(robot, places, robot.bodies[capsule.body], kept[k],
+                                                                robot.lengths.shapes[capsule.body] - robot.padding))) {
         scene.fixed_contact = {sphere.capsule, scene.obstacles[k].number};
       }
     }

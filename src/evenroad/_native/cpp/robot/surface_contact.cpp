@@ -236,7 +236,7 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
   return meeting;
 }
 
-Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Places& places, double clearance) {
+Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Places& places) {
   for (const SurfaceObstacle& each : scene.surfaces) {
     const Surface& surface = *each.surface;
     for (int i = robot.fixed_capsules() - 1; i >= 0; i--) {
@@ -244,11 +244,11 @@ Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Plac
       const Capsule& capsule = robot.capsules[i];
       const Vec3 centre = lane_of(places.capsules[i].centre, 0);
       // As it is: what does not move is placed without rounding, and may stand on what it touches nearly.
-      const auto radius = static_cast<float>(robot.lengths.capsules[i] - robot.padding - capsule.slack + clearance);
+      const auto radius = static_cast<float>(robot.lengths.capsules[i] - robot.padding - capsule.slack);
       const CapsuleAt at{centre, lane_of(places.capsules[i].half, 0), capsule.one_by_squared, radius + surface.radius};
       const Body& body = robot.bodies[capsule.body];
       const ShapeNear shape{robot, places, body, i,
-                            static_cast<float>(clearance + robot.lengths.shapes[capsule.body] - robot.padding)};
+                            static_cast<float>(robot.lengths.shapes[capsule.body] - robot.padding)};
       if ((touches(surface, at) || (!surface.windings.empty() && is_inside(surface, centre))) &&
           (body.shape < 0 || shape_touching(shape, surface, at.reach, 1) != 0)) {
         return {Contact::With::SURFACE, i, each.number};

@@ -14,7 +14,7 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
                       Mask blocked, Wanted wanted, Contact* found = nullptr);
 
 /// Return a capsule that does not move, and the surface that it touches.
-Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Places& places, double clearance);
+Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Places& places);
 
 /// A capsule at one configuration, and how near to its segment something touches it.
 struct CapsuleAt {
