@@ -2,8 +2,9 @@
 
 ``paper``: the experiments of Chahine et al. 2025, section 4, with more samplers and more runs.  ``fair``: every world
 is new, obstacles favour no place, and the difficulty was set by uniform points alone.  Run i plans in world i // 3 with
-set i, the same worlds for every sampler, N and rule: samplers are compared world by world.  ``arms``: robots among
-obstacles, points of the joint box beside roadmaps made for the robot; see :mod:`evenroad_studies.arms.suite`.
+set i, the same worlds for every sampler, N and rule: samplers are compared world by world.  ``apart``: the same for
+worlds where nothing repeats, start and goal at opposite faces.  ``arms``: robots among obstacles, points of the joint
+box beside roadmaps made for the robot; see :mod:`evenroad_studies.arms.suite`.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from evenroad_studies.arms.suite import arm_tasks
 from evenroad_studies.bench.samplers import SAMPLERS, why_not
 from evenroad_studies.bench.task import Task
 from evenroad_studies.problems import PROBLEMS
+from evenroad_studies.problems.apart import COUNTS as APART_COUNTS
+from evenroad_studies.problems.apart import DIMENSION as APART_DIMENSION
 from evenroad_studies.problems.fair import FAIR_PROBLEMS, FairProblem, Stream
 
 SEED = 1
@@ -170,6 +173,19 @@ def _in_one_world(
             yield Task(problem, instance, sampler, n, LAZY_RULE, "lazy", run, seed)
 
 
+def apart_suite(runs: int = 400, seed: int = SEED, only: Iterable[str] = (), quick: bool = False) -> Suite:
+    """Return the tasks of the worlds with start and goal apart, with every sampler; parameters as :func:`fair_suite`."""
+    runs, seed = require_count("runs", runs), require_count("seed", seed, at_least=0)
+    runs = min(runs, FAIR_QUICK_RUNS) if quick else runs
+    tasks: list[Task] = []
+    for name in chosen_names(only, APART_DIMENSION):
+        cells = _cells(name, (APART_COUNTS[APART_DIMENSION[name]],))
+        for instance in range(-(-runs // DRAWS)):
+            for sampler, n in cells:
+                tasks += _in_one_world(name, instance, sampler, n, runs, seed, lazy=False)
+    return Suite("apart", tuple(tasks))
+
+
 def arms_suite(
     runs: int | None = None, seed: int = SEED, only: Iterable[str] = (), quick: bool = False, **options: Any
 ) -> Suite:
@@ -178,5 +194,10 @@ def arms_suite(
     return Suite("arms", arm_tasks(runs, seed, only, quick, **options))
 
 
-SUITES: dict[str, Callable[..., Suite]] = {"paper": paper_suite, "fair": fair_suite, "arms": arms_suite}
+SUITES: dict[str, Callable[..., Suite]] = {
+    "paper": paper_suite,
+    "fair": fair_suite,
+    "apart": apart_suite,
+    "arms": arms_suite,
+}
 """Name -> how to make it from ``runs``, ``seed``, ``only`` and ``quick``."""

@@ -114,7 +114,7 @@ def test_rows_that_a_store_could_not_take_are_named_and_taken_in_by_the_same_com
 
 
 @pytest.mark.parametrize(("arguments", "says"), [
-    (("bench", "nonsense"), "unknown suite 'nonsense'; known: arms, fair, paper"),
+    (("bench", "nonsense"), "unknown suite 'nonsense'; known: apart, arms, fair, paper"),
     (("bench", "--only", "nonsense"), "unknown problem of this suite 'nonsense'; known: chain-10d, "),
     (("bench", "--runs", 0), "runs must be an integer >= 1"),
     (("bench", "--seed", "-1"), "seed must be an integer >= 0"),

@@ -9,6 +9,7 @@ small.  What :mod:`evenroad_studies.network.train` does instead, and what it gai
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,7 +68,13 @@ class Printed:
             set_fields(self, radius=require_positive("radius", self.radius))
 
 
-def train_printed(config: Printed, *, rng: RngLike = 0) -> tuple[tuple[PointSet, ...], Floats]:
+Seen = Callable[[int, float, Floats], object]
+"""``seen(step, loss, points)`` after every step from 1 on: the batch's mean loss, and its best points, (sets, n, d)."""
+
+
+def train_printed(
+    config: Printed, *, rng: RngLike = 0, seen: Seen | None = None
+) -> tuple[tuple[PointSet, ...], Floats]:
     """Train one network on a batch; return the sets, best first, and the mean loss before each step, (steps,).
 
     Of every set the best points that training saw are kept.  Raises InvalidValue if the training diverges.
@@ -93,6 +100,8 @@ def train_printed(config: Printed, *, rng: RngLike = 0) -> tuple[tuple[PointSet,
             total += network.slope_of(columns.T * steepness / config.sets)
         curve[step] = loss
         network.step(total, config.rate * 0.5 * (1.0 + math.cos(math.pi * step / config.steps)))
+        if seen is not None:
+            seen(step + 1, loss, points)
     origin = Origin(family="mpmc", method="network as printed", objective=str(objective), steps=config.steps)
     sets = (PointSet(points[i], origin).with_origin(seed=seed_of(rng), replica=int(i)) for i in np.argsort(best))
     return tuple(sets), curve

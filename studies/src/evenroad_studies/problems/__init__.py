@@ -7,6 +7,7 @@ from functools import partial
 from evenroad._checks import require_known
 from evenroad_studies.arms.problems import ARM_PROBLEMS
 from evenroad_studies.bench.task import ProblemSource
+from evenroad_studies.problems.apart import APART
 from evenroad_studies.problems.fair import FAIR
 from evenroad_studies.problems.paper import CHAINS, CORRIDORS, MAZES, UR5
 from evenroad_studies.problems.puzzles import cubicles, problem_of, twistycool
@@ -24,7 +25,9 @@ PUZZLES = tuple(
 )
 """With sets that give the translation, as published, and with sets that give the rotation, too."""
 
-PROBLEMS = {source.name: source for source in (*MAZES, *CORRIDORS, *CHAINS, *PUZZLES, *UR5, *FAIR, *ARM_PROBLEMS)}
+PROBLEMS = {
+    source.name: source for source in (*MAZES, *CORRIDORS, *CHAINS, *PUZZLES, *UR5, *FAIR, *APART, *ARM_PROBLEMS)
+}
 """Name -> where the problem comes from."""
 
 

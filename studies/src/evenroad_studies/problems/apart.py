@@ -9,13 +9,14 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable, Mapping
 from enum import IntEnum
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from evenroad._arrays import Ints
 from evenroad.world import World
-from evenroad_studies.bench.task import Problem
+from evenroad_studies.bench.task import Problem, ProblemSource
 from evenroad_studies.worlds.obstacles import Boxes, Cave, Rods
 
 ENTROPY = 20_261_124
@@ -189,4 +190,25 @@ SIZES: Mapping[tuple[Use, Kind, int], float] = {
     for kind, sizes in kinds.items()
     for d, size in sizes.items()
 }
-"""Use, kind and dimension -> size, with which uniform points solve about half, by bisection over 100 worlds."""
+"""Use, kind and dimension -> size, with which uniform points solve about half: ``studies.benchmarks.apart_sizes``."""
+
+ABOUT = {
+    Kind.SLOTS: "walls with slots across the cube",
+    Kind.FOREST: "columns in random pairs of axes",
+    Kind.ROOMS: "rooms with doors",
+    Kind.CAVE: "tunnels between chambers",
+    Kind.BARS: "rods in random directions",
+}
+DIMENSION = {f"apart-{kind.name.lower()}-{d}d": d for kind in Kind for d in COUNTS}
+"""Name of a problem that is reported -> its dimension."""
+APART = tuple(
+    ProblemSource(
+        f"apart-{kind.name.lower()}-{d}d",
+        d,
+        partial(make, Use.REPORTING, kind, d, SIZES[Use.REPORTING, kind, d]),
+        random=True,
+        about=f"{ABOUT[kind]}; start and goal at opposite faces, N = {n}",
+    )
+    for kind in Kind
+    for d, n in COUNTS.items()
+)
