@@ -3,8 +3,8 @@
     python -m studies.benchmarks.apart_sizes -d 2 3      # prints tables as in apart.toml
 
 Bisection over the sizes between nothing and everything: 100 worlds of each kind, the N of the family, k = 10
-symmetrised, start and goal linked by the rule.  ``apart.toml`` has the sizes of an earlier run of the same rule, between
-other bounds; sizes differ by up to a third where success changes slowly with them.
+symmetrised, start and goal linked by the rule.  ``apart.toml`` has the sizes of an earlier run of the same rule,
+between other bounds; sizes differ by up to a third where success changes slowly with them.
 """
 
 from __future__ import annotations

@@ -174,7 +174,7 @@ def _in_one_world(
 
 
 def apart_suite(runs: int = 400, seed: int = SEED, only: Iterable[str] = (), quick: bool = False) -> Suite:
-    """Return the tasks of the worlds with start and goal apart, with every sampler; parameters as :func:`fair_suite`."""
+    """Return the tasks of worlds with start and goal apart, every sampler; parameters as :func:`paper_suite`."""
     runs, seed = require_count("runs", runs), require_count("seed", seed, at_least=0)
     runs = min(runs, FAIR_QUICK_RUNS) if quick else runs
     tasks: list[Task] = []

@@ -44,8 +44,8 @@ class Bench:
     """
 
     suite: tyro.conf.Positional[str] = "paper"
-    """paper: the published experiments. fair: a new random world in every run. apart: the same, start and goal at opposite
-    faces. arms: robots, and roadmaps for them."""
+    """paper: the published experiments. fair: a new random world in every run. apart: the same, start and goal at
+    opposite faces. arms: robots, and roadmaps for them."""
     list: bool = False
     """Show suites, problems and samplers, and run nothing."""
     runs: int | None = None
