@@ -11,6 +11,7 @@ import tyro
 
 from evenroad.cli.options import option_names, read_options
 from evenroad.cli.plan import PlanArm
+from evenroad.cli.plan_file import read_plan
 from evenroad.errors import EvenroadError
 from tests.refused import refused
 
@@ -161,3 +162,19 @@ def test_the_help_of_a_plan_has_its_options_in_groups_on_two_screens(run, monkey
     listed = [line.split()[0] for line in lines if line.startswith("  --")]
     assert len(listed) == len(set(listed))
     assert option_names(PlanArm) <= {word.strip(",") for line in lines for word in line.split()}
+
+
+def test_padding_is_of_all_links_of_single_ones_or_of_a_file_and_the_plan_keeps_it(answer, run, tmp_path):
+    words = "plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside"
+    (tmp_path / "limits.yaml").write_text("default_robot_padding: 0.004")
+    for given, wanted in {"0.004": 0.004, "limits.yaml": "limits.yaml", "tool0=0.01": {"tool0": 0.01}}.items():
+        record, shown = answer(*words, "--padding", given)
+        assert record["query"]["padding"] == wanted
+        assert ("10 mm: tool0" if wanted == {"tool0": 0.01} else "4 mm: all") in shown
+        again = read_plan(tmp_path / "a.json")
+        assert not again.changed
+        assert again.request.world.robot.padding
+    code, _, err = run(*words, "--padding", "tool0=near")
+    assert (code, "--padding must be numbers" in err) == (2, True)
+    shown = answer(*words, "--padding", 0.3, code=1)[1]
+    assert "is nearer than the padding 0.3 to" in " ".join(shown.split())

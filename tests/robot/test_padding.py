@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evenroad.errors import InvalidValue, UnknownName
+import evenroad as er
+from evenroad.errors import EvenroadError, InvalidValue, UnknownName
 from evenroad.geometry import Box, Sphere
 from evenroad.robot import load_robot
 from evenroad.robot.arm_world import ArmWorld
@@ -16,8 +17,10 @@ from tests.refused import refused
 from tests.robot.kernel_arms import edge, random_scene, ur5
 from tests.robot.mesh_arms import write_fork_arm
 from tests.robot.surface_scenes import all_sorts, cloud_scene, scene_of
+from tests.robot.urdf_texts import joint, link, urdf
 
 PADDING = 0.03
+WIDE = "<limit lower='-3' upper='3' velocity='2' effort='1'/>"
 BAND = 1.2e-5
 
 
@@ -84,7 +87,58 @@ def test_padding_is_refused_where_it_is_none_and_by_a_roadmap_that_was_made_with
     refused(UnknownName, "unknown link of 'ur5': 'tip'", robot.with_padding, {"tip": 0.01})
     refused(InvalidValue, "the padding of 'tool0' must be a finite number >= 0", robot.with_padding, {"tool0": -0.01})
     refused(InvalidValue, "must be at most 1", robot.with_padding, {"tool0": 2.0})
-    refused(InvalidValue, "padding must be a mapping", robot.with_padding, 0.01)
+    refused(InvalidValue, "padding must be a length, a mapping", robot.with_padding, [0.01])
+    assert robot.with_padding(0.01) == robot.with_padding(dict.fromkeys(robot.links, 0.01)) != robot
+
+
+def test_a_file_of_moveit_pads_links_wherever_its_parameters_lie(tmp_path):
+    file, robot = tmp_path / "joint_limits.yaml", load_robot("ur5")
+    said = "default_robot_padding: 0.01, default_robot_link_padding: {tool0: 0.02}, default_robot_scale: 1.0"
+    file.write_text(
+        f"joint_limits: {{}}\nmove_group: {{ros__parameters: {{robot_description_planning: {{{said}}}}}}}\n"
+    )
+    wanted = robot.with_padding(0.01).with_padding({"tool0": 0.02})
+    assert robot.with_padding(file) == load_robot("ur5", padding=file) == wanted
+    # As read by what makes worlds, and not kept with the file's robot.
+    assert er.plan("box-reach", "home", "inside", robot="ur5", padding=str(file)).world.robot.padding == wanted.padding
+    assert load_robot("ur5") == robot
+    for text, error in {
+        "joint_limits: {}": "it must have default_robot_padding",
+        "default_robot_link_padding: {tip: 0.1}": "unknown link in default_robot_link_padding",
+        "default_robot_link_padding: [0.1]": "must be a mapping, link -> number",
+        "default_robot_padding: -0.1": "the padding of 'base_link' in",
+        "default_robot_scale: 0.9": "the scale of 'base_link' in .* must be at least 1, got 0.9",
+        "default_robot_scale: 99": "the scale of .*, in metres, must be at most 1",
+        "default_object_padding: 0.1": "default_object_padding in .* must be 0: the clearance",
+        "a: {default_robot_padding: 0}\nb: {default_robot_padding: 1}": "has default_robot_padding twice",
+    }.items():
+        file.write_text(text)
+        with pytest.raises(EvenroadError, match=error):
+            robot.with_padding(file)
+
+
+def test_a_scaled_link_is_never_freer_than_the_same_link_with_larger_shapes(tmp_path):
+    def arm(scale, bodies="shapes"):
+        size, radius, length = " ".join(f"{scale * each:.6f}" for each in (0.05, 0.1, 0.4)), scale * 0.06, scale * 0.1
+        shapes = [f"<box size='{size}'/>", f"<cylinder radius='{radius}' length='{length}'/>"]
+        here = [
+            f"<collision><origin xyz='0 0 {z}'/><geometry>{s}</geometry></collision>"
+            for z, s in zip((0.4, 0.9), shapes, strict=True)
+        ]
+        text = urdf(
+            link("base"), link("arm", "".join(here)), joint("turn", "base", "arm", "revolute", WIDE, "0 0 0", "0 1 0")
+        )
+        (tmp_path / "arm.urdf").write_text(text)
+        return load_robot(tmp_path / "arm.urdf", bodies=bodies)
+
+    (tmp_path / "scale.yaml").write_text("default_robot_link_scale: {arm: 1.3}")
+    scene = Scene([Sphere(0.1, xyz=(0.55, 0, 0.6), name="ball"), Box((0.2, 1, 0.2), xyz=(-0.9, 0, 0), name="post")])
+    q = np.linspace(-1.5, 1.5, 3000)[:, np.newaxis]
+    larger = ArmWorld(arm(1.3), scene).valid(q)
+    for bodies in ("shapes", "capsules"):
+        padded = ArmWorld(arm(1.0, bodies).with_padding(tmp_path / "scale.yaml"), scene).valid(q)
+        assert not (padded & ~larger).any()
+        assert 0 < padded.sum() < larger.sum() < ArmWorld(arm(1.0), scene).valid(q).sum()
 
 
 @pytest.mark.parametrize("what", ["primitives", "points", "triangles", "true shapes"])

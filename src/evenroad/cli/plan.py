@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -31,7 +32,7 @@ class PlanOptions(SamplerOptions):
             *("n", "sampler", "k", "connect_radius", "guarantees", "plain", "skip", "allow_fewer"),
         ),
         "times": ("timed", "trajectory", "speed", "limits", "deviation", "step", "controller_joints"),
-        "the robot's files": ("srdf", "group", "bodies", "use_visuals", "package", "xacro"),
+        "the robot's files": ("srdf", "group", "bodies", "use_visuals", "package", "xacro", "padding"),
         "results": ("out", "no_picture", "csv"),
     }
     """Title of a group of the help -> its options."""
@@ -118,14 +119,16 @@ class RobotOptions:
     """Groups of the SRDF, or joints, separated by commas, planned for together in this order; you can give several.
     Other joints stay where the named states of start and goal have them, else at 0, or where they do not touch."""
     bodies: Path | None = None
-    """A YAML file of capsules and spheres in place of the robot's collision geometry; or `capsules`: those that stand
-    for a link decide alone.  Default: where they touch an obstacle, the shapes of the robot's file decide."""
+    """A YAML file of capsules and spheres in place of the robot's collision geometry.  Default: its shapes; or
+    `capsules`, those that stand for a link."""
     use_visuals: bool = False
     """Use the visual geometry of links that have no collision geometry."""
     package: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """NAME=FOLDER: the folder of a ROS package with meshes; you can give several."""
     xacro: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """NAME=VALUE: an argument of a xacro, VALUE may be empty; you can give several."""
+    padding: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """Clearance of links, beside --clearance: METRES; LINK=METRES, you can give several; or MoveIt's YAML file."""
 
     def options(self) -> dict[str, Any]:
         """Return the arguments of `load_model`; fitting reports on standard error."""
@@ -137,7 +140,19 @@ class RobotOptions:
             "packages": _pairs("package", self.package),
             "arguments": _pairs("xacro", self.xacro, may_be_empty=True),
             "progress": say_fitting,
+            "padding": self._padding(),
         }
+
+    def _padding(self) -> float | dict[str, float] | str | None:
+        """Return the argument `padding`."""
+        if len(self.padding) == 1 and "=" not in self.padding[0]:
+            with suppress(ValueError):
+                return float(self.padding[0])
+            return self.padding[0]
+        try:
+            return {link: float(metres) for link, metres in _pairs("padding", self.padding).items()} or None
+        except ValueError:
+            raise InvalidValue(f"--padding must be numbers, got {' '.join(self.padding)!r}") from None
 
 
 def say_fitting(step: int, steps: int, what: str) -> None:

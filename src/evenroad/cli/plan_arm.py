@@ -17,7 +17,7 @@ from evenroad.cli.plan_parts import (
     output_files,
     wants_points,
 )
-from evenroad.cli.robot import bodiless_rows, decided_by
+from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
@@ -95,7 +95,7 @@ def _options(plan: PlanArm, request: Request, result: PlanResult) -> dict[str, A
         "roadmap": None if plan.roadmap is None else str(plan.roadmap),
         "srdf": None if plan.srdf is None else str(plan.srdf),
         "bodies": None if plan.bodies is None else str(plan.bodies),
-        **{name: made[name] for name in ("use_visuals", "packages", "arguments")},
+        **{name: made[name] for name in ("use_visuals", "packages", "arguments", "padding")},
         "joints": list(robot.group),
         "goal_names": list(request.goal_names),
         "held": held_values(robot),
@@ -113,6 +113,7 @@ def _rows(request: Request) -> list[tuple[str, str]]:
     held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
     rows = [("joints", ", ".join(robot.group)), *([("held", held)] if held else [])]
     rows += [("holds", ", ".join(robot.holds))] if robot.holds else []
+    rows += padding_row(robot)
     for goal, reached in given.poses:
         postures = f"{reached.branches} postures, {reached.blocked} in collision ({reached.solver})"
         rows.append(("goal pose", f"{goal}: {postures}"))

@@ -27,6 +27,7 @@ FILES = {
     "use_visuals": bool | None,
     "packages": dict | None,
     "arguments": dict | None,
+    "padding": float | int | dict | str | None,
 }
 """Fields of a plan about its robot's files, and their types; plans of earlier versions have fewer."""
 _MAP = {"map": str, "robot_radius": float | int, "clearance": float | int, "unknown_is_free": bool}

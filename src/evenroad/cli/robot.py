@@ -67,8 +67,17 @@ class Robot(RobotOptions):
 
 def decided_by(robot: Arm) -> str:
     """Return what decides whether a robot touches an obstacle: its capsules, or shapes of its file and their kinds."""
-    kinds = ", ".join(dict.fromkeys(parts.of for parts in robot.shapes))
-    return f"shapes of the file where capsules touch ({kinds})" if kinds else "capsules"
+    return f"shapes of the file where capsules touch ({robot.bodies})" if robot.shapes else "capsules"
+
+
+def padding_row(robot: Arm) -> list[tuple[str, str]]:
+    """Return a row about the links that are larger against obstacles, if there are any."""
+    links: dict[float, list[str]] = {}
+    for link, metres in robot.padding:
+        links.setdefault(metres, []).append(link)
+    of_all = set(links) if len(robot.padding) == len(robot.links) and len(links) == 1 else set()
+    text = ", ".join(f"{1e3 * metres:.4g} mm: {'all' if of_all else ' '.join(on)}" for metres, on in links.items())
+    return [("padding", text)] if links else []
 
 
 def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
@@ -137,7 +146,7 @@ def _summary(model: RobotModel, world: ArmWorld) -> list[tuple[str, str]]:
     if robot.states:
         rows.append(("states", ", ".join(robot.states)))
     measured = _measured(world)
-    rows += [("decided by", decided_by(robot)), ("obstacles", _conservatism(model, world))]
+    rows += [("decided by", decided_by(robot)), *padding_row(robot), ("obstacles", _conservatism(model, world))]
     rows.append(("checks", _speed(world, measured)))
     if measured["blocking"] is not None and not (model.never_free or model.always_touching):
         text = f"no random configuration is free in {world.scene.name}; most often {measured['blocking']}"

@@ -262,11 +262,13 @@ class ArmWorld(ArmDistances, OneOrMany):
         bodies = bodies or self._touching(row)
         if bodies is None:
             return "it is free"
-        if self.clearance:
-            plain = replace(self, clearance=0.0)
+        kept = {"clearance": self.clearance, "padding": dict(self.robot.padding).get(bodies[0], 0.0)}
+        if any(kept.values()):
+            plain = replace(self, clearance=0.0, robot=replace(self.robot, padding=()))
             if not plain.valid(batch)[0]:
                 return plain.explain(q)
-            return f"{bodies[0]!r} is nearer than the clearance {self.clearance:g} to {bodies[1]!r}"
+            both = " and the ".join(f"{name} {metres:g}" for name, metres in kept.items() if metres)
+            return f"{bodies[0]!r} is nearer than the {both} to {bodies[1]!r}"
         return f"{bodies[0]!r} touches {bodies[1]!r}"
 
     def explain_start(self, q: Floats) -> str:

@@ -10,9 +10,7 @@ from pathlib import Path
 from typing import TypedDict, Unpack
 
 from evenroad._call import explains_calls
-from evenroad._checks import require_known, require_positive
-from evenroad._yaml import numbers, read_mapping, require_keys
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.errors import BrokenFile
 from evenroad.geometry.fit import fit_capsules, union_volume
 from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.inner import inner_of
@@ -21,12 +19,14 @@ from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.parts import parts_of
 from evenroad.geometry.shapes import Capsule, Mesh, Shape
 from evenroad.robot.apart import held_apart
+from evenroad.robot.bodies_file import read_bodies
 from evenroad.robot.cache import cached, keep, key_of, know, known, stamps
 from evenroad.robot.find import find_robot
 from evenroad.robot.groups import choose_group, chosen_states, group_notes, held_states
 from evenroad.robot.mjcf import read_mjcf
 from evenroad.robot.pairs import pairs_of, self_pairs
 from evenroad.robot.robot import Robot
+from evenroad.robot.robot_methods import Padding
 from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.srdf import Srdf, read_srdf, with_moving_base
 from evenroad.robot.urdf import Urdf, read_urdf
@@ -47,6 +47,7 @@ class RobotOptions(TypedDict, total=False):
     packages: Mapping[str, PathLike]
     arguments: Mapping[str, str]
     progress: Callable[[int, int, str], None] | None
+    padding: Padding | None
 
 
 @explains_calls
@@ -61,7 +62,7 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     source : str or path-like
         A URDF, xacro or MJCF; or, where there is no such file, ``ur5`` or ``arm7``.
     **options
-        ``srdf``, ``group``, ``bodies``, ``use_visuals``, ``packages``, ``arguments``, ``progress``: as
+        ``srdf``, ``group``, ``bodies``, ``use_visuals``, ``packages``, ``arguments``, ``progress``, ``padding``: as
         :func:`evenroad.robot.load_model` takes them, which also returns how the robot was made.
 
     Returns
@@ -107,6 +108,7 @@ def load_model(
     packages: Mapping[str, PathLike] | None = None,
     arguments: Mapping[str, str] | None = None,
     progress: Callable[[int, int, str], None] | None = None,
+    padding: Padding | None = None,
 ) -> RobotModel:
     """Return a robot and how it was made from its files.
 
@@ -135,6 +137,8 @@ def load_model(
         Arguments of a xacro.
     progress : callable, optional
         Called with step, steps and a text before each body is fitted; not at all for a robot from the cache.
+    padding : float, mapping of str to float, str or path-like, optional
+        By how much links are larger against obstacles [m], see :meth:`evenroad.robot.Robot.with_padding`.
 
     Raises UnknownName if there is neither such a file nor such a robot, or a group, a joint or a link is not known;
     BrokenFile if a file is missing, broken or lacks a piece, the links do not form a tree, a mesh is missing or empty,
@@ -155,7 +159,7 @@ def load_model(
     asked = file, srdf_path, bodies_path, str(group), with_shapes
     model = known(asked)
     if model is not None:
-        return model
+        return _padded(model, padding)
     before = stamps((path, srdf_path, bodies_path))
     urdf = read_robot(file)
     before |= stamps(shape.source for shape in urdf.shapes if isinstance(shape, Mesh))
@@ -169,7 +173,12 @@ def load_model(
             keep(key, model)
     model = replace(model, file=file)
     know(asked, before, model)
-    return model
+    return _padded(model, padding)
+
+
+def _padded(model: RobotModel, padding: Padding | None) -> RobotModel:
+    """Return a model whose links keep more away from obstacles."""
+    return model if padding is None else replace(model, robot=model.robot.with_padding(padding))
 
 
 def read_robot(file: RobotFile) -> Urdf:
@@ -313,35 +322,3 @@ def _link_body(urdf: Urdf, link: str, capsules: tuple[Capsule, ...], given: bool
         capsule_volume=union_volume(capsules),
         given=given,
     )
-
-
-def read_bodies(path: Path, links: Sequence[str]) -> dict[str, tuple[Capsule, ...]]:
-    """Return link -> its capsules, for the links that the file names.
-
-    The file has a list for each link, ``forearm: [{a: [0, 0, 0], b: [0, 0, 0.3], radius: 0.05}, {centre: [0, 0, 0.4],
-    radius: 0.06}]``: capsules by their ends, spheres by their centres, in the link's frame [m].  Raises BrokenFile
-    if it is missing or not of that form; UnknownName for a link that there is not, or another key; InvalidValue if a
-    number is not one, a radius is not > 0, or a link has no body.
-    """
-    bodies = {}
-    for link, entries in read_mapping(path, "file of bodies").items():
-        require_known(f"link in {path}:", link, links)
-        if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
-            raise BrokenFile(f"link {link!r} in {path} must have a list of capsules and spheres")
-        if not entries:
-            raise InvalidValue(f"link {link!r} in {path} has no body; leave it out to keep those of the URDF")
-        bodies[link] = tuple(_given_capsule(link, entry, path) for entry in entries)
-    return bodies
-
-
-def _given_capsule(link: str, entry: dict[str, object], path: Path) -> Capsule:
-    where = f"a body of link {link!r} in {path}"
-    if "centre" in entry:
-        require_keys(entry, ("centre", "radius"), (), where)
-        a = b = numbers(entry["centre"], 3, f"centre of {where}")
-    else:
-        require_keys(entry, ("a", "b", "radius"), ("centre",), where)
-        a, b = (numbers(entry[end], 3, f"{end} of {where}") for end in ("a", "b"))
-    (radius,) = numbers([entry["radius"]], 1, f"radius of {where}")
-    require_positive(f"radius of {where}", radius)
-    return Capsule((a[0], a[1], a[2]), (b[0], b[1], b[2]), radius, link=link)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Self
 
@@ -18,6 +19,9 @@ from evenroad.geometry.shapes import Capsule
 if TYPE_CHECKING:
     from evenroad.robot.pose_goal import PoseGoal
     from evenroad.robot.scene import Scene
+
+Padding = float | Mapping[str, float] | str | os.PathLike[str]
+"""What says by how much links are larger: a length of all of them, link -> length, or a file of MoveIt."""
 
 
 @explains_calls
@@ -181,15 +185,20 @@ class RobotMethods:
         drawn: Floats = above("Robot.random")(self, rng, n)
         return drawn
 
-    def with_padding(self, padding: Mapping[str, float]) -> Self:
+    def with_padding(self, padding: Padding) -> Self:
         """Return the robot with links that keep more away from obstacles, as MoveIt's link padding.
 
-        Links are tested against each other as they are.  The clearance of a world is added.
+        Links are tested against each other as they are, and so is what no joint moves.  The clearance of a world is
+        added.
 
         Parameters
         ----------
-        padding : mapping of str to float
-            Link -> by how much it is larger against obstacles, from 0 to 1 [m].  Others keep what they have.
+        padding : mapping of str to float, float, str or path-like
+            Link -> by how much it is larger against obstacles, from 0 to 1 [m]; others keep what they have.  A number
+            is that of all links.  Or a YAML file with ``default_robot_padding``, ``default_robot_link_padding``,
+            ``default_robot_scale`` and ``default_robot_link_scale``, or some of them, as MoveIt's ``joint_limits.yaml``
+            may have them.  A scale s, >= 1, adds (s - 1) times the largest distance of a link's shapes from their
+            middle.
 
         Returns
         -------
@@ -201,6 +210,8 @@ class RobotMethods:
             If there is no such link.
         InvalidValue
             If a number is none, or out of its range.
+        BrokenFile
+            If the file is missing, or says nothing of it.
 
         Examples
         --------

@@ -9,17 +9,18 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
-from evenroad._checks import require_count, require_known, require_positive
+from evenroad._checks import require_count, require_known
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
+from evenroad.robot.bodies_file import padding_of
 from evenroad.robot.chain import default_tip
-from evenroad.robot.distance import MOST
 from evenroad.robot.inverse_kinematics import reach
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot
+from evenroad.robot.robot_methods import Padding
 from evenroad.robot.states import as_configuration
 
 
@@ -78,12 +79,7 @@ def random_configurations(robot: Robot, rng: RngLike = 0, n: int | None = None) 
     return drawn[0] if n is None else drawn
 
 
-def with_padding(robot: Robot, padding: Mapping[str, float]) -> Robot:
+def with_padding(robot: Robot, padding: Padding) -> Robot:
     """Do as :meth:`evenroad.robot.Robot.with_padding`."""
-    if not isinstance(padding, Mapping):
-        raise InvalidValue(f"padding must be a mapping, link -> metres, got {shown(padding)}")
-    for link, metres in padding.items():
-        require_known(f"link of {robot.name!r}:", link, robot.links)
-        require_positive(f"the padding of {link!r}", metres, or_zero=True, at_most=MOST)
-    every = dict(robot.padding) | {link: float(metres) for link, metres in padding.items()}
+    every = dict(robot.padding) | {link: float(metres) for link, metres in padding_of(robot, padding).items()}
     return replace(robot, padding=tuple(sorted((link, metres) for link, metres in every.items() if metres > 0.0)))
