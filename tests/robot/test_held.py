@@ -39,7 +39,7 @@ def test_verdicts_are_those_of_a_urdf_with_the_object_welded_on(tmp_path, name, 
     text = (DATA / "ur5.urdf").read_text().replace("</robot>", WELDED)
     (tmp_path / "welded.urdf").write_text(text.format(origin=ORIGIN, shape=element, link=link))
     shutil.copy(DATA / "ur5.srdf", tmp_path)
-    welded = load_robot(tmp_path / "welded.urdf", srdf=tmp_path / "ur5.srdf", bodies="capsules")
+    welded = load_robot(tmp_path / "welded.urdf", srdf=tmp_path / "ur5.srdf")
     held = UR5.holding(shape, link, name="thing")
     assert len(held.pairs) > len(UR5.pairs)
     blocked = 0

@@ -180,8 +180,8 @@ def test_shapes_decide_unless_capsules_are_asked_for(tmp_path):
     for one, other in ((shaped, capsules), (capsules, shaped)):
         refused(InvalidValue, "it touched obstacles with its", require_same_robot, one, Scene(()), other)
     held = Box((0.1, 0.1, 0.1), xyz=(0, 0, 0.1))
-    assert shaped.holding(held, shaped.links[-1]).shapes[-1].of == "box"
-    assert capsules.holding(held, capsules.links[-1]).shapes == load_robot("ur5").shapes == ()
+    for robot in (shaped, capsules, load_robot("ur5")):
+        assert [each.of for each in robot.holding(held, robot.links[-1]).shapes if each.link == "held"] == ["box"]
 
 
 def test_a_flat_link_passes_a_slot_with_12_mm_on_both_sides(tmp_path):

@@ -211,7 +211,8 @@ class Robot(RobotMethods):
             hulls=(*self.hulls, *hulls),
             holds=(*self.holds, held.name),
             inner=inner_of_both(self.inner, self.capsules, parts.inner, parts.capsules),
-            shapes=(*self.shapes, *parts.shapes) if self.shapes else (),
+            # Its own shape decides, also where the links are capsules.
+            shapes=(*self.shapes, *parts.shapes),
         )
 
     def empty_handed(self) -> Robot:
