@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 import evenroad as er
 from evenroad.task import Attach, Detach, MoveTo, Task
 
@@ -20,9 +22,9 @@ shelf = er.Scene(
     name="shelf",
 )
 
-# The flange may point at the box from eight directions, turned about its own axis as it likes.
+# The flange may point at the box from 24 directions, turned about its own axis as it likes.
 grasps = []
-for angle in (-1.2, -0.9, -0.5, -0.2, 0.2, 0.5, 0.9, 1.2):
+for angle in np.linspace(-1.2, 1.2, 24):
     xyz = (0.70 - 0.033 * math.cos(angle), 0.1 - 0.033 * math.sin(angle), 0.30)
     grasps.append(er.PoseGoal(er.Pose(xyz, rpy=(0.0, math.pi / 2, angle)), free_axis="z"))
 
@@ -38,7 +40,7 @@ task = Task(
     ]
 )
 done = task.plan(er.ArmWorld("ur5", shelf), HOME)
-print(done.message, f"in {1e3 * done.timings['task']:.0f} ms;", f"{done.tried} were planned")
+print(done.message, f"in {1e3 * done.timings['task']:.0f} ms;", f"{done.tried} choices")
 for part in done.parts:
     print(part.message)
 print(done.trajectory(speed=0.5))

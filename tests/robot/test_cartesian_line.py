@@ -45,8 +45,7 @@ def test_a_line_is_straight_keeps_the_rotation_and_is_proved_free(robot, tip, aw
     off = np.linalg.norm(gap - np.outer(along, direction), axis=1)
     assert along[-1] == pytest.approx(0.05, abs=1e-6)
     assert (np.diff(along) > -1e-9).all()
-    assert off.max() < 1e-3
-    assert off.max() == pytest.approx(line.off_m, rel=0.05, abs=1e-9)
+    assert off.max() <= line.off_m < 1e-4
     assert np.abs(at[:, :3, :3] - first[:3, :3]).max() < 1e-3
 
 
@@ -82,7 +81,7 @@ def test_a_line_longer_than_the_arm_reaches_is_refused_before_it_is_laid_out(len
 def test_a_line_that_is_missed_by_more_than_its_tolerance_is_refused():
     straight = CartesianLine(0.05, line_tolerance=1e-9)
     line = line_from(ArmWorld(UR5, EMPTY), chain_of(UR5, "tool0"), straight, np.array(BENT["ur5"]), 0.05)
-    assert "misses the straight line by" in line.why
+    assert "the tip misses its curve by" in line.why
 
 
 def test_a_plan_goes_straight_from_its_start_and_to_its_goal():

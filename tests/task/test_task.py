@@ -247,11 +247,11 @@ def test_a_wait_that_no_trajectory_holds_is_refused(world):
 @pytest.mark.parametrize(
     ("steps", "says"),
     [
-        ([], "one MoveTo or more"),
-        ([Wait(1.0)], "one MoveTo or more"),
-        (["home"], "step 0 of a task must be MoveTo, Attach, Detach or Wait, got 'home'"),
+        ([], "one motion or more"),
+        ([Wait(1.0)], "one motion or more"),
+        (["home"], "step 0 of a task must be a motion, such as MoveTo, Attach, Detach or Wait, got 'home'"),
         ([Attach("cup"), MoveTo(HOME)], "unknown obstacle of step 0 of the task:? 'cup'"),
-        ([MoveTo(HOME)] * 501, "one MoveTo or more, up to 500, got 501"),
+        ([MoveTo(HOME)] * 501, "one motion or more, up to 500, got 501"),
         ([Attach("can", "hand"), MoveTo(HOME)], "unknown link that takes 'can': 'hand'"),
         ([MoveTo(HOME), Attach("can", "hand")], "unknown link that takes 'can': 'hand'"),
         ([Detach("can"), MoveTo(HOME)], "step 0 of the task lets go of 'can', which it cannot"),

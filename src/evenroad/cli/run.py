@@ -37,7 +37,7 @@ class RunTask(RobotOptions):
     speed: float = 1.0
     """Share of the velocity limits, from 0 to 1."""
     time: float | None = None
-    """Time limit of each motion, in seconds."""
+    """Time limit of the whole task, in seconds: by default 5."""
     seed: int = 0
     """Seed of everything random."""
 

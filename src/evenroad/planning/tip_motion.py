@@ -14,7 +14,8 @@ from evenroad.roadmap import PlanResult, Status
 from evenroad.roadmap.connector import Smooth
 from evenroad.roadmap.result import make_result, require_start_and_goal
 from evenroad.robot import ArmWorld
-from evenroad.robot.cartesian_line import CartesianLine, Line, line_from
+from evenroad.robot.cartesian_line import CartesianLine, line_from
+from evenroad.robot.cartesian_path import Followed
 from evenroad.robot.chain import Chain, chain_of, default_tip
 from evenroad.robot.constraint import Constraint, part_of
 from evenroad.robot.orientation_constraint import OrientationConstraint, OrientationWorld, orientation_world
@@ -116,7 +117,7 @@ def _between_lines(
     if not free[0] or not free[1:].any():
         # The planner says what blocks.
         return plan(request.world, request.start, request.goals, shorten)
-    leaving = Line(request.start[np.newaxis])
+    leaving = Followed(request.start[np.newaxis])
     if straight.retreat:
         leaving = _line(within, request.world, chain, straight, request.start, straight.retreat)
         if leaving.why:
@@ -124,9 +125,9 @@ def _between_lines(
     rows = np.flatnonzero(free[1:])
     first, why = np.broadcast_to(leaving.path[-1], request.goals[rows].shape), ""
     rows = rows[np.argsort(request.world.space.distance(first, request.goals[rows]), kind="stable")]
-    coming: dict[int, Line] = {}
+    coming: dict[int, Followed] = {}
     for row in rows.tolist():
-        line = Line(request.goals[row : row + 1])
+        line = Followed(request.goals[row : row + 1])
         if straight.approach:
             line = _line(within, request.world, chain, straight, request.goals[row], straight.approach)
         if line.why:
@@ -155,14 +156,14 @@ def _between_lines(
     return _with_path(request.world, result, whole[0], whole[1], deviation)
 
 
-def _line(within: World, world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float) -> Line:
+def _line(within: World, world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float) -> Followed:
     """Return a straight line, or refuse it where it tilts what has to stay upright, maybe another link."""
     line = line_from(world, chain, straight, q, length)
     if line.why or not isinstance(within, OrientationWorld):
         return line
     if (tilt := within.largest_tilt(line.path)) <= within.tolerance:
         return line
-    return Line(line.path[:1], f"along it {within.tilted(tilt)}")
+    return Followed(line.path[:1], f"along it {within.tilted(tilt)}")
 
 
 def _with_path(world: World, result: PlanResult, path: Floats, raw: Floats, deviation: dict[str, float]) -> PlanResult:

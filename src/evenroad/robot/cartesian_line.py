@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
-from evenroad.geometry.pose import Pose, Vector
+from evenroad.geometry.curve import STEP, Curve
+from evenroad.geometry.pose import Vector
 from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.cartesian_path import Followed, Follower
 from evenroad.robot.chain import Chain
 from evenroad.robot.constraint import Constraint
 from evenroad.robot.pose_goal import as_axis
-from evenroad.robot.pose_task import PoseTask
-
-STEP = 0.005
-"""Distance between configurations of a line [m]."""
-
-FINE = 16
-"""Number of states between two of these, at which the distance of the tip from the line is measured."""
-
-_LONGEST = 0.2
-"""Largest movement of a joint in such a step [rad or m]."""
 
 
 @dataclass(frozen=True)
@@ -62,19 +55,6 @@ class CartesianLine(Constraint):
             set_fields(self, away=as_axis("away", self.away))
 
 
-@dataclass(frozen=True, eq=False)
-class Line:
-    """A straight line as configurations, (n, dim), from its beginning; or why there is none.
-
-    `off_m` and `off_rad` are the largest deviations of the tip from line and rotation on a fine grid.
-    """
-
-    path: Floats
-    why: str = ""
-    off_m: float = 0.0
-    off_rad: float = 0.0
-
-
 def line_at(chain: Chain, straight: CartesianLine, q: Floats) -> tuple[Floats, Floats, Floats]:
     """Return rotation, (3, 3), and position of the tip at a configuration, (dim,), and the direction of its line."""
     tip = chain.tip_poses(q[np.newaxis])[0]
@@ -83,39 +63,22 @@ def line_at(chain: Chain, straight: CartesianLine, q: Floats) -> tuple[Floats, F
     return turn, tip[9:], np.array([0.0, 0.0, 1.0]) if up else turn @ np.array(straight.away)
 
 
-def line_from(world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float) -> Line:
+def line_from(world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float) -> Followed:
     """Return the line of length `length` [m] on which the tip leaves a free configuration, (dim,)."""
     farthest = 2.0 * chain.reach()[1]
     if length > farthest:
         # Before such a line is laid out: a kilometre would need too much memory.
-        return Line(q[np.newaxis], f"it is {length:g} m long, {chain.tip!r} moves no farther than {farthest:.3g} m")
+        return Followed(q[np.newaxis], f"it is {length:g} m long, {chain.tip!r} moves no farther than {farthest:.3g} m")
     turn, here, away = line_at(chain, straight, q)
-    count = max(1, int(np.ceil(length / STEP)))
-    shares = length * np.arange(count + 1) / count
-    task = PoseTask(Pose(tuple(here.tolist()), tuple(turn.ravel().tolist())))
-    positions = here + shares[:, np.newaxis] * away
-    path = chain.followed(q, task.row, positions, _LONGEST, world.space.flat.wrapping)
-    done = len(path)
-    where = f"of the straight line of {length:g} m"
-    if done <= count:
-        return Line(q[np.newaxis], f"after {shares[max(done - 1, 0)]:.3g} m {where} no joint angles go on")
-    free = world.validate(path)
-    if not free.all():
-        first = int(np.flatnonzero(~free)[0])
-        states = between(world, path[first : first + 2], FINE)
-        blocked = states[~world.valid(states)]
-        why = world.explain(blocked[0]) if len(blocked) else "it comes too near to contact for a proof"
-        return Line(path[:1], f"after {length * first / count:.3g} m {where} {why}")
-    off_m, off_rad = _off(world, chain, path, here, away, turn)
-    if off_m > straight.line_tolerance or off_rad > straight.angle_tolerance:
-        return Line(path[:1], f"the tip misses the straight line by {off_m:.3g} m and {off_rad:.3g} rad")
-    return Line(path, "", off_m, off_rad)
-
-
-def _off(world: ArmWorld, chain: Chain, path: Floats, here: Floats, away: Floats, turn: Floats) -> tuple[float, float]:
-    """Return the largest deviations of the tip from a line and its rotation on a fine grid [m, rad]."""
-    off_m, off_rad, _ = misses(chain, between(world, path, FINE), here, away, turn)
-    return float(off_m.max()), float(off_rad.max())
+    shares = np.linspace(0.0, length, max(1, math.ceil(length / STEP)) + 1)
+    poses = np.empty((len(shares), 12))
+    poses[:, :9], poses[:, 9:] = turn.ravel(), here + shares[:, np.newaxis] * away
+    curve = Curve(poses, np.array([0, len(shares) - 1]), np.empty(0, dtype=np.int64))
+    line = Follower(world, chain, curve, straight.line_tolerance, straight.angle_tolerance).from_posture(q)
+    if line.why:
+        why = f"after {length * line.share:.3g} m of the straight line of {length:g} m {line.why}"
+        return replace(line, path=q[np.newaxis], why=why)
+    return line
 
 
 def misses(chain: Chain, q: Floats, here: Floats, away: Floats, turn: Floats) -> tuple[Floats, Floats, Floats]:

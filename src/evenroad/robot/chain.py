@@ -15,6 +15,7 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.robot.kernel.moving_tree import MovingFrame, MovingTree
 from evenroad.robot.kernel.robot_tables import RobotTables
+from evenroad.robot.pose_task import PoseTask
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot
 from evenroad.robot.tree_sequences import cube_points
@@ -87,15 +88,15 @@ class Chain:
         within = np.array([self.low, self.high]) if limits else _unlimited(len(self.group))
         return self.native.reach(np.ascontiguousarray(q), task, within, steps, enough)
 
-    def followed(self, q: Floats, task: Floats, positions: Floats, longest: float, wraps: Bools) -> Floats:
-        """Return configurations, (m, dim), that bring the tip through positions, (n, 3), with the rotation of a task:
-        as many as there are.
+    def followed(self, q: Floats, poses: Floats, longest: float, wraps: Bools, towards: Floats | None = None) -> Floats:
+        """Return configurations, (m, dim), that bring the tip through poses, (n, 12): as many as there are.
 
-        The first begins at `q`, (dim,), each at the one before, within limits unless a joint `wraps`; none steps
-        farther than `longest`.
+        The first begins at `q`, (dim,), each at the one before, a share nearer to `towards`, within limits unless a
+        joint `wraps`; none steps farther than `longest`.
         """
         within = np.where(wraps, _unlimited(len(self.group)), self.bounds)
-        return self.native.follow(np.ascontiguousarray(q), task, positions, within, STEPS, longest)
+        goal = np.empty(0) if towards is None else np.ascontiguousarray(towards)
+        return self.native.follow(np.ascontiguousarray(q), goal, PoseTask().row, poses, within, STEPS, longest)
 
     def reach(self) -> tuple[Floats, float]:
         """Return a point that no joint moves and the largest distance of the tip from it [m]."""

@@ -135,12 +135,14 @@ def stages(chain: Chain, task: PoseTask, start: Floats, *, exact: bool) -> Itera
 def numeric(chain: Chain, task: PoseTask, start: Floats, *, limits: bool = True) -> Iterator[tuple[Floats, Floats]]:
     """Yield postures found from even starts, (n, dim), and the nearest one: more and more."""
     starts, tips = chain.even
-    nearest = np.argsort(task.nearness(tips), kind="stable")
+    away = task.nearness(tips)
     still = np.setdiff1d(np.arange(len(start)), chain.moving)
     enough = _ENOUGH if len(chain.moving) > task.numbers else len(starts)
     best, least = start, math.inf
     # The start of the query first; then near ones and, where these fail, farther ones.
-    for rows in (nearest[:STARTS], nearest[STARTS : 4 * STARTS], nearest[4 * STARTS :: 4]):
+    for first, last, every in ((0, STARTS, 1), (STARTS, 4 * STARTS, 1), (4 * STARTS, len(starts), 4)):
+        near = np.argpartition(away, last)[:last] if last < len(away) else np.arange(len(away))
+        rows = near[np.lexsort((near, away[near]))][first:last:every]
         q = np.concatenate([start[np.newaxis], starts[rows]])
         q[:, still] = start[still]
         q, missing = chain.reached(q, task.row, limits=limits, enough=enough)

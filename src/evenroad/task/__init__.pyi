@@ -1,6 +1,9 @@
 from evenroad.task.result import TaskResult as TaskResult
 from evenroad.task.steps import Attach as Attach
 from evenroad.task.steps import Detach as Detach
+from evenroad.task.steps import MoveAlong as MoveAlong
+from evenroad.task.steps import MoveCircular as MoveCircular
+from evenroad.task.steps import MoveLinear as MoveLinear
 from evenroad.task.steps import MoveTo as MoveTo
 from evenroad.task.steps import Wait as Wait
 from evenroad.task.task import Task as Task

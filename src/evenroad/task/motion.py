@@ -1,40 +1,45 @@
-"""One motion of a task: a straight line away, a plan between, a straight line to the goal, each in its own world."""
+"""Motions of a task: what of each is fixed before it is planned, straight lines and curves, and the plan of it all."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.planning.request import Request
-from evenroad.planning.tip_motion import LINES, refused, unreached
+from evenroad.planning.tip_motion import refused, unreached
 from evenroad.roadmap import PlanResult, Status
 from evenroad.roadmap.result import make_result
 from evenroad.robot import ArmWorld
-from evenroad.robot.cartesian_line import CartesianLine, Line, line_from
+from evenroad.robot.cartesian_line import CartesianLine, line_from
+from evenroad.robot.cartesian_path import Followed
 from evenroad.robot.chain import chain_of, default_tip
 from evenroad.robot.constraint import Constraint, part_of
 from evenroad.robot.orientation_constraint import OrientationConstraint, orientation_world
 from evenroad.space.path import path_length
 from evenroad.task.steps import MoveTo
 
-PlanBetween = Callable[[Request, MoveTo], PlanResult]
+PlanBetween = Callable[[Request, Constraint | None], PlanResult]
 """A function that plans a request without lines, from its start to its goals in its world."""
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """The plans of a motion's parts, one to three, and the row of the goal that it ends at.
+    """The plans of a motion's parts, and the row of the goal that it ends at.
 
     Without a motion the only part says why, and `goal` is None.  `constraints` are those of its step, with the name of
-    the link that they constrain.
+    the link that they constrain; `speed` is the largest speed of the link `tip`, if its step has one [m/s].
     """
 
     parts: tuple[PlanResult, ...]
     goal: int | None = None
     constraints: Constraint | None = None
+    speed: float | None = None
+    tip: str = ""
 
     @property
     def end(self) -> Floats:
@@ -44,47 +49,121 @@ class Motion:
         return path[-1]
 
 
-def plan_motion(request: Request, worlds: tuple[ArmWorld, ArmWorld], step: MoveTo, plan_between: PlanBetween) -> Motion:
-    """Plan one motion: the line from its start and the path between the lines in two `worlds`, the lines to its goals
-    in the world of the request.
+@dataclass(eq=False)
+class Leg:
+    """A choice for one motion: its fixed parts before and after the path that is planned between them.
+
+    Without a `between` all is fixed.  `planned` keeps the motion once it is.
+    """
+
+    end: Floats
+    before: tuple[PlanResult, ...] = ()
+    between: Request | None = None
+    after: tuple[PlanResult, ...] = ()
+    motion: Motion = field(default_factory=lambda: Motion(()))
+    planned: Motion | None = None
+
+    @cached_property
+    def cost(self) -> float:
+        """Length of the fixed parts and of the straight way between: no motion of this choice is shorter."""
+        total = sum(each.cost or 0.0 for each in (*self.before, *self.after))
+        if self.between is not None:
+            space = self.between.world.space
+            start = np.broadcast_to(self.between.start, self.between.goals.shape)
+            total += float(space.distance(start, self.between.goals).min())
+        return total
+
+    def plan(self, plan_between: PlanBetween) -> Motion:
+        """Return the motion, planned once."""
+        if self.planned is None:
+            middle: tuple[PlanResult, ...] = ()
+            if self.between is not None:
+                found = plan_between(self.between, self.motion.constraints)
+                if found.path is None:
+                    prefix = "between the straight lines: " if self.before or self.after else ""
+                    self.planned = Motion((replace(found, message=prefix + found.message),))
+                    return self.planned
+                middle = (found,)
+                self.motion = replace(
+                    self.motion, goal=found.goal_index if self.motion.goal is None else self.motion.goal
+                )
+            self.planned = replace(self.motion, parts=(*self.before, *middle, *self.after))
+        return self.planned
+
+
+def choices(
+    request: Request, worlds: tuple[ArmWorld, ArmWorld], step: MoveTo, tip: str, *, last: bool
+) -> Iterator[Leg | PlanResult]:
+    """Yield the choices of a motion to goals, the nearest first but one for each pose before a second for any, or why
+    there is none.
+
+    The line from the start and the path between the lines are in two `worlds`, lines to goals in that of the request.
+    They are lines of `tip`; default: that of the goals, or the last link.  Nothing depends on where the `last` motion
+    of a task ends: without lines its choice is left to the planner.
     """
     at_start, between = worlds
     if (result := unreached(request)) is not None:
-        return Motion((result,))
-    if (orientation := part_of(step.constraints, OrientationConstraint)) is not None and not orientation.tip:
+        yield result
+        return
+    tip = request.tip or tip
+    orientation = part_of(step.constraints, OrientationConstraint)
+    straight = step.line(tip or default_tip(request.world.robot)) if step.approach or step.retreat else None
+    if orientation is not None and not orientation.tip:
         # The path between lines has no goal pose to take it from.
-        tip = request.tip or default_tip(request.world.robot)
-        step = replace(step, constraints=replace(orientation, tip=tip))
-    straight = step.line(request.tip or default_tip(request.world.robot))
-    if straight is None:
-        middle = plan_between(replace(request, world=between), step)
-        return Motion((middle,), None if middle.path is None else middle.goal_index, step.constraints)
-    leaving = _line(at_start, request, step, straight, request.start, straight.retreat)
-    if leaving.why:
-        return Motion((refused(request, Status.NOT_CONNECTED, f"no straight line from the start: {leaving.why}"),))
-    coming: dict[int, Line] = {}
-    why, first = "", np.broadcast_to(leaving.path[-1], request.goals.shape)
-    for row in np.argsort(request.world.space.distance(first, request.goals), kind="stable").tolist():
-        last = _line(request.world, request, step, straight, request.goals[row], straight.approach)
-        why = why or last.why
-        if not last.why and len(coming) < LINES:
-            coming[row] = last
-    if not coming:
-        return Motion((refused(request, Status.NOT_CONNECTED, f"no straight line to a goal: {why}"),))
-    beginnings = np.array([each.path[-1] for each in coming.values()])
-    middle = plan_between(Request(between, leaving.path[-1], beginnings), step)
-    if middle.path is None or middle.goal_index is None:
-        return Motion((replace(middle, message=f"between the straight lines: {middle.message}"),))
-    row = list(coming)[middle.goal_index]
-    lines = _along(at_start, leaving), middle, _along(request.world, coming[row], turned=True)
-    return Motion(tuple(each for each in lines if each.path is not None and len(each.path) > 1), row, step.constraints)
+        step = replace(step, constraints=replace(orientation, tip=tip or default_tip(request.world.robot)))
+    if straight is None and last:
+        yield Leg(request.goals[0], (), replace(request, world=between), (), Motion((), None, step.constraints))
+        return
+    leaving = Followed(request.start[np.newaxis])
+    if straight is not None:
+        leaving = _line(at_start, request, step, straight, request.start, straight.retreat)
+        if leaving.why:
+            yield refused(request, Status.NOT_CONNECTED, f"no straight line from the start: {leaving.why}")
+            return
+    before, why, any_ = _along(at_start, leaving), "", False
+    for row in _in_turn(request, leaving.path[-1]):
+        coming = Followed(request.goals[row : row + 1])
+        if straight is not None:
+            coming = _line(request.world, request, step, straight, request.goals[row], straight.approach)
+        why = why or coming.why
+        if coming.why:
+            continue
+        any_ = True
+        middle = replace(request, world=between, start=leaving.path[-1], goals=coming.path[-1:], given=None)
+        after = _along(request.world, coming, turned=True)
+        yield Leg(request.goals[row], before, middle, after, Motion((), row, step.constraints))
+    if not any_:
+        yield refused(request, Status.NOT_CONNECTED, f"no straight line to a goal: {why}")
 
 
-def _line(world: ArmWorld, request: Request, step: MoveTo, straight: CartesianLine, q: Floats, length: float) -> Line:
+def along(world: ArmWorld, followed: Followed, motion: Motion) -> Leg:
+    """Return the motion along a curve, whose parts end where it stops."""
+    rows = [0, *followed.stops, len(followed.path) - 1]
+    parts = [_part(world, replace(followed, path=followed.path[a : b + 1]), "curve") for a, b in pairwise(rows)]
+    return Leg(followed.path[-1], tuple(parts), None, (), motion)
+
+
+def _in_turn(request: Request, first: Floats) -> list[int]:
+    """Return the rows of goals, the nearest first: the best one of each pose, then the second one, and so on."""
+    goals = request.goals
+    away = request.world.space.distance(np.broadcast_to(first, goals.shape), goals)
+    poses = [] if request.given is None else [len(reached.configurations) for _, reached in request.given.poses]
+    of_pose = np.arange(len(goals)) if sum(poses) != len(goals) else np.repeat(np.arange(len(poses)), poses)
+    order = np.argsort(away, kind="stable")
+    rank, seen = np.zeros(len(goals), dtype=np.int64), dict.fromkeys(of_pose.tolist(), 0)
+    for row in order.tolist():
+        rank[row] = seen[of_pose[row]]
+        seen[of_pose[row]] += 1
+    return [int(row) for row in np.lexsort((away, rank))]
+
+
+def _line(
+    world: ArmWorld, request: Request, step: MoveTo, straight: CartesianLine, q: Floats, length: float
+) -> Followed:
     """Return the straight line from a configuration, in the orientation of the step."""
     if not world.valid(q):
-        return Line(q[np.newaxis], world.explain(q))
-    line = Line(q[np.newaxis])
+        return Followed(q[np.newaxis], world.explain(q))
+    line = Followed(q[np.newaxis])
     if length:
         line = line_from(world, chain_of(world.robot, straight.tip), straight, q, length)
     orientation = part_of(step.constraints, OrientationConstraint)
@@ -93,16 +172,23 @@ def _line(world: ArmWorld, request: Request, step: MoveTo, straight: CartesianLi
     chain = chain_of(world.robot, orientation.tip)
     upright = orientation_world(world, chain, orientation, request.start)
     tilt = upright.largest_tilt(line.path)
-    return line if tilt <= upright.tolerance else Line(line.path[:1], f"along it {upright.tilted(tilt)}")
+    return line if tilt <= upright.tolerance else Followed(line.path[:1], f"along it {upright.tilted(tilt)}")
 
 
-def _along(world: ArmWorld, line: Line, *, turned: bool = False) -> PlanResult:
-    """Return the plan of a straight line, whose motions are proved."""
-    path = line.path[::-1].copy() if turned else line.path
-    cost = path_length(path, world.space)
-    off = {"line_m": line.off_m, "line_rad": line.off_rad}
-    found = dict(goal_index=0, path=path, milestone_path=path, proof=world.proof, deviation=off)
-    message = f"straight line of length {cost:.6g}"
+def _along(world: ArmWorld, line: Followed, *, turned: bool = False) -> tuple[PlanResult, ...]:
+    """Return the plan of a straight line, if it has a length."""
+    if len(line.path) < 2:
+        return ()
+    return (_part(world, replace(line, path=line.path[::-1].copy()) if turned else line, "line"),)
+
+
+def _part(world: ArmWorld, line: Followed, kind: str) -> PlanResult:
+    """Return the plan of a line or a curve, whose motions are proved."""
+    path, cost = line.path, path_length(line.path, world.space)
+    found = dict(goal_index=0, path=path, milestone_path=path, proof=world.proof)
+    off = {f"{kind}_m": line.off_m, f"{kind}_rad": line.off_rad}
+    message = f"{'straight line' if kind == 'line' else 'curve'} of length {cost:.6g}"
     return make_result(
-        world, path[0], path[-1:], Status.SOLVED, message, planner="line", cost=cost, milestone_cost=cost, **found
-    )
+        world, path[0], path[-1:], Status.SOLVED, message, planner=kind, cost=cost, milestone_cost=cost,
+        deviation=off, **found
+    )  # fmt: skip

@@ -5,17 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.roadmap import PlanResult, Status
+from evenroad.robot import ArmWorld
 from evenroad.task.motion import Motion
-from evenroad.task.steps import MoveTo, Step, Wait
+from evenroad.task.steps import Move, Step, Wait
+from evenroad.trajectory.limits import Limits, TipSpeed, limits_of
 from evenroad.trajectory.make import MOST_STATES
 from evenroad.trajectory.trajectory import Trajectory
+
+CURVE_DEVIATION = 5e-5
+"""Largest distance of a trajectory from its path along a curve, by default [rad or m]: the tip stays near the curve."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -31,14 +36,14 @@ class TaskResult:
     message : str
         One sentence: what happened, or which step cannot be done and why.
     motions : tuple of Motion
-        Of each MoveTo the plans of its `parts`: lines, and the path between them, each in its own world.  What is held
-        is a body of the robot there.
+        Of each motion the plans of its `parts`: lines, curves, and the path between them, each in its own world.  What
+        is held is a body of the robot there.
     step : int or None
         Number of the step that failed, from 0 on.
     timings : dict of str to float
         Wall time [s].
     tried : int
-        Number of motions planned, those of choices that were given up included.
+        Number of choices for motions that were looked at, those that were given up included.
 
     Examples
     --------
@@ -118,15 +123,26 @@ class TaskResult:
         for step in self.steps:
             if isinstance(step, Wait):
                 pause += step.seconds
-            if not isinstance(step, MoveTo):
+            if not isinstance(step, Move):
                 continue
             motion = next(motions)
-            kept = {} if motion.constraints is None else {"constraints": motion.constraints}
             # A motion to where the arm is takes no time.
             for part in (part for part in motion.parts if part.cost):
-                parts.append(part.trajectory(**kept | options))
+                parts.append(part.trajectory(**_kept(motion, part, options)))
                 pauses, pause = [*pauses, pause], 0.0
         return _joined(parts, [*pauses, pause])
+
+
+def _kept(motion: Motion, part: PlanResult, options: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of a part's trajectory, with what its motion keeps unless others are given."""
+    kept: dict[str, Any] = {} if motion.constraints is None else {"constraints": motion.constraints}
+    if part.planner == "curve":
+        kept["deviation"] = CURVE_DEVIATION
+    if motion.speed is not None:
+        robot, given = cast(ArmWorld, part.world).robot, options.get("limits")
+        limits = given if isinstance(given, Limits) else limits_of(robot, given)
+        options = options | {"limits": replace(limits, tip=TipSpeed(robot, motion.tip, motion.speed))}
+    return kept | options
 
 
 def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:

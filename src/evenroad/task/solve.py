@@ -1,12 +1,11 @@
-"""Planning a task: motion by motion, with another choice of goals where a later step cannot be done."""
+"""Planning a task: choices for all its motions first, the cheapest of which are then planned."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from itertools import islice
 from time import perf_counter as now
-
-import numpy as np
 
 from evenroad._call import explains_calls
 from evenroad._rng import RngLike
@@ -17,75 +16,135 @@ from evenroad.planning.request import ConfigurationLike, Reading, Request
 from evenroad.roadmap import PlanResult, Status
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Smooth
+from evenroad.roadmap.result import make_result
 from evenroad.robot import ArmWorld
 from evenroad.robot.chain import default_tip
-from evenroad.task.motion import Motion, PlanBetween, plan_motion
+from evenroad.robot.constraint import Constraint
+from evenroad.robot.posture_layers import follow
+from evenroad.task.curves import follower_of
+from evenroad.task.motion import Leg, Motion, PlanBetween, along, choices
 from evenroad.task.result import TaskResult
 from evenroad.task.stage import Contacts, Stage, touches
-from evenroad.task.steps import Attach, Detach, MoveTo, Step
+from evenroad.task.steps import AlongCurve, Attach, Detach, Move, MoveTo, Step, Wait
 
-MOST_PLANS = 64
-"""Largest number of motions that are planned for one task beside those that it has."""
+WIDTHS = 2, 8, 32
+"""Numbers of choices of a motion that are gone on with; more, where with fewer the task cannot be done."""
 
 
-@dataclass
+@dataclass(eq=False)
+class _Branch:
+    """A stage of the task before the step `number`, and the choices that led there; later ones are found one by one."""
+
+    stage: Stage
+    number: int
+    legs: tuple[Leg, ...] = ()
+    cost: float = 0.0
+    later: list[_Branch] = field(default_factory=list)
+    rest: Iterator[_Branch] | None = None
+
+    @property
+    def failed(self) -> bool:
+        """Whether one of its motions was planned in vain."""
+        return any(leg.planned is not None and not leg.planned.parts[-1].solved for leg in self.legs)
+
+
+@dataclass(eq=False)
 class _Search:
-    """A depth-first search over the goals of the motions."""
+    """A search over the choices for all motions, level by level, which keeps the cheapest of each level."""
 
     steps: tuple[Step, ...]
-    plan_between: PlanBetween
     reading: Reading
     tried: int = 0
     deepest: int = -1
-    failed: PlanResult | None = None
+    why: PlanResult | None = None
 
-    @property
-    def most(self) -> int:
-        """Largest number of motions that are planned."""
-        return MOST_PLANS + sum(isinstance(step, MoveTo) for step in self.steps)
+    def whole(self, first: _Branch, width: int) -> list[_Branch]:
+        """Return choices for all motions, the cheapest first; of each motion `width` are gone on with."""
+        level = [first]
+        while any(isinstance(step, Move) for step in self.steps[level[0].number :]):
+            level = [later for branch in level for later in self._later(branch, width) if not later.failed]
+            level = sorted(level, key=lambda branch: branch.cost)[:width]
+            if not level:
+                return []
+        for branch in level:
+            # What is taken or let go after the last motion must exist, too.
+            self._acted(branch)
+        return level
 
-    def run(self, first: int, stage: Stage) -> tuple[Motion, ...] | None:
-        """Return the motions of the steps from `first` on; None where they cannot be done."""
-        for number, step in enumerate(self.steps[first:], first):
+    def note(self, number: int, why: PlanResult) -> None:
+        """Keep why a step cannot be done: of failures the one that comes after most steps says most."""
+        if number > self.deepest:
+            self.deepest, self.why = number, why
+
+    def _later(self, branch: _Branch, count: int) -> list[_Branch]:
+        """Return the first choices for the next motion of a branch, up to `count`."""
+        if branch.rest is None:
+            branch.rest = self._choices(branch)
+        branch.later += islice(branch.rest, max(0, count - len(branch.later)))
+        return branch.later
+
+    def _choices(self, branch: _Branch) -> Iterator[_Branch]:
+        """Yield the choices for the next motion of a branch, one by one."""
+        number, stage = self._acted(branch)
+        step = self.steps[number]
+        last = not any(isinstance(each, Move) for each in self.steps[number + 1 :])
+        assert isinstance(step, Move), "only steps that move are left"
+        made = self._goals(number, stage, step, last) if isinstance(step, MoveTo) else self._curve(number, stage, step)
+        for choice in made:
+            self.tried += 1
+            if isinstance(choice, PlanResult):
+                self.note(number, choice)
+                continue
+            after = replace(stage, q=choice.end, near_start=frozenset())
+            yield _Branch(after, number + 1, (*branch.legs, choice), branch.cost + choice.cost)
+
+    def _acted(self, branch: _Branch) -> tuple[int, Stage]:
+        """Return the number of the next motion of a branch, and its stage after what the gripper does before."""
+        stage = branch.stage
+        for number, step in enumerate(self.steps[branch.number :], branch.number):
             where = f"step {number} of the task"
             if isinstance(step, Attach):
-                stage = stage.attach(step, where)
+                stage = stage.attach(step, where, first=not branch.legs)
             elif isinstance(step, Detach):
                 stage = stage.detach(step, where)
-            elif isinstance(step, MoveTo):
-                break
-        else:
-            return ()
+            elif isinstance(step, Move):
+                return number, stage
+        return len(self.steps), stage
+
+    def _goals(self, number: int, stage: Stage, step: MoveTo, last: bool) -> Iterator[Leg | PlanResult]:
         # Each line has contacts of its own: what is lifted from a table may not end inside it.
         worlds = stage.with_contacts(stage.near_start), stage.world
-        request = request_in(stage.with_contacts(self._at_goal(number, stage)), stage.q, step.goal, self.reading)
-        left = np.arange(len(request.goals))
-        while len(left) and self.tried < self.most:
-            self.tried += 1
-            motion = plan_motion(replace(request, goals=request.goals[left]), worlds, step, self.plan_between)
-            if motion.goal is None:
-                # Of failures the one that comes after most steps says most.
-                if number > self.deepest:
-                    self.deepest, self.failed = number, motion.parts[-1]
-                return None
-            later = self.run(number + 1, replace(stage, q=motion.end, near_start=frozenset()))
-            if later is not None:
-                return (motion, *later)
-            # With a goal that is left the rest may be done.
-            left = np.delete(left, motion.goal)
-        return None
+        request = request_in(self._near_goal(number, stage), stage.q, step.goal, self.reading)
+        return choices(request, worlds, step, self.reading.tip, last=last)
 
-    def _at_goal(self, number: int, stage: Stage) -> Contacts:
-        """Return the contacts that are not tested on the line to a goal, because of what the gripper does there."""
-        after = self.steps[number + 1] if number + 1 < len(self.steps) else None
+    def _curve(self, number: int, stage: Stage, step: AlongCurve) -> Iterator[Leg | PlanResult]:
+        world = self._near_goal(number, stage, stage.near_start)
+        follower = follower_of(step, world, stage.q, self.reading, f"step {number} of the task")
+        if follower is None:
+            yield Leg(stage.q, motion=Motion((), 0))
+            return
+        done = follow(follower, stage.q)
+        afterwards = self._near_goal(number, stage)
+        if not done.why and not afterwards.valid(done.path[-1]):
+            done = replace(done, why=afterwards.explain(done.path[-1]))
+        if done.why:
+            message = f"{done.share:.1%} of the curve can be followed: then {done.why}"
+            yield make_result(world, stage.q, stage.q[None], Status.NOT_CONNECTED, message)
+            return
+        yield along(world, done, Motion((), 0, speed=step.speed, tip=follower.chain.tip))
+
+    def _near_goal(self, number: int, stage: Stage, contacts: Contacts = frozenset()) -> ArmWorld:
+        """Return the world without some contacts, nor those of the line to a goal, where the gripper acts there."""
+        after = next((step for step in self.steps[number + 1 :] if not isinstance(step, Wait)), None)
+        depths: dict[str, float] = {}
         if isinstance(after, Attach):
             robot = stage.world.robot
-            return frozenset(
-                (link, after.object) for link in (after.link or default_tip(robot), *touches(after, robot))
-            )
+            links = (after.link or default_tip(robot), *touches(after, robot))
+            contacts |= {(link, after.object) for link in links}
+            depths = {after.object: after.depth}
         if isinstance(after, Detach):
-            return frozenset((after.object, name) for name in after.onto)
-        return frozenset()
+            contacts |= {(after.object, name) for name in after.onto}
+        return stage.with_contacts(contacts, depths)
 
 
 @explains_calls
@@ -104,22 +163,44 @@ def plan_task(
     if not isinstance(world, ArmWorld):
         raise InvalidValue(f"a task is planned in an ArmWorld, got {shown(world)}")
     began, budget = now(), budget_of(None, seconds, limits)
+    deadline = budget.deadline()
 
-    def plan_between(request: Request, step: MoveTo) -> PlanResult:
-        options = Options(budget, smooth, rng, constraints=step.constraints)
-        return finished(request, solve(request, None, options))[0]
+    def plan_between(request: Request, constraints: Constraint | None) -> PlanResult:
+        # Half of what is left, so that another choice has time, too.
+        rest = budget if budget.seconds is None else replace(budget, seconds=max(0.5 * (deadline - now()), 1e-3))
+        return finished(request, solve(request, None, Options(rest, smooth, rng, constraints=constraints)))[0]
 
-    search = _Search(steps, plan_between, reading)
-    first = request_in(world, start, start, reading).start
-    motions = search.run(0, Stage(world, first, world.robot))
+    search = _Search(steps, reading)
+    first = _Branch(Stage(world, request_in(world, start, start, reading).start, world.robot), 0)
+    motions = None
+    for width in WIDTHS:
+        for branch in search.whole(first, width):
+            motions = _planned(search, branch, plan_between) if now() < deadline else None
+            if motions is not None:
+                break
+        if motions is not None or now() >= deadline:
+            break
     timings = {"task": now() - began}
     if motions is not None:
         cost = sum(part.cost or 0.0 for motion in motions for part in motion.parts)
         message = f"{len(motions)} motions of length {cost:.6g}"
         return TaskResult(steps, Status.SOLVED, message, motions, None, timings, search.tried)
-    status = Status.NOT_CONNECTED if search.failed is None else search.failed.status
-    why = "no goal is left" if search.failed is None else search.failed.message
+    status = Status.NOT_CONNECTED if search.why is None else search.why.status
+    why = "the time is spent" if search.why is None else search.why.message
     message = f"step {search.deepest} of the task cannot be done: {why}"
     if search.tried > 1:
-        message += f"; {search.tried} motions were planned in all"
-    return TaskResult(steps, status, message, (), search.deepest, timings, search.tried)
+        message += f"; {search.tried} choices were tried in all"
+    return TaskResult(steps, status, message, (), max(search.deepest, 0), timings, search.tried)
+
+
+def _planned(search: _Search, branch: _Branch, plan_between: PlanBetween) -> tuple[Motion, ...] | None:
+    """Return the motions of a branch; None where one cannot be planned."""
+    numbers = [number for number, step in enumerate(search.steps) if isinstance(step, Move)]
+    motions = []
+    for number, leg in zip(numbers, branch.legs, strict=True):
+        motion = leg.plan(plan_between)
+        if motion.goal is None:
+            search.note(number, motion.parts[-1])
+            return None
+        motions.append(motion)
+    return tuple(motions)

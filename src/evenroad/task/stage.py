@@ -40,26 +40,44 @@ class Stage:
     depths: Mapping[str, float] = field(default_factory=dict)
     clearances: Mapping[str, float] = field(default_factory=dict)
 
-    def with_contacts(self, contacts: Contacts) -> ArmWorld:
-        """Return the world in which some contacts are not tested; of what is held they may not be deep.
+    def with_contacts(self, contacts: Contacts, depths: Mapping[str, float] | None = None) -> ArmWorld:
+        """Return the world in which some contacts are not tested; of what is held, or taken, they may not be deep.
 
-        For these the arm holds the object once more, smaller by the depth that is allowed.
+        For these the arm holds the object once more, smaller by the depth that is allowed, or there is such an obstacle
+        for its fingers; `depths` are those of what is not yet held.  Capsules are wider than fingers: a robot without
+        true shapes may have them in what it takes.
         """
         if not contacts:
             return self.world
         held, scene, robot = {each.name: each for each in self.world.scene.attached}, self.world.scene, self.world.robot
-        for name in sorted({link for link, _ in contacts} & held.keys() & self.depths.keys()):
-            less, depth = held[name], self.depths[name]
-            core = core_of(less.body, depth, as_capsule=not robot.shapes)
+        deep = {**self.depths, **(depths or {})}
+        for name in sorted({link for link, _ in contacts} & held.keys() & deep.keys()):
+            less = held[name]
+            core = core_of(less.body, deep[name], as_capsule=not robot.shapes)
             if core is not None:
-                robot = robot.holding(HeldObject(f"{name} less {1e3 * depth:g} mm", core, less.link, less.touches))
+                robot = robot.holding(HeldObject(_smaller(name, deep[name]), core, less.link, less.touches))
         bodies = contacts - {each for each in contacts if each[1] in held}
-        return replace(self.world, robot=robot, scene=replace(scene, allowed=scene.allowed | bodies))
+        cores: list[Obstacle] = []
+        allowed = set(scene.allowed)
+        touched = {name for link, name in bodies if link not in held} & deep.keys()
+        for each in (each for each in scene.obstacles if robot.shapes and each.name in touched):
+            core = core_of(each.body, deep[each.name], as_capsule=False)
+            if core is not None:
+                cores.append(Obstacle(_smaller(each.name, deep[each.name]), core))
+                allowed |= {(link, cores[-1].name) for link, name in scene.allowed if name == each.name}
+        scene = replace(scene, obstacles=(*scene.obstacles, *cores), allowed=frozenset(allowed) | bodies)
+        return replace(self.world, robot=robot, scene=scene)
 
-    def attach(self, step: Attach, where: str) -> Stage:
+    def gripping(self, step: Attach) -> ArmWorld:
+        """Return the world in which the gripper may touch what it takes, but not deeply."""
+        links = (step.link or default_tip(self.world.robot), *touches(step, self.world.robot))
+        return self.with_contacts(frozenset((link, step.object) for link in links), {step.object: step.depth})
+
+    def attach(self, step: Attach, where: str, *, first: bool = False) -> Stage:
         """Return the stage after an obstacle is taken; `where` names the step.
 
-        Raises UnknownName if there is none, InvalidValue if it is out of reach.
+        Raises UnknownName if there is none, InvalidValue if it is out of reach, or is too deep in the gripper where the
+        task begins, which is a motion's matter else.
         """
         scene, robot = self.world.scene, self.world.robot
         touching = touches(step, robot)
@@ -67,6 +85,8 @@ class Stage:
         if not found:
             raise UnknownName.among(f"obstacle of {where}", step.object, scene.names)
         link = step.link or default_tip(robot)
+        if first and not (taking := self.gripping(step)).valid(self.q):
+            raise InvalidValue(f"{where} attaches {step.object!r} where {taking.explain(self.q)}")
         far = distance_of(found[0].body, robot, self.q, {link, *touching})
         if far > step.reach:
             raise InvalidValue(
@@ -113,6 +133,10 @@ class Stage:
             if not replace(world, scene=alone).valid(self.q) and replace(world, scene=spared).valid(self.q):
                 found.append(each.name)
         return found
+
+
+def _smaller(name: str, depth: float) -> str:
+    return f"{name} less {1e3 * depth:g} mm"
 
 
 def touches(step: Attach, robot: Robot) -> tuple[str, ...]:

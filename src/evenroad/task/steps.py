@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,8 +10,10 @@ from evenroad._arrays import set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.pose import Pose
 from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.constraint import Constraint, part_of
+from evenroad.robot.pose_goal import PoseGoal
 
 DEPTH, REACH = 0.005, 0.1
 """How deep an object may be in what it stands on, and the distance at which a gripper takes it, by default [m]."""
@@ -57,11 +59,118 @@ class MoveTo:
         if part_of(self.constraints, CartesianLine) is not None:
             raise InvalidValue("the lines of MoveTo are its approach and retreat, not constraints")
 
-    def line(self, tip: str) -> CartesianLine | None:
-        """Return the straight lines of a tip; None where there are none."""
-        if not (self.approach or self.retreat):
-            return None
+    def line(self, tip: str) -> CartesianLine:
+        """Return the straight lines of a tip, where there are some."""
         return CartesianLine(self.approach, self.retreat, self.away, tip)
+
+
+@explains_calls
+@dataclass(frozen=True)
+class MoveLinear:
+    """A motion along a straight line of the tip, which turns steadily.
+
+    Parameters
+    ----------
+    pose : Pose or PoseGoal
+        Where the tip ends: a whole pose, without a free axis or tolerances.
+    speed : float, optional
+        Largest speed of the tip, > 0 [m/s].  Default: what the joints allow.
+
+    Raises
+    ------
+    InvalidValue
+        If it is no such pose or number.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> from evenroad.task import MoveLinear
+    >>> MoveLinear(er.Pose((0.5, 0, 0.4)), speed=0.1).speed
+    0.1
+    """
+
+    pose: Pose | PoseGoal
+    speed: float | None = None
+
+    def __post_init__(self) -> None:
+        _require_poses(self, (self.pose,))
+
+
+@explains_calls
+@dataclass(frozen=True)
+class MoveAlong:
+    """A motion of the tip along a polyline, or a spline, from where it is through poses.
+
+    Parameters
+    ----------
+    poses : sequence of Pose or PoseGoal
+        One or more whole poses of one tip.
+    blend : float
+        How far before each inner pose the tip may leave its line to go round the corner, >= 0 [m]: it is never farther
+        from the pose than that.  With 0 it stops at corners.
+    spline : bool
+        Whether the tip passes through the poses on a smooth curve, without a stop.
+    speed : float, optional
+        Largest speed of the tip, > 0 [m/s].  Default: what the joints allow.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no pose, one is not whole, a number is invalid, or a spline has a blend.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> from evenroad.task import MoveAlong
+    >>> len(MoveAlong([er.Pose((0.5, y, 0.4)) for y in (0.1, 0.2)], blend=0.02).poses)
+    2
+    """
+
+    poses: tuple[Pose | PoseGoal, ...]
+    blend: float = 0.0
+    spline: bool = False
+    speed: float | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.poses, Sequence) or isinstance(self.poses, str) or not self.poses:
+            raise InvalidValue(f"poses of MoveAlong must be one pose or more, got {shown(self.poses)}")
+        set_fields(self, poses=tuple(self.poses), blend=require_positive("blend", self.blend, or_zero=True))
+        _require_poses(self, self.poses)
+        if self.spline and self.blend:
+            raise InvalidValue("a spline passes through its poses: blend goes without it")
+
+
+@explains_calls
+@dataclass(frozen=True)
+class MoveCircular:
+    """A motion of the tip along an arc of a circle, from where it is through a pose to another.
+
+    Parameters
+    ----------
+    via, to : Pose or PoseGoal
+        Whole poses of one tip; with where it is they must not be on a line.
+    speed : float, optional
+        Largest speed of the tip, > 0 [m/s].  Default: what the joints allow.
+
+    Raises
+    ------
+    InvalidValue
+        If it is no such pose or number.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> from evenroad.task import MoveCircular
+    >>> MoveCircular(er.Pose((0.5, 0.1, 0.4)), er.Pose((0.6, 0, 0.4))).to.xyz
+    (0.6, 0.0, 0.4)
+    """
+
+    via: Pose | PoseGoal
+    to: Pose | PoseGoal
+    speed: float | None = None
+
+    def __post_init__(self) -> None:
+        _require_poses(self, (self.via, self.to))
 
 
 @explains_calls
@@ -172,7 +281,23 @@ class Wait:
         set_fields(self, seconds=require_positive("seconds", self.seconds, or_zero=True))
 
 
-Step = MoveTo | Attach | Detach | Wait
+AlongCurve = MoveLinear | MoveAlong | MoveCircular
+Move = MoveTo | AlongCurve
+Step = Move | Attach | Detach | Wait
+
+
+def _require_poses(step: AlongCurve, poses: Sequence[Any]) -> None:
+    """Refuse what is no whole pose, poses of several tips, and a speed that is none."""
+    kind = type(step).__name__
+    for pose in poses:
+        if not isinstance(pose, Pose | PoseGoal):
+            raise InvalidValue(f"a pose of {kind} must be a Pose or PoseGoal, got {shown(pose)}")
+        if isinstance(pose, PoseGoal) and not pose.is_exact:
+            raise InvalidValue(f"a pose of {kind} must be whole, without a free axis or tolerances, got {shown(pose)}")
+    if len({(pose.tip, pose.frame) if isinstance(pose, PoseGoal) else ("", "") for pose in poses}) > 1:
+        raise InvalidValue(f"the poses of {kind} must be of one tip in one frame")
+    if step.speed is not None:
+        set_fields(step, speed=require_positive("speed", step.speed))
 
 
 def _require_names(step: Attach | Detach, *names: str) -> None:

@@ -13,7 +13,7 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.planning.request import Reading
 from evenroad.robot import ArmWorld
 from evenroad.task.result import TaskResult
-from evenroad.task.steps import MoveTo, Step
+from evenroad.task.steps import Move, Step
 
 MOST_MOTIONS = 500
 """Largest number of motions of a task: the search goes as deep."""
@@ -26,7 +26,7 @@ class Task:
 
     Parameters
     ----------
-    steps : sequence of MoveTo, Attach, Detach and Wait
+    steps : sequence of MoveTo, MoveLinear, MoveAlong, MoveCircular, Attach, Detach and Wait
         One motion at least, and 500 at most.
 
     Raises
@@ -49,16 +49,17 @@ class Task:
         given = tuple(steps) if isinstance(steps, list | tuple) else (steps,)
         for number, step in enumerate(given):
             if not isinstance(step, Step):
-                raise InvalidValue(f"step {number} of a task must be MoveTo, Attach, Detach or Wait, got {shown(step)}")
-        motions = sum(isinstance(step, MoveTo) for step in given)
+                known = "a motion, such as MoveTo, Attach, Detach or Wait"
+                raise InvalidValue(f"step {number} of a task must be {known}, got {shown(step)}")
+        motions = sum(isinstance(step, Move) for step in given)
         if not 0 < motions <= MOST_MOTIONS:
-            raise InvalidValue(f"a task must have one MoveTo or more, up to {MOST_MOTIONS}, got {motions}")
+            raise InvalidValue(f"a task must have one motion or more, up to {MOST_MOTIONS}, got {motions}")
         set_fields(self, steps=given)
 
     def plan(
         self, world: ArmWorld, start: Any, *, tip: str = "", frame: str = "", degrees: bool = False, **options: Any
     ) -> TaskResult:
-        """Plan all motions; where a step cannot be done, other goals are taken before it.
+        """Plan all motions; goals are chosen with which all steps can be done, the cheapest of those looked at.
 
         Parameters
         ----------
@@ -69,7 +70,7 @@ class Task:
         tip, frame, degrees
             How poses and texts are read, as there.
         **options
-            ``seconds`` of each motion, ``limits``, ``smooth``, ``rng``, as there.
+            ``seconds`` of the whole task, by default 5; ``limits`` of each motion, ``smooth``, ``rng``, as there.
 
         Returns
         -------

@@ -13,10 +13,11 @@ from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import EvenroadError, InvalidValue, shown
 from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
-from evenroad.task.steps import Attach, Detach, MoveTo, Step, Wait
+from evenroad.task.steps import Attach, Detach, MoveAlong, MoveCircular, MoveLinear, MoveTo, Step, Wait
 from evenroad.task.task import Task
 
 _TO_POSES = ("tip", "frame", "free_axis", "tolerance")
+_OF_A_CURVE = ("tip", "frame", "speed")
 _OF_A_MOTION = ("goals", "poses", "approach", "retreat", "away", "upright", *_TO_POSES)
 
 
@@ -49,6 +50,9 @@ def load_task(path: str | os.PathLike[str]) -> TaskFile:
                       approach: 0.05, away: up}
           - detach: {object: can, onto: [table]}
           - wait: 0.5
+          - move_linear: "0.5 -0.3 0.3 0 0 0"     # or {pose: ..., tip: tool0, frame: base_link, speed: 0.1}
+          - move_along: {poses: ["0.5 -0.2 0.3 0 0 0", ...], blend: 0.02}     # or spline: true; speed
+          - move_circular: {via: "0.6 -0.1 0.3 0 0 0", to: "0.5 0 0.3 0 0 0", speed: 0.1}
           - move_to: home                 # a goal, or {goals: [home, "0 -1.57 0 -1.57 0 0"], retreat: 0.1}
 
     Poses are texts as ``--goal-pose`` takes them [m, rad]; with ``upright: 0.1`` the tip tilts by that at most.
@@ -117,6 +121,30 @@ def _move_to(what: Any) -> MoveTo:
     return MoveTo(goals[0] if len(goals) == 1 else goals, constraints=upright, **lines)
 
 
+def _move_linear(what: Any) -> MoveLinear:
+    said = _mapping("move_linear", {"pose": what} if isinstance(what, str) else what, ("pose",), _OF_A_CURVE)
+    return MoveLinear(_whole(said, said["pose"]), speed=said.get("speed"))
+
+
+def _move_along(what: Any) -> MoveAlong:
+    said = _mapping("move_along", what, ("poses",), ("blend", "spline", *_OF_A_CURVE))
+    options = {name: said[name] for name in ("blend", "spline", "speed") if name in said}
+    return MoveAlong([_whole(said, text) for text in _texts("poses", said)], **options)  # type: ignore[arg-type]
+
+
+def _move_circular(what: Any) -> MoveCircular:
+    said = _mapping("move_circular", what, ("via", "to"), _OF_A_CURVE)
+    return MoveCircular(_whole(said, said["via"]), _whole(said, said["to"]), speed=said.get("speed"))
+
+
+def _whole(said: Mapping[str, Any], text: Any) -> PoseGoal:
+    """Return a pose with a rotation, of the step's tip."""
+    pose, turned = pose_of(str(text))
+    if not turned:
+        raise InvalidValue(f"a pose along a curve needs a rotation, got {shown(text)} without one")
+    return PoseGoal(pose, str(said.get("tip", "")), str(said.get("frame", "")))
+
+
 def _attach(what: Any) -> Attach:
     said = {"object": what} if isinstance(what, str) else what
     return Attach(**_mapping("attach", said, ("object",), ("link", "touches", "depth", "reach")))
@@ -143,4 +171,12 @@ def _texts(name: str, said: Mapping[str, Any]) -> list[Any]:
     return given if isinstance(given, list) else [given]
 
 
-_STEPS: dict[str, Callable[[Any], Step]] = {"move_to": _move_to, "attach": _attach, "detach": _detach, "wait": _wait}
+_STEPS: dict[str, Callable[[Any], Step]] = {
+    "move_to": _move_to,
+    "move_linear": _move_linear,
+    "move_along": _move_along,
+    "move_circular": _move_circular,
+    "attach": _attach,
+    "detach": _detach,
+    "wait": _wait,
+}

@@ -8,15 +8,50 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from evenroad._arrays import Floats
 from evenroad._checks import as_row, require_known, require_positive
 from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.robot import Robot
+from evenroad.robot.chain import chain_of
 
 SECONDS_TO_FULL_SPEED = 0.5
 """Default time from rest to full speed [s]: URDF has no acceleration."""
 
+_SMALL = 1e-5
+"""Step of the numeric derivative of a tip's position [rad or m]."""
+
 _KINDS = ("velocity", "acceleration", "jerk")
+
+
+@dataclass(frozen=True)
+class TipSpeed:
+    """Largest speed of a robot's link, > 0 [m/s].
+
+    Attributes
+    ----------
+    robot : Robot
+    link : str
+        Its origin counts.
+    most : float
+        > 0 [m/s].
+    """
+
+    robot: Robot
+    link: str
+    most: float
+
+    def __post_init__(self) -> None:
+        require_positive("the tip's speed", self.most)
+
+    def along(self, q: Floats, direction: Floats) -> Floats:
+        """Return the largest speeds of the joints together, (n,), at configurations in directions, (n, dim) each."""
+        chain = chain_of(self.robot, self.link)
+        ahead, behind = (chain.tip_poses(q + side * _SMALL * direction)[:, 9:] for side in (1.0, -1.0))
+        moves = np.linalg.norm(ahead - behind, axis=1) / (2.0 * _SMALL)
+        return self.most / np.maximum(moves, 1e-9)
 
 
 @dataclass(frozen=True)
@@ -31,12 +66,15 @@ class Limits:
         > 0, one per joint [rad/s^3]; None: no limit.
     along_path : float or None
         Largest speed of all coordinates together, as of a vehicle, > 0 [m/s]; None: no limit.
+    tip : TipSpeed or None
+        Largest speed of a link; None: no limit.  A share of full speed leaves it as it is.
     """
 
     velocity: tuple[float, ...]
     acceleration: tuple[float, ...]
     jerk: tuple[float, ...] | None = None
     along_path: float | None = None
+    tip: TipSpeed | None = None
 
     def __post_init__(self) -> None:
         for kind in _KINDS:
@@ -60,7 +98,7 @@ class Limits:
 
         jerk = None if self.jerk is None else scaled(self.jerk, 3)
         along = None if self.along_path is None else self.along_path * speed
-        return Limits(scaled(self.velocity, 1), scaled(self.acceleration, 2), jerk, along)
+        return Limits(scaled(self.velocity, 1), scaled(self.acceleration, 2), jerk, along, self.tip)
 
 
 def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limits:

@@ -71,11 +71,14 @@ def fastest(path: RoundedPath, limits: Limits) -> TimeLaw:
         [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(path.starts[:-1], path.starts[1:], counts, strict=True)]
     )
     grid = np.concatenate([[0.0], marks])
-    _, ahead, ahead_bend = path.at(grid[:-1], piece)
-    _, behind, behind_bend = path.at(grid[1:], piece)
+    first, ahead, ahead_bend = path.at(grid[:-1], piece)
+    last, behind, behind_bend = path.at(grid[1:], piece)
     velocity, acceleration = np.array(limits.velocity), _WITHIN * np.array(limits.acceleration)
     with np.errstate(divide="ignore"):
         most = [np.min(velocity / np.abs(side), axis=1) ** 2 for side in (ahead, behind)]
+    if limits.tip is not None:
+        of_tip = [_WITHIN * limits.tip.along(*side) for side in ((first, ahead), (last, behind))]
+        most = [np.minimum(each, tip**2) for each, tip in zip(most, of_tip, strict=True)]
     ceiling = np.zeros(len(grid))
     ceiling[1:-1] = np.minimum(most[0][1:], most[1][:-1])
     if limits.along_path is not None:

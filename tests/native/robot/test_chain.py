@@ -139,13 +139,19 @@ def test_a_line_is_followed_until_a_joint_would_jump():
     chain, unlimited = random_chain(2), np.array([[-np.inf] * DIM, [np.inf] * DIM])
     native, q = Chain(*chain, DIM), np.random.default_rng(2).uniform(-1, 1, DIM)
     rotation, origin, _ = place(chain, q)
-    positions = origin + np.linspace(0, 1, 9)[:, np.newaxis] * [0.02, 0.0, 0.0]
-    positions[6:] += 0.2
-    task = PoseTask(Pose(origin, rotation), turned=False)
-    path = native.follow(q, task.row, positions, unlimited, 60, 0.2)
+    poses = np.tile([*rotation.ravel(), *origin], (9, 1))
+    poses[:, 9] += np.linspace(0, 0.02, 9)
+    poses[6:, 9:] += 0.2
+    task = PoseTask(turned=False).row
+    path = native.follow(q, np.empty(0), task, poses, unlimited, 60, 0.2)
     assert path.shape == (6, DIM)
-    np.testing.assert_allclose([place(chain, row)[1] for row in path], positions[:6], atol=1e-9)
-    assert len(native.follow(q, task.row, positions[5:], unlimited, 60, 9.0)) == 4
+    np.testing.assert_allclose([place(chain, row)[1] for row in path], poses[:6, 9:], atol=1e-9)
+    assert len(native.follow(q, np.empty(0), task, poses[5:].copy(), unlimited, 60, 9.0)) == 4
+    # With spare joints the last configuration may be chosen.
+    towards = native.reach(path[-1:] + 0.1, PoseTask(Pose(poses[5, 9:]), turned=False).row, unlimited, 60, 1)[0][0]
+    other = native.follow(q, towards, task, poses[:6].copy(), unlimited, 60, 0.2)
+    np.testing.assert_allclose(other[-1], towards, atol=1e-9)
+    np.testing.assert_allclose([place(chain, row)[1] for row in other], poses[:6, 9:], atol=1e-9)
 
 
 def test_chains_and_tasks_that_do_not_fit_are_refused():
@@ -162,6 +168,6 @@ def test_chains_and_tasks_that_do_not_fit_are_refused():
     with pytest.raises(InvalidValue, match="limits must be lows and highs"):
         chain.reach(np.zeros((1, DIM)), task, np.full((2, DIM), np.nan), 1, 1)
     with pytest.raises(InvalidValue, match=r"task must have shape \(22,\)"):
-        chain.follow(np.zeros(DIM), task[:4].copy(), np.zeros((2, 3)), limits, 1, 0.1)
+        chain.follow(np.zeros(DIM), np.zeros(DIM), task[:4].copy(), np.zeros((2, 12)), limits, 1, 0.1)
     with pytest.raises(InvalidValue, match="the turn of a task must be 0, 1 or 2"):
         chain.reach(np.zeros((1, DIM)), np.full(22, 7.0), limits, 1, 1)

@@ -95,17 +95,18 @@ nb::tuple reach(const Chain& chain, nb::handle q, nb::handle task, nb::handle li
   return nb::make_tuple(as_numpy(std::move(moved), {rows, dim(chain)}), as_numpy(std::move(missing), {rows}));
 }
 
-/// Return the configurations, (n, dim), with which the tip gets through positions, as far as it does.
-nb::object follow(const Chain& chain, nb::handle q, nb::handle task, nb::handle positions, nb::handle limits, int steps,
-                  double longest) {
-  const Array<const double, 1> begin(q, "q");
-  const Array<const double, 2> places(positions, "positions"), bounds(limits, "limits", Entries::ANY);
+/// Return the configurations, (n, dim), with which the tip gets through poses, as far as it does.
+nb::object follow(const Chain& chain, nb::handle q, nb::handle towards, nb::handle task, nb::handle poses,
+                  nb::handle limits, int steps, double longest) {
+  const Array<const double, 1> begin(q, "q"), end(towards, "towards");
+  const Array<const double, 2> places(poses, "poses"), bounds(limits, "limits", Entries::ANY);
   begin.of_shape({dim(chain)});
-  places.of_shape({places.shape(0), 3});
+  if (end.size() > 0) end.of_shape({dim(chain)});
+  places.of_shape({places.shape(0), POSE});
   const robot::PoseTask wanted = task_of(task);
   const robot::Limits within = limits_of(bounds, dim(chain));
-  std::vector<double> path =
-      without_gil([&] { return robot::follow(chain, wanted, begin.span(), places.matrix(), within, steps, longest); });
+  std::vector<double> path = without_gil(
+      [&] { return robot::follow(chain, wanted, begin.span(), end.span(), places.matrix(), within, steps, longest); });
   const std::size_t done = dim(chain) == 0 ? 0 : path.size() / dim(chain);
   return as_numpy(std::move(path), {done, dim(chain)});
 }
@@ -117,7 +118,7 @@ void add_chain(nb::module_& robot) {
       .def("__init__", &make_chain, "coordinates"_a, "slides"_a, "rows"_a, "dim"_a)
       .def("tip_poses", &tip_poses, "q"_a)
       .def("reach", &reach, "q"_a, "task"_a, "limits"_a, "steps"_a, "enough"_a)
-      .def("follow", &follow, "q"_a, "task"_a, "positions"_a, "limits"_a, "steps"_a, "longest"_a);
+      .def("follow", &follow, "q"_a, "towards"_a, "task"_a, "poses"_a, "limits"_a, "steps"_a, "longest"_a);
 }
 
 }  // namespace evenroad::bind

@@ -214,11 +214,16 @@ std::vector<double> reach(const Chain& chain, const PoseTask& task, const Limits
 }
 
 std::vector<double> follow(const Chain& chain, PoseTask task, std::span<const double> from,
-                           Matrix<const double> positions, const Limits& limits, int steps, double longest) {
+                           std::span<const double> towards, Matrix<const double> poses, const Limits& limits, int steps,
+                           double longest) {
   Solver solver(chain, limits);
   std::vector<double> path, before(from.begin(), from.end()), q = before;
-  for (std::size_t i = 0; i < positions.rows; i++) {
-    std::copy_n(positions[i].begin(), 3, task.pose.origin.begin());
+  for (std::size_t i = 0; i < poses.rows; i++) {
+    std::copy_n(poses[i].begin(), 9, task.pose.rotation.begin());
+    std::copy_n(poses[i].begin() + 9, 3, task.pose.origin.begin());
+    for (std::size_t k = 0; i > 0 && k < towards.size(); k++) {
+      q[k] += (towards[k] - q[k]) / static_cast<double>(poses.rows - i);
+    }
     if (solver.solve(q, task, steps) > 0.0) break;
     for (std::size_t k = 0; k < q.size(); k++) {
       if (i > 0 && std::abs(q[k] - before[k]) > longest) return path;

@@ -35,11 +35,12 @@ struct Limits {
 std::vector<double> reach(const Chain& chain, const PoseTask& task, const Limits& limits, int steps, std::size_t enough,
                           Matrix<double> q);
 
-/// Move the tip from a configuration, (dim,), through positions, (n, 3); return configurations, (m, dim).
+/// Move the tip from a configuration, (dim,), through poses, (n, 12); return configurations, (m, dim).
 ///
-/// Each begins where the one before has ended.  The first that is not reached, or only by a joint's step over
-/// `longest`, is the end.
+/// Each begins where the one before has ended, and a share nearer to `towards`, (dim,) or empty: of an arm with spare
+/// joints the last one is that.  The first that is not reached, or only by a joint's step over `longest`, is the end.
 std::vector<double> follow(const Chain& chain, PoseTask task, std::span<const double> from,
-                           Matrix<const double> positions, const Limits& limits, int steps, double longest);
+                           std::span<const double> towards, Matrix<const double> poses, const Limits& limits, int steps,
+                           double longest);
 
 }  // namespace evenroad::robot

@@ -1,0 +1,60 @@
+"""The curve of a step, from where the tip is."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue
+from evenroad.geometry.curve import Curve, circle, polyline, spline
+from evenroad.geometry.pose import Pose
+from evenroad.planning.request import Reading
+from evenroad.robot import ArmWorld
+from evenroad.robot.cartesian_path import Follower
+from evenroad.robot.chain import chain_of, default_tip, frame_pose
+from evenroad.robot.goals import as_pose_goal
+from evenroad.task.steps import AlongCurve, MoveAlong, MoveCircular, MoveLinear
+
+_THERE = 1e-9
+"""Distance below which a pose is where the tip is already [m, and of the entries of the rotation]."""
+
+
+def follower_of(step: AlongCurve, world: ArmWorld, q: Floats, reading: Reading, where: str) -> Follower | None:
+    """Return the tip that follows a step's curve from a configuration, (dim,); None where it is there already.
+
+    Raises InvalidValue for a circle whose points are on a line, UnknownName for a tip that is none.
+    """
+    given = {MoveLinear: ("pose",), MoveCircular: ("via", "to")}.get(type(step))
+    poses = step.poses if isinstance(step, MoveAlong) else [getattr(step, name) for name in given or ()]
+    goals = [as_pose_goal(each, reading.tip, reading.frame) for each in poses]
+    robot = world.robot
+    chain = chain_of(robot, goals[0].tip or default_tip(robot))
+    frame = frame_pose(robot, goals[0].frame)
+    row = chain.tip_poses(q[np.newaxis])[0]
+    points = [Pose(tuple(row[9:].tolist()), tuple(row[:9].tolist())), *(frame @ goal.pose for goal in goals)]
+    if not isinstance(step, MoveCircular):
+        points = _apart(points)
+        if len(points) < 2:
+            return None
+    try:
+        return Follower(world, chain, _curve(step, points))
+    except InvalidValue as error:
+        raise InvalidValue(f"{where}: {error}") from None
+
+
+def _curve(step: AlongCurve, points: list[Pose]) -> Curve:
+    if isinstance(step, MoveCircular):
+        return circle(*points)
+    if isinstance(step, MoveAlong) and step.spline:
+        return spline(points)
+    return polyline(points, step.blend if isinstance(step, MoveAlong) else 0.0)
+
+
+def _apart(poses: list[Pose]) -> list[Pose]:
+    """Return poses without those that repeat the one before."""
+    kept = poses[:1]
+    for pose in poses[1:]:
+        gap = np.abs(np.subtract([*pose.xyz, *pose.rotation], [*kept[-1].xyz, *kept[-1].rotation])).max()
+        if gap > _THERE:
+            kept.append(pose)
+    return kept
