@@ -60,7 +60,7 @@ class Stage:
         cores: list[Obstacle] = []
         allowed = set(scene.allowed)
         touched = {name for link, name in bodies if link not in held} & deep.keys()
-        for each in (each for each in scene.obstacles if robot.shapes and each.name in touched):
+        for each in (each for each in scene.obstacles if self.empty.shapes and each.name in touched):
             core = core_of(each.body, deep[each.name], as_capsule=False)
             if core is not None:
                 cores.append(Obstacle(_smaller(each.name, deep[each.name]), core))
