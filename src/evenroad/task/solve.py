@@ -54,6 +54,7 @@ class _Search:
 
     steps: tuple[Step, ...]
     reading: Reading
+    deadline: float
     tried: int = 0
     deepest: int = -1
     why: PlanResult | None = None
@@ -62,7 +63,8 @@ class _Search:
         """Return choices for all motions, the cheapest first; of each motion `width` are gone on with."""
         level = [first]
         while any(isinstance(step, Move) for step in self.steps[level[0].number :]):
-            level = [later for branch in level for later in self._later(branch, width) if not later.failed]
+            begun = (branch for branch in level if now() < self.deadline)
+            level = [later for branch in begun for later in self._later(branch, width) if not later.failed]
             level = sorted(level, key=lambda branch: branch.cost)[:width]
             if not level:
                 return []
@@ -170,7 +172,7 @@ def plan_task(
         rest = budget if budget.seconds is None else replace(budget, seconds=max(0.5 * (deadline - now()), 1e-3))
         return finished(request, solve(request, None, Options(rest, smooth, rng, constraints=constraints)))[0]
 
-    search = _Search(steps, reading)
+    search = _Search(steps, reading, deadline)
     first = _Branch(Stage(world, request_in(world, start, start, reading).start, world.robot), 0)
     motions = None
     for width in WIDTHS:
