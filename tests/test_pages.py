@@ -115,6 +115,7 @@ LEAVES = {
     "06": ("two-arms.png",),
     "07": ("scanned-table.png",),
     "08": tuple(f"out/reach.{suffix}" for suffix in ("csv", "gif", "json", "script", "yaml")),
+    "11": ("weld.png",),
 }
 """Number of an example -> the files that it leaves in the folder."""
 
