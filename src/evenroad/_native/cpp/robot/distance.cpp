@@ -65,8 +65,8 @@ void offer_obstacles(const Robot& robot, const Scene& scene, const Places& place
   const std::span<const float> samples = robot.samples;
   for (int b = static_cast<int>(robot.bodies.size()) - 1; b >= robot.fixed_bodies; b--) {
     const Body& body = robot.bodies[b];
-    for (int k = 0; k < static_cast<int>(scene.obstacles.size()); k++) {
-      const Obstacle& obstacle = scene.obstacles[k];
+    for (int k = 0; k < static_cast<int>(scene.obstacles->rows.size()); k++) {
+      const Obstacle& obstacle = scene.obstacles->rows[k];
       Floats16 distance = nearest.least;
       for (int i = body.capsules.first; i < body.capsules.end; i++) {
         if ((scene.tested(i, k / LANES) >> (k % LANES) & 1) == 0) continue;

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "robot/obstacle_distance.hpp"
+#include "robot/obstacle_tree.hpp"
 
 namespace evenroad::robot {
 
@@ -32,7 +33,16 @@ EVENROAD_INLINE Mask near_one(const Placed& placed, float radius, const Block& b
   return below_zero(largest(abs(placed.centre - centre) - abs(placed.half) - half));
 }
 
-/// Return the mask of lanes in which a sphere along a capsule reaches into an obstacle.
+constexpr int MOST_OPEN = 64;
+
+/// A body and an obstacle of which true shapes are to decide, in some lanes.
+struct Open {
+  int body, obstacle, capsule;
+  Mask lanes;
+};
+
+}  // namespace
+
 Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, float radius, const Obstacle& obstacle) {
   const auto [centre, half] = seen_from(obstacle, capsule);
   const float reach = radius + obstacle.rounding;
@@ -43,7 +53,6 @@ Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, f
   return meeting;
 }
 
-/// Return the mask of lanes in which a ball inside of a body's true shape comes within `near` of an obstacle.
 Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacle& obstacle, float near,
                     Mask asked, Wanted wanted) {
   const PlacedFrame& frame = places.frames[body.frame];
@@ -65,16 +74,6 @@ Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, 
   return meeting;
 }
 
-constexpr int MOST_OPEN = 64;
-
-/// A body and an obstacle of which true shapes are to decide, in some lanes.
-struct Open {
-  int body, obstacle, capsule;
-  Mask lanes;
-};
-
-}  // namespace
-
 Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body, Vec3x16 place, Mask asked) {
   if (!body.encloses) return 0;
   const PlacedFrame& frame = places.frames[body.frame];
@@ -90,10 +89,10 @@ Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body,
 
 Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Scene& scene, int number,
                    float near, Mask asked, Wanted wanted, KeptOfPairs* kept) {
-  const Obstacle& obstacle = scene.obstacles[number];
+  const Obstacle& obstacle = scene.obstacles->rows[number];
   const PlacedFrame there = placed(obstacle);
   const Mask meeting = hulls_meeting({robot.shapes, body.shape, places.frames[body.frame]},
-                                     {scene.hulls, number, there}, near, asked, wanted, kept);
+                                     {scene.obstacles->hulls, number, there}, near, asked, wanted, kept);
   if (meeting != 0 && wanted == Wanted::FIRST) return meeting;
   // Only what is smaller than the body can be inside.
   const HullNode<float>& root = robot.shapes.nodes[body.shape];
@@ -103,7 +102,9 @@ Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, c
 
 Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
                        Wanted wanted, Contact* found) {
-  const int blocks = static_cast<int>(scene.blocks.size());
+  const Obstacles& all = *scene.obstacles;
+  if (all.tree != nullptr) return meeting_in_tree(robot, lengths, scene, places, blocked, wanted, found);
+  const int blocks = static_cast<int>(all.blocks.size());
   const std::span<const float> samples = robot.samples;
   Open waiting[MOST_OPEN];
   int count = 0;
@@ -115,7 +116,7 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
       const Mask meeting = shape_meeting(robot, places, robot.bodies[b], scene, obstacle, lengths.shapes[b], asked,
                                          wanted, &places.kept);
       if (found != nullptr && (blocked | touching) == 0 && meeting != 0) {
-        *found = {Contact::With::OBSTACLE, capsule, scene.obstacles[obstacle].number};
+        *found = {Contact::With::OBSTACLE, capsule, scene.obstacles->rows[obstacle].number};
       }
       touching |= with_others(meeting, wanted);
       if (is_enough(blocked | touching, wanted)) break;
@@ -127,7 +128,7 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
     const Range capsules = robot.bodies[b].capsules;
     const bool many = capsules.size() > FEW, shaped = lengths.shapes_decide && robot.bodies[b].shape >= 0;
     for (int number = 0; number < blocks; number++) {
-      const Block& block = scene.blocks[number];
+      const Block& block = all.blocks[number];
       Mask near_body = ALL_LANES;
       if (many) {
         PlacedBody& body = places.bodies[b];
@@ -153,7 +154,7 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
           const int k = std::countr_zero(near);
           const bool again = (opened >> k & 1) != 0;
           if ((near_one(capsule, radius, block, k) & ~(again ? blocked | open[k] : blocked)) == 0) continue;
-          const Obstacle& obstacle = scene.obstacles[number * LANES + k];
+          const Obstacle& obstacle = scene.obstacles->rows[number * LANES + k];
           const Range of = robot.capsules[i].samples;
           const Mask meeting = meeting_one(capsule, samples.subspan(of.first, of.size()), radius, obstacle);
           if (shaped) {
@@ -173,17 +174,18 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
         if (asked == 0) continue;
         const Told told = told_by(places.kept.of(robot.bodies[b].shape, obstacle),
                                   {robot.shapes, robot.bodies[b].shape, places.frames[robot.bodies[b].frame]},
-                                  {scene.hulls, obstacle, placed(scene.obstacles[obstacle])}, lengths.shapes[b], asked);
+                                  {scene.obstacles->hulls, obstacle, placed(scene.obstacles->rows[obstacle])},
+                                  lengths.shapes[b], asked);
         asked &= ~told.apart;
         if (asked == 0) continue;
         const Mask open = asked & ~with_others(told.near, wanted);
         Mask surely = told.near;
         if (open != 0 && !is_enough(surely, wanted)) {
-          surely |= inside_meeting(robot, places, robot.bodies[b], scene.obstacles[obstacle], lengths.shapes[b], open,
-                                   wanted);
+          surely |= inside_meeting(robot, places, robot.bodies[b], scene.obstacles->rows[obstacle], lengths.shapes[b],
+                                   open, wanted);
         }
         if (found != nullptr && blocked == 0 && surely != 0) {
-          *found = {Contact::With::OBSTACLE, first[k], scene.obstacles[obstacle].number};
+          *found = {Contact::With::OBSTACLE, first[k], scene.obstacles->rows[obstacle].number};
         }
         blocked |= with_others(surely, wanted);
         if (is_enough(blocked, wanted)) return blocked;

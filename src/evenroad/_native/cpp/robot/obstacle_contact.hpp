@@ -26,6 +26,13 @@ struct Contact {
 Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
                        Wanted wanted, Contact* found = nullptr);
 
+/// Return the mask of lanes in which a sphere along a capsule reaches into an obstacle.
+Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, float radius, const Obstacle& obstacle);
+
+/// Return the mask of lanes in which a ball inside of a body's true shape comes within `near` of an obstacle.
+Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacle& obstacle, float near,
+                    Mask asked, Wanted wanted);
+
 /// Return the mask of those lanes asked for in which the true shape of a body comes within `near` of an obstacle.
 Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Scene& scene, int number,
                    float near, Mask asked, Wanted wanted, KeptOfPairs* kept = nullptr);

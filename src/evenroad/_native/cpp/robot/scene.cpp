@@ -5,160 +5,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "robot/exact_obstacle.hpp"
 #include "robot/obstacle_contact.hpp"
+#include "robot/obstacle_tree.hpp"
 
 namespace evenroad::robot {
 
 namespace {
 
-/// Single precision makes an obstacle uncertain by less than this share of its farthest point's distance from the
-/// origin.
-constexpr double OBSTACLE_PADDING = 2.5e-7;
-constexpr double STANDS = 2e-6;      // a base may reach so deep into what it stands on [m]
-constexpr float NEVER_HIT = -1e30F;  // half extent that fills unused places of a block
-constexpr double FARTHEST = 1e6;     // no length may be larger [m]: single precision would leave decimetres
-
-/// An obstacle in double precision.
-struct Exact {
-  Form form;
-  double centre[3], half[3], rotation[9], rounding;
-};
-
-/// Return whether a rotation takes axes to axes, up to the rounding of sines of right angles.
-bool is_straight(const double* rotation) {
-  return std::all_of(rotation, rotation + 9, [](double entry) { return std::abs(entry - std::rint(entry)) < 1e-14; });
-}
-
-/// Return all points within a rounding of a box, or a cylinder.
-///
-/// A box along the axes loses what lies far beyond `reach`, where the robot never comes: a floor of a hundred metres
-/// would else cost digits, of which single precision has seven.
-Exact exact(const GivenObstacle& given, double reach) {
-  const auto kind = static_cast<GivenKind>(static_cast<int>(given.kind));
-  Exact made{};
-  double extents[3] = {0, 0, 0.5 * given.size[1]};
-  if (kind == GivenKind::BOX) {
-    for (int axis = 0; axis < 3; axis++) extents[axis] = 0.5 * given.size[axis];
-  } else if (kind == GivenKind::CYLINDER) {
-    extents[0] = extents[1] = given.size[0];
-  } else {
-    made.rounding = given.size[0];
-  }
-  made.rounding += given.clearance;
-  std::copy_n(given.translation, 3, made.centre);
-  std::copy_n(given.rotation, 9, made.rotation);
-  std::copy_n(extents, 3, made.half);
-  if (kind != GivenKind::SPHERE && (kind == GivenKind::CYLINDER || !is_straight(given.rotation))) {
-    made.form = kind == GivenKind::CYLINDER ? Form::CYLINDER : Form::ROTATED;
-    return made;
-  }
-  made.form = Form::ALIGNED;
-  for (int axis = 0; axis < 3; axis++) {
-    double extent = 0;
-    for (int entry = 0; entry < 3; entry++)
-      extent += std::abs(std::rint(given.rotation[3 * axis + entry])) * extents[entry];
-    for (int entry = 0; entry < 3; entry++) made.rotation[3 * axis + entry] = axis == entry;
-    made.half[axis] = kind != GivenKind::SPHERE ? extent : 0.0;
-    if (kind == GivenKind::BOX) {
-      const double low = std::max(given.translation[axis] - extent, -2.0 * reach);
-      const double high = std::min(given.translation[axis] + extent, 2.0 * reach);
-      made.centre[axis] = 0.5 * (low + high), made.half[axis] = 0.5 * (high - low);
-    }
-  }
-  return made;
-}
-
-/// Return the squared distance of a point from an obstacle, without the rounding of its edges [m^2].
-double squared_distance(const Exact& o, const double* point) {
-  const double d[3] = {point[0] - o.centre[0], point[1] - o.centre[1], point[2] - o.centre[2]};
-  double gap[3];
-  for (int axis = 0; axis < 3; axis++) {
-    gap[axis] = std::abs(d[0] * o.rotation[axis] + d[1] * o.rotation[3 + axis] + d[2] * o.rotation[6 + axis]);
-  }
-  const double w = std::max(gap[2] - o.half[2], 0.0);
-  if (o.form == Form::CYLINDER) {
-    const double aside = std::max(std::sqrt(gap[0] * gap[0] + gap[1] * gap[1]) - o.half[0], 0.0);
-    return aside * aside + w * w;
-  }
-  const double u = std::max(gap[0] - o.half[0], 0.0), v = std::max(gap[1] - o.half[1], 0.0);
-  return u * u + v * v + w * w;
-}
-
-/// Return half extents of the box around an obstacle.
-void write_extents(const Exact& o, double (&extents)[3]) {
-  for (int axis = 0; axis < 3; axis++) {
-    const double* row = o.rotation + 3 * axis;
-    if (o.form == Form::CYLINDER) {
-      const double upright = std::abs(row[2]);
-      extents[axis] = upright * o.half[2] + std::sqrt(std::max(1.0 - upright * upright, 0.0)) * o.half[0] + o.rounding;
-      continue;
-    }
-    extents[axis] = 0;
-    for (int entry = 0; entry < 3; entry++) extents[axis] += std::abs(row[entry]) * o.half[entry];
-    extents[axis] += o.rounding;
-  }
-}
-
-/// Return whether an obstacle is too far or too large: boxes along the axes are cut off where the robot never comes.
-bool is_too_far(const GivenObstacle& given) {
-  const double largest = std::max({std::abs(given.translation[0]), std::abs(given.translation[1]),
-                                   std::abs(given.translation[2]), given.size[0], given.size[1], given.size[2]});
-  const bool cut =
-      static_cast<GivenKind>(static_cast<int>(given.kind)) == GivenKind::BOX && is_straight(given.rotation);
-  return largest > FARTHEST && !cut;
-}
-
-void put(Vec3x16& where, int lane, float x, float y, float z) {
-  where.x[lane] = x, where.y[lane] = y, where.z[lane] = z;
-}
-
-/// Add the leaf of an obstacle in its own frame: its middle, widened by its extents and by `width`.
-void add_leaf(Scene& scene, const Exact& o, double width) {
-  constexpr double UP = 1.0 + 1e-6;  // for the rounding of single precision
-  if (scene.hulls.points.empty()) scene.hulls.points.push_back({});
-  HullNode<float> leaf{{-1, -1}, {0, 1}, {}, {}, {}, 0, static_cast<float>(width), 0, {}, {}, false};
-  const bool round = o.form == Form::CYLINDER;
-  double squared = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    const double reach = (o.half[axis] + width) * UP;
-    squared += reach * reach;
-    leaf.half[axis] = static_cast<float>(reach);
-    leaf.extents[axis] = round && axis < 2 ? 0.0F : static_cast<float>(o.half[axis]);
-  }
-  leaf.radius = static_cast<float>(std::sqrt(squared) * UP);
-  if (round) leaf.disc = static_cast<float>(o.half[0]), leaf.axis[2] = 1.0F;
-  scene.hulls.nodes.push_back(leaf);
-}
-
-/// Add an obstacle, larger by what single precision loses, and return by how much.
-double add(Scene& scene, const Exact& o, int number) {
-  double extents[3], squared = 0;
-  write_extents(o, extents);
-  for (int axis = 0; axis < 3; axis++) {
-    const double farthest = std::abs(o.centre[axis]) + extents[axis];
-    squared += farthest * farthest;
-  }
-  const double padding = OBSTACLE_PADDING * std::sqrt(squared);
-  const auto single = [](const double* v) {
-    return Vec3{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-  };
-  const double rounding = o.rounding + padding;
-  Obstacle obstacle{o.form, number, single(o.centre), single(o.half), {}, static_cast<float>(rounding)};
-  for (int entry = 0; entry < 9; entry++) obstacle.rotation[entry] = static_cast<float>(o.rotation[entry]);
-  const int lane = static_cast<int>(scene.obstacles.size()) % LANES;
-  if (lane == 0) {
-    const Floats16 never = spread(NEVER_HIT);
-    scene.blocks.push_back({{Floats16{}, Floats16{}, Floats16{}}, {never, never, never}});
-  }
-  for (double& extent : extents) extent += padding;
-  const Vec3 half = single(extents);
-  put(scene.blocks.back().centre, lane, obstacle.centre.x, obstacle.centre.y, obstacle.centre.z);
-  put(scene.blocks.back().half, lane, half.x, half.y, half.z);
-  scene.obstacles.push_back(obstacle);
-  add_leaf(scene, o, rounding);
-  return rounding - o.rounding;
-}
-
+constexpr double STANDS = 2e-6;  // a base may reach so deep into what it stands on [m]
 /// Return whether the true shape of a body that does not move touches an obstacle, which is a little smaller then: a
 /// base that stands on a table does not.
 bool base_touches(const Robot& robot, const Places& places, const Body& body, Exact o, double margin) {
@@ -172,8 +27,10 @@ bool base_touches(const Robot& robot, const Places& places, const Body& body, Ex
   } else {
     for (double& half : o.half) half = std::max(half - less, 0.0);
   }
+  auto one = std::make_shared<Obstacles>();
+  add(*one, o, 0);
   Scene alone;
-  add(alone, o, 0);
+  alone.obstacles = std::move(one);
   return shape_meeting(robot, places, body, alone, 0, static_cast<float>(margin), 1, Wanted::FIRST) != 0;
 }
 
@@ -192,6 +49,7 @@ Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, M
   }
   Scene scene;
   std::vector<Exact> kept;
+  std::vector<int> numbers;
   const double reach = robot.reach + clearance, origin[3] = {0, 0, 0};
   for (std::size_t k = 0; k < obstacles.size(); k++) {
     if (!(obstacles[k].kind >= 0 && obstacles[k].kind < 4))
@@ -200,28 +58,32 @@ Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, M
     const Exact obstacle = exact(obstacles[k], reach);
     const double far = reach + obstacle.rounding;
     if (!(squared_distance(obstacle, origin) <= far * far)) continue;
-    scene.added = std::max(scene.added, add(scene, obstacle, static_cast<int>(k)));
     kept.push_back(obstacle);
+    numbers.push_back(static_cast<int>(k));
   }
-  scene.tested = OwnMatrix<std::uint16_t>(tested.rows, scene.blocks.size());
+  const bool many = static_cast<int>(kept.size()) >= MANY_OBSTACLES;
+  if (many) sort_neighbours(kept, numbers);
+  auto all = std::make_shared<Obstacles>();
+  for (std::size_t k = 0; k < kept.size(); k++) scene.added = std::max(scene.added, add(*all, kept[k], numbers[k]));
+  if (many) all->tree = make_obstacle_tree(*all, reach);
+  scene.tested = OwnMatrix<std::uint16_t>(tested.rows, all->blocks.size());
   for (std::size_t i = 0; i < tested.rows; i++) {
     for (std::size_t k = 0; k < kept.size(); k++) {
-      if (tested(i, scene.obstacles[k].number)) {
-        scene.tested(i, k / LANES) |= static_cast<std::uint16_t>(1U << (k % LANES));
-      }
+      if (tested(i, numbers[k])) scene.tested(i, k / LANES) |= static_cast<std::uint16_t>(1U << (k % LANES));
     }
   }
+  scene.obstacles = std::move(all);
   const Places places(robot);
   for (const FixedSphere& sphere : robot.fixed_spheres) {
     for (std::size_t k = 0; k < kept.size() && scene.fixed_contact.first < 0; k++) {
       // Without a clearance: what does not move cannot keep away.
       const double near = sphere.radius + kept[k].rounding;
-      if (!tested(sphere.capsule, scene.obstacles[k].number)) continue;
+      if (!tested(sphere.capsule, numbers[k])) continue;
       const Capsule& capsule = robot.capsules[sphere.capsule];
       if (squared_distance(kept[k], sphere.centre) < near * near &&
           (robot.bodies[capsule.body].shape < 0 || base_touches(robot, places, robot.bodies[capsule.body], kept[k],
                                                                 robot.lengths.shapes[capsule.body] - robot.padding))) {
-        scene.fixed_contact = {sphere.capsule, scene.obstacles[k].number};
+        scene.fixed_contact = {sphere.capsule, numbers[k]};
       }
     }
   }

@@ -32,6 +32,20 @@ struct Block {
   Vec3x16 centre, half;
 };
 
+/// What finds the few of many obstacles that are near: a grid of distances, and a tree whose leaves are the blocks.
+struct ObstacleTree {
+  DistanceGrid grid;
+  BoxTree boxes;
+};
+
+/// Obstacles in blocks of sixteen.
+struct Obstacles {
+  std::vector<Obstacle> rows;
+  HullTree<float> hulls;  // of each a leaf, in its own frame
+  std::vector<Block> blocks;
+  std::unique_ptr<const ObstacleTree> tree;  // where they are many
+};
+
 /// An obstacle as Python gives it, sixteen doubles.
 struct GivenObstacle {
   double kind;     // as below
@@ -49,10 +63,8 @@ struct SurfaceObstacle {
 };
 
 struct Scene {
-  std::vector<Obstacle> obstacles;  // those that the robot can reach
-  HullTree<float> hulls;            // of each a leaf, in its own frame
-  std::vector<Block> blocks;
-  OwnMatrix<std::uint16_t> tested{0, 0};  // (capsules, blocks): bits of obstacles that a capsule is tested against
+  std::shared_ptr<const Obstacles> obstacles;  // those that the robot can reach
+  OwnMatrix<std::uint16_t> tested{0, 0};       // (capsules, blocks): bits of obstacles that a capsule is tested against
   std::vector<SurfaceObstacle> surfaces;
   std::vector<int> surfaces_tested;           // by capsule: how many surfaces
   std::shared_ptr<const Surface> around;      // a grid around all surfaces, or none

@@ -1,6 +1,4 @@
 // A surface, points or triangles, as checks read it: a grid of distances and a tree of sixteens.
-//
-// The tree is in its order alone: a leaf is sixteen neighbours, a node sixteen leaves or nodes in a row.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "common/float16.hpp"
+#include "robot/box_tree.hpp"
 #include "robot/hull_tree.hpp"
 #include "robot/surface_grid.hpp"
 
@@ -24,26 +23,17 @@ struct TriangleLeaf {
   Vec3x16 corner, first, second, normal;
 };
 
-/// Boxes around sixteen leaves or nodes, and radii of balls about the same centres.
-struct SurfaceNode {
-  Vec3x16 centre, half;
-  Floats16 radius;
-};
-
 struct Surface {
   DistanceGrid grid;
   std::vector<std::int8_t> windings;  // how often it winds around the middle of each cell; empty: nothing is inside
   bool turned = false;            // inside is what it winds around, or else what it winds around an odd number of times
   float radius = 0;               // by which points, or triangles, are widened
   std::vector<PointLeaf> points;  // of a cloud
-  std::vector<TriangleLeaf> triangles;           // of a mesh
-  HullTree<float> hulls;                         // of a mesh its triangles again, one by one; of a cloud a point
-  std::vector<Vec3> parts;                       // of a mesh a corner of each part that hangs together
-  std::vector<std::vector<SurfaceNode>> levels;  // from that above the leaves to that of the root
+  std::vector<TriangleLeaf> triangles;  // of a mesh
+  HullTree<float> hulls;                // of a mesh its triangles again, one by one; of a cloud a point
+  std::vector<Vec3> parts;              // of a mesh a corner of each part that hangs together
+  BoxTree tree;                         // over the leaves
 };
-
-/// Where the places to spare of a leaf or node are.
-constexpr float NOWHERE = 1e9F;
 
 /// A surface as Python gives it.
 struct GivenSurface {

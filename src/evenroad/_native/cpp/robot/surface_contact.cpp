@@ -4,45 +4,14 @@
 #include <bit>
 #include <cmath>
 
+#include "robot/grid_contact.hpp"
+
 namespace evenroad::robot {
 
 namespace {
 
-constexpr float LEAST_SQUARE = 1e-30F;
-constexpr float TOLD_APART = 254.5F;
 /// Of capsules that at most so many spheres cover the grid is not asked as a whole: it would cost as much.
 constexpr int FEW_SPHERES = 2;
-
-/// Return the bytes of sixteen cells; their numbers along the axes, all >= 0, are rounded down.
-EVENROAD_INLINE Floats16 bytes_of_cells(const DistanceGrid& grid, Vec3x16 cell) {
-  const Ints16 x = __builtin_convertvector(cell.x, Ints16), y = __builtin_convertvector(cell.y, Ints16);
-  const Ints16 number = (x * grid.cells[1] + y) * grid.cells[2] + __builtin_convertvector(cell.z, Ints16);
-  Ints16 bytes{};
-  for (int lane = 0; lane < LANES; lane++) bytes[lane] = grid.distances[number[lane]];
-  return __builtin_convertvector(bytes, Floats16);
-}
-
-struct NearAndSure {
-  Mask near = 0, sure = 0;
-};
-
-/// Return the masks of lanes in which a surface may be within `near` of a place, and is within `touching` for sure.
-///
-/// Outside of the grid it is asked for the nearest place inside: what lies beyond that is farther by at least the third
-/// side of a triangle with an obtuse angle.
-EVENROAD_INLINE NearAndSure ask(const DistanceGrid& grid, Vec3x16 place, float near, float touching) {
-  const Floats16 zero{};
-  const Vec3x16 from = place - spread(grid.low);
-  const Vec3x16 inside = {clamp(from.x, zero, spread(grid.size.x)), clamp(from.y, zero, spread(grid.size.y)),
-                          clamp(from.z, zero, spread(grid.size.z))};
-  const Vec3x16 beyond = from - inside;
-  const Floats16 away = bytes_of_cells(grid, inside * spread(grid.one_by_cell)) * grid.step;
-  const Floats16 outside = dot(beyond, beyond);
-  // Of the largest byte only a lower bound is known.
-  Mask sure = below_zero(max(away + grid.told - touching, away - grid.step * TOLD_APART));
-  sure &= below_zero(outside - LEAST_SQUARE);
-  return {below_zero(fma(away, away, outside) - near * near), sure};
-}
 
 /// A capsule in sixteen lanes: how long it is, and how far its surface and that of its spheres are from its segment.
 struct Asked {
@@ -67,23 +36,13 @@ NearAndSure ask(const Surface& surface, const Asked& of) {
   return all;
 }
 
-/// Return the mask of lanes in which a capsule's middle is within `near` of the box that a grid fills.
-Mask beside(const DistanceGrid& grid, Vec3x16 centre, float near) {
-  const Floats16 zero{};
-  const Vec3x16 from = centre - spread(grid.low);
-  const Vec3x16 inside = {clamp(from.x, zero, spread(grid.size.x)), clamp(from.y, zero, spread(grid.size.y)),
-                          clamp(from.z, zero, spread(grid.size.z))};
-  const Vec3x16 beyond = from - inside;
-  return below_zero(dot(beyond, beyond) - near * near);
-}
-
 /// Return whether the box around a capsule in all lanes meets that around a leaf.
 bool reaches(const Surface& surface, const PlacedCapsule& capsule, float reach) {
   const Box16 around = around_all(capsule.centre, abs(capsule.half) + spread(Vec3{reach, reach, reach}));
-  const auto near = [&](const SurfaceNode& node) {
+  const auto near = [&](const BoxNode& node) {
     return below_zero(largest(abs(node.centre - around.centre) - node.half - around.half));
   };
-  return Walk(surface).next(near) >= 0;
+  return Walk(surface.tree).next(near) >= 0;
 }
 
 /// Return which points touch a capsule.
@@ -97,8 +56,8 @@ Mask near_points(Vec3x16 points, const CapsuleAt& capsule) {
 /// Return whether a point or triangle touches a capsule.
 bool touches(const Surface& surface, const CapsuleAt& capsule) {
   const bool is_mesh = !surface.triangles.empty();
-  Walk walk(surface);
-  for (int leaf = 0; (leaf = walk.next([&](const SurfaceNode& node) { return near_nodes(node, capsule); })) >= 0;) {
+  Walk walk(surface.tree);
+  for (int leaf = 0; (leaf = walk.next([&](const BoxNode& node) { return near_nodes(node, capsule); })) >= 0;) {
     if (is_mesh) {
       if (near_triangles(surface.triangles[leaf], capsule) != 0) return true;
       continue;
@@ -124,8 +83,8 @@ bool cloud_touches(const ShapeNear& of, const Surface& cloud, const CapsuleAt& c
   const PlacedFrame here = {
       {all_lanes(frame.rows[0], lane), all_lanes(frame.rows[1], lane), all_lanes(frame.rows[2], lane)},
       all_lanes(frame.origin, lane)};
-  Walk walk(cloud);
-  for (int leaf = 0; (leaf = walk.next([&](const SurfaceNode& node) { return near_nodes(node, capsule); })) >= 0;) {
+  Walk walk(cloud.tree);
+  for (int leaf = 0; (leaf = walk.next([&](const BoxNode& node) { return near_nodes(node, capsule); })) >= 0;) {
     const Vec3x16 points = cloud.points[leaf].points;
     const Mask near = near_points(points, capsule);
     if (near == 0) continue;

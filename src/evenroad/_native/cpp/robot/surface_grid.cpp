@@ -150,6 +150,24 @@ void mark_triangles(const GridPlace& grid, std::span<const double> triangles, st
   }
 }
 
+void mark_boxes(const GridPlace& grid, std::span<const std::array<double, 6>> boxes,
+                std::vector<std::uint8_t>& marked) {
+  for (const std::array<double, 6>& box : boxes) {
+    std::pair<int, int> cells[3];
+    for (int axis = 0; axis < 3; axis++) {
+      const double least = (box[axis] - grid.low[axis]) / grid.cell,
+                   most = (box[3 + axis] - grid.low[axis]) / grid.cell;
+      cells[axis] = cells_of(least, most, grid.cells[axis]);
+    }
+    for (int x = cells[0].first; x <= cells[0].second; x++) {
+      for (int y = cells[1].first; y <= cells[1].second; y++) {
+        const auto row = marked.begin() + (static_cast<std::ptrdiff_t>(x) * grid.cells[1] + y) * grid.cells[2];
+        std::fill(row + cells[2].first, row + cells[2].second + 1, 1);
+      }
+    }
+  }
+}
+
 std::vector<std::int8_t> count_windings(const GridPlace& grid, std::span<const double> triangles, bool turned) {
   const auto [nx, ny, nz] = grid.cells;
   // Where lines along x through the middles of cells cross.

@@ -1,6 +1,7 @@
 // A grid over a surface: cells that it is in, how far all others are from these, and how often it winds around each.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,6 +27,9 @@ void mark_points(const GridPlace& grid, std::span<const double> points, std::vec
 
 /// Mark the cells that triangles, nine numbers each, are in.
 void mark_triangles(const GridPlace& grid, std::span<const double> triangles, std::vector<std::uint8_t>& marked);
+
+/// Mark the cells that boxes along the axes, lower and upper corner, are in.
+void mark_boxes(const GridPlace& grid, std::span<const std::array<double, 6>> boxes, std::vector<std::uint8_t>& marked);
 
 /// Return how often closed triangles wind around the middle of each cell.
 ///

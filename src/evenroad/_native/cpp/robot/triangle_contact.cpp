@@ -57,18 +57,6 @@ std::optional<int> crossings(const TriangleLeaf& leaf, Vec3 begin, Vec3 half) {
 
 }  // namespace
 
-Mask near_nodes(const SurfaceNode& node, const CapsuleAt& capsule) {
-  const auto [x, y, z] = capsule.half;
-  const float reach = capsule.reach;
-  const Vec3x16 half = spread(Vec3{std::abs(x) + reach, std::abs(y) + reach, std::abs(z) + reach});
-  const Vec3x16 along = spread(capsule.half);
-  Vec3x16 apart = node.centre - spread(capsule.centre);
-  const Mask boxes = below_zero(largest(abs(apart) - node.half - half));
-  const Floats16 near = node.radius + reach;
-  apart = minus(apart, along, cut(dot(apart, along) * capsule.one_by_squared));
-  return boxes & below_zero(fma(-near, near, dot(apart, apart)));
-}
-
 // Nearest are the segment and a side, or the place of the segment that is nearest to the plane, where it is above the
 // triangle: from any other above it, one comes nearer on the way there, or to a side.
 Mask near_triangles(const TriangleLeaf& leaf, const CapsuleAt& capsule) {
@@ -105,8 +93,8 @@ bool is_inside(const Surface& mesh, Vec3 place) {
   const float squared = half.x * half.x + half.y * half.y + half.z * half.z;
   const CapsuleAt way{
       {place.x + half.x, place.y + half.y, place.z + half.z}, half, 1.0F / std::max(squared, LEAST_SQUARE), UNSURE};
-  Walk walk(mesh);
-  for (int leaf = 0; (leaf = walk.next([&](const SurfaceNode& node) { return near_nodes(node, way); })) >= 0;) {
+  Walk walk(mesh.tree);
+  for (int leaf = 0; (leaf = walk.next([&](const BoxNode& node) { return near_nodes(node, way); })) >= 0;) {
     const std::optional<int> crossed = crossings(mesh.triangles[leaf], place, half);
     if (!crossed) return true;
     winding -= *crossed;

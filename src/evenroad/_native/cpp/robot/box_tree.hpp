@@ -1,0 +1,104 @@
+// Trees of boxes over what lies around a robot: a leaf is sixteen neighbours, a node sixteen leaves or nodes in a row.
+//
+// The tree is in the order of its leaves alone.  Points, triangles and obstacles have leaves of their own.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/float16.hpp"
+
+namespace evenroad::robot {
+
+/// Boxes around sixteen leaves or nodes, and radii of balls about the same centres.
+struct BoxNode {
+  Vec3x16 centre, half;
+  Floats16 radius;
+};
+
+struct BoxTree {
+  std::vector<std::vector<BoxNode>> levels;  // from that above the leaves to that of the root
+};
+
+/// Where the places to spare of a leaf or node are.
+constexpr float NOWHERE = 1e9F;
+
+struct Place {
+  float at[3];
+};
+
+/// A box with a ball about its centre.
+struct Around {
+  float centre[3], half[3], radius;
+};
+
+/// Return an order in which sixteen, or 256, ... neighbours are near each other.
+std::vector<int> order_of(std::vector<Place> places);
+
+/// Return the box and ball around sixteen places, or around sixteen boxes, by so much wider.
+Around around_places(std::span<const Place> places);
+Around around_boxes(std::span<const Around> children, float wider);
+
+/// Return the tree over some leaves, in their order; what each level adds is so much wider.
+BoxTree make_box_tree(std::vector<Around> leaves, float wider);
+
+/// A capsule at one configuration, and how near to its segment something touches it.
+struct CapsuleAt {
+  Vec3 centre, half;
+  float one_by_squared;  // one over the squared half length
+  float reach;
+};
+
+/// Return which of a node's boxes meet that around a capsule, and with their balls the capsule itself.
+EVENROAD_INLINE std::uint32_t near_nodes(const BoxNode& node, const CapsuleAt& capsule) {
+  const auto [x, y, z] = capsule.half;
+  const float reach = capsule.reach;
+  const Vec3x16 half = spread(Vec3{__builtin_fabsf(x) + reach, __builtin_fabsf(y) + reach, __builtin_fabsf(z) + reach});
+  const Vec3x16 along = spread(capsule.half);
+  Vec3x16 apart = node.centre - spread(capsule.centre);
+  const std::uint32_t boxes = below_zero(largest(abs(apart) - node.half - half));
+  const Floats16 near = node.radius + reach;
+  apart = minus(apart, along, clamp(dot(apart, along) * capsule.one_by_squared, spread(-1), spread(1)));
+  return boxes & below_zero(fma(-near, near, dot(apart, apart)));
+}
+
+/// A walk through the nodes of a tree, from the root down to leaves.
+class Walk {
+ public:
+  explicit Walk(const BoxTree& tree) : levels_(tree.levels), level_(static_cast<int>(levels_.size()) - 1) {}
+
+  /// Return the next leaf below nodes that `ask` returns as a mask of those of a node that matter, or -1.
+  template <class Ask>
+  int next(Ask&& ask) {
+    if (fresh_) near_ = ask(levels_[level_][node_]), fresh_ = false;
+    while (true) {
+      if (near_ == 0) {
+        if (level_ == static_cast<int>(levels_.size()) - 1) return -1;
+        level_++;
+        near_ = waiting_[level_].near, node_ = waiting_[level_].node;
+        continue;
+      }
+      const int child = LANES * node_ + __builtin_ctz(near_);
+      near_ &= near_ - 1;
+      if (level_ == 0) return child;
+      waiting_[level_] = {near_, node_};
+      level_--;
+      node_ = child;
+      near_ = ask(levels_[level_][node_]);
+    }
+  }
+
+ private:
+  struct Waiting {
+    std::uint32_t near;
+    int node;
+  };
+  const std::vector<std::vector<BoxNode>>& levels_;
+  Waiting waiting_[16];
+  int level_, node_ = 0;
+  std::uint32_t near_ = 0;
+  bool fresh_ = true;
+};
+
+}  // namespace evenroad::robot

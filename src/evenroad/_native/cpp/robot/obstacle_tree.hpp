@@ -1,0 +1,25 @@
+// Contact of sixteen configurations with many obstacles: a grid and a tree find the few that are near.
+//
+// Which obstacles are tested differs from the check of few, and how a lane is decided does not: verdicts are the same.
+#pragma once
+
+#include "robot/exact_obstacle.hpp"
+#include "robot/obstacle_contact.hpp"
+
+namespace evenroad::robot {
+
+/// From so many obstacles on a tree is faster than all blocks in a row.
+constexpr int MANY_OBSTACLES = 320;
+
+/// Bring obstacles, and their numbers, into an order in which sixteen neighbours are near each other.
+void sort_neighbours(std::vector<Exact>& obstacles, std::vector<int>& numbers);
+
+/// Return the grid and the tree over obstacles in that order; nothing of the robot is farther from the origin than
+/// `reach` [m].
+std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacles, double reach);
+
+/// Return the same as `meeting_obstacles`.
+Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
+                     Wanted wanted, Contact* found);
+
+}  // namespace evenroad::robot
