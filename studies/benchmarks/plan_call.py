@@ -1,20 +1,28 @@
-"""What one call of `er.plan` costs for an arm, stage by stage.
+"""What one call of `er.plan` costs for an arm: stage by stage, and in new scenes.
 
     python -m studies.benchmarks.plan_call      # UR5 and the arm of 7 joints among 25 boxes, a free motion from a to b
+    python -m studies.benchmarks.plan_call --arms panda.urdf        # a file with meshes: by its shapes, and by capsules
 
 Times are microseconds of CPU time of one thread, medians of many calls in one process.  The stages of a call follow it;
 what they leave is the call's own.  `native` is what the kernel takes of the trees, which is all that it takes here.
+
+New scenes are shelves, boxes and cages that the tool goes into, with boxes at random beside and behind the robot, 15 to
+25 in all.  A query is everything: the scene from arrays, its world, the path and its smoothing, and the proof of all
+motions.  Of each problem the best time of a few counts; medians and 95 % are over those that are solved.
 """
 
 from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from studies.benchmarks.arm_problems import REPORTING, TUNING, Pool, problems
 from studies.benchmarks.rows import parser_of
 
 import evenroad as er
@@ -23,12 +31,36 @@ from evenroad.planning import arm_trees, read_request
 from evenroad.planning.connectors import ARM_TREES
 from evenroad.planning.plan import Options, budget_of, finished, solve
 from evenroad.planning.request import Reading
+from evenroad.roadmap.connector import Smooth
+from evenroad.robot.obstacle import Obstacle
 from evenroad.robot.tree_sequences import ball_points, cube_points, native_points
+from evenroad_studies.arms.robots import ARMS, arm_named
 
 BOXES = 25
 REPEATS = 1_000
+KINDS = ("shelf", "box", "cage")
+LEAST, MOST = 15, 25
+"""Numbers of boxes of a new scene."""
+BEST_OF = 5
+SMOOTHING: tuple[Smooth, ...] = ("quick", True)
 
 Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class NewScene:
+    """Boxes as arrays: extents, centres, quaternions; the contacts that are allowed, and two free configurations."""
+
+    size: Floats
+    xyz: Floats
+    xyzw: Floats
+    names: tuple[str, ...]
+    allowed: frozenset[tuple[str, str]]
+    start: Floats
+    goal: Floats
+
+    def scene(self) -> er.Scene:
+        return er.Scene.of_boxes(self.size, self.xyz, xyzw=self.xyzw, names=self.names, allowed=self.allowed)
 
 
 def median_time(task: Callable[[], Any]) -> float:
@@ -96,14 +128,76 @@ def stages(robot: er.Robot) -> dict[str, float]:
     return {name: median_time(task) for name, task in tasks.items()}
 
 
+def new_scenes(robot: er.Robot, seeds: range) -> Iterator[NewScene]:
+    """Yield three scenes for each seed, with boxes added at random behind and beside the robot."""
+    for problem in problems(Pool(robot), seeds, KINDS):
+        rng = np.random.default_rng([problem.seed, 34])
+        obstacles = list(problem.scene.obstacles)
+        ends = np.stack([problem.start, problem.goal])
+        for _ in range(rng.integers(max(LEAST - len(obstacles), 0), MOST - len(obstacles) + 1)):
+            while True:
+                angle, away, high = np.pi + rng.uniform(-2.0, 2.0), rng.uniform(0.4, 1.0), rng.uniform(0.0, 1.0)
+                place = away * np.cos(angle), away * np.sin(angle), high
+                added = Obstacle.of(f"more {len(obstacles)}", "box", tuple(rng.uniform(0.05, 0.2, 3)), place)
+                if er.ArmWorld(robot, er.Scene((added,))).valid(ends).all():
+                    break
+            obstacles.append(added)
+        yield NewScene(
+            np.array([each.size for each in obstacles]),
+            np.array([each.body.pose.xyz for each in obstacles]),
+            np.array([each.body.pose.xyzw for each in obstacles]),
+            tuple(each.name for each in obstacles),
+            problem.scene.allowed,
+            *ends,
+        )
+
+
+def best_time(task: Callable[[], Any]) -> float:
+    """Return the shortest of a few times of a task [us]."""
+    times = []
+    for _ in range(BEST_OF):
+        began = time.thread_time_ns()
+        task()
+        times.append(time.thread_time_ns() - began)
+    return min(times) / 1e3
+
+
+def in_new_scenes(robot: er.Robot, seeds: range) -> dict[str, list[float]]:
+    """Return the times of queries in new scenes [us], where a path is found."""
+    times: dict[str, list[float]] = {name: [] for name in ("scene and world", "with plan, quick", "with plan")}
+
+    def world_of(new: NewScene) -> er.ArmWorld:
+        return er.ArmWorld(robot, new.scene())
+
+    def query(new: NewScene, smooth: Smooth = True) -> er.PlanResult:
+        return er.plan(world_of(new), new.start, new.goal, smooth=smooth, seconds=1.0)
+
+    for each in new_scenes(robot, seeds):
+        times["scene and world"].append(best_time(partial(world_of, each)))
+        if query(each).solved:
+            for name, smooth in zip(list(times)[1:], SMOOTHING, strict=True):
+                times[name].append(best_time(partial(query, each, smooth)))
+    return times
+
+
 def main() -> None:
     parser = parser_of(__doc__)
-    parser.add_argument("--arms", nargs="*", default=["ur5", "arm7"])
+    parser.add_argument("--arms", nargs="*", default=["ur5", "arm7"], help="names, or files of robots")
+    parser.add_argument("--count", type=int, default=10, help="new scenes of each of three kinds, at most 100")
+    parser.add_argument("--tuning", action="store_true", help="the scenes that constants are chosen on")
     options = parser.parse_args()
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
+    seeds = (TUNING if options.tuning else REPORTING)[: options.count]
     for arm in options.arms:
-        for name, microseconds in stages(er.load_robot(arm)).items():
-            print(f"{arm}: {name:36s} {microseconds:7.1f} us")
+        robots = {arm: arm_named(arm) if arm in ARMS else er.load_robot(arm)}
+        if robots[arm].shapes:
+            robots = {f"{arm} by shapes": robots[arm], f"{arm} by capsules": er.load_robot(arm, bodies="capsules")}
+        for title, robot in robots.items():
+            for name, microseconds in stages(robot).items():
+                print(f"{title}: {name:36s} {microseconds:7.1f} us")
+            for name, times in in_new_scenes(robot, seeds).items():
+                middle, high = np.quantile(times, [0.5, 0.95])
+                print(f"{title}: new: {name:31s} {middle:7.1f} us, 95 % {high:.0f}, of {len(times)}")
 
 
 if __name__ == "__main__":
