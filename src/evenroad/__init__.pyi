@@ -13,8 +13,10 @@ from evenroad.geometry import Pose as Pose
 from evenroad.geometry import Sphere as Sphere
 from evenroad.planning import FMT as FMT
 from evenroad.planning import PRM as PRM
+from evenroad.planning import PlanResults as PlanResults
 from evenroad.planning import RRTConnect as RRTConnect
 from evenroad.planning import plan as plan
+from evenroad.planning import plan_many as plan_many
 from evenroad.points import PointSet as PointSet
 from evenroad.points import draw as draw
 from evenroad.points import load_points as load_points

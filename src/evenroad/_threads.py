@@ -23,9 +23,11 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def in_order(function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
-    """Yield the results of a function for tasks, its arguments, in their order, with one thread per processor."""
-    threads = processors()
+def in_order(
+    function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]], threads: int | None = None
+) -> Iterator[Result]:
+    """Yield results of a function for tasks, its arguments, in their order, by default of one thread a processor."""
+    threads = processors() if threads is None else threads
     if threads < 2:
         yield from starmap(function, tasks)
         return

@@ -1,6 +1,7 @@
+from collections.abc import Sequence
 from typing import Literal
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._native.robot import Checker
 
 CLEARANCES: tuple[float, float]
@@ -58,6 +59,21 @@ class Tree:
     def add(self, q: Floats, parent: int) -> int: ...
     def nearest(self, q: Floats) -> int: ...
     def remove_branch(self, node: int) -> None: ...
+
+class ManyQueries:
+    columns: tuple[Bools, Ints, Floats, Floats, Floats]
+    def __init__(
+        self,
+        checkers: Sequence[Checker],
+        roomier: Sequence[Checker | None],
+        of: Ints,
+        ends: Floats,
+        drivers: Drivers,
+        motions: int,
+        seconds: float,
+        smoothing: Literal["none", "quick", "tight", "apart"],
+    ) -> None: ...
+    def go_on(self, threads: int, seconds: float) -> int: ...
 
 def answer(
     checker: Checker,

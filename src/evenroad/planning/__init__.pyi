@@ -1,4 +1,6 @@
 from evenroad.planning.growing import GrowingPRM as GrowingPRM
+from evenroad.planning.many import plan_many as plan_many
+from evenroad.planning.many_results import PlanResults as PlanResults
 from evenroad.planning.plan import plan as plan
 from evenroad.planning.prm import FMT as FMT
 from evenroad.planning.prm import PRM as PRM

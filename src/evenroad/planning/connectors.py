@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._native.planning import Answer, Improver, Points, answer
+from evenroad._native.planning import Answer, Drivers, Improver, Points, answer
 from evenroad.planning import arm_trees
 from evenroad.planning.plain_trees import grow_trees
 from evenroad.roadmap.connector import Connection, Connector, Smooth
@@ -31,6 +31,20 @@ SMOOTHING = 500
 
 _SPREADS = (32, 96)
 """Numbers of points along a disk's path that straightening may join, in coarse and in fine rounds."""
+
+
+Smoothing = Literal["none", "quick", "tight", "apart"]
+"""What compiled code calls the ways to smooth a path."""
+
+
+def smoothing_of(smooth: Smooth) -> Smoothing:
+    """Return what compiled code calls this way to smooth a path."""
+    return "quick" if smooth == "quick" else "apart" if smooth else "none"
+
+
+def drivers_of(dim: int, variant: int) -> Drivers:
+    """Return the sequences that drive the queries of arms with `dim` joints; each variant >= 1 has another one."""
+    return drivers_by(Points(shifted_cube_points(dim, variant)), dim) if variant else drivers(dim)
 
 
 @dataclass(frozen=True)
@@ -76,11 +90,7 @@ class ArmTrees:
         smooth: Smooth,
     ) -> Answer:
         """Return the smoothed path to one goal, (dim,), or why there is none, of one call of compiled code."""
-        inside, dim = self.inside or world, len(start)
-        by = drivers_by(Points(shifted_cube_points(dim, variant)), dim) if variant else drivers(dim)
-        smoothing: Literal["none", "quick", "tight", "apart"] = (
-            "quick" if smooth == "quick" else "none" if not smooth else "apart"
-        )
+        inside, by, smoothing = self.inside or world, drivers_of(len(start), variant), smoothing_of(smooth)
         if self.shortest and smoothing == "apart":
             smoothing = "tight"
         found = answer(inside.checker, start, goal, by, most_motions, seconds, smoothing)

@@ -103,7 +103,7 @@ def _growing(improve: bool) -> GrowingPRM:
 
 def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -> PlanResult:
     """Plan with a connector until there is a path, a proof that there is none, or the budget is spent."""
-    world, variant, first = problem.world, _variant(problem.rng), None
+    world, variant, first = problem.world, variant_of(problem.rng), None
     if isinstance(connector, ArmTrees) and len(problem.goals) == 1 and not improve:
         first = _answer(problem, connector, variant)
         if first.ended == "solved":
@@ -200,7 +200,7 @@ def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult
     )
 
 
-def _variant(rng: RngLike) -> int:
+def variant_of(rng: RngLike) -> int:
     """Return the variant of the sequence that drives the trees: 0 is the tuned one, and each seed has another."""
     if type(rng) is int and rng >= 0:
         # Making its generator takes as long as a short plan.

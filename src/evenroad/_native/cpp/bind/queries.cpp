@@ -1,10 +1,11 @@
-// Queries of an arm, from their ends to smoothed paths: one, with all of its numbers.
+// Queries of an arm, from their ends to smoothed paths: one, with all of its numbers, and many, as columns.
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string_view.h>
 
 #include <string_view>
 
 #include "bind/planning.hpp"
+#include "planning/many_queries.hpp"
 #include "planning/query.hpp"
 
 namespace evenroad::bind {
@@ -13,6 +14,8 @@ namespace {
 
 using planning::Smoothing;
 using robot::Checker;
+
+constexpr std::size_t MOST_THREADS = 1024;
 
 /// Sequences of one dimension, for all queries that they drive.
 struct Drivers {
@@ -70,6 +73,60 @@ void keep_apart(Answer& answer, std::shared_ptr<Checker> roomier, const Drivers&
   without_gil([&] { planning::keep_apart(answer.found, std::move(roomier), by); });
 }
 
+/// Many queries with the arrays that they read.
+struct ManyQueries {
+  FloatRows ends;
+  Array<const std::int64_t, 1> of;
+  planning::ManyQueries queries;
+
+  std::size_t dim() const { return ends.shape(1); }
+};
+
+/// Return the checks of one or more worlds, of arms of so many joints; there may be none where None may stand.
+std::vector<std::shared_ptr<Checker>> checkers_from(nb::sequence given, std::size_t joints, bool may_be_none) {
+  std::vector<std::shared_ptr<Checker>> checkers;
+  for (const nb::handle each : given) {
+    checkers.push_back(each.is_none() && may_be_none ? nullptr : value_of<std::shared_ptr<Checker>>(each, "checkers"));
+    require(!checkers.back() || dim(*checkers.back()) == joints, "checkers must have the joints of the ends");
+  }
+  return checkers;
+}
+
+void make_many_queries(ManyQueries* made, nb::sequence checkers, nb::sequence roomier, nb::handle of, nb::handle ends,
+                       const Drivers& drivers, std::int64_t motions, double seconds, std::string_view smoothing) {
+  const FloatRows rows(ends, "ends");
+  const Array<const std::int64_t, 1> numbers(of, "of");
+  rows.of_shape({2 * numbers.size(), rows.shape(1)});
+  const auto worlds = checkers_from(checkers, rows.shape(1), false),
+             with_room = checkers_from(roomier, rows.shape(1), true);
+  require(worlds.size() == with_room.size(), "roomier must have one entry for each of the checkers");
+  require_below(numbers.span(), worlds.size(), "of");
+  require_budget(motions, "motions");
+  std::vector<planning::QueryWorld> pairs;
+  for (std::size_t i = 0; i < worlds.size(); i++) pairs.push_back({worlds[i], with_room[i]});
+  planning::ManyQueries queries(std::move(pairs), numbers.span(), rows.matrix(), drivers.of(rows.shape(1)),
+                                {motions, seconds}, smoothing_from(smoothing));
+  new (made) ManyQueries{rows, numbers, std::move(queries)};
+}
+
+/// Return which queries have a path, where the waypoints of each begin, all waypoints, and lengths and seconds.
+nb::tuple columns_of(const ManyQueries& many) {
+  std::vector<std::uint8_t> solved;
+  std::vector<std::int64_t> begins{0};
+  std::vector<double> waypoints, lengths, seconds;
+  for (const planning::Answer& answer : many.queries.answers()) {
+    solved.push_back(answer.growth == planning::Growth::SOLVED);
+    waypoints.insert(waypoints.end(), answer.path.begin(), answer.path.end());
+    begins.push_back(static_cast<std::int64_t>(waypoints.size() / many.dim()));
+    lengths.push_back(answer.length);
+    seconds.push_back(answer.search_seconds + answer.smoothing_seconds);
+  }
+  const std::size_t count = solved.size();
+  return nb::make_tuple(as_bools(std::move(solved), {count}), as_row(std::move(begins)),
+                        as_rows(std::move(waypoints), many.dim()), as_row(std::move(lengths)),
+                        as_row(std::move(seconds)));
+}
+
 }  // namespace
 
 void add_queries(nb::module_& part) {
@@ -91,6 +148,14 @@ void add_queries(nb::module_& part) {
                    })
       .def("keep_apart", &keep_apart);
   part.def("answer", &answer);
+  nb::class_<ManyQueries>(part, "ManyQueries")
+      .def("__init__", &make_many_queries, nb::keep_alive<1, 6>())
+      .def("go_on",
+           [](ManyQueries& many, std::int64_t threads, double seconds) {
+             require_below(threads - 1, MOST_THREADS, "threads less one");
+             return without_gil([&] { return many.queries.go_on(static_cast<std::size_t>(threads), seconds); });
+           })
+      .def_prop_ro("columns", &columns_of);
 }
 
 }  // namespace evenroad::bind

@@ -1,0 +1,51 @@
+// Threads take one query after the other, so all that are taken are answered, and no time is lost where some are hard.
+#include "planning/many_queries.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <utility>
+
+namespace evenroad::planning {
+
+ManyQueries::ManyQueries(std::vector<QueryWorld> worlds, std::span<const std::int64_t> of, Matrix<const double> ends,
+                         const Drivers& drivers, QueryLimits limits, Smoothing smoothing)
+    : worlds_(std::move(worlds)),
+      of_(of),
+      ends_(ends),
+      drivers_(drivers),
+      limits_(limits),
+      smoothing_(smoothing),
+      answers_(of.size()) {}
+
+std::size_t ManyQueries::go_on(std::size_t threads, double seconds) {
+  const auto began = std::chrono::steady_clock::now();
+  std::atomic<std::size_t> next = count_;
+  const auto work = [&] {
+    do {
+      const std::size_t query = next.fetch_add(1);
+      if (query >= answers_.size()) return;
+      answers_[query] = answered(query);
+    } while (std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() < seconds);
+  };
+  std::vector<std::future<void>> others;
+  for (std::size_t i = 1; i < std::min(threads, answers_.size() - count_); i++) {
+    others.push_back(std::async(std::launch::async, work));
+  }
+  work();
+  for (std::future<void>& other : others) other.get();
+  count_ = std::min(next.load(), answers_.size());
+  return count_;
+}
+
+Answer ManyQueries::answered(std::size_t query) const {
+  const QueryWorld& world = worlds_[static_cast<std::size_t>(of_[query])];
+  const Matrix<const double> ends{ends_[2 * query].data(), 2, ends_.columns};
+  Answer found = answer(world.checker, ends, drivers_, limits_, smoothing_);
+  if (world.roomier && found.growth == Growth::SOLVED) keep_apart(found, world.roomier, drivers_);
+  found.raw = {};
+  return found;
+}
+
+}  // namespace evenroad::planning

@@ -1,0 +1,44 @@
+// Many queries of arms, answered by several threads: each as if it were asked alone, whatever the number of threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/matrix.hpp"
+#include "planning/query.hpp"
+
+namespace evenroad::planning {
+
+/// Where queries are asked: the checks of a world, and of one with more room where paths keep away from obstacles.
+struct QueryWorld {
+  std::shared_ptr<const robot::Checker> checker, roomier;
+};
+
+class ManyQueries {
+ public:
+  /// Query i leads from row 2 i of `ends` to the next one in world `of[i]`.  The arrays must last as long as this.
+  ManyQueries(std::vector<QueryWorld> worlds, std::span<const std::int64_t> of, Matrix<const double> ends,
+              const Drivers& drivers, QueryLimits limits, Smoothing smoothing);
+
+  /// Answer some more, in order, until all are answered or so much time has passed; return how many are.
+  std::size_t go_on(std::size_t threads, double seconds);
+
+  std::span<const Answer> answers() const { return answers_; }
+
+ private:
+  Answer answered(std::size_t query) const;
+
+  std::vector<QueryWorld> worlds_;
+  std::span<const std::int64_t> of_;
+  Matrix<const double> ends_;
+  Drivers drivers_;
+  QueryLimits limits_;
+  Smoothing smoothing_;
+  std::vector<Answer> answers_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace evenroad::planning

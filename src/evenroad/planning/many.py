@@ -1,0 +1,169 @@
+"""``er.plan_many``: many queries, each answered as by ``er.plan``, on all processors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Floats, Ints
+from evenroad._checks import as_batch, require_count
+from evenroad._native.planning import ManyQueries
+from evenroad._rng import RngLike
+from evenroad._threads import in_order, processors
+from evenroad.errors import InvalidValue, shown
+from evenroad.planning.connectors import ARM_TREES, drivers_of, smoothing_of
+from evenroad.planning.many_results import Part, PlanResults, joined
+from evenroad.planning.plan import budget_of, plan
+from evenroad.planning.trees import variant_of
+from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.connector import Smooth, require_smooth
+from evenroad.roadmap.result import PlanResult
+from evenroad.robot import ArmWorld
+from evenroad.world import World
+
+_SLICE = 0.1
+"""Time between two looks at what interrupts, and reports of progress [s]."""
+
+
+def plan_many(
+    worlds: World | Sequence[World],
+    starts: npt.ArrayLike,
+    goals: npt.ArrayLike,
+    *,
+    seconds: float | None = None,
+    limits: Budget | Mapping[str, int] | None = None,
+    smooth: Smooth = True,
+    rng: RngLike = 0,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> PlanResults:
+    """Plan many paths, in one world or each in its own.
+
+    Every answer is that of :func:`evenroad.plan` for this world, start and goal with the same options, whatever the
+    number of threads, unless a query's time runs out.  Queries of arms are answered by compiled code, apart from those
+    that are hard or have no path.
+
+    Parameters
+    ----------
+    worlds : World, or sequence of m Worlds
+        Where to plan; all worlds have the same number of coordinates.  A world may be there several times.
+    starts, goals : array_like, shape (m, dim)
+        Configurations.  Row i of both is one query; in which a start or goal is not free has a status that says so.
+    seconds : float, optional
+        Largest wall time of each query, > 0.  Default: 5.
+    limits : mapping or Budget, optional
+        Other limits of each query, as of :func:`evenroad.plan`.
+    smooth : bool or "quick"
+        As of :func:`evenroad.plan`.
+    rng : int, SeedSequence or Generator
+        Seed of all queries.
+    threads : int, optional
+        Number of threads, >= 1.  Default: one a processor.
+    progress : callable, optional
+        Called with the numbers of queries answered and of all, a few times a second.
+
+    Returns
+    -------
+    PlanResults
+
+    Raises
+    ------
+    InvalidValue
+        If an argument is not one of these; the message names the row.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> world = er.ArmWorld("ur5", "box-reach")
+    >>> home = world.robot.states["home"]
+    >>> er.plan_many(world, [home] * 2, [(0.5, -1.57, 0, -1.57, 0, 0), (3, 0.5, 0, 0, 0, 0)])
+    PlanResults(2 queries: 1 solved, 1 goal_invalid)
+    """
+    places, of = _read_worlds(worlds)
+    dim = places[0].space.dim
+    first, last = as_batch("starts", starts, dim), as_batch("goals", goals, dim)
+    count = len(first)
+    if len(last) != count:
+        raise InvalidValue(f"starts and goals must have one row a query, got {count} and {len(last)} rows")
+    if of is None:
+        of = np.zeros(count, dtype=np.int64)
+    if len(of) != count:
+        raise InvalidValue(f"worlds must be one, or one a query: {count}, got {len(of)}")
+    workers = processors() if threads is None else require_count("threads", threads)
+    require_smooth(smooth)
+    budget, variant = budget_of(None, seconds, limits), variant_of(rng)
+    report = (lambda done: None) if progress is None else (lambda done: progress(done, count))
+
+    def query(row: int) -> PlanResult:
+        return plan(places[of[row]], first[row], last[row], limits=budget, smooth=smooth, rng=variant)
+
+    ends = np.stack([first, last], axis=1)
+    solved = _by_compiled_code(places, of, ends, budget, smooth, variant, min(workers, 1024), report)
+    rest, others = np.setdiff1d(np.arange(count), solved.rows), []
+    for result in in_order(query, ((row,) for row in rest.tolist()), workers):
+        others.append(result)
+        report(len(solved.rows) + len(others))
+    report(count)
+    return joined(tuple(places), of, dim, solved, rest, others)
+
+
+def _read_worlds(worlds: Any) -> tuple[list[Any], Ints | None]:
+    """Return the different worlds, and which of them each query is asked in; None where there is one for all."""
+    if hasattr(worlds, "motion_valid"):
+        return [worlds], None
+    if not isinstance(worlds, Sequence) or isinstance(worlds, str) or not len(worlds):
+        raise InvalidValue(
+            f"worlds must be a World, such as er.ArmWorld(robot, scene), or several, got {shown(worlds)}"
+        )
+    numbers: dict[int, int] = {}
+    places: list[Any] = []
+    of = np.empty(len(worlds), dtype=np.int64)
+    for row, world in enumerate(worlds):
+        if id(world) not in numbers:
+            if not hasattr(world, "motion_valid"):
+                raise InvalidValue(
+                    f"worlds must be Worlds, such as er.ArmWorld(robot, scene); row {row} is {shown(world)}"
+                )
+            if places and world.space.dim != places[0].space.dim:
+                raise InvalidValue(
+                    f"worlds must have one number of coordinates, {places[0].space.dim} in row 0; row {row} has"
+                    f" {world.space.dim}"
+                )
+            numbers[id(world)] = len(places)
+            places.append(world)
+        of[row] = numbers[id(world)]
+    return places, of
+
+
+def _by_compiled_code(
+    places: list[Any],
+    of: Ints,
+    ends: Floats,
+    budget: Budget,
+    smooth: Smooth,
+    variant: int,
+    threads: int,
+    report: Callable[[int], None],
+) -> Part:
+    """Return the paths of the queries of arms, ends (m, 2, dim), that one call of compiled code each answers."""
+    dim, is_arm = ends.shape[2], np.array([isinstance(world, ArmWorld) for world in places])
+    rows = np.flatnonzero(is_arm[of])
+    arms = [world for world, arm in zip(places, is_arm, strict=True) if arm]
+    smoothing, first = smoothing_of(smooth), ARM_TREES.stages[0][0]
+    queries = ManyQueries(
+        [world.checker for world in arms],
+        [world.roomier.checker if smoothing == "apart" else None for world in arms],
+        (np.cumsum(is_arm) - 1)[of[rows]],
+        np.ascontiguousarray(ends[rows]).reshape(-1, dim),
+        drivers_of(dim, variant),
+        first if budget.motions is None else min(first, budget.motions),
+        np.inf if budget.seconds is None else budget.seconds,
+        smoothing,
+    )
+    while (done := queries.go_on(threads, _SLICE)) < len(rows):
+        report(done)
+    found, begins, waypoints, lengths, took = queries.columns
+    return Part(rows[found], np.diff(begins)[found], waypoints, lengths[found], took[found])
