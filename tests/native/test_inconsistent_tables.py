@@ -20,6 +20,7 @@ import pytest
 from evenroad import _native
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Mesh, PointCloud
+from evenroad.planning import plan_many
 from evenroad.planning.connectors import ARM_TREES
 from evenroad.robot import ArmWorld, load_robot
 from evenroad.robot.scene import Scene
@@ -279,6 +280,7 @@ def recorded(tmp_path_factory):
         patch.setattr("evenroad.world.gridmap.gridmap.Disk", recording("world.Disk", calls))
         patch.setattr("evenroad.robot.arm_world.Checker", recording("robot.Checker", calls))
         patch.setattr("evenroad.planning.connectors.answer", recording("planning.answer", calls))
+        patch.setattr("evenroad.planning.many.ManyQueries", recording("planning.ManyQueries", calls))
         robot = load_robot(write_fork_arm(tmp_path_factory.mktemp("fork")))
         rng = np.random.default_rng(4)
         cloud = PointCloud(rng.random((40, 3)), 0.01)
@@ -289,6 +291,7 @@ def recorded(tmp_path_factory):
         first = np.stack([START, START + 0.1, GOAL]), 0, 10
         ARM_TREES.improver(box_world(), ends, first, variant=0, is_smoothing=True)
         ARM_TREES.answer(box_world(), START, GOAL, variant=0, most_motions=100, seconds=1.0, smooth="tight")
+        plan_many(box_world(), [START] * 3, [START, START + 0.1, GOAL], limits={"motions": 50})
         for resolution in (0.1, 0.5):
             GridMap(rng.random((20, 30)) < 0.1, resolution=resolution).world(0.4).valid(np.zeros((1, 2)))
     return dict(calls)

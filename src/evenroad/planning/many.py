@@ -78,12 +78,12 @@ def plan_many(
     --------
     >>> import evenroad as er
     >>> world = er.ArmWorld("ur5", "box-reach")
-    >>> home = world.robot.states["home"]
+    >>> home = world.robot.configuration("home")
     >>> er.plan_many(world, [home] * 2, [(0.5, -1.57, 0, -1.57, 0, 0), (3, 0.5, 0, 0, 0, 0)])
     PlanResults(2 queries: 1 solved, 1 goal_invalid)
     """
-    places, of = _read_worlds(worlds)
-    dim = places[0].space.dim
+    different, of = _read_worlds(worlds)
+    dim = different[0].space.dim
     first, last = as_batch("starts", starts, dim), as_batch("goals", goals, dim)
     count = len(first)
     if len(last) != count:
@@ -98,20 +98,20 @@ def plan_many(
     report = (lambda done: None) if progress is None else (lambda done: progress(done, count))
 
     def query(row: int) -> PlanResult:
-        return plan(places[of[row]], first[row], last[row], limits=budget, smooth=smooth, rng=variant)
+        return plan(different[of[row]], first[row], last[row], limits=budget, smooth=smooth, rng=variant)
 
-    ends = np.stack([first, last], axis=1)
-    solved = _by_compiled_code(places, of, ends, budget, smooth, variant, min(workers, 1024), report)
+    terminals = np.stack([first, last], axis=1)
+    solved = _by_compiled_code(different, of, terminals, budget, smooth, variant, min(workers, 1024), report)
     rest, others = np.setdiff1d(np.arange(count), solved.rows), []
     for result in in_order(query, ((row,) for row in rest.tolist()), workers):
         others.append(result)
         report(len(solved.rows) + len(others))
     report(count)
-    return joined(tuple(places), of, dim, solved, rest, others)
+    return joined(tuple(different), of, dim, solved, rest, others)
 
 
 def _read_worlds(worlds: Any) -> tuple[list[Any], Ints | None]:
-    """Return the different worlds, and which of them each query is asked in; None where there is one for all."""
+    """Return the different worlds, and the number of the world of each query; None where there is one for all."""
     if hasattr(worlds, "motion_valid"):
         return [worlds], None
     if not isinstance(worlds, Sequence) or isinstance(worlds, str) or not len(worlds):
@@ -119,7 +119,7 @@ def _read_worlds(worlds: Any) -> tuple[list[Any], Ints | None]:
             f"worlds must be a World, such as er.ArmWorld(robot, scene), or several, got {shown(worlds)}"
         )
     numbers: dict[int, int] = {}
-    places: list[Any] = []
+    different: list[Any] = []
     of = np.empty(len(worlds), dtype=np.int64)
     for row, world in enumerate(worlds):
         if id(world) not in numbers:
@@ -127,37 +127,37 @@ def _read_worlds(worlds: Any) -> tuple[list[Any], Ints | None]:
                 raise InvalidValue(
                     f"worlds must be Worlds, such as er.ArmWorld(robot, scene); row {row} is {shown(world)}"
                 )
-            if places and world.space.dim != places[0].space.dim:
+            if different and world.space.dim != different[0].space.dim:
                 raise InvalidValue(
-                    f"worlds must have one number of coordinates, {places[0].space.dim} in row 0; row {row} has"
+                    f"worlds must have one number of coordinates, {different[0].space.dim} in row 0; row {row} has"
                     f" {world.space.dim}"
                 )
-            numbers[id(world)] = len(places)
-            places.append(world)
+            numbers[id(world)] = len(different)
+            different.append(world)
         of[row] = numbers[id(world)]
-    return places, of
+    return different, of
 
 
 def _by_compiled_code(
-    places: list[Any],
+    different: list[Any],
     of: Ints,
-    ends: Floats,
+    terminals: Floats,
     budget: Budget,
     smooth: Smooth,
     variant: int,
     threads: int,
     report: Callable[[int], None],
 ) -> Part:
-    """Return the paths of the queries of arms, ends (m, 2, dim), that one call of compiled code each answers."""
-    dim, is_arm = ends.shape[2], np.array([isinstance(world, ArmWorld) for world in places])
+    """Return the paths of queries of arms that one call of compiled code answers; starts and goals are (m, 2, dim)."""
+    dim, is_arm = terminals.shape[2], np.array([isinstance(world, ArmWorld) for world in different])
     rows = np.flatnonzero(is_arm[of])
-    arms = [world for world, arm in zip(places, is_arm, strict=True) if arm]
+    arms = [world for world, arm in zip(different, is_arm, strict=True) if arm]
     smoothing, first = smoothing_of(smooth), ARM_TREES.stages[0][0]
     queries = ManyQueries(
         [world.checker for world in arms],
         [world.roomier.checker if smoothing == "apart" else None for world in arms],
         (np.cumsum(is_arm) - 1)[of[rows]],
-        np.ascontiguousarray(ends[rows]).reshape(-1, dim),
+        np.ascontiguousarray(terminals[rows]).reshape(-1, dim),
         drivers_of(dim, variant),
         first if budget.motions is None else min(first, budget.motions),
         np.inf if budget.seconds is None else budget.seconds,

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import counted, require_extra
+from evenroad._files import atomic_write
 from evenroad._threads import in_order
 from evenroad.errors import InvalidValue
 from evenroad.roadmap.result import PlanResult, Status
@@ -41,13 +42,13 @@ class PlanResults:
     worlds : tuple of World
         The different worlds.
     world_of : int64 ndarray, shape (m,)
-        Which of them each query was asked in.
+        Number of the world of each query.
 
     Examples
     --------
     >>> import evenroad as er
     >>> world = er.ArmWorld("ur5", "box-reach")
-    >>> home = world.robot.states["home"]
+    >>> home = world.robot.configuration("home")
     >>> results = er.plan_many(world, [home], [(0.5, -1.57, 0, -1.57, 0, 0)])
     >>> results.cost.round(2), results.path(0).shape
     (array([0.5]), (2, 6))
@@ -75,9 +76,29 @@ class PlanResults:
         return np.diff(self.offsets) > 0
 
     def path(self, row: int) -> Floats | None:
-        """Return the path of a query, (p, dim), or None; a negative row counts from the end.
+        """Return the path of a query.
 
-        Raises InvalidValue if there is no such row.
+        Parameters
+        ----------
+        row : int
+            Row of the query; a negative one counts from the end.
+
+        Returns
+        -------
+        ndarray, shape (p, dim), or None
+
+        Raises
+        ------
+        InvalidValue
+            If there is no such row.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> world = er.ArmWorld("ur5", "box-reach")
+        >>> home = world.robot.configuration("home")
+        >>> er.plan_many(world, [home], [home]).path(0).shape
+        (2, 6)
         """
         if not -len(self) <= row < len(self):
             raise InvalidValue(f"row must be one of {counted(len(self), 'query')}, got {row!r}")
@@ -105,7 +126,23 @@ class PlanResults:
     def to_parquet(self, file: str | os.PathLike[str]) -> None:
         """Write one row a query: ``status``, ``cost``, ``seconds``, ``message``, and ``path``, a list of lists.
 
-        NotAvailable without the extra ``parquet``; OSError if the file cannot be written.
+        Parameters
+        ----------
+        file : str or path-like
+
+        Raises
+        ------
+        NotAvailable
+            Without the extra ``parquet``.
+        BrokenFile
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> world = er.ArmWorld("ur5", "box-reach")
+        >>> home = world.robot.configuration("home")
+        >>> er.plan_many(world, [home], [home]).to_parquet("plans.parquet")  # doctest: +SKIP
         """
         arrow = require_extra("pyarrow", "parquet", "to_parquet")
         parquet = require_extra("pyarrow.parquet", "parquet", "to_parquet")
@@ -117,7 +154,8 @@ class PlanResults:
             "message": [self.messages.get(row, "") for row in range(len(self))],
             "path": arrow.LargeListArray.from_arrays(self.offsets, waypoints),
         }
-        parquet.write_table(arrow.table(columns), os.fspath(file))
+        with atomic_write(file) as stream:
+            parquet.write_table(arrow.table(columns), stream)
 
 
 class Part(NamedTuple):
