@@ -7,6 +7,9 @@ The family ``apart`` has start and goal at opposite faces: slots, forests, rooms
 the periodic one: balls and boxes.  Roadmaps are ``k symmetrised``; start and goal are joined by the rule alone
 ("rule"), and to the 100 nearest milestones as well, as a plan does ("plan").  All candidates see the same worlds.  A
 difference is from `--beside`, in points, paired by world, with its standard error.
+
+World after world takes the next of eight numbers of points, 0.88 to 1.12 times that of the family: which lattice is
+the best one depends on the number by chance.  ``even`` is what a planner takes, contracted for its k.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ from studies.benchmarks.rows import parser_of, write_rows
 
 from evenroad._arrays import Bools
 from evenroad.errors import NotAvailable
+from evenroad.points.samplers.even import CONTRACTED_FROM, contraction
 from evenroad_studies.bench.task import Problem
 from evenroad_studies.candidates import CANDIDATES
 from evenroad_studies.connected import connected
@@ -30,6 +34,8 @@ HOW = ("rule", "plan")
 CELLS = [f"{how} {k}" for how in HOW for k in KS]
 FIRST_FAIR = 1_200_000
 """Number of the first periodic world: lower ones were looked at before."""
+TIMES = (0.88, 0.92, 0.95, 0.98, 1.0, 1.03, 1.07, 1.12)
+"""Numbers of points over that of the family."""
 Make = Callable[[int], Problem]
 
 
@@ -48,13 +54,17 @@ def problems(use: Use, d: int, periodic: bool) -> Iterator[tuple[str, Make]]:
             yield kind.name.lower(), lambda i, k=kind: make(use, k, d, SIZES[use, k, d], i)
 
 
-def measured(make_problem: Make, names: list[str], n: int, d: int, worlds: range) -> Bools:
+def measured(make_problem: Make, names: list[str], counts: Sequence[int], d: int, worlds: range) -> Bools:
     """Return whether each candidate joins start and goal, (worlds, candidates, 2, ks)."""
     found = np.zeros((len(worlds), len(names), 2, len(KS)), dtype=np.bool_)
     for i, number in enumerate(worlds):
-        problem = make_problem(number)
+        problem, n = make_problem(number), counts[number % len(counts)]
         for j, name in enumerate(names):
-            found[i, j] = connected(problem, CANDIDATES[name](n, d, number), KS)
+            points = CANDIDATES[name](n, d, number)
+            shares = [contraction(k) if name == "even" and d >= CONTRACTED_FROM else 1.0 for k in KS]
+            for share in set(shares):
+                here = [at for at, each in enumerate(shares) if each == share]
+                found[i, j][:, here] = connected(problem, 0.5 + share * (points - 0.5), [KS[at] for at in here])
     return found
 
 
@@ -91,7 +101,7 @@ def main() -> None:
     parser.add_argument("--use", choices=[use.name.lower() for use in Use], default="tuning")
     parser.add_argument("--fair", action="store_true", help="periodic worlds instead")
     parser.add_argument("-d", type=int, nargs="*", default=list(COUNTS))
-    parser.add_argument("-n", type=int, help="points; default: those of the calibration")
+    parser.add_argument("-n", type=int, help="points; default: eight numbers about those of the calibration")
     parser.add_argument("--worlds", type=int, default=60, help="of each kind")
     parser.add_argument("--first", type=int, default=0, help="number of the first world")
     parser.add_argument("--only", nargs="*", default=list(CANDIDATES))
@@ -101,12 +111,14 @@ def main() -> None:
     use, rows = Use[options.use.upper()], []
     worlds = range(options.first, options.first + options.worlds)
     for d in options.d:
-        n = options.n or COUNTS[d]
-        names = available(options.only, n, d)
+        counts = [options.n] if options.n else [round(share * COUNTS[d]) for share in TIMES]
+        n = COUNTS[d] if len(counts) > 1 else counts[0]
+        names = available(options.only, counts[0], d)
         kinds = problems(use, d, options.fair)
-        found = {kind: measured(make_problem, names, n, d, worlds) for kind, make_problem in kinds}
+        found = {kind: measured(make_problem, names, counts, d, worlds) for kind, make_problem in kinds}
         found["all"] = np.concatenate(list(found.values()))
-        here = {"use": options.use, "family": "fair" if options.fair else "apart", "d": str(d), "n": str(n)}
+        here = {"use": options.use, "family": "fair" if options.fair else "apart", "d": str(d)}
+        here["n"] = " ".join(map(str, counts))
         for kind, each in found.items():
             rows += [here | {"kind": kind} | row for row in rows_of(each, names, options.beside)]
         for row in rows[-len(names) :]:

@@ -29,14 +29,11 @@ def _pool(n: int, d: int, sets: int) -> Printed:
     return Printed(n, d, sets, end="sigmoid", steps=10_000)
 
 
-_SMALL = ((64, 2), (128, 2), (256, 2), (128, 3))
-POOLS = {f"d{d}-n{n}-{sets}": _pool(n, d, sets) for sets in (8, 16, 32) for n, d in _SMALL}
-POOLS |= {
-    "d5-n256-8": _pool(256, 5, 8),
-    "d2-n128-8-clamp": replace(_pool(128, 2, 8), end="clamp"),
-    "d2-n128-8-radius": replace(_pool(128, 2, 8), radius=0.35),
-    "d2-n128-8-long": replace(_pool(128, 2, 8), steps=40_000),
-}
+POOLS = {f"d{d}-n{n}-8": _pool(n, d, 8) for n, d in ((64, 2), (128, 2), (256, 2), (128, 3), (256, 5))}
+POOLS |= {"d2-n128-8-clamp": replace(_pool(128, 2, 8), end="clamp")}
+POOLS |= {f"d2-n{n}-{sets}": _pool(n, 2, sets) for n in (64, 128) for sets in (16, 32)}
+POOLS |= {"d2-n128-8-radius": replace(_pool(128, 2, 8), radius=0.35)}
+POOLS |= {"d2-n128-8-long": replace(_pool(128, 2, 8), steps=40_000), "d2-n256-16": _pool(256, 2, 16)}
 """Name -> what is trained, in the order in which it is."""
 
 

@@ -99,15 +99,14 @@ def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
     assert even_points(40, space, KNearest(4), rng=3) == draw("even", 40, space.cube_dim, rng=3)
 
 
-@pytest.mark.parametrize(("d", "rule", "near"), [
-    (10, KNearest(4), True), (12, KNearest(6), True), (10, KNearest(7), False), (7, KNearest(4), True),
-    (6, KNearest(4), True), (4, KNearest(6), True), (3, KNearest(4), False),
-    (10, Radius(0.5), False), (10, None, False),
+@pytest.mark.parametrize(("d", "rule", "share"), [
+    (10, KNearest(4), 0.9), (12, KNearest(6), 0.9), (10, KNearest(10), 0.94), (7, KNearest(20), 0.97),
+    (4, KNearest(6), 0.9), (3, KNearest(4), None), (10, Radius(0.5), None), (10, None, None),
 ])  # fmt: skip
-def test_in_a_box_of_many_dimensions_points_of_a_sparse_roadmap_are_drawn_in(d, rule, near):
+def test_in_a_box_of_many_dimensions_points_are_contracted_the_more_the_fewer_neighbours_they_have(d, rule, share):
     points = draw("even", 30, d, rng=3)
     box = BoxSpace([0.0] * d, [2.0] * d)
-    assert even_points(30, box, rule, rng=3) == (contracted(points) if near else points)
+    assert even_points(30, box, rule, rng=3) == (contracted(points, share) if share else points)
 
 
 @pytest.mark.parametrize("rule", [KNearest(5), KNearest(15)])

@@ -12,7 +12,7 @@ from evenroad.roadmap.rules import Rule
 from evenroad.space import SO3, BoxSpace, Product, Space
 
 SPARSE = 6
-"""Number of neighbours up to which points are chosen for connectivity rather than for coverage."""
+"""Number of neighbours up to which poses are chosen for connectivity rather than for coverage."""
 
 
 def as_points(points: PointSet | int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0) -> PointSet:
@@ -29,21 +29,21 @@ def as_points(points: PointSet | int, space: Space, rule: Rule | None = None, *,
 
 
 def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0) -> PointSet:
-    """Return n points of the space's cube: `even`, but others in SE(3) and for sparse roadmaps.
+    """Return n points of the space's cube: `even`, but others in SE(3).
 
     In SE(3) evenness gains nothing: points there are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
-    points.  In a box of four or more dimensions, for a rule of at most 6 neighbours, they are contracted to the
-    middle.
+    points.  In a box of four or more dimensions they are contracted to the middle, most for a rule of few neighbours.
     """
     # Imported late: most plans draw no points.
     from evenroad.points.samplers import make_sampler
-    from evenroad.points.samplers.even import CONTRACTED_FROM, Sliced, contracted
+    from evenroad.points.samplers.even import CONTRACTED_FROM, Sliced, contracted, contraction
 
     d = space.cube_dim
     k = None if rule is None else rule.reach(n, space).k
-    sparse = k is not None and k <= SPARSE
     parts = space.parts if isinstance(space, Product) else ()
     if [(type(part), part.dim) for part in parts] == [(BoxSpace, 3), (SO3, 4)]:
-        return (Sliced() if sparse else make_sampler("sobol")).draw(n, d, rng=rng)
+        return (Sliced() if k is not None and k <= SPARSE else make_sampler("sobol")).draw(n, d, rng=rng)
     points = make_sampler("even").draw(n, d, rng=rng)
-    return contracted(points) if sparse and d >= CONTRACTED_FROM and isinstance(space, BoxSpace) else points
+    if k is None or d < CONTRACTED_FROM or not isinstance(space, BoxSpace):
+        return points
+    return contracted(points, contraction(k))

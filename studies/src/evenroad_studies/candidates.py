@@ -103,7 +103,7 @@ def _drawn(name: str, n: int, d: int, world: int) -> Floats:
 
 
 def _from_bank(name: str, n: int, d: int, world: int) -> Floats:
-    return randomise(draw(name, n, d, rng=world), {Symmetry.PERMUTATION}, rng=world).points
+    return randomise(draw(name, n, d, rng=world % POOL), {Symmetry.PERMUTATION}, rng=world).points
 
 
 def inset(share: float, make: Draw, n: int, d: int, world: int) -> Floats:
@@ -126,6 +126,6 @@ CANDIDATES: dict[str, Draw] = {
 """Name -> how the set of a world is drawn."""
 CANDIDATES |= {
     f"{name} {share:g}": partial(inset, share, CANDIDATES[name])
-    for name in ("even", "sobol", "hickernell")
+    for name in ("korobov", "lattice", "sobol", "hickernell")
     for share in (0.95, 0.9, 0.85)
 }

@@ -75,7 +75,7 @@ def test_a_size_that_a_pool_has_not_and_a_dimension_that_the_lattice_has_not_are
 SPACE = SE3((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), weights=(1.0, 0.3))
 
 
-@pytest.mark.parametrize(("space", "rule"), [(SPACE, KNearest(4)), (BoxSpace([0.0] * 9, [1.0] * 9), KNearest(10))])
+@pytest.mark.parametrize(("space", "rule"), [(SPACE, KNearest(4)), (BoxSpace([0.0] * 3, [1.0] * 3), KNearest(10))])
 def test_even_is_drawn_for_the_space_and_the_rule_as_a_planner_draws_it(space, rule):
     d = space.cube_dim
     given, _ = draw_set("even", 30, d, 0, np.random.default_rng(2), (space, rule))

@@ -22,10 +22,10 @@ IN_ALL_DIRECTIONS, MOST = (3, 4), 2**20
 """Dimensions in which `even` is A_d*, up to this number of points: it takes several times their memory."""
 
 CONTRACTED_FROM = 4
-"""Dimension from which on the points of a sparse roadmap are contracted to the middle of a box."""
+"""Dimension from which on the points of a roadmap in a box are contracted to its middle."""
 
 CONTRACTION = 0.9
-"""Factor by which the points of a sparse roadmap are contracted to the middle."""
+"""Least factor by which they are: that of a roadmap with at most six neighbours."""
 
 
 @dataclass(frozen=True)
@@ -56,11 +56,18 @@ class Even(Korobov):
         return vector, f"z={' '.join(map(str, vector))}"
 
 
+def contraction(k: int) -> float:
+    """Return the factor for a roadmap of k neighbours: 1 - 0.6 / k, and at least :data:`CONTRACTION`.
+
+    With few neighbours motions are long, and shorter ones gain more than the corners that are given up.
+    """
+    return max(CONTRACTION, 1.0 - 0.6 / k)
+
+
 def contracted(points: PointSet, share: float = CONTRACTION) -> PointSet:
     """Return the points contracted to the middle of the cube by a factor, 0 < share <= 1.
 
-    Motions between them are shorter, which pays where each point has few neighbours:
-    ``studies/docs/which-points.md`` has the evidence.
+    Motions between them are shorter: ``studies/docs/which-points.md`` has the evidence.
     """
     method = f"{points.origin.method}, drawn in to {share:g}"
     return PointSet(0.5 + share * (points.points - 0.5), points.origin).with_origin(method=method)
