@@ -27,18 +27,19 @@ MAY_IMPORT = {
     "world": BASE | {"space", "geometry"},
     "roadmap": BASE | {"points", "space", "world"},
     "qmc": BASE | {"points"},
-    "planning": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
+    "constraints": BASE | {"space", "geometry", "world", "robot"},
+    "planning": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "constraints"},
     "io": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
     "testing": BASE | {"space", "world"},
-    "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "planning"},
+    "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "planning", "constraints"},
     "robot": BASE | {"space", "geometry", "world"},
     "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "planning"},
-    "trajectory": BASE | {"space", "world", "robot"},
-    "task": BASE | {"space", "geometry", "world", "robot", "roadmap", "planning", "trajectory"},
+    "trajectory": BASE | {"space", "world", "robot", "constraints"},
+    "task": BASE | {"space", "geometry", "world", "robot", "roadmap", "planning", "trajectory", "constraints"},
     "adapters": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "planning", "trajectory"},
     "cli": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}
-    | {"planning", "io", "viz", "trajectory", "task"},
+    | {"planning", "io", "viz", "trajectory", "task", "constraints"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""

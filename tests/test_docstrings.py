@@ -10,16 +10,17 @@ import pytest
 
 import evenroad as er
 
-MODULES = ("qmc", "spaces", "io", "testing")
+MODULES = ("constraints", "qmc", "spaces", "io", "testing")
 """Modules of the root whose functions and classes are for users; of `errors` the classes are, by their names alone."""
 
 OF_PLANNERS = {
     *("apart", "connect", "connect_anew", "may_connect", "shorten", "explain_start", "with_bodies"),
+    *("bound", "residual", "derivative", "bend", "off", "words"),
     *("solve", "validate", "motion_certified", "path_clearance", "nearest_along", "fingerprint"),
 }
 """Methods by which planners and files ask a world; users have `result` and `er.plan` for them."""
 
-NOT_YET = {*("Roadmap", "Status", "CartesianLine", "OrientationConstraint", "load_roadmap")}
+NOT_YET = {*("Roadmap", "Status", "CartesianLine", "load_roadmap")}
 """Names of the root that are about to move or to go."""
 
 

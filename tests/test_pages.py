@@ -116,6 +116,8 @@ LEAVES = {
     "07": ("scanned-table.png",),
     "08": tuple(f"out/reach.{suffix}" for suffix in ("csv", "gif", "json", "script", "yaml")),
     "11": ("weld.png",),
+    "12": ("door.png",),
+    "13": ("carried.png",),
 }
 """Number of an example -> the files that it leaves in the folder."""
 

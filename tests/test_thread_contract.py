@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
+from evenroad.constraints.kept_world import kept_world
 from evenroad.geometry import Mesh, PointCloud, TriangleMesh
 from evenroad.planning import GrowingPRM
 from evenroad.planning.connectors import ARM_TREES
@@ -18,8 +19,6 @@ from evenroad.roadmap import Budget, KNearest, Status
 from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.robot import ArmWorld, Obstacle, link_poses
 from evenroad.robot.certified import CertifiedWorld
-from evenroad.robot.chain import chain_of
-from evenroad.robot.orientation_constraint import orientation_world
 from evenroad.robot_roadmap.build import arm_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.space.path import subdivide
@@ -98,9 +97,8 @@ def an_arm_among_clouds_and_meshes():
 
 def an_upright_arm():
     world = er.ArmWorld(robot(), box_scene())
-    tip = chain_of(world.robot, "wrist3")
-    upright = orientation_world(world, tip, er.OrientationConstraint(0.5), ends()[0, 0])
-    return [lambda a=a: upright.tilts(a) for a in ends()[:6]] + verdicts(upright, ends())
+    upright = kept_world(world, (er.constraints.KeepUpright(0.5),), ends()[0, 0], "wrist3")
+    return [lambda a=a: upright.shares(a) for a in ends()[:6]] + verdicts(upright, ends())
 
 
 def trees():

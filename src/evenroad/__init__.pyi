@@ -1,4 +1,5 @@
 from evenroad import adapters as adapters
+from evenroad import constraints as constraints
 from evenroad import errors as errors
 from evenroad import io as io
 from evenroad import qmc as qmc
@@ -25,7 +26,6 @@ from evenroad.roadmap import Roadmap as Roadmap
 from evenroad.roadmap import Status as Status
 from evenroad.robot import ArmWorld as ArmWorld
 from evenroad.robot import CartesianLine as CartesianLine
-from evenroad.robot import OrientationConstraint as OrientationConstraint
 from evenroad.robot import PoseGoal as PoseGoal
 from evenroad.robot import Robot as Robot
 from evenroad.robot import Scene as Scene

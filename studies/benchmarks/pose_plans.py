@@ -24,7 +24,8 @@ from pathlib import Path
 import numpy as np
 from studies.benchmarks.rows import parser_of, write_rows
 
-from evenroad import CartesianLine, OrientationConstraint, PoseGoal
+from evenroad import CartesianLine, PoseGoal
+from evenroad.constraints import KeepUpright
 from evenroad.geometry import Pose
 from evenroad.planning import plan
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, link_poses, load_robot
@@ -86,7 +87,7 @@ def rows(name: str, count: int, seed: int, largest: float, seconds: float) -> It
     """Yield the rows of one robot."""
     robot, tip = load_robot(name), TIPS[name]
     ways = {
-        "upright": dict(constraints=OrientationConstraint(largest)),
+        "upright": dict(constraints=KeepUpright(largest)),
         "straight": dict(constraints=CartesianLine(LINE, away="up")),
     }
     taken: dict[str, list[tuple[bool, float, float, float]]] = {row: [] for row in ("all", "nearest", *ways)}

@@ -217,10 +217,10 @@ def test_a_continuous_joint_goes_on_where_the_motion_before_ended(tmp_path):
 
 
 def test_a_trajectory_has_names_and_limits_of_the_arm_and_keeps_the_constraints_of_a_step(world):
-    upright = er.OrientationConstraint(0.2)
+    upright = er.constraints.KeepUpright(0.2)
     result = Task([MoveTo([0.6, *HOME[1:]], constraints=upright), MoveTo(HOME)]).plan(world, HOME)
     (motion, _), trajectory = result.motions, result.trajectory(speed=0.5)
-    assert motion.constraints == er.OrientationConstraint(0.2, tip="tool0")
+    assert motion.constraints == er.constraints.KeepUpright(0.2, tip="tool0")
     assert trajectory.names == world.robot.group
     assert trajectory.limits.along_path is None
 

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 
 import evenroad as er
+from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.planning.read_request import arm_request
 from evenroad.robot.cartesian_line import CartesianLine
-from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.robot.scene import Scene
 from evenroad.trajectory import arm_trajectory
 from evenroad.trajectory.tip_constraints import constrained_world
@@ -34,10 +34,10 @@ def test_what_is_driven_keeps_upright_as_the_path_was_asked_to(tilt, kept):
     world, goal = free_world(), DOWN + np.array([0.5, 0.0, 0.0, tilt, 0.0, 0.0])
     assert arm_trajectory(world, [DOWN, goal]).duration > 0.0
     if kept:
-        assert arm_trajectory(world, [DOWN, goal], constraints=OrientationConstraint(0.05)).proof == "certified"
+        assert arm_trajectory(world, [DOWN, goal], constraints=KeepUpright(0.05)).proof == "certified"
         return
     with pytest.raises(NotAvailable, match="not proved"):
-        arm_trajectory(world, [DOWN, goal], constraints=OrientationConstraint(0.05))
+        arm_trajectory(world, [DOWN, goal], constraints=KeepUpright(0.05))
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +66,7 @@ def test_a_way_that_is_not_straight_is_told(straight_path):
 
 def test_a_path_without_places_is_named():
     with pytest.raises(InvalidValue, match="two different waypoints"):
-        arm_trajectory(free_world(), np.zeros((0, 6)), constraints=OrientationConstraint(0.1))
+        arm_trajectory(free_world(), np.zeros((0, 6)), constraints=KeepUpright(0.1))
 
 
 @pytest.mark.parametrize("blocked", [False, True])
@@ -91,7 +91,7 @@ def test_a_plan_that_stays_upright_is_driven_by_its_arm():
     """With its names and limits, and upright: not as a point in a space, one unit a second."""
     home = [-1.2, -2.0, 1.9, -1.5, -np.pi / 2, 0.0]
     world = er.ArmWorld("ur5", er.Scene([]))
-    upright = er.OrientationConstraint(0.05)
+    upright = er.constraints.KeepUpright(0.05)
     trajectory = er.plan(world, home, [1.2, *home[1:]], constraints=upright).trajectory()
     assert trajectory.names == world.robot.group
     assert trajectory.limits == arm_trajectory(world, [home, [1.2, *home[1:]]], constraints=upright).limits

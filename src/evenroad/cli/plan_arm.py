@@ -19,6 +19,7 @@ from evenroad.cli.plan_parts import (
 )
 from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
+from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.planning.plan import Options, finished, solve
@@ -28,7 +29,6 @@ from evenroad.roadmap import PlanResult
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.constraint import Constraint
-from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 
 
@@ -154,9 +154,7 @@ def _constraints(plan: PlanArm) -> Constraint | None:
     if plan.upright is not None:
         if plan.roadmap is not None:
             raise InvalidValue("--upright goes without --roadmap: the roadmap's motions are not upright")
-        upright = OrientationConstraint(
-            math.radians(plan.upright) if plan.deg else plan.upright, plan.upright_axis, plan.tip
-        )
+        upright = KeepUpright(math.radians(plan.upright) if plan.deg else plan.upright, plan.upright_axis, plan.tip)
     elif plan.upright_axis is not None:
         raise InvalidValue("--upright-axis goes with --upright")
     return straight & upright if straight and upright else straight or upright

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.spatial.transform import Rotation, RotationSpline
 
 from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
+
+if TYPE_CHECKING:
+    # Loaded where curves are made: a plan without them does without it.
+    from scipy.spatial.transform import Rotation
 
 STEP, TURN = 0.005, 0.05
 """Largest distance and turn between two neighbouring poses of a curve [m, rad]."""
@@ -69,6 +72,9 @@ def polyline(poses: Sequence[Pose], blend: float = 0.0) -> Curve:
 
 def spline(poses: Sequence[Pose]) -> Curve:
     """Return the smooth curve that passes through two poses or more: a cubic spline over the lengths between them."""
+    from scipy.interpolate import CubicSpline
+    from scipy.spatial.transform import RotationSpline
+
     at, turned = _read(poses)
     if len(at) < 3:
         return polyline(poses)
@@ -91,6 +97,8 @@ def circle(start: Pose, via: Pose, to: Pose) -> Curve:
 
     Raises InvalidValue if the three are on a line.
     """
+    from scipy.spatial.transform import RotationSpline
+
     at, turned = _read([start, via, to])
     a, b = at[1] - at[0], at[2] - at[0]
     normal = np.cross(a, b)
@@ -118,6 +126,8 @@ def circle(start: Pose, via: Pose, to: Pose) -> Curve:
 
 
 def _read(poses: Sequence[Pose]) -> tuple[Floats, Rotation]:
+    from scipy.spatial.transform import Rotation
+
     at = np.array([pose.xyz for pose in poses])
     return at, Rotation.from_matrix(np.array([pose.rotation for pose in poses]).reshape(-1, 3, 3))
 
@@ -128,6 +138,8 @@ def _text(point: Floats) -> str:
 
 def _turned(a: Rotation, b: Rotation, share: Floats) -> Rotation:
     """Return the rotations at shares, (n,), of the shortest turns from each of `a` to that of `b`."""
+    from scipy.spatial.transform import Rotation
+
     return a * Rotation.from_rotvec(share[:, np.newaxis] * (a.inv() * b).as_rotvec())
 
 
@@ -154,6 +166,8 @@ def _count(lengths: Floats, turns: Floats, bent: Floats) -> Ints:
 
 def _parabolas(a: Floats, c: Floats, b: Floats) -> tuple[Floats, Ints]:
     """Return poses along parabolas from `a` towards `c` to `b`, (n, 12) each, and the rows at which they end."""
+    from scipy.spatial.transform import Rotation
+
     turned = [Rotation.from_matrix(each[:, :9].reshape(-1, 3, 3)) for each in (a, c, b)]
     legs = np.linalg.norm(c[:, 9:] - a[:, 9:], axis=1) + np.linalg.norm(b[:, 9:] - c[:, 9:], axis=1)
     turns = (turned[0].inv() * turned[1]).magnitude() + (turned[1].inv() * turned[2]).magnitude()

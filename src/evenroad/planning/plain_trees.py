@@ -12,6 +12,7 @@ from time import perf_counter as now
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
+from evenroad.constraints.kept_world import KeptWorld
 from evenroad.roadmap.connector import Connection
 from evenroad.world import World
 
@@ -54,15 +55,16 @@ def grow_trees(
 ) -> Connection:
     """Join a start, (dim,), to one of the goals, (g, dim), that are free; each variant scrambles the sequence anew."""
     trees = [_Tree(start[np.newaxis]), _Tree(np.asarray(goals, dtype=np.float64))]
-    deadline, motions, turn = now() + seconds, 0, 0
-    samples = _samples(world, FIRST, variant)
-    step = STEP * float(np.median(world.space.distance(samples[:128], samples[128:256])))
+    deadline, motions, turn, step = now() + seconds, 0, 0, np.inf
+    samples = np.empty((0, len(start)))
     # The straight motions to the goals come first: many queries need no trees.
     ahead = np.asarray(goals, dtype=np.float64)
     for first in range(-BATCH, MOST_SAMPLES, BATCH):
         own, other = trees[turn], trees[1 - turn]
         if first >= len(samples):
-            samples = _samples(world, 2 * len(samples), variant)
+            samples = _samples(world, max(FIRST, 2 * len(samples)), variant)
+            if first == 0:
+                step = STEP * float(np.median(world.space.distance(samples[:128], samples[128:256])))
         targets = ahead if first < 0 else samples[first : first + BATCH]
         near = own.nearest(world, targets)
         new = _towards(world, own.nodes[near], targets, np.inf if first < 0 else step)
@@ -90,7 +92,9 @@ def _samples(world: World, n: int, variant: int) -> Floats:
     """Return n configurations, (n, dim); fewer of them are the first of more."""
     from evenroad.points.samplers import make_sampler
 
-    return world.space.from_cube(make_sampler("sobol").draw(n, world.space.cube_dim, rng=variant).points)
+    # Under constraints nodes are projected, not what they grow towards.
+    space = world.world.space if isinstance(world, KeptWorld) else world.space
+    return space.from_cube(make_sampler("sobol").draw(n, space.cube_dim, rng=variant).points)
 
 
 def _reach(world: World, tree: _Tree, target: Floats, step: float, most: int) -> tuple[int, int]:

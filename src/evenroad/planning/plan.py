@@ -11,6 +11,7 @@ from evenroad._above import above
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad._shared import once
+from evenroad.constraints.kept_world import KeptWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.enclosed import with_reasons
@@ -97,8 +98,8 @@ def plan(
     certified : bool
         Check once more that every motion is proved free throughout.  Where one is not, the status is
         ``not_certified``, and the message says which.
-    constraints : CartesianLine, OrientationConstraint, or both, optional
-        Constraints of an arm's tip; ``line & orientation`` holds both.
+    constraints : Constraint, optional
+        Of an arm, such as ``er.CartesianLine(0.1)`` or ``er.constraints.KeepUpright(0.1)``; ``one & other`` holds both.
     degrees : bool
         Angles in texts are degrees.
     tip, frame : str
@@ -190,7 +191,9 @@ def solve(request: Request, planner: Planner | None, options: Options) -> PlanRe
         budget, connector = options.budget, connector_of(world)
         how = dict(budget=budget, smooth=smooth, rng=options.rng, apart=apart, connector=connector)
         problem = Problem(world, start, goals, **how)  # type: ignore[arg-type]
-        return with_reasons(world, (default_planner(world) if planner is None else planner).solve(problem))
+        found = (default_planner(world) if planner is None else planner).solve(problem)
+        # Under constraints most short motions leave them: that says nothing.
+        return found if isinstance(world, KeptWorld) else with_reasons(world, found)
 
     if motion is None:
         return plan_once(request.world, request.start, request.goals, options.smooth)

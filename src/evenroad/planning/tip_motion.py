@@ -1,13 +1,16 @@
-"""Constraints of an arm's tip: straight lines at its start and goal, and an upright axis all along."""
+"""Constraints of an arm: straight lines of its tip at start and goal, and what it keeps all along."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.constraints.keep import Keep
+from evenroad.constraints.kept_world import KeptWorld, keeps_of, kept_line, kept_world
 from evenroad.errors import InvalidValue
 from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult, Status
@@ -18,12 +21,14 @@ from evenroad.robot.cartesian_line import CartesianLine, line_from
 from evenroad.robot.cartesian_path import Followed
 from evenroad.robot.chain import Chain, chain_of, default_tip
 from evenroad.robot.constraint import Constraint, part_of
-from evenroad.robot.orientation_constraint import OrientationConstraint, OrientationWorld, orientation_world
 from evenroad.space.path import path_length
 from evenroad.world import World
 
 LINES = 16
 """Largest number of goals, the nearest to which a straight line leads."""
+
+_TRIED = 0, 1, 4, 16
+"""Numbers of nearest goals to which one motion is tried, all of a number together, before trees grow."""
 
 PlanOnce = Callable[[World, Floats, Floats, Smooth], PlanResult]
 """A function that plans in a world from a start, (dim,), to goals, (g, dim), and shortens the path or not."""
@@ -54,56 +59,73 @@ class TipMotion:
     """How an arm moves under constraints of its tip: along Cartesian lines, with an orientation, or both."""
 
     line: CartesianLine | None = None
-    orientation: OrientationConstraint | None = None
+    keeps: tuple[Keep, ...] = ()
 
     @classmethod
     def of(cls, constraints: Constraint | None) -> TipMotion:
         """Return the motion under these constraints; InvalidValue for what is no constraint."""
-        return cls(part_of(constraints, CartesianLine), part_of(constraints, OrientationConstraint))
+        return cls(part_of(constraints, CartesianLine), keeps_of(constraints))
 
     def plan(self, request: Request, plan_once: PlanOnce, smooth: Smooth) -> PlanResult:
         """Plan with `plan_once` under the constraints.
 
         Lines come first: the plan leads from the end of the line at the start to the beginnings of the lines to goals.
-        The result has the largest deviations, measured on fine grids.
+        The result has the largest deviations: bounds on them.
         """
         world = request.world
         if not isinstance(world, ArmWorld):
-            raise InvalidValue(f"constraints are those of an arm's tip, got {world!r}")
-        if self.orientation is None:
+            raise InvalidValue(f"constraints are those of an arm, got {world!r}")
+        if not self.keeps:
             return _between_lines(request, self.line, plan_once, world, smooth)
-        oriented = orientation_world(world, _chain(request, self.orientation.tip), self.orientation, request.start)
-        if (tilted := _tilted(request, oriented)) is not None:
-            return tilted
+        kept = kept_world(world, self.keeps, request.start, request.tip)
+        if (refusal := _off(request, kept)) is not None:
+            return refusal
 
-        def plan_with_orientation(_: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
-            return _through(oriented, plan_once(oriented, start, goals, False), smooth)
+        def plan_kept(_: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
+            found = _straight(kept, start, goals)
+            return _through(kept, plan_once(kept, start, goals, False) if found is None else found, smooth)
 
-        return _between_lines(request, self.line, plan_with_orientation, oriented, smooth)
+        return _between_lines(request, self.line, plan_kept, kept, smooth)
 
 
-def _tilted(request: Request, world: OrientationWorld) -> PlanResult | None:
-    """Return a result if the start, or every goal, is tilted too much."""
-    start, goals = world.tilts(request.start[np.newaxis])[0], world.tilts(request.goals)
-    if start > world.tolerance:
-        return refused(request, Status.START_INVALID, f"at the start {world.explain(request.start)}")
-    if goals.min() > world.tolerance:
-        best = request.goals[int(goals.argmin())]
+def _off(request: Request, world: KeptWorld) -> PlanResult | None:
+    """Return a result if the start, or every goal, is off the constraints."""
+    start, goals = world.shares(request.start[np.newaxis])[0], world.shares(request.goals)
+    if start.max() > 1.0:
+        return refused(request, Status.START_INVALID, f"at the start {world.exceeded(start)}")
+    if goals.max(axis=1).min() > 1.0:
+        best = goals[int(goals.max(axis=1).argmin())]
         which = "the goal" if len(goals) == 1 else f"every one of {len(goals)} goals; at the nearest"
-        return refused(request, Status.GOAL_INVALID, f"at {which} {world.explain(best)}")
+        return refused(request, Status.GOAL_INVALID, f"at {which} {world.exceeded(best)}")
     return None
 
 
-def _through(world: OrientationWorld, result: PlanResult, shorten: Smooth) -> PlanResult:
-    """Return a plan along upright milestones with all states of its path, and its largest tilt."""
+def _straight(world: KeptWorld, start: Floats, goals: Floats) -> PlanResult | None:
+    """Return the plan along one projected motion to one of the nearest goals; None where there is none."""
+    if not world.valid(start[np.newaxis])[0]:
+        return None
+    away = world.space.distance(np.broadcast_to(start, goals.shape), goals)
+    rows = np.flatnonzero(world.valid(goals))
+    rows = rows[np.argsort(away[rows], kind="stable")]
+    for begin, end in pairwise(_TRIED):
+        some = rows[begin:end]
+        free = np.flatnonzero(world.motion_valid(np.repeat(start[np.newaxis], len(some), axis=0), goals[some]))
+        if len(free):
+            row = int(some[free[0]])
+            path, cost = np.stack([start, goals[row]]), float(away[row])
+            found = dict(goal_index=row, path=path, milestone_path=path, proof=world.proof, planner="trees")
+            return make_result(world, start, goals, Status.SOLVED, "", cost=cost, milestone_cost=cost, **found)
+    return None
+
+
+def _through(world: KeptWorld, result: PlanResult, shorten: Smooth) -> PlanResult:
+    """Return a plan along projected milestones with all states of its path, and how far it is off at most."""
     if result.path is None:
         return result
-    path, tilt = world.path_through(result.path, shorten=bool(shorten))
-    if tilt > world.tolerance:
-        message = f"on the path that was found {world.tilted(tilt)}"
-        return replace(result, status=Status.NOT_CONNECTED, message=message, path=None, cost=None, proof=None)
-    raw = path if not shorten else world.path_through(result.path, shorten=False)[0]
-    return _with_path(world, result, path, raw, {"tilt_rad": tilt})
+    raw = world.path_through(result.path)
+    # One motion is as short as can be.
+    path = world.shortened(raw) if shorten and len(result.path) > 2 else raw
+    return _with_path(world, result, path, raw, world.deviation(world.largest(path)))
 
 
 def _between_lines(
@@ -150,20 +172,15 @@ def _between_lines(
     whole = [np.concatenate([leaving.path[:-1], waypoints, last.path[::-1][1:]]) for waypoints in (result.path, raw)]
     off = {name: max(getattr(leaving, name), getattr(last, name)) for name in ("off_m", "off_rad")}
     deviation = result.deviation | {"line_m": off["off_m"], "line_rad": off["off_rad"]}
-    if isinstance(within, OrientationWorld):
-        tilted = [within.largest_tilt(line.path) for line in (leaving, last)]
-        deviation |= {"tilt_rad": max(deviation.get("tilt_rad", 0.0), *tilted)}
+    if isinstance(within, KeptWorld):
+        deviation |= within.deviation(within.largest(whole[0]))
     return _with_path(request.world, result, whole[0], whole[1], deviation)
 
 
 def _line(within: World, world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float) -> Followed:
-    """Return a straight line, or refuse it where it tilts what has to stay upright, maybe another link."""
+    """Return a straight line, or refuse it where it does not keep constraints, maybe those of another link."""
     line = line_from(world, chain, straight, q, length)
-    if line.why or not isinstance(within, OrientationWorld):
-        return line
-    if (tilt := within.largest_tilt(line.path)) <= within.tolerance:
-        return line
-    return Followed(line.path[:1], f"along it {within.tilted(tilt)}")
+    return line if line.why or not isinstance(within, KeptWorld) else kept_line(within, line)
 
 
 def _with_path(world: World, result: PlanResult, path: Floats, raw: Floats, deviation: dict[str, float]) -> PlanResult:

@@ -14,6 +14,7 @@ import numpy as np
 from evenroad._call import explains_calls
 from evenroad._native.planning import Answer
 from evenroad._rng import RngLike, generator, seed_of
+from evenroad.constraints.kept_world import KeptWorld
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import CELLS, ArmTrees, connector_of, trees_for
 from evenroad.planning.growing import GrowingPRM
@@ -93,7 +94,7 @@ def default_planner(world: Any, *, improve: bool = False) -> Planner:
     """Return the default planner of this kind of world."""
     connector = connector_of(world)
     if connector is None:
-        return _growing(improve)
+        return RRTConnect(improve) if isinstance(world, KeptWorld) else _growing(improve)
     return GridSearch(improve) if connector is CELLS else RRTConnect(improve)
 
 

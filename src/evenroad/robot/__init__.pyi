@@ -12,7 +12,6 @@ from evenroad.robot.kinematics import link_poses as link_poses
 from evenroad.robot.kinematics import tip_links as tip_links
 from evenroad.robot.load import load_model as load_model
 from evenroad.robot.load import load_robot as load_robot
-from evenroad.robot.orientation_constraint import OrientationConstraint as OrientationConstraint
 from evenroad.robot.pose_goal import PoseGoal as PoseGoal
 from evenroad.robot.robot import Robot as Robot
 from evenroad.robot.robot import in_scene as in_scene

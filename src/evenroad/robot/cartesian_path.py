@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from evenroad._arrays import Floats, Ints
 from evenroad.geometry.curve import Curve
@@ -24,8 +24,6 @@ _PARTS = 4
 """Number of parts of a motion at whose ends the deviation is measured; between them it is bounded."""
 _HALVINGS = 5
 """Number of times that poses are put between those of a curve where the deviation is too large."""
-_SINGULAR = 1e-4
-"""Step of the numeric derivative of a pose [rad or m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,27 +159,41 @@ def deviations(chain: Chain, path: Floats) -> tuple[Floats, Floats]:
         on, straight = chain.tip_poses(path[:-1] + share * moved), _share_between(tips, turned, share)
         off_m = np.maximum(off_m, np.sqrt(np.square(on[:, 9:] - straight[:, 9:]).sum(axis=1)))
         off_rad = np.maximum(off_rad, _angles(on, straight))
+    moves, rest = moves_of(chain, moved), 1.0 / (8.0 * _PARTS**2)
+    return off_m + rest * moves.push, off_rad + rest * moves.swing
+
+
+def condition_of(chain: Chain, q: Floats) -> float:
+    """Return the condition number of the tip's derivative by the joints at a configuration, (dim,): m and rad alike."""
+    derivative = chain.derivatives(q[np.newaxis])[0][:, chain.moving]
+    sizes = np.linalg.svd(derivative, compute_uv=False)
+    return float(sizes[0] / max(sizes[-1], 1e-12))
+
+
+@dataclass(frozen=True)
+class Moves:
+    """Bounds on how a tip moves along motions, (n,) each, a motion being 1 long: its speed, its turn, and the second
+    derivatives of its origin and of a direction that it carries.
+    """
+
+    speed: Floats
+    turn: Floats
+    push: Floats
+
+    @property
+    def swing(self) -> Floats:
+        """Bound on the second derivative of a direction, and on that of the turn from the steady one."""
+        return 1.5 * self.turn**2
+
+
+def moves_of(chain: Chain, moved: Floats) -> Moves:
+    """Return bounds on how the tip moves along straight motions of the joints, (n, dim)."""
     joints = np.abs(moved[:, chain.coordinates] * chain.rows[:-1, 12])
     turning, arms = np.where(chain.slides, 0.0, joints), _arms(chain)
     # A joint turns what later ones move: of two the later one's arm counts.
     later = np.cumsum(turning, axis=1)
     pushes = (joints * arms * (2.0 * later - turning)).sum(axis=1)
-    turns = 1.5 * turning.sum(axis=1) ** 2
-    rest = 1.0 / (8.0 * _PARTS**2)
-    return off_m + rest * pushes, off_rad + rest * turns
-
-
-def condition_of(chain: Chain, q: Floats) -> float:
-    """Return the condition number of the tip's derivative by the joints at a configuration, (dim,): m and rad alike."""
-    moving = chain.moving
-    ahead, behind = (np.repeat(q[np.newaxis], len(moving), axis=0) for _ in (0, 1))
-    ahead[np.arange(len(moving)), moving] += _SINGULAR
-    behind[np.arange(len(moving)), moving] -= _SINGULAR
-    first, last = chain.tip_poses(behind), chain.tip_poses(ahead)
-    turns = (_rotations(last) * _rotations(first).inv()).as_rotvec()
-    derivative = np.hstack([last[:, 9:] - first[:, 9:], turns]) / (2.0 * _SINGULAR)
-    sizes = np.linalg.svd(derivative, compute_uv=False)
-    return float(sizes[0] / max(sizes[-1], 1e-12))
+    return Moves((joints * arms).sum(axis=1), turning.sum(axis=1), pushes)
 
 
 def _arms(chain: Chain) -> Floats:
@@ -194,7 +206,10 @@ def _arms(chain: Chain) -> Floats:
     return np.where(chain.slides, 1.0, beyond)
 
 
-def _rotations(poses: Floats) -> Rotation:
+def _rotations(poses: Floats) -> Any:
+    # A plan without curves that turn does without it.
+    from scipy.spatial.transform import Rotation
+
     return Rotation.from_matrix(poses[:, :9].reshape(-1, 3, 3))
 
 
@@ -209,7 +224,8 @@ def _turns(poses: Floats) -> Floats | None:
     if np.abs(np.diff(poses[:, :9], axis=0)).max(initial=0.0) < 1e-9:
         return None
     rotations = _rotations(poses)
-    return (rotations[:-1].inv() * rotations[1:]).as_rotvec()
+    turned: Floats = (rotations[:-1].inv() * rotations[1:]).as_rotvec()
+    return turned
 
 
 def _share_between(poses: Floats, turned: Floats | None, share: float) -> Floats:
@@ -217,5 +233,6 @@ def _share_between(poses: Floats, turned: Floats | None, share: float) -> Floats
     positions = (1.0 - share) * poses[:-1, 9:] + share * poses[1:, 9:]
     if turned is None:
         return np.hstack([poses[:-1, :9], positions])
-    rotations = _rotations(poses[:-1]) * Rotation.from_rotvec(share * turned)
+    first = _rotations(poses[:-1])
+    rotations = first * type(first).from_rotvec(share * turned)
     return np.hstack([rotations.as_matrix().reshape(-1, 9), positions])

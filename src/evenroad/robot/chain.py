@@ -79,6 +79,10 @@ class Chain:
         """Return poses of the tip at configurations, (n, dim): rotation row by row, and origin, (n, 12)."""
         return self.native.tip_poses(np.ascontiguousarray(q))
 
+    def derivatives(self, q: Floats) -> Floats:
+        """Return how the tip moves and turns with each coordinate at configurations, (n, dim): (n, 6, dim)."""
+        return self.native.derivatives(np.ascontiguousarray(q))
+
     def reached(
         self, q: Floats, task: Floats, *, limits: bool = True, steps: int = STEPS, enough: int = 2**31
     ) -> tuple[Floats, Floats]:

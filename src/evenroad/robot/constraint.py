@@ -17,8 +17,13 @@ class Constraint:
 
     @property
     def parts(self) -> tuple[Constraint, ...]:
-        """The single constraints, at most one of each kind."""
+        """The single constraints, at most one of each kind for one tip."""
         return (self,)
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What no two constraints may share that go together."""
+        return type(self), getattr(self, "tip", "")
 
     def __and__(self, other: Constraint) -> Constraint:
         """Return a constraint that holds both."""
@@ -31,8 +36,8 @@ class _Both(Constraint):
     parts: tuple[Constraint, ...] = ()
 
     def __init__(self, parts: tuple[Constraint, ...]) -> None:
-        if len({type(each) for each in parts}) < len(parts):
-            raise InvalidValue(f"constraints must be of different kinds, got {shown(parts)}")
+        if len({each.key for each in parts}) < len(parts):
+            raise InvalidValue(f"constraints of one kind must be of different tips, got {shown(parts)}")
         self.parts = parts
 
     def __repr__(self) -> str:
@@ -48,5 +53,6 @@ def part_of(constraints: Constraint | None, kind: type[Kind]) -> Kind | None:
 
 def with_tip(constraints: Constraint | None, tip: str) -> Constraint | None:
     """Return the constraints, those without a tip for this link."""
-    parts = [replace(each, tip=each.tip or tip) for each in (constraints.parts if constraints else ())]  # type: ignore
+    given = constraints.parts if constraints else ()
+    parts = [replace(each, tip=each.tip or tip) if hasattr(each, "tip") else each for each in given]  # type: ignore
     return reduce(and_, parts) if parts else None

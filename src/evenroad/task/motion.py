@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.constraints.kept_world import keeps_of, kept_line, kept_world
 from evenroad.planning.request import Request
 from evenroad.planning.tip_motion import refused, unreached
 from evenroad.roadmap import PlanResult, Status
@@ -18,8 +19,7 @@ from evenroad.robot import ArmWorld
 from evenroad.robot.cartesian_line import CartesianLine, line_from
 from evenroad.robot.cartesian_path import Followed
 from evenroad.robot.chain import chain_of, default_tip
-from evenroad.robot.constraint import Constraint, part_of
-from evenroad.robot.orientation_constraint import OrientationConstraint, orientation_world
+from evenroad.robot.constraint import Constraint, with_tip
 from evenroad.space.path import path_length
 from evenroad.task.steps import MoveTo
 
@@ -106,11 +106,11 @@ def choices(
         yield result
         return
     tip = request.tip or tip
-    orientation = part_of(step.constraints, OrientationConstraint)
     straight = step.line(tip or default_tip(request.world.robot)) if step.approach or step.retreat else None
-    if orientation is not None and not orientation.tip:
-        # The path between lines has no goal pose to take it from.
-        step = replace(step, constraints=replace(orientation, tip=tip or default_tip(request.world.robot)))
+    if step.constraints is not None:
+        # The path between lines has no goal pose to take a tip from.
+        last_link = tip or default_tip(request.world.robot)
+        step = replace(step, constraints=with_tip(step.constraints, last_link))
     if straight is None and last:
         yield Leg(request.goals[0], (), replace(request, world=between), (), Motion((), None, step.constraints))
         return
@@ -160,19 +160,14 @@ def _in_turn(request: Request, first: Floats) -> list[int]:
 def _line(
     world: ArmWorld, request: Request, step: MoveTo, straight: CartesianLine, q: Floats, length: float
 ) -> Followed:
-    """Return the straight line from a configuration, in the orientation of the step."""
+    """Return the straight line from a configuration, which keeps the constraints of the step."""
     if not world.valid(q):
         return Followed(q[np.newaxis], world.explain(q))
     line = Followed(q[np.newaxis])
     if length:
         line = line_from(world, chain_of(world.robot, straight.tip), straight, q, length)
-    orientation = part_of(step.constraints, OrientationConstraint)
-    if line.why or orientation is None:
-        return line
-    chain = chain_of(world.robot, orientation.tip)
-    upright = orientation_world(world, chain, orientation, request.start)
-    tilt = upright.largest_tilt(line.path)
-    return line if tilt <= upright.tolerance else Followed(line.path[:1], f"along it {upright.tilted(tilt)}")
+    keeps = keeps_of(step.constraints)
+    return line if line.why or not keeps else kept_line(kept_world(world, keeps, request.start, ""), line)
 
 
 def _along(world: ArmWorld, line: Followed, *, turned: bool = False) -> tuple[PlanResult, ...]:

@@ -33,7 +33,7 @@ class MoveTo:
     away : sequence of 3 floats, "x", "-x", ..., or "up"
         Direction of the lines, see :class:`evenroad.CartesianLine`.
     constraints : Constraint, optional
-        Others, such as :class:`evenroad.OrientationConstraint`.
+        Others, such as :class:`evenroad.constraints.KeepUpright`.
 
     Raises
     ------

@@ -10,8 +10,8 @@ from typing import Any
 
 from evenroad._call import explains_calls
 from evenroad._yaml import numbers, read_mapping, require_keys
+from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import EvenroadError, InvalidValue, shown
-from evenroad.robot.orientation_constraint import OrientationConstraint
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.task.steps import Attach, Detach, MoveAlong, MoveCircular, MoveLinear, MoveTo, Step, Wait
 from evenroad.task.task import Task
@@ -117,7 +117,7 @@ def _move_to(what: Any) -> MoveTo:
     if not goals:
         raise InvalidValue("move_to needs goals or poses")
     lines = {name: said[name] for name in ("approach", "retreat", "away") if name in said}
-    upright = OrientationConstraint(numbers([said["upright"]], 1, "upright")[0]) if "upright" in said else None
+    upright = KeepUpright(numbers([said["upright"]], 1, "upright")[0]) if "upright" in said else None
     return MoveTo(goals[0] if len(goals) == 1 else goals, constraints=upright, **lines)
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from functools import reduce
 from inspect import signature
+from operator import and_
 from typing import Any
 
 import numpy as np
@@ -11,11 +13,11 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_batch, require_known, require_positive
+from evenroad.constraints.kept_world import KeptWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.robot import ArmWorld, Robot, held_values, tip_links
 from evenroad.robot.constraint import Constraint
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.orientation_constraint import OrientationConstraint, OrientationWorld
 from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of
 from evenroad.trajectory.make import DEVIATION, STEP, make_trajectory
 from evenroad.trajectory.tip_constraints import constrained_world
@@ -51,7 +53,7 @@ def arm_trajectory(
         As :func:`make_trajectory`.
     rounded_by_controller : bool
         Whether to compute the radii by which the controller may round corners, for ``.movej.script``.
-    constraints : CartesianLine, OrientationConstraint, or both, optional
+    constraints : Constraint, optional
         Those of the plan: the trajectory keeps them, too, within the same tolerances.
 
     Raises
@@ -130,9 +132,9 @@ def trajectory_of(
     known = {*signature(arm_trajectory).parameters} - {"world", "path"}
     for key in options:
         require_known("keyword of trajectory:", key, known)
-    if isinstance(world, OrientationWorld):
-        # A plan without lines is one in such a world: its arm has names and limits, and stays upright as it is driven.
-        options.setdefault("constraints", OrientationConstraint(world.tolerance, world.axis, world.chain.tip))
+    if isinstance(world, KeptWorld):
+        # A plan without lines is one in such a world: its arm has names and limits, and keeps constraints as it moves.
+        options.setdefault("constraints", reduce(and_, world.keeps))
         world = world.world
     if isinstance(world, ArmWorld):
         if isinstance(limits, str | os.PathLike):

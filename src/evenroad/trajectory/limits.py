@@ -20,9 +20,6 @@ from evenroad.robot.chain import chain_of
 SECONDS_TO_FULL_SPEED = 0.5
 """Default time from rest to full speed [s]: URDF has no acceleration."""
 
-_SMALL = 1e-5
-"""Step of the numeric derivative of a tip's position [rad or m]."""
-
 _KINDS = ("velocity", "acceleration", "jerk")
 
 
@@ -48,9 +45,8 @@ class TipSpeed:
 
     def along(self, q: Floats, direction: Floats) -> Floats:
         """Return the largest speeds of the joints together, (n,), at configurations in directions, (n, dim) each."""
-        chain = chain_of(self.robot, self.link)
-        ahead, behind = (chain.tip_poses(q + side * _SMALL * direction)[:, 9:] for side in (1.0, -1.0))
-        moves = np.linalg.norm(ahead - behind, axis=1) / (2.0 * _SMALL)
+        derivatives = chain_of(self.robot, self.link).derivatives(q)[:, :3]
+        moves = np.linalg.norm(np.einsum("nij,nj->ni", derivatives, direction), axis=1)
         return self.most / np.maximum(moves, 1e-9)
 
 

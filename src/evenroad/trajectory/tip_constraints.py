@@ -7,17 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
+from evenroad.constraints.kept_world import KeptWorld, keeps_of, kept_world
 from evenroad.robot import ArmWorld
 from evenroad.robot.cartesian_line import STEP, CartesianLine, between, line_at, misses
 from evenroad.robot.chain import Chain, chain_of, default_tip
 from evenroad.robot.constraint import Constraint, part_of
-from evenroad.robot.orientation_constraint import (
-    FINE,
-    OrientationConstraint,
-    OrientationWorld,
-    orientation_world,
-)
 from evenroad.space import Space
+
+FINE = 8
+"""Number of states of each motion at which the distance from a straight line is measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +28,7 @@ class ConstrainedWorld:
     world: ArmWorld
     path: Floats
     straight: CartesianLine | None
-    upright: OrientationWorld | None
+    kept: KeptWorld | None
 
     @property
     def space(self) -> Space:
@@ -39,7 +37,7 @@ class ConstrainedWorld:
 
     @property
     def proof(self) -> str:
-        """As the world's: collisions are excluded by proof, tilts and lines are measured."""
+        """As the world's: collisions are excluded and constraints kept by proof, lines are measured."""
         return self.world.proof
 
     def valid(self, q: Floats) -> Bools:
@@ -53,9 +51,8 @@ class ConstrainedWorld:
     def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free and keep the constraints: (p - 1,)."""
         good = self.world.validate(path)
-        if self.upright is not None:
-            tilted = self.upright.tilts(between(self.world, path, FINE)) > self.upright.tolerance
-            good &= ~(tilted[1:].reshape(-1, FINE).any(axis=1) | tilted[0])
+        if self.kept is not None:
+            good &= (self.kept.bounds(path) <= 1.0).all(axis=1)
         if self.straight is not None:
             chain = chain_of(self.world.robot, self.straight.tip or default_tip(self.world.robot))
             for end, length in ((0, self.straight.retreat), (-1, self.straight.approach)):
@@ -80,8 +77,6 @@ def constrained_world(world: ArmWorld, path: Floats, constraints: Constraint | N
     """Return the world in which a path, (p, dim), keeps its constraints, if any."""
     if constraints is None:
         return world
-    within, upright = None, part_of(constraints, OrientationConstraint)
-    if upright is not None:
-        chain = chain_of(world.robot, upright.tip or default_tip(world.robot))
-        within = orientation_world(world, chain, upright, path[0])
-    return ConstrainedWorld(world, path, part_of(constraints, CartesianLine), within)
+    keeps = keeps_of(constraints)
+    kept = kept_world(world, keeps, path[0], "") if keeps else None
+    return ConstrainedWorld(world, path, part_of(constraints, CartesianLine), kept)

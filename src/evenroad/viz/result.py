@@ -10,6 +10,7 @@ from PIL import Image
 
 from evenroad._checks import as_file
 from evenroad._files import atomic_write
+from evenroad.constraints.kept_world import KeptWorld
 from evenroad.errors import NotAvailable
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld
@@ -26,6 +27,8 @@ _LONG_SIDE = 600
 def plot_result(result: PlanResult, path: str | os.PathLike[str] | None = None, world: Any = None) -> Image.Image:
     """Return what :meth:`PlanResult.plot` does."""
     world = result.world if world is None else world
+    if isinstance(world, KeptWorld):
+        world = world.world
     if isinstance(world, DiskWorld):
         picture = draw_plan(result, world)
     elif isinstance(world, ArmWorld):

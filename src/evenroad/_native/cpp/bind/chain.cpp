@@ -82,6 +82,22 @@ nb::object tip_poses(const Chain& chain, nb::handle q) {
   return as_numpy(std::move(poses), {given.shape(0), POSE});
 }
 
+/// Return how the tip moves and turns with each coordinate, (n, 6, dim).
+nb::object derivatives(const Chain& chain, nb::handle q) {
+  const Array<const double, 2> given(q, "q");
+  given.of_shape({given.shape(0), dim(chain)});
+  const std::size_t size = 6 * dim(chain);
+  std::vector<double> written(given.shape(0) * size);
+  without_gil([&] {
+    std::vector<robot::Axis> axes(chain.joints.size());
+    for (std::size_t i = 0; i < given.shape(0); i++) {
+      const robot::Pose tip = chain.place_tip(given.matrix()[i], axes);
+      chain.write_derivative(tip, axes, std::span(written).subspan(i * size, size));
+    }
+  });
+  return as_numpy(std::move(written), {given.shape(0), 6, dim(chain)});
+}
+
 /// Return configurations moved, and what each lacks, squared.
 nb::tuple reach(const Chain& chain, nb::handle q, nb::handle task, nb::handle limits, int steps, std::size_t enough) {
   const Array<const double, 2> given(q, "q"), bounds(limits, "limits", Entries::ANY);
@@ -117,6 +133,7 @@ void add_chain(nb::module_& robot) {
   nb::class_<Chain>(robot, "Chain")
       .def("__init__", &make_chain, "coordinates"_a, "slides"_a, "rows"_a, "dim"_a)
       .def("tip_poses", &tip_poses, "q"_a)
+      .def("derivatives", &derivatives, "q"_a)
       .def("reach", &reach, "q"_a, "task"_a, "limits"_a, "steps"_a, "enough"_a)
       .def("follow", &follow, "q"_a, "towards"_a, "task"_a, "poses"_a, "limits"_a, "steps"_a, "longest"_a);
 }

@@ -1,5 +1,6 @@
 #include "robot/chain.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace evenroad::robot {
@@ -38,6 +39,22 @@ Pose Chain::place_tip(std::span<const double> q, std::span<Axis> axes) const {
   }
   go_on(pose, tip, 0.0, 1.0, 0.0);
   return pose;
+}
+
+void Chain::write_derivative(const Pose& tip, std::span<const Axis> axes, std::span<double> derivative) const {
+  const auto columns = static_cast<std::size_t>(dim);
+  std::fill(derivative.begin(), derivative.end(), 0.0);
+  for (std::size_t i = 0; i < joints.size(); i++) {
+    const ChainJoint& joint = joints[i];
+    const Point &axis = axes[i].direction, &at = axes[i].origin;
+    const Point arm = {tip.origin[0] - at[0], tip.origin[1] - at[1], tip.origin[2] - at[2]};
+    double* column = &derivative[static_cast<std::size_t>(joint.coordinate)];
+    for (std::size_t k = 0; k < 3; k++) {
+      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+      column[k * columns] += joint.multiplier * (joint.slides ? axis[k] : axis[l] * arm[m] - axis[m] * arm[l]);
+      if (!joint.slides) column[(3 + k) * columns] += joint.multiplier * axis[k];
+    }
+  }
 }
 
 }  // namespace evenroad::robot

@@ -35,6 +35,10 @@ struct Chain {
 
   /// Return where the tip is, and write where the axes of all joints are, in the root's frame.
   Pose place_tip(std::span<const double> q, std::span<Axis> axes) const;
+
+  /// Write how the tip moves and turns with each coordinate, (6, dim), in the root's frame, from where it and the axes
+  /// are.
+  void write_derivative(const Pose& tip, std::span<const Axis> axes, std::span<double> derivative) const;
 };
 
 }  // namespace evenroad::robot

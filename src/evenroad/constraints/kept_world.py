@@ -1,0 +1,319 @@
+"""KeptWorld: an arm that keeps constraints along its whole path, such as a glass upright, or a hand on a door."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats, Ints
+from evenroad._fingerprint import fingerprint_of
+from evenroad.constraints.keep import Keep
+from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.cartesian_path import Followed, moves_of
+from evenroad.robot.chain import Chain, chain_of, default_tip
+from evenroad.robot.constraint import Constraint
+from evenroad.robot.tree_sequences import share_pairs
+from evenroad.space import JointSpace
+from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.space.path import path_length
+
+_STEP = 0.1
+"""Longest step along a motion in the metric of the joints."""
+_AIM, _ENOUGH = 0.3, 0.5
+"""Lengths of residuals that a projection aims at, and that it needs, as shares of their limits: the rest is for motions
+between projected states."""
+_STEPS, _FEW = 20, 8
+"""Largest number of steps of a projection, and of one of states along a motion."""
+_LONGEST = 0.3
+"""Largest movement of a joint in such a step [rad or m]."""
+_JUMP = 2.5
+"""Number of steps beyond which neighbouring projected states are of two branches."""
+_PARTS = 4
+"""Number of parts of a motion at whose ends residuals are measured; between them they are bounded."""
+_SHORTCUTS, _LONGER = 16, 0.1
+"""Number of motions that are tried to shorten a path, and by what share it must be longer than the straight one."""
+_TOGETHER = 64
+"""Number of motions that are projected at once."""
+
+
+def keeps_of(constraints: Constraint | None) -> tuple[Keep, ...]:
+    """Return those of some constraints that hold along the whole path."""
+    return tuple(each for each in (constraints.parts if constraints else ()) if isinstance(each, Keep))
+
+
+def kept_world(world: ArmWorld, keeps: tuple[Keep, ...], start: Floats, tip: str) -> KeptWorld:
+    """Return the world in which a path from `start`, (dim,), keeps constraints; those without a link, of `tip`."""
+    said = all(getattr(keep, "tip", "said") for keep in keeps)
+    last = tip or ("" if said else default_tip(world.robot))
+    return KeptWorld(world, tuple(keep.bound(world.robot, start, last) for keep in keeps))
+
+
+class ProjectedSpace(JointSpace):
+    """The joints' space, with points of the cube and points between two projected to the constraints, where that is
+    found.
+    """
+
+    def projected_by(self, world: KeptWorld) -> ProjectedSpace:
+        """Return a copy that projects in a world; frozen values need it."""
+        object.__setattr__(self, "_world", world)
+        return self
+
+    def from_cube(self, u: Floats) -> Floats:
+        """Return configurations, (n, dim), of points of the cube, (n, dim); those without a projection stay off."""
+        return self._on(super().from_cube(u))
+
+    def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
+        """Return projected points between configurations, (n, dim) each; the ends as they are."""
+        share = np.broadcast_to(np.asarray(t, dtype=np.float64), len(a))
+        q, inner = super().interpolate(a, b, t), (share > 0.0) & (share < 1.0)
+        q[inner] = self._on(q[inner])
+        return q
+
+    def _on(self, q: Floats) -> Floats:
+        world: KeptWorld = self._world  # type: ignore[attr-defined]
+        return self.wrapped(np.clip(world.projected(q)[0], *world.limits))
+
+
+@dataclass(frozen=True, eq=False)
+class KeptWorld:
+    """The configurations of an arm's world that keep constraints, and motions that do.
+
+    Milestones are projected, and a motion is the straight one with its states projected, one by one: `along`.  It is
+    free if no state jumps to another branch, and of every step it is proved that nothing touches, and that residuals
+    stay within their limits.
+
+    Attributes
+    ----------
+    world : ArmWorld
+    keeps : tuple of Keep
+        Bound constraints.
+    """
+
+    world: ArmWorld
+    keeps: tuple[Keep, ...]
+    space: ProjectedSpace = field(init=False, repr=False)
+    chains: dict[str, Chain] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        plain = self.world.space
+        space = ProjectedSpace(plain.low, plain.high, plain.wrapping, plain.weights)
+        tips = dict.fromkeys(tip for keep in self.keeps for tip in keep.tips)
+        object.__setattr__(self, "chains", {tip: chain_of(self.world.robot, tip) for tip in tips})
+        object.__setattr__(self, "space", space.projected_by(self))
+
+    @property
+    def proof(self) -> str:
+        """``certified``: collisions are proved absent, and the constraints proved kept."""
+        return "certified"
+
+    @property
+    def limits(self) -> Floats:
+        """Limits of the joints, (2, dim); infinite for those that wrap."""
+        ranges = np.array([self.world.space.low, self.world.space.high])
+        return np.where(self.world.space.flat.wrapping, [[-np.inf], [np.inf]], ranges)
+
+    @property
+    def step(self) -> float:
+        """Longest step along a motion: between two states residuals grow with its square."""
+        return min(_STEP, *(math.sqrt(2.0 * keep.limit) for keep in self.keeps if keep.tips), _STEP)
+
+    def shares(self, q: Floats) -> Floats:
+        """Return the lengths of the residuals as shares of their limits, (n, c), at configurations, (n, dim)."""
+        tips = {tip: chain.tip_poses(q) for tip, chain in self.chains.items()}
+        lengths = [_length(keep.residual(q, [tips[tip] for tip in keep.tips])) / keep.limit for keep in self.keeps]
+        return np.stack(lengths, axis=1)
+
+    def projected(self, q: Floats, *, steps: int = _STEPS) -> tuple[Floats, Bools]:
+        """Return the configurations, (n, dim), moved to where all residuals are within a share of their limits, and
+        which succeeded (damped Gauss-Newton, Nakamura and Hanafusa 1986).
+        """
+        q, left = q.copy(), np.arange(len(q))
+        for count in range(steps + 1):
+            if not len(left):
+                break
+            here = q[left]
+            tips = {tip: chain.tip_poses(here) for tip, chain in self.chains.items()}
+            residuals = [keep.residual(here, [tips[tip] for tip in keep.tips]) for keep in self.keeps]
+            lengths = np.stack([_length(each) / keep.limit for each, keep in zip(residuals, self.keeps, strict=True)])
+            off = (lengths > _ENOUGH).any(axis=0)
+            left, here = left[off], here[off]
+            if count == steps or not len(left):
+                break
+            of_tips = {tip: chain.derivatives(here) for tip, chain in self.chains.items()}
+            scale = np.maximum(0.0, 1.0 - _AIM / np.maximum(lengths[:, off], 1e-12))
+            error = np.hstack([each[off] * by[:, np.newaxis] for each, by in zip(residuals, scale, strict=True)])
+            rows = [
+                keep.derivative(here, [tips[tip][off] for tip in keep.tips], [of_tips[tip] for tip in keep.tips])
+                * (by > 0.0)[:, np.newaxis, np.newaxis]
+                for keep, by in zip(self.keeps, scale, strict=True)
+            ]
+            q[left] = self._stepped(here, error, np.concatenate(rows, axis=1))
+        good = np.ones(len(q), dtype=np.bool_)
+        good[left] = False
+        return q, good
+
+    def _stepped(self, q: Floats, error: Floats, derivative: Floats) -> Floats:
+        """Return configurations, (n, dim), after a step that takes errors, (n, m), away."""
+        back = derivative.transpose(0, 2, 1)
+        damping = 1e-3 * np.square(error).sum(axis=1) + 1e-12
+        square = back @ derivative + damping[:, np.newaxis, np.newaxis] * np.eye(q.shape[1])
+        step = np.linalg.solve(square, back @ error[:, :, np.newaxis])[:, :, 0]
+        most = np.abs(step).max(axis=1, keepdims=True)
+        return np.clip(q - step * np.minimum(1.0, _LONGEST / np.maximum(most, 1e-12)), *self.limits)
+
+    def bounds(self, path: Floats) -> Floats:
+        """Return bounds on the residuals along each motion of a path, (n, dim), as shares of limits: (n - 1, c).
+
+        They are measured at some states.  Between two of these they exceed both by an eighth of the largest second
+        derivative times their distance squared at most (de Boor 1978, II).
+        """
+        moved = np.diff(path, axis=0)
+        states = [path[:-1] + share * moved for share in np.arange(_PARTS) / _PARTS]
+        measured = self.shares(np.concatenate([*states, path[-1:]]))
+        most = np.maximum(measured[: len(moved)], np.vstack([measured[1 : len(moved)], measured[-1:]]))
+        for part in range(1, _PARTS):
+            most = np.maximum(most, measured[part * len(moved) : (part + 1) * len(moved)])
+        moves = {tip: moves_of(chain, moved) for tip, chain in self.chains.items()}
+        for k, keep in enumerate(self.keeps):
+            most[:, k] += keep.bend([moves[tip] for tip in keep.tips]) / (8.0 * _PARTS**2 * keep.limit)
+        return most
+
+    def valid(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), are free and keep the constraints: (n,)."""
+        return self.world.valid(q) & (self.shares(as_batch("q", q, self.space.dim)) <= 1.0).all(axis=1)
+
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, from rows of `a` to those of `b`, (m, dim) arrays, are free and keep them: (m,)."""
+        first, second = as_batch_pair(a, b, self.space.dim)
+        free = np.zeros(len(first), dtype=np.bool_)
+        for begin in range(0, len(first), _TOGETHER):
+            some = slice(begin, begin + _TOGETHER)
+            free[some] = self._followed(first[some], second[some])[0]
+        return free
+
+    def along(self, a: Floats, b: Floats) -> Floats | None:
+        """Return the states of the motion between two configurations, (n, dim), with both; None where it
+        is not free.
+        """
+        free, states = self._followed(a[np.newaxis], b[np.newaxis])
+        return states if free[0] else None
+
+    def _followed(self, a: Floats, b: Floats) -> tuple[Bools, Floats]:
+        """Return which motions are free, and the states of those, one after the other.
+
+        Some states are projected first, and then others between these, which are near by then.
+        """
+        world, finer = self.world, max(1, int(_STEP / self.step))
+        parts = np.maximum(1, np.ceil(world.space.distance(a, b) / (finer * self.step))).astype(np.int64)
+        good, motion, states = self._states(a, b, parts, finer * self.step)
+        steps = _steps(motion, good)
+        if finer > 1 and len(steps):
+            numbers = np.full(len(steps), finer)
+            kept, of_step, states = self._states(states[steps], states[steps + 1], numbers, self.step)
+            good[motion[steps[~kept]]] = False
+            of_motion = motion[steps]
+            begins = np.append(True, of_motion[1:] != of_motion[:-1])
+            # Each piece but the first of a motion begins with the last state of the one before.
+            rows = (np.arange(len(states)) % (finer + 1) > 0) | begins[of_step]
+            motion, states = of_motion[of_step][rows], states[rows]
+            steps = _steps(motion, good)
+        if len(steps):
+            # States first, which costs less than proofs.
+            good[motion[steps[~world.motion_valid(states[steps], states[steps + 1])]]] = False
+            steps = steps[good[motion[steps]]]
+        if len(steps):
+            off = np.asarray((self.bounds(states) > 1.0).any(axis=1))
+            good[motion[steps[off[steps]]]] = False
+            steps = steps[good[motion[steps]]]
+        if len(steps):
+            good[motion[steps[~world.motion_certified(states[steps], states[steps + 1], 1e-6)]]] = False
+        return good, states[good[motion]]
+
+    def _states(self, a: Floats, b: Floats, parts: Ints, step: float) -> tuple[Bools, Ints, Floats]:
+        """Return which motions have projected states, free and near each other, and their motions and states."""
+        space = self.world.space
+        motion = np.repeat(np.arange(len(a)), parts + 1)
+        number = np.arange(len(motion)) - np.repeat(np.cumsum(parts + 1) - parts - 1, parts + 1)
+        states = space.interpolate(a[motion], b[motion], number / parts[motion])
+        inner = (number > 0) & (number < parts[motion])
+        states[inner], kept = self.projected(states[inner], steps=_FEW)
+        good = np.ones(len(a), dtype=np.bool_)
+        good[motion[inner][~kept]] = False
+        steps = _steps(motion, good)
+        far = space.distance(states[steps], states[steps + 1]) > _JUMP * step
+        good[motion[steps[far]]] = False
+        some = np.flatnonzero(good[motion] & inner)
+        if len(some):
+            good[motion[some[~self.world.valid(states[some])]]] = False
+        return good, motion, states
+
+    def path_through(self, waypoints: Floats) -> Floats:
+        """Return the path through waypoints between which motions are free, (p, dim)."""
+        pieces = [self.along(a, b) for a, b in pairwise(waypoints)]
+        assert all(followed is not None for followed in pieces), "a motion of a path was free and is not"
+        return np.concatenate([waypoints[:1], *(followed[1:] for followed in pieces if followed is not None)])
+
+    def largest(self, path: Floats) -> Floats:
+        """Return bounds on the residuals along a path, (p, dim), as shares of limits: (c,)."""
+        return self.bounds(path).max(axis=0)
+
+    def deviation(self, largest: Floats) -> dict[str, float]:
+        """Return by how much each constraint is off where residuals are such shares of limits, (c,)."""
+        off: dict[str, float] = {}
+        for keep, share in zip(self.keeps, largest.tolist(), strict=True):
+            by = float(keep.off(np.array([share * keep.limit]))[0])
+            off[keep.deviation] = max(off.get(keep.deviation, 0.0), by)
+        return off
+
+    def shortened(self, path: Floats) -> Floats:
+        """Return a path, (p, dim), made shorter by free motions between places along it, if it is much longer than the
+        straight motion, which may leave the constraints.
+        """
+        space = self.world.space
+        least = (1.0 + _LONGER) * float(space.distance(path[:1], path[-1:])[0])
+        for low, high in [(0.0, 1.0), *np.sort(share_pairs(_SHORTCUTS), axis=1)]:
+            travelled = np.concatenate([[0.0], np.cumsum(space.distance(path[:-1], path[1:]))])
+            if travelled[-1] <= least:
+                break
+            i, j = np.searchsorted(travelled, [low * travelled[-1], high * travelled[-1]])
+            if j - i < 2:
+                continue
+            followed = self.along(path[i], path[j])
+            if followed is not None and path_length(followed, space) < travelled[j] - travelled[i] - 1e-9:
+                path = np.concatenate([path[:i], followed, path[j + 1 :]])
+        return path
+
+    def fingerprint(self) -> str:
+        """Return a text that is equal for worlds in which the same is free."""
+        return fingerprint_of("kept", self.world.fingerprint(), *self.keeps)
+
+    def explain(self, q: Floats) -> str:
+        """Return, in words, why one configuration, (dim,), is not free: what touches, or which constraint it leaves."""
+        shares = self.shares(q[np.newaxis])[0]
+        return self.world.explain(q) if (shares <= 1.0).all() else self.exceeded(shares)
+
+    def exceeded(self, shares: Floats) -> str:
+        """Return, in words, which residual, of (c,) shares of limits, is too large, and by how much."""
+        k = int(shares.argmax())
+        keep = self.keeps[k]
+        return keep.words(float(keep.off(np.array([shares[k] * keep.limit]))[0]))
+
+
+def _steps(motion: Ints, good: Bools) -> Ints:
+    """Return the rows of states that the next one follows in the same, good motion."""
+    return np.flatnonzero((motion[1:] == motion[:-1]) & good[motion[1:]])
+
+
+def kept_line(world: KeptWorld, line: Followed) -> Followed:
+    """Return a followed line or curve, without its path where that does not keep the constraints."""
+    if len(line.path) < 2:
+        return line
+    largest = world.largest(line.path)
+    return line if (largest <= 1.0).all() else Followed(line.path[:1], f"along it {world.exceeded(largest)}")
+
+
+def _length(residual: Floats) -> Floats:
+    return np.sqrt(np.square(residual).sum(axis=1))

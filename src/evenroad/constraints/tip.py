@@ -1,0 +1,309 @@
+"""Constraints of one tip: an axis upright, a rotation, a plane, a line, a box."""
+
+# What methods of the constraints return stands in `Keep`.
+# ruff: noqa: D102
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from evenroad._arrays import Floats, set_fields
+from evenroad._checks import as_row, require_positive
+from evenroad.constraints.keep import WITHIN, Keep, cross_matrix, turned_derivative, turns_of
+from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.pose import Pose, Vector
+from evenroad.robot import Robot
+from evenroad.robot.cartesian_path import Moves
+from evenroad.robot.chain import chain_of
+from evenroad.robot.pose_goal import AXES, as_axis
+
+UP = (0.0, 0.0, 1.0)
+
+
+def _chord(angle: float) -> float:
+    """Return the distance of two directions at an angle."""
+    return 2.0 * math.sin(0.5 * angle)
+
+
+@dataclass(frozen=True)
+class KeepUpright(Keep):
+    """An axis of a link stays upright, as when it carries a glass.
+
+    Parameters
+    ----------
+    within : float
+        Largest tilt, > 0, up to pi [rad].
+    axis : sequence of 3 floats, "x", "-x", ..., or None
+        The axis in the frame of the tip; None is the one of the six that is most upright at the start.
+    tip : str
+        The link of the tip; default: that of the goal poses, or the last one.
+
+    Raises
+    ------
+    InvalidValue
+        If a number is out of range, or the axis is none.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.constraints.KeepUpright(0.1, "-z").axis
+    (0.0, 0.0, -1.0)
+    """
+
+    within: float
+    axis: Vector | str | None = None
+    tip: str = ""
+    unit: ClassVar[str] = "rad"
+    deviation: ClassVar[str] = "tilt_rad"
+
+    def __post_init__(self) -> None:
+        set_fields(self, within=require_positive("the tolerance of upright", self.within, at_most=math.pi))
+        if self.axis is not None:
+            set_fields(self, axis=as_axis("the axis of upright", self.axis))
+
+    def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
+        tip, axis = self.tip or tip, self.axis
+        if axis is None:
+            every = [as_axis("axis", sign + name) for name in AXES for sign in ("", "-")]
+            turn = turns_of(chain_of(robot, tip).tip_poses(q[np.newaxis]))[0]
+            axis = max(every, key=lambda each: float((turn @ np.array(each))[2]))
+        return replace(self, axis=axis, tip=tip)
+
+    @property
+    def limit(self) -> float:
+        return _chord(self.within)
+
+    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
+        return turns_of(tips[0]) @ np.array(self.axis) - np.array(UP)
+
+    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
+        return -cross_matrix(turns_of(tips[0]) @ np.array(self.axis)) @ of_tips[0][:, 3:]
+
+    def bend(self, moves: Sequence[Moves]) -> Floats:
+        return moves[0].swing
+
+    def off(self, lengths: Floats) -> Floats:
+        return 2.0 * np.arcsin(np.minimum(0.5 * lengths, 1.0))
+
+    def words(self, off: float) -> str:
+        every = (sign + name for name in AXES for sign in ("", "-"))
+        numbers = f"({', '.join(f'{each:.3g}' for each in self.axis or ())})"
+        axis = next((name for name in every if as_axis("axis", name) == self.axis), numbers)
+        return f"axis {axis} of {self.tip!r} is tilted by {off:.4g} rad, more than {self.within:.4g}"
+
+
+@dataclass(frozen=True)
+class KeepOrientation(Keep):
+    """A link keeps its rotation.
+
+    Parameters
+    ----------
+    within : float
+        Largest angle, > 0, up to pi [rad].
+    rotation : sequence of 9 floats, optional
+        The rows of its rotation in the frame of the root; default: that at the start.
+    tip : str
+        The link; default: that of the goal poses, or the last one.
+
+    Raises
+    ------
+    InvalidValue
+        If a number is out of range, or it is no rotation.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.constraints.KeepOrientation(0.01).within
+    0.01
+    """
+
+    within: float = 1e-3
+    rotation: tuple[float, ...] | None = None
+    tip: str = ""
+    unit: ClassVar[str] = "rad"
+    deviation: ClassVar[str] = "turn_rad"
+
+    def __post_init__(self) -> None:
+        set_fields(self, within=require_positive("the tolerance of an orientation", self.within, at_most=math.pi))
+        if self.rotation is not None:
+            set_fields(self, rotation=Pose(rotation=self.rotation).rotation)
+
+    def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
+        tip = self.tip or tip
+        turn = self.rotation or tuple(chain_of(robot, tip).tip_poses(q[np.newaxis])[0, :9].tolist())
+        return replace(self, rotation=turn, tip=tip)
+
+    @property
+    def limit(self) -> float:
+        return math.sqrt(2.0) * _chord(self.within)
+
+    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
+        return tips[0][:, :9] - np.array(self.rotation)
+
+    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
+        return turned_derivative(turns_of(tips[0]), of_tips[0][:, 3:])
+
+    def bend(self, moves: Sequence[Moves]) -> Floats:
+        return math.sqrt(2.0) * moves[0].swing
+
+    def off(self, lengths: Floats) -> Floats:
+        return 2.0 * np.arcsin(np.minimum(lengths / math.sqrt(8.0), 1.0))
+
+    def __str__(self) -> str:
+        return "its orientation"
+
+
+@dataclass(frozen=True)
+class KeepInPlane(Keep):
+    """The origin of a link stays in a plane.
+
+    Parameters
+    ----------
+    normal : sequence of 3 floats, or "x", "y", "z"
+        Normal of the plane in the frame of the root.
+    through : sequence of 3 floats, optional
+        A point of it [m]; default: where the link is at the start.
+    within : float
+        Largest distance, > 0 [m].
+    tip : str
+        The link; default: that of the goal poses, or the last one.
+
+    Raises
+    ------
+    InvalidValue
+        If a number is out of range, or the normal has no direction.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.constraints.KeepInPlane("z", through=(0, 0, 0.5)).normal
+    (0.0, 0.0, 1.0)
+    """
+
+    normal: Vector | str
+    through: Vector | None = None
+    within: float = WITHIN
+    tip: str = ""
+    deviation: ClassVar[str] = "plane_m"
+
+    def __post_init__(self) -> None:
+        set_fields(self, within=require_positive("within", self.within), normal=as_axis("normal", self.normal))
+        if self.through is not None:
+            set_fields(self, through=as_row("through", self.through, 3))
+
+    def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
+        tip = self.tip or tip
+        return replace(self, through=self.through or _origin(robot, q, tip), tip=tip)
+
+    @property
+    def across(self) -> Floats:
+        """Directions in which it may not leave, (m, 3)."""
+        return np.array(self.normal, dtype=np.float64)[np.newaxis]
+
+    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
+        return (tips[0][:, 9:] - np.array(self.through)) @ self.across.T
+
+    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
+        return self.across @ of_tips[0][:, :3]
+
+    def bend(self, moves: Sequence[Moves]) -> Floats:
+        return moves[0].push
+
+    def __str__(self) -> str:
+        return "its plane"
+
+
+@dataclass(frozen=True)
+class KeepOnLine(KeepInPlane):
+    """The origin of a link stays on a line.
+
+    Parameters
+    ----------
+    normal : sequence of 3 floats, or "x", "y", "z"
+        Direction of the line in the frame of the root.
+    through, within, tip
+        As of :class:`KeepInPlane`.
+
+    Raises
+    ------
+    InvalidValue
+        As there.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.constraints.KeepOnLine("x").within
+    0.0001
+    """
+
+    deviation: ClassVar[str] = "off_line_m"
+
+    @property
+    def across(self) -> Floats:
+        along = np.array(self.normal, dtype=np.float64)
+        return np.eye(3) - np.outer(along, along)
+
+    def __str__(self) -> str:
+        return "its line"
+
+
+@dataclass(frozen=True)
+class KeepInBox(Keep):
+    """The origin of a link stays in a box.
+
+    Parameters
+    ----------
+    low, high : sequences of 3 floats
+        Corners of the box in the frame of the root [m].
+    within : float
+        Largest distance from it, > 0 [m].
+    tip : str
+        The link; default: that of the goal poses, or the last one.
+
+    Raises
+    ------
+    InvalidValue
+        If low is not <= high, or a number is out of range.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.constraints.KeepInBox((0, -0.5, 0.2), (0.6, 0.5, 0.8)).high
+    (0.6, 0.5, 0.8)
+    """
+
+    low: Vector
+    high: Vector
+    within: float = WITHIN
+    tip: str = ""
+    deviation: ClassVar[str] = "box_m"
+
+    def __post_init__(self) -> None:
+        set_fields(self, within=require_positive("within", self.within))
+        set_fields(self, low=as_row("low", self.low, 3), high=as_row("high", self.high, 3))
+        if not all(a <= b for a, b in zip(self.low, self.high, strict=True)):
+            raise InvalidValue(f"a box must have low <= high, got {shown(self.low)} and {shown(self.high)}")
+
+    def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
+        return replace(self, tip=self.tip or tip)
+
+    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
+        return tips[0][:, 9:] - np.clip(tips[0][:, 9:], self.low, self.high)
+
+    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
+        return np.where((self.residual(q, tips) != 0.0)[:, :, np.newaxis], of_tips[0][:, :3], 0.0)
+
+    def bend(self, moves: Sequence[Moves]) -> Floats:
+        return moves[0].push
+
+    def __str__(self) -> str:
+        return "its box"
+
+
+def _origin(robot: Robot, q: Floats, tip: str) -> Vector:
+    x, y, z = chain_of(robot, tip).tip_poses(q[np.newaxis])[0, 9:].tolist()
+    return x, y, z
