@@ -58,6 +58,11 @@ class Chain:
         return np.unique(self.coordinates)
 
     @cached_property
+    def still(self) -> Ints:
+        """Coordinates that do not."""
+        return np.setdiff1d(np.arange(len(self.group)), self.moving)
+
+    @cached_property
     def even(self) -> tuple[Floats, Floats]:
         """Even configurations, (n, dim), and where they have the tip, (n, 12)."""
         low, high = np.maximum(self.low, self.bounds[0]), np.minimum(self.high, self.bounds[1])

@@ -18,6 +18,9 @@ from evenroad.robot.robot import Robot
 from evenroad.robot.separated import InScene, apart
 from evenroad.world.protocol import Apart
 
+MANY = 8
+"""Number of goal poses from which on those that are hard to reach count only where no other is reached."""
+
 
 @dataclass(frozen=True, eq=False)
 class Goals:
@@ -88,6 +91,7 @@ def goals_of(
     names: list[str] = []
     poses = []
     began = now()
+    many = sum(isinstance(target, Pose | PoseGoal) for target in targets) >= MANY
     for target in targets:
         if not isinstance(target, Pose | PoseGoal):
             rows.append(read(target)[np.newaxis])
@@ -95,10 +99,15 @@ def goals_of(
             continue
         goal = as_pose_goal(target, tip, frame)
         goal = goal if goal.tip else replace(goal, tip=default_tip(world.robot))
-        reached = reach(world, goal, start)
+        reached = reach(world, goal, start, quickly=many)
         poses.append((goal, reached))
         rows.append(reached.configurations)
         names += [str(goal)] * len(reached.configurations)
+    if many and not names:
+        # Nothing was reached soon: all are looked at again, in full.
+        poses = [(goal, reach(world, goal, start)) for goal, _ in poses]
+        rows = [reached.configurations for _, reached in poses]
+        names = [str(goal) for goal, reached in poses for _ in reached.configurations]
     if not names:
         rows = [reached.nearest[np.newaxis] for _, reached in poses]
     took = now() - began if poses else 0.0

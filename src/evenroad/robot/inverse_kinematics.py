@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property, partial
 from typing import Protocol
 
 import numpy as np
@@ -63,8 +64,13 @@ class Reached:
     """``closed form`` or ``numeric``."""
     nearest: Floats
     """Without a free one: a posture in collision, or the nearest configuration, (dim,)."""
-    why: str = ""
-    """Without a free one: why."""
+    reason: Callable[[], str] = str
+    """Without a free one: returns why, which takes longer than to find it out."""
+
+    @cached_property
+    def why(self) -> str:
+        """Without a free one: why."""
+        return self.reason()
 
     @property
     def in_collision(self) -> bool:
@@ -72,8 +78,8 @@ class Reached:
         return self.branches > 0 and not len(self.configurations)
 
 
-def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike) -> Reached:
-    """Return the free configurations that bring a link to the goal, whole turns added.
+def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike, *, quickly: bool = False) -> Reached:
+    """Return the free configurations that bring a link to the goal, whole turns added; `quickly` from few beginnings.
 
     Coordinates that do not move the link stay as in `start`, (dim,) [rad or m].  Raises UnknownName if tip or frame is
     no link; InvalidValue if nothing moves the tip, something moves the frame, no tip is named and there are several, or
@@ -87,17 +93,22 @@ def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike) -> Reached:
     for found, solver, best in stages(chain, task, start, exact=goal.is_exact):  # noqa: B007
         solved = distinct(chain, np.concatenate([solved, found]), _APART if spare else _SAME)
         free = world.valid(solved)
-        if free.any():
+        if free.any() or quickly:
             break
     if not len(solved):
-        return Reached(solved, 0, 0, solver, best, _why_not(chain, task, goal, best, start))
+        return Reached(solved, 0, 0, solver, best, lambda: _why_not(chain, task, goal, best, start))
     if not free.any():
-        touching = Counter(world.explain(q) for q in solved)
-        text = "; ".join(f"{why} in {times}" for why, times in touching.most_common(3))
-        why = f"{goal} is reached, but only in collision: of {len(solved)} postures found {text}"
-        return Reached(solved[:0], len(solved), len(solved), solver, solved[0], why)
+        reason = partial(_why_blocked, world, goal, solved)
+        return Reached(solved[:0], len(solved), len(solved), solver, solved[0], reason)
     turned = _with_turns(chain, solved[free], start)
     return Reached(turned, len(solved), int((~free).sum()), solver, turned[0])
+
+
+def _why_blocked(world: Checks, goal: PoseGoal, solved: Floats) -> str:
+    """Return, in words, what postures that reach a goal touch, (n, dim)."""
+    touching = Counter(world.explain(q) for q in solved)
+    text = "; ".join(f"{why} in {times}" for why, times in touching.most_common(3))
+    return f"{goal} is reached, but only in collision: of {len(solved)} postures found {text}"
 
 
 def task_of(robot: Robot, goal: PoseGoal) -> tuple[Chain, PoseTask]:
@@ -120,8 +131,7 @@ def stages(chain: Chain, task: PoseTask, start: Floats, *, exact: bool) -> Itera
     robot = closed_form(chain) if exact else None
     if robot is not None:
         q = branches(chain, robot, task.pose)
-        still = np.setdiff1d(np.arange(len(start)), chain.moving)
-        q[:, still] = start[still]
+        q[:, chain.still] = start[chain.still]
         q = wrapped(chain, _polished(chain, task, q))
         q = q[((q >= chain.bounds[0]) & (q <= chain.bounds[1])).all(axis=1)]
         if len(q):
@@ -136,7 +146,6 @@ def numeric(chain: Chain, task: PoseTask, start: Floats, *, limits: bool = True)
     """Yield postures found from even starts, (n, dim), and the nearest one: more and more."""
     starts, tips = chain.even
     away = task.nearness(tips)
-    still = np.setdiff1d(np.arange(len(start)), chain.moving)
     enough = _ENOUGH if len(chain.moving) > task.numbers else len(starts)
     best, least = start, math.inf
     # The start of the query first; then near ones and, where these fail, farther ones.
@@ -144,7 +153,7 @@ def numeric(chain: Chain, task: PoseTask, start: Floats, *, limits: bool = True)
         near = np.argpartition(away, last)[:last] if last < len(away) else np.arange(len(away))
         rows = near[np.lexsort((near, away[near]))][first:last:every]
         q = np.concatenate([start[np.newaxis], starts[rows]])
-        q[:, still] = start[still]
+        q[:, chain.still] = start[chain.still]
         q, missing = chain.reached(q, task.row, limits=limits, enough=enough)
         k = int(missing.argmin())
         if missing[k] < least:
@@ -170,15 +179,16 @@ def wrapped(chain: Chain, q: Floats) -> Floats:
 
 def distinct(chain: Chain, q: Floats, apart: float) -> Floats:
     """Return postures of which no two are nearer than `apart`, modulo turns; the first of each stays."""
-    kept: list[Floats] = []
-    for row in q:
-        if kept:
-            gap = np.abs(np.array(kept) - row)
-            gap = np.where(chain.turns, np.minimum(gap, np.abs(TURN - gap)), gap)
-            if gap.max(axis=1).min() < apart:
-                continue
-        kept.append(row)
-    return np.array(kept).reshape(-1, q.shape[1])
+    if len(q) < 2:
+        return q
+    gap = np.abs(q[:, np.newaxis] - q)
+    gap = np.where(chain.turns, np.minimum(gap, np.abs(TURN - gap)), gap)
+    near = gap.max(axis=2) < apart
+    kept: list[int] = []
+    for row in range(len(q)):
+        if not near[row, kept].any():
+            kept.append(row)
+    return q[kept]
 
 
 def _with_turns(chain: Chain, q: Floats, start: Floats) -> Floats:

@@ -117,7 +117,9 @@ class _Search:
         # Each line has contacts of its own: what is lifted from a table may not end inside it.
         worlds = stage.with_contacts(stage.near_start), stage.world
         request = request_in(self._near_goal(number, stage), stage.q, step.goal, self.reading)
-        return choices(request, worlds, step, self.reading.tip, last=last)
+        # Lines are those of the goal's tip, else of the link that took something last.
+        taken = [each.link for each in self.steps[:number] if isinstance(each, Attach) and each.link]
+        return choices(request, worlds, step, self.reading.tip or (taken[-1] if taken else ""), last=last)
 
     def _curve(self, number: int, stage: Stage, step: AlongCurve) -> Iterator[Leg | PlanResult]:
         world = self._near_goal(number, stage, stage.near_start)
