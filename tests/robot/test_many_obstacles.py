@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evenroad.geometry import PointCloud
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.load import load_robot
 from evenroad.robot.scene import Obstacle, Scene
@@ -119,3 +120,18 @@ def test_the_obstacle_that_is_named_touches_by_itself():
             assert not ArmWorld(world.robot, Scene([obstacle])).valid(row)
             named += 1
     assert named > 20
+
+
+def test_a_cloud_of_so_many_points_that_they_are_sorted_along_a_curve_is_all_its_parts():
+    rng = np.random.default_rng(7)
+    points = rng.uniform((0.25, -0.5, 0.0), (0.8, 0.5, 0.9), (20_000, 3))
+    points = points[np.linalg.norm(points - (0.5, 0.0, 0.5), axis=1) > 0.2]
+    # The farthest decides by how much all are larger, for rounding: so it is in every part.
+    farthest = points[np.linalg.norm(points, axis=1).argmax()]
+    clouds = [PointCloud(np.vstack([part, farthest]), 0.002) for part in np.array_split(points, 3)]
+    assert len(points) > 2**14 > len(clouds[0].points)
+    world = ArmWorld(ur5(), Scene([PointCloud(points, 0.002)]))
+    q = world.space.from_cube(np.random.default_rng(8).random((2_000, 6)))
+    asked = np.concatenate([q, *edge(world, q, most=300, least=20)])
+    parts = [ArmWorld(ur5(), Scene([cloud])).valid(asked) for cloud in clouds]
+    np.testing.assert_array_equal(world.valid(asked), np.logical_and.reduce(parts))

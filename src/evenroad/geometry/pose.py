@@ -248,7 +248,9 @@ class Pose:
         [1.0, 0.0, 1.0]
         """
         p = _rows_of_three(points)
-        return (self.rotation_matrix @ p if p.ndim == 1 else p @ self.rotation_matrix.T) + np.array(self.xyz)
+        if self.rotation != NO_ROTATION:
+            p = self.rotation_matrix @ p if p.ndim == 1 else p @ self.rotation_matrix.T
+        return p + np.array(self.xyz)
 
     def local(self, points: npt.ArrayLike) -> Floats:
         """Return points in the pose's own frame, the inverse of :meth:`apply`.

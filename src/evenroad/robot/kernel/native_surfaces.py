@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -39,8 +40,7 @@ def surface_of(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) ->
     """
     solid, turned, reach = np.zeros((0, 3, 3)), False, reach + clearance
     if isinstance(body, PointCloud):
-        points, radius = body.pose.apply(body.points), body.radius
-        near = points[np.linalg.norm(points, axis=1) <= reach + radius][:, np.newaxis]
+        near, radius = _near_points(body, reach), body.radius
     else:
         corners, radius = body.pose.apply(body.triangles.vertices)[body.triangles.triangles], 0.0
         near, (closed, turned) = _within_reach(corners, reach), closed_parts(body.triangles)
@@ -50,7 +50,7 @@ def surface_of(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) ->
             return None
         # All that the robot can reach is inside.
         near = solid = reach * _CUBE
-    padding = PADDING * (float(np.linalg.norm(near, axis=2).max()) + radius)
+    padding = PADDING * (math.sqrt(np.einsum("ijk,ijk->ij", near, near).max()) + radius)
     return native.Surface(np.ascontiguousarray(near), radius + clearance + padding, solid, turned, reach)
 
 
@@ -58,6 +58,14 @@ def surface_of(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) ->
 def surfaces_around(bodies: tuple[tuple[PointCloud | Mesh, float], ...], reach: float) -> native.Surface:
     """Return the grid around several bodies that can be reached, each with its clearance; kept, as they are."""
     return native.Surface.around([surface_of(body, reach, clearance) for body, clearance in bodies])
+
+
+def _near_points(body: PointCloud, reach: float) -> Floats:
+    """Return the points of a cloud within reach of the origin, (n, 1, 3)."""
+    points = body.pose.apply(body.points)
+    near = np.einsum("ij,ij->i", points, points) <= (reach + body.radius) ** 2
+    # A frame of a camera is not copied more often than it must be.
+    return (points if near.all() else points[near])[:, np.newaxis]
 
 
 def _within_reach(corners: Floats, reach: float) -> Floats:

@@ -10,6 +10,9 @@ namespace evenroad::robot {
 
 namespace {
 
+/// More places are sorted along a curve, in a tenth of the time that halving takes.
+constexpr std::size_t MANY_PLACES = 1 << 14;
+
 /// Bring the lesser ones along an axis before place `middle`, of those from `low` to `high` (C. Hoare, 1961).
 void split(std::vector<Place>& places, std::vector<int>& order, int low, int high, int middle, int axis) {
   while (low < high) {
@@ -34,6 +37,80 @@ void split(std::vector<Place>& places, std::vector<int>& order, int low, int hig
   }
 }
 
+using Numbers = Lanes<std::uint32_t, LANES>;
+
+/// Return numbers with two zeros after each of their ten bits.
+Numbers spread_bits(Numbers a) {
+  a = (a | a << 16) & 0x030000FF;
+  a = (a | a << 8) & 0x0300F00F;
+  a = (a | a << 4) & 0x030C30C3;
+  return (a | a << 2) & 0x09249249;
+}
+
+/// Return where sixteen cells, of 1024 along each axis, are on Hilbert's curve (J. Skilling, Programming the Hilbert
+/// curve, 2004).
+Numbers along_curve(Numbers (&cell)[3]) {
+  for (std::uint32_t bit = 512; bit > 1; bit >>= 1) {
+    const std::uint32_t below = bit - 1;
+    for (Numbers& each : cell) {
+      const auto is_set = (each & bit) != 0;
+      const Numbers exchanged = (cell[0] ^ each) & below;
+      const Numbers first = is_set ? cell[0] ^ below : cell[0] ^ exchanged;
+      if (&each != cell) each = is_set ? each : each ^ exchanged;
+      cell[0] = first;
+    }
+  }
+  cell[1] ^= cell[0], cell[2] ^= cell[1];
+  Numbers turned{};
+  for (std::uint32_t bit = 512; bit > 1; bit >>= 1) turned ^= (cell[2] & bit) != 0 ? Numbers{} + (bit - 1) : Numbers{};
+  for (Numbers& each : cell) each ^= turned;
+  return spread_bits(cell[0]) << 2 | spread_bits(cell[1]) << 1 | spread_bits(cell[2]);
+}
+
+/// Return the order of places along that curve: sorted by three digits of ten bits.
+std::vector<int> order_along_curve(std::span<const Place> places) {
+  float low[3], high[3];
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = high[axis] = places[0].at[axis];
+    for (const Place& place : places) {
+      low[axis] = std::min(low[axis], place.at[axis]), high[axis] = std::max(high[axis], place.at[axis]);
+    }
+  }
+  const float widest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  const float scale = widest > 0 ? 1023.0F / widest : 0.0F;
+  struct Keyed {
+    std::uint32_t key;
+    int number;
+  };
+  std::vector<Keyed> from(places.size()), to(places.size());
+  std::vector<std::uint32_t> counts(3 * 1024);
+  for (std::size_t first = 0; first < places.size(); first += LANES) {
+    const std::size_t count = std::min<std::size_t>(LANES, places.size() - first);
+    Numbers cell[3] = {};
+    for (std::size_t i = 0; i < count; i++) {
+      for (int axis = 0; axis < 3; axis++) {
+        cell[axis][i] = static_cast<std::uint32_t>((places[first + i].at[axis] - low[axis]) * scale);
+      }
+    }
+    const Numbers keys = along_curve(cell);
+    for (std::size_t i = 0; i < count; i++) {
+      const std::uint32_t key = keys[i];
+      from[first + i] = {key, static_cast<int>(first + i)};
+      for (int digit = 0; digit < 3; digit++) counts[1024 * digit + (key >> 10 * digit & 1023)]++;
+    }
+  }
+  for (int digit = 0; digit < 3; digit++) {
+    std::uint32_t* place = &counts[1024 * digit];
+    std::exclusive_scan(place, place + 1024, place, 0U);
+    for (const Keyed& each : from) to[place[each.key >> 10 * digit & 1023]++] = each;
+    std::swap(from, to);
+  }
+  std::vector<int> order;
+  order.reserve(from.size());
+  for (const Keyed& each : from) order.push_back(each.number);
+  return order;
+}
+
 BoxNode node_over(std::span<const Around> children, float wider) {
   const Floats16 nowhere = spread(NOWHERE);
   BoxNode node{{nowhere, nowhere, nowhere}, {Floats16{}, Floats16{}, Floats16{}}, Floats16{}};
@@ -50,6 +127,7 @@ BoxNode node_over(std::span<const Around> children, float wider) {
 }  // namespace
 
 std::vector<int> order_of(std::vector<Place> places) {
+  if (places.size() > MANY_PLACES) return order_along_curve(places);
   std::vector<int> order(places.size());
   std::iota(order.begin(), order.end(), 0);
   std::vector<std::pair<int, int>> waiting = {{0, static_cast<int>(places.size())}};

@@ -93,6 +93,13 @@ double area_beside(const double* a, const double* b, double y, double z) {
   return exchanged ? -area : area;
 }
 
+/// Return the largest of numbers >= 0; unlike std::max_element this becomes vectors.
+std::int32_t most_of(std::span<const std::int32_t> numbers) {
+  std::int32_t most = 0;
+  for (const std::int32_t number : numbers) most = std::max(most, number);
+  return most;
+}
+
 /// Write the squared distances that follow along the middle axis of three, of lengths a, b and c.
 void spread_along(std::span<const std::int32_t> squared, std::span<std::int32_t> least, int a, int b, int c) {
   for (int i = 0; i < a; i++) {
@@ -100,8 +107,9 @@ void spread_along(std::span<const std::int32_t> squared, std::span<std::int32_t>
       const auto row = [&](int k) { return (static_cast<std::size_t>(i) * b + k) * c; };
       const auto best = least.subspan(row(j), c);
       std::copy_n(squared.begin() + row(j), c, best.begin());
-      const std::int32_t farthest = *std::max_element(best.begin(), best.end());
+      std::int32_t farthest = most_of(best);
       for (int away = 1; away < FARTHEST && away * away < farthest; away++) {
+        if (away % 4 == 0) farthest = most_of(best);
         for (const int k : {j - away, j + away}) {
           if (k < 0 || k >= b) continue;
           const std::int32_t* other = squared.data() + row(k);
@@ -242,10 +250,12 @@ std::vector<std::uint8_t> distances_to(const GridPlace& grid, std::span<const st
   }
   spread_along(squared, least, nx, ny, nz);
   spread_along(least, squared, 1, nx, ny * nz);
-  std::vector<std::uint8_t> distances(squared.size());
-  for (std::size_t i = 0; i < squared.size(); i++) {
-    distances[i] = static_cast<std::uint8_t>(std::min(STEPS * std::sqrt(static_cast<double>(squared[i])), 255.0));
+  std::vector<std::uint8_t> steps(FARTHEST * FARTHEST + 1), distances;
+  for (std::size_t i = 0; i < steps.size(); i++) {
+    steps[i] = static_cast<std::uint8_t>(std::min(STEPS * std::sqrt(static_cast<double>(i)), 255.0));
   }
+  distances.reserve(squared.size());
+  for (const std::int32_t square : squared) distances.push_back(steps[static_cast<std::size_t>(square)]);
   return distances;
 }
 
