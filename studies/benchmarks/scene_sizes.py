@@ -1,0 +1,151 @@
+"""What a scene costs by its size: boxes, points and triangles, to be made, to be checked, and in memory.
+
+    python -m studies.benchmarks.scene_sizes OUT.csv OUT.png [--most 1e5]
+
+The UR5 among the same bodies in ever more parts: 100 boxes of 5 to 20 cm, each cut into n / 100 boxes; the image of a
+depth camera with n points; a wavy plate of n triangles.  Every row is a process of its own.  Times are of its
+processor, the least of several; memory is what the process holds more when the world is made (Linux alone).
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import multiprocessing
+import resource
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from studies.benchmarks.arm_speed import random_boxes
+
+from evenroad.geometry import Mesh, PointCloud, TriangleMesh
+from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.load import load_robot
+from evenroad.robot.scene import Scene
+
+Floats = npt.NDArray[np.float64]
+SIZES = {
+    "boxes": (1, 10, 100, 300, 1000, 10_000, 100_000),
+    "points": (1000, 10_000, 100_000, 307_200, 1_000_000, 10_000_000),
+    "triangles": (1000, 10_000, 100_000),
+}
+COLUMNS = ("what", "size", "free", "made [ms]", "memory [MB]", "configurations/s", "motions/s")
+
+
+def boxes(count: int) -> Scene:
+    """Return so many boxes; more than 100 are these, cut into equal parts."""
+    whole = random_boxes(min(count, 100)).obstacles
+    if count <= 100:
+        return Scene(whole)
+    each = count // 100
+    parts = [max(k for k in range(1, round(each ** (1 / 3)) + 1) if each % k == 0)]
+    left = each // parts[0]
+    parts.append(max(k for k in range(1, int(left**0.5) + 1) if left % k == 0))
+    parts.append(left // parts[1])
+    cells = np.stack(np.meshgrid(*map(np.arange, parts), indexing="ij"), axis=-1).reshape(-1, 3) + 0.5
+    sizes = np.repeat([np.array(box.size) / parts for box in whole], len(cells), axis=0)
+    places = [np.array(box.xyz) + (cells / parts - 0.5) * box.size for box in whole]
+    order = np.random.default_rng(5).permutation(len(sizes))
+    return Scene.of_boxes(sizes[order], np.concatenate(places)[order])
+
+
+def depth_image(count: int) -> Floats:
+    """Return points that a camera sees of wavy ground with steps, to 2 mm, (about count, 3) [m]."""
+    wide = int((count * 4 / 3) ** 0.5)
+    u, v = np.meshgrid(np.linspace(-0.5, 0.5, wide), np.linspace(-0.4, 0.4, count // wide))
+    depth = 0.9 + 0.15 * np.sin(7 * u) * np.cos(9 * v) + 0.1 * (u * 5 % 1 > 0.5)
+    depth += np.random.default_rng(0).normal(size=u.shape) * 0.002
+    return np.stack([u * depth + 0.75, v * depth, 1.1 - depth], axis=-1).reshape(-1, 3)
+
+
+def plate(count: int) -> TriangleMesh:
+    """Return a wavy plate of about so many triangles."""
+    side = int((count / 2) ** 0.5)
+    x, y = np.meshgrid(np.linspace(0.3, 0.8, side + 1), np.linspace(-0.5, 0.5, side + 1), indexing="ij")
+    corners = np.stack([x, y, 0.2 + 0.1 * np.sin(9 * x) * np.cos(7 * y)], axis=-1).reshape(-1, 3)
+    first = (np.arange(side)[:, np.newaxis] * (side + 1) + np.arange(side)).ravel()
+    a, b, c, d = first, first + 1, first + side + 1, first + side + 2
+    return TriangleMesh(corners, np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)]))
+
+
+def scene_of(what: str, size: int) -> Scene:
+    """Return a scene of one kind and size."""
+    if what == "boxes":
+        return boxes(size)
+    return Scene([PointCloud(depth_image(size), 0.005) if what == "points" else Mesh(plate(size))])
+
+
+def least(task: Callable[[], object], repeats: int = 9) -> float:
+    """Return the least processor time of a task [s]."""
+    times = []
+    for _ in range(repeats):
+        begin = time.process_time()
+        task()
+        times.append(time.process_time() - begin)
+    return min(times)
+
+
+def held() -> int:
+    """Return how much memory the process holds [B]."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
+
+
+def measured(what: str, size: int) -> tuple[str, int, float, float, float, float, float]:
+    """Return a row of the table."""
+    robot, scene = load_robot("ur5"), scene_of(what, size)
+    # What is loaded once for all does not count.
+    _ = ArmWorld(robot, scene_of(what, 50)).checker, scene.rows
+    before, begin = held(), time.process_time()
+    world = ArmWorld(robot, scene)
+    _ = world.checker
+    made, memory = time.process_time() - begin, held() - before
+    q = world.space.from_cube(np.random.default_rng(0).random((4000, world.space.dim)))
+    free = q[world.valid(q)]
+    a, b = free[:500], free[500:1000]
+    rates = len(q) / least(lambda: world.valid(q)), len(a) / least(lambda: world.motion_valid(a, b))
+    return what, size, len(free) / len(q), 1e3 * made, memory / 1e6, *rates
+
+
+def draw(rows: list[tuple[str, int, float, float, float, float, float]], file: Path) -> None:
+    """Draw what a configuration takes, what a world takes to be made, and its memory, against the size."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(1, 3, figsize=(12, 3.8), constrained_layout=True)
+    for what in SIZES:
+        mine = np.array([row[1:] for row in rows if row[0] == what], dtype=float)
+        for axis, values in zip(axes, (1e6 / mine[:, 4], mine[:, 2], mine[:, 3]), strict=True):
+            axis.loglog(mine[:, 0], np.maximum(values, 1e-2), marker="o", label=what)
+    titles = ("a configuration [us]", "a world is made [ms]", "memory held [MB]")
+    for axis, title in zip(axes, titles, strict=True):
+        axis.set(xlabel="boxes, points or triangles", title=title)
+        axis.grid(alpha=0.3)
+    axes[0].legend()
+    figure.savefig(file, dpi=110)
+
+
+def main() -> None:
+    """Measure, write and draw."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("table", type=Path)
+    parser.add_argument("picture", type=Path)
+    parser.add_argument("--most", type=float, default=1e7, help="no larger sizes")
+    args = parser.parse_args()
+    rows = []
+    for what, sizes in SIZES.items():
+        for size in sizes:
+            if size <= args.most:
+                with multiprocessing.get_context("spawn").Pool(1) as pool:
+                    rows.append(pool.apply(measured, (what, size)))
+                print(*(f"{value:.4g}" if isinstance(value, float) else value for value in rows[-1]), flush=True)
+    with args.table.open("w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(COLUMNS)
+        table.writerows([what, size, *(f"{value:.4g}" for value in values)] for what, size, *values in rows)
+    draw(rows, args.picture)
+
+
+if __name__ == "__main__":
+    main()
