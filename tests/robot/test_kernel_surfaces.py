@@ -8,6 +8,7 @@ import pytest
 from evenroad.geometry import Mesh, PointCloud, Pose, Sphere, TriangleMesh
 from evenroad.geometry.mesh import closed_parts, merged
 from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.kernel.native_surfaces import FRAME, surface_of
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.world import FunctionWorld
 from tests.robot.kernel_arms import (
@@ -232,3 +233,12 @@ NAMED_APART = BALLS[0].vertices[BALLS[0].triangles].reshape(-1, 3), np.arange(24
 def test_closed_parts_are_found(mesh, closed, turned):
     parts, sides = closed_parts(mesh)
     assert (parts.mean(), sides) == (pytest.approx(closed), turned)
+
+
+def test_a_few_frames_of_a_camera_are_kept_and_not_every_one():
+    frames = [PointCloud(np.full((FRAME + 1, 3), 0.3 + 0.01 * i), 0.01) for i in range(6)]
+    first = surface_of(frames[0], 1.0)
+    assert surface_of(frames[0], 1.0) is first
+    for frame in frames[1:]:
+        surface_of(frame, 1.0)
+    assert surface_of(frames[0], 1.0) is not first

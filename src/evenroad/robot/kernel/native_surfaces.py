@@ -25,6 +25,9 @@ PIECE = 0.1
 """Triangles are cut until no side is longer than this share of the robot's reach: a box around a large one says
 little."""
 
+FRAME = 50_000
+"""Clouds of more points than this come anew from a camera: a few are kept, and not 64, which would fill the memory."""
+
 _SIDES = (
     ((0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)),
     (*((2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)),),
@@ -33,11 +36,16 @@ _CUBE = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))[np.concatenate(
 """Triangles of a cube around the origin, outside to the right of their turn."""
 
 
-@lru_cache(maxsize=64)
 def surface_of(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) -> native.Surface | None:
     """Return what a robot of this reach can touch of a body that is larger by a clearance, None where that is nothing;
     kept for the next scene.
     """
+    is_frame = isinstance(body, PointCloud) and len(body.points) > FRAME
+    return (_frames if is_frame else _surfaces)(body, reach, clearance)
+
+
+def make_surface(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) -> native.Surface | None:
+    """Return the same, made anew."""
     solid, turned, reach = np.zeros((0, 3, 3)), False, reach + clearance
     if isinstance(body, PointCloud):
         near, radius = _near_points(body, reach), body.radius
@@ -52,6 +60,10 @@ def surface_of(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) ->
         near = solid = reach * _CUBE
     padding = PADDING * (math.sqrt(np.einsum("ijk,ijk->ij", near, near).max()) + radius)
     return native.Surface(np.ascontiguousarray(near), radius + clearance + padding, solid, turned, reach)
+
+
+_surfaces = lru_cache(maxsize=64)(make_surface)
+_frames = lru_cache(maxsize=4)(make_surface)
 
 
 @lru_cache(maxsize=4)
