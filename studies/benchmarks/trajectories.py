@@ -26,9 +26,11 @@ from evenroad.planning.read_request import arm_request
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.trajectory import Limits, arm_trajectory, limits_of
 from evenroad.trajectory.blends import rounded
-from evenroad.trajectory.timing import INTERVALS
+from evenroad.trajectory.timing import TimeLaw
 
 REPEATS = 3
+INTERVALS = 600
+"""Of the grid along a path, about as many as evenroad takes."""
 Path = npt.NDArray[np.float64]
 
 
@@ -72,7 +74,9 @@ def toppra_ms(path: Path, limits: Limits) -> float:
             toppra.constraint.JointVelocityConstraint(np.column_stack([-velocity, velocity])),
             toppra.constraint.JointAccelerationConstraint(np.column_stack([-push, push])),
         ]
-        spline = toppra.SplineInterpolator(s, curve.at(s)[0])
+        # At speed 1 times are lengths.
+        along = TimeLaw(curve, curve.starts, curve.starts, np.ones(len(curve.starts)), np.zeros(len(curve.bend)))
+        spline = toppra.SplineInterpolator(s, along.at(s)[0])
         toppra.algorithm.TOPPRA(constraints, spline, gridpoints=s).compute_trajectory()
 
     return best_ms(run)

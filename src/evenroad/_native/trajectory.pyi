@@ -1,5 +1,20 @@
 from evenroad._arrays import Floats
 
-def squared_speeds(
-    curve: tuple[Floats, Floats, Floats, Floats, Floats], ceiling: Floats, acceleration: Floats
-) -> Floats: ...
+def fastest(
+    path: tuple[Floats, Floats, Floats, Floats, Floats],
+    stops: Floats,
+    velocity: Floats,
+    acceleration: Floats,
+    along_path: float,
+) -> tuple[Floats, Floats, Floats, Floats]: ...
+def states(
+    path: tuple[Floats, Floats, Floats, Floats, Floats], law: tuple[Floats, Floats, Floats, Floats], t: Floats
+) -> tuple[Floats, Floats, Floats]: ...
+def largest_shares(
+    path: tuple[Floats, Floats, Floats, Floats, Floats],
+    law: tuple[Floats, Floats, Floats, Floats],
+    velocity: Floats,
+    acceleration: Floats,
+    samples: int,
+) -> tuple[float, float]: ...
+def distances_to(waypoints: Floats, points: Floats) -> Floats: ...

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Floats
 
 _STRAIGHT = 1e-6
 """Angle below which a corner counts as straight [rad]: the largest error of the next arc."""
@@ -35,21 +35,10 @@ class RoundedPath:
         """Length of the path."""
         return float(self.starts[-1])
 
-    def piece_at(self, s: Floats) -> Ints:
-        """Return the piece at each length, the later one where two meet."""
-        return np.clip(np.searchsorted(self.starts, s, side="right") - 1, 0, len(self.bend) - 1)
-
-    def at(self, s: Floats, piece: Ints | None = None) -> tuple[Floats, Floats, Floats]:
-        """Return positions and their first two derivatives, (n, dim) each, at lengths, (n,)."""
-        i = self.piece_at(s) if piece is None else piece
-        after = (s - self.starts[i])[:, None]
-        bend, out, along = self.bend[i][:, None], self.out[i], self.along[i]
-        turned = after * bend
-        cosine, sine = np.cos(turned), np.sin(turned)
-        radius = np.divide(1.0, bend, out=np.zeros_like(bend), where=bend > 0.0)
-        reached = np.where(bend > 0.0, radius * sine, after)
-        position = self.origin[i] + radius * cosine * out + reached * along
-        return position, cosine * along - sine * out, -bend * (cosine * out + sine * along)
+    @property
+    def columns(self) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """The path as the native kernel takes it."""
+        return self.starts, self.origin, self.out, self.along, self.bend
 
 
 def rounded(path: Floats, deviation: Floats) -> RoundedPath:

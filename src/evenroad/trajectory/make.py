@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicHermiteSpline
 
 from evenroad._arrays import Bools, Floats
 from evenroad._checks import as_batch, require_positive
+from evenroad._native.trajectory import distances_to
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.limits import Limits
@@ -33,6 +33,9 @@ _SAME = 1e-9
 
 MOST_STATES = 1_000_000
 """Largest number of states, more than two hours at 125 Hz."""
+
+States: TypeAlias = tuple[Floats, Floats, Floats]
+"""Positions, velocities and accelerations, (n, dim) each."""
 
 _HALVINGS = 6
 """Number of times that a blend in collision is halved; then the robot stops at the corner."""
@@ -96,10 +99,10 @@ def make_trajectory(
     cuts = np.full(len(waypoints), deviation)
     for halved in range(_HALVINGS + 1):
         curve = rounded(waypoints, cuts)
-        law = _on_steps(paused(fastest(curve, limits), window), limits, window, step)
-        fine = np.linspace(0.0, law.duration + window, _FINER * round((law.duration + window) / step) + 1)
-        states = _averaged(law, window, fine)
-        off = _distance_to(waypoints, states[0])
+        law, fine, states = _on_steps(paused(fastest(curve, limits), window), limits, window, step)
+        if window > 0.0:
+            states = _averaged(law, window, fine)
+        off = distances_to(waypoints, states[0])
         positions = states[0][::_FINER]
         free, proof = drivable(world, positions)
         bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[off > deviation + 1e-6]])
@@ -139,11 +142,13 @@ def _apart(path: Floats) -> Floats:
     return np.array(kept).reshape(-1, path.shape[1])
 
 
-def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeLaw:
-    """Return a law that keeps its limits between grid points, too, and ends on a whole step."""
-    within = law.times[:-1, None] + np.diff(law.times)[:, None] * np.linspace(0.0, 1.0 - 1e-9, _FINER)
-    shares = _shares(law.at(within.ravel()), limits)
-    law = slowed(law, max(1.0, shares["velocity"], math.sqrt(shares["acceleration"])))
+def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> tuple[TimeLaw, Floats, States]:
+    """Return a law that keeps its limits between grid points, too, and ends on a whole step, after the `window`.
+
+    With it come fine times, and its states then.
+    """
+    velocity, acceleration = law.largest_shares(limits, _FINER)
+    law = slowed(law, max(1.0, velocity, math.sqrt(acceleration)))
     steps = max(math.ceil((law.duration + window) / step - 1e-9), math.floor(window / step) + 1)
     if steps > MOST_STATES:
         raise InvalidValue(
@@ -153,15 +158,16 @@ def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeL
     while True:
         law = slowed(law, (steps * step - window) / law.duration)
         fine = np.linspace(0.0, law.duration + window, _FINER * steps + 1)
-        if max(_shares(law.at(fine), limits).values()) <= 1.0:
-            return law
+        if max(_shares(states := law.at(fine), limits).values()) <= 1.0:
+            return law, fine, states
         steps += 1
 
 
-def _averaged(law: TimeLaw, window: float, t: Floats) -> tuple[Floats, Floats, Floats]:
+def _averaged(law: TimeLaw, window: float, t: Floats) -> States:
     """Return positions, velocities and accelerations, (n, dim) each, averaged over the `window` before each time."""
-    if window == 0.0:
-        return law.at(t)
+    # Imported late: it takes longer than all else, and few limits are of jerk.
+    from scipy.interpolate import CubicHermiteSpline
+
     grid = np.linspace(-window, law.duration + window, len(t) + 1)
     position, velocity, _ = law.at(grid)
     travelled = CubicHermiteSpline(grid, position, velocity).antiderivative()
@@ -171,20 +177,10 @@ def _averaged(law: TimeLaw, window: float, t: Floats) -> tuple[Floats, Floats, F
     return positions, (position - position_before) / window, (velocity - velocity_before) / window
 
 
-def _shares(states: tuple[Floats, Floats, Floats], limits: Limits) -> dict[str, float]:
+def _shares(states: States, limits: Limits) -> dict[str, float]:
     """Return the largest share of velocity and of acceleration that states use."""
     used = {"velocity": states[1], "acceleration": states[2]}
     return {kind: float(np.max(np.abs(rows) / getattr(limits, kind))) for kind, rows in used.items()}
-
-
-def _distance_to(path: Floats, points: Floats) -> Floats:
-    """Return the distances of points, (n, dim), from a path, (p, dim): (n,)."""
-    nearest = np.full(len(points), np.inf)
-    for a, b in pairwise(path):
-        along = b - a
-        share = np.clip((points - a) @ along / (along @ along), 0.0, 1.0)
-        nearest = np.minimum(nearest, np.linalg.norm(points - a - share[:, None] * along, axis=1))
-    return nearest
 
 
 def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:

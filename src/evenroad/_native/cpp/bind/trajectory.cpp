@@ -1,32 +1,114 @@
 // evenroad._native.trajectory: times along a path.
+#include <algorithm>
+#include <functional>
+
 #include "bind/arrays.hpp"
-#include "trajectory/fastest_speeds.hpp"
+#include "trajectory/time_law.hpp"
 
 namespace evenroad::bind {
 
-using namespace nb::literals;
-
 namespace {
 
-nb::object squared_speeds(nb::tuple curve, nb::handle ceilings, nb::handle accelerations) {
-  require(curve.size() == 5, "curve must be (ahead, ahead_bend, behind, behind_bend, steps)");
-  const FloatRows ahead(curve[0], "ahead"), ahead_bend(curve[1], "ahead_bend");
-  const FloatRows behind(curve[2], "behind"), behind_bend(curve[3], "behind_bend");
-  const Floats steps(curve[4], "steps"), ceiling(ceilings, "ceiling");
-  const Floats acceleration(accelerations, "acceleration");
-  const std::size_t intervals = steps.size(), joints = acceleration.size();
-  for (const auto* each : {&ahead, &ahead_bend, &behind, &behind_bend}) each->of_shape({intervals, joints});
-  ceiling.of_shape({intervals + 1});
-  const trajectory::Curve path{ahead.matrix(), ahead_bend.matrix(), behind.matrix(), behind_bend.matrix(),
-                               steps.span()};
-  return as_row(without_gil([&] { return trajectory::squared_speeds(path, ceiling.span(), acceleration.span()); }));
+constexpr std::size_t MOST_SAMPLES = 1 << 20;
+
+using trajectory::RoundedPath;
+using trajectory::TimeLaw;
+
+/// A rounded path in arrays of Python.
+struct PathArrays {
+  Floats starts;
+  FloatRows origin, out, along;
+  Floats bend;
+
+  explicit PathArrays(nb::tuple given)
+      : starts(column(given, 0, 5), "starts"),
+        origin(given[1], "origin"),
+        out(given[2], "out"),
+        along(given[3], "along"),
+        bend(given[4], "bend") {
+    require(bend.size() >= 1, "bend must be 1 or more, got 0");
+    starts.of_shape({bend.size() + 1});
+    for (const auto* each : {&origin, &out, &along}) each->of_shape({bend.size(), origin.shape(1)});
+    const auto lengths = starts.span();
+    require(std::ranges::is_sorted(lengths, std::less_equal()) && lengths[0] >= 0.0, "starts must rise from 0 on");
+  }
+
+  static nb::handle column(nb::tuple given, std::size_t i, std::size_t columns) {
+    require(given.size() == columns, "must be " + std::to_string(columns) + " arrays");
+    return given[i];
+  }
+
+  RoundedPath path() const { return {starts.span(), origin.matrix(), out.matrix(), along.matrix(), bend.span()}; }
+};
+
+/// A law in arrays of Python.
+struct LawArrays {
+  Floats times, lengths, speeds, accelerations;
+
+  explicit LawArrays(nb::tuple given)
+      : times(PathArrays::column(given, 0, 4), "times"),
+        lengths(given[1], "lengths"),
+        speeds(given[2], "speeds"),
+        accelerations(given[3], "accelerations") {
+    require(accelerations.size() >= 1, "accelerations must be 1 or more, got 0");
+    for (const auto* each : {&times, &lengths, &speeds}) each->of_shape({accelerations.size() + 1});
+  }
+
+  TimeLaw law() const { return {times.span(), lengths.span(), speeds.span(), accelerations.span()}; }
+};
+
+nb::tuple fastest(nb::tuple path, nb::handle stops, nb::handle velocity, nb::handle acceleration, double along_path) {
+  const PathArrays arrays(path);
+  const Floats at(stops, "stops"), speeds(velocity, "velocity"), pushes(acceleration, "acceleration");
+  speeds.of_shape({arrays.path().dim()}), pushes.of_shape({arrays.path().dim()});
+  trajectory::OwnTimeLaw law = without_gil(
+      [&] { return trajectory::fastest(arrays.path(), at.span(), {speeds.span(), pushes.span(), along_path}); });
+  return nb::make_tuple(as_row(std::move(law.times)), as_row(std::move(law.lengths)), as_row(std::move(law.speeds)),
+                        as_row(std::move(law.accelerations)));
+}
+
+nb::tuple states(nb::tuple path, nb::tuple law, nb::handle times) {
+  const PathArrays arrays(path);
+  const LawArrays when(law);
+  const Floats t(times, "t");
+  const std::size_t dim = arrays.path().dim();
+  OwnMatrix<double> positions(t.size(), dim), velocities(t.size(), dim), accelerations(t.size(), dim);
+  without_gil([&] {
+    trajectory::write_states(arrays.path(), when.law(), t.span(), positions, velocities, accelerations);
+    return 0;
+  });
+  return nb::make_tuple(as_rows(std::move(positions)), as_rows(std::move(velocities)),
+                        as_rows(std::move(accelerations)));
+}
+
+nb::tuple largest_shares(nb::tuple path, nb::tuple law, nb::handle velocity, nb::handle acceleration,
+                         std::int64_t samples) {
+  const PathArrays arrays(path);
+  const LawArrays when(law);
+  const Floats speeds(velocity, "velocity"), pushes(acceleration, "acceleration");
+  speeds.of_shape({arrays.path().dim()}), pushes.of_shape({arrays.path().dim()});
+  require_below(samples - 2, MOST_SAMPLES, "samples less two");
+  const trajectory::Shares shares = without_gil([&] {
+    return trajectory::largest_shares(arrays.path(), when.law(), {speeds.span(), pushes.span(), 0.0},
+                                      static_cast<std::size_t>(samples));
+  });
+  return nb::make_tuple(shares.velocity, shares.acceleration);
+}
+
+nb::object distances_to(nb::handle waypoints, nb::handle points) {
+  const FloatRows path(waypoints, "waypoints"), rows(points, "points");
+  rows.of_shape({rows.shape(0), path.shape(1)});
+  return as_row(without_gil([&] { return trajectory::distances_to(path.matrix(), rows.matrix()); }));
 }
 
 }  // namespace
 
 void add_trajectory(nb::module_& module) {
   nb::module_ part = module.def_submodule("trajectory", "Times along a path.");
-  part.def("squared_speeds", &squared_speeds, "curve"_a, "ceiling"_a.none(), "acceleration"_a.none());
+  part.def("fastest", &fastest);
+  part.def("states", &states);
+  part.def("largest_shares", &largest_shares);
+  part.def("distances_to", &distances_to);
 }
 
 }  // namespace evenroad::bind

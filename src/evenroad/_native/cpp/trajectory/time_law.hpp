@@ -1,0 +1,58 @@
+// A path of lines and arcs, and when one is where along it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "common/matrix.hpp"
+
+namespace evenroad::trajectory {
+
+/// Lines and arcs, one after the other; evenroad.trajectory.blends says what each column is.
+struct RoundedPath {
+  std::span<const double> starts;
+  Matrix<const double> origin, out, along;
+  std::span<const double> bend;
+
+  std::size_t pieces() const { return bend.size(); }
+  std::size_t dim() const { return along.columns; }
+};
+
+/// Length along a path over time: the acceleration along it is constant between two of the times.
+struct TimeLaw {
+  std::span<const double> times, lengths, speeds, accelerations;
+
+  std::size_t intervals() const { return accelerations.size(); }
+};
+
+/// The same with memory of its own.
+struct OwnTimeLaw {
+  std::vector<double> times, lengths, speeds, accelerations;
+};
+
+/// Largest velocity and acceleration of each coordinate, and largest speed along the path.
+struct Most {
+  std::span<const double> velocity, acceleration;
+  double along_path;
+};
+
+/// Return the fastest law from rest to rest, also at `stops`: lengths at which the direction jumps.
+OwnTimeLaw fastest(const RoundedPath& path, std::span<const double> stops, const Most& most);
+
+/// Write positions, velocities and accelerations at times; before and after the path one is at rest.
+void write_states(const RoundedPath& path, const TimeLaw& law, std::span<const double> t, Matrix<double> positions,
+                  Matrix<double> velocities, Matrix<double> accelerations);
+
+/// Largest shares of what is allowed.
+struct Shares {
+  double velocity = 0.0, acceleration = 0.0;
+};
+
+/// Return the largest shares at so many times, from 2 on, in each interval.
+Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const Most& most, std::size_t samples);
+
+/// Return how far each point is from straight motions between waypoints.
+std::vector<double> distances_to(Matrix<const double> waypoints, Matrix<const double> points);
+
+}  // namespace evenroad::trajectory
