@@ -97,6 +97,16 @@ def test_what_the_states_say_is_blocked_is_not_proved_and_little_else(motions):
     assert proved.sum() > 0.97 * sampled.sum()
 
 
+def test_short_motions_are_proved_together_as_each_alone(motions):
+    world, a, b, _ = motions
+    # As of a trajectory, and long ones between them.
+    b = world.space.interpolate(a, b, np.where(np.arange(len(a)) % 50 == 7, 1.0, np.linspace(1e-4, 0.03, len(a))))
+    together = world.motion_certified(a, b, 1e-6)
+    alone = [world.motion_certified(a[i : i + 1], b[i : i + 1], 1e-6)[0] for i in range(len(a))]
+    assert together.tolist() == alone
+    assert together.mean() > 0.9
+
+
 def needle(gap, half_width=1e-3):
     """A wheel's rim, a ball of 1 mm, and a post of 1 mm in its way or `gap` beside it."""
     turn = Joint("turn", "revolute", "base", "wheel", (0.0, 0.0, 0.0), STRAIGHT, Z, 0.0, 2.0)
@@ -147,6 +157,11 @@ def test_a_post_of_a_millimetre_is_not_missed_wherever_it_is_in_a_motion(kind):
     assert missed.mean() > 0.9
     for tolerance in (1e-6, 1e-2):
         assert not world.motion_certified(a[missed], b[missed], tolerance).any()
+    # Short ones are tried many at once.
+    a[:, 0], b[:, 0] = -0.035 * share, 0.035 * (1.0 - share)
+    missed = world.motion_valid(a, b)
+    assert missed.mean() > 0.2
+    assert not world.motion_certified(a[missed], b[missed], 1e-6).any()
     # Beside it all are.
     a[:, 0], b[:, 0] = 0.0025, 0.0025 + 0.5 * length
     assert world.motion_certified(a, b, 1e-4).all()

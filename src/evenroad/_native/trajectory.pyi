@@ -5,7 +5,7 @@ def fastest(
     stops: Floats,
     velocity: Floats,
     acceleration: Floats,
-    along_path: float,
+    ceiling: Floats,
 ) -> tuple[Floats, Floats, Floats, Floats]: ...
 def states(
     path: tuple[Floats, Floats, Floats, Floats, Floats], law: tuple[Floats, Floats, Floats, Floats], t: Floats

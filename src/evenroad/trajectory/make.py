@@ -180,7 +180,7 @@ def _averaged(law: TimeLaw, window: float, t: Floats) -> States:
 def _shares(states: States, limits: Limits) -> dict[str, float]:
     """Return the largest share of velocity and of acceleration that states use."""
     used = {"velocity": states[1], "acceleration": states[2]}
-    return {kind: float(np.max(np.abs(rows) / getattr(limits, kind))) for kind, rows in used.items()}
+    return {kind: float(np.max(np.abs(rows).max(axis=0) / getattr(limits, kind))) for kind, rows in used.items()}
 
 
 def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:

@@ -16,6 +16,10 @@ _WITHIN = 1.0 - 1e-3
 """Share of the acceleration limits used: between two grid points an arc may take a little more."""
 
 
+_ANY_SPEED = 1e300
+"""Square of a speed that nothing reaches."""
+
+
 @dataclass(frozen=True, eq=False)
 class TimeLaw:
     """Length along a path as a function of time; the acceleration along it is constant between `times`, (m,)."""
@@ -66,9 +70,20 @@ def fastest(path: RoundedPath, limits: Limits) -> TimeLaw:
 
     About 600 intervals make a whole path.
     """
-    along_path = np.inf if limits.along_path is None else limits.along_path
     most = np.array(limits.velocity), _WITHIN * np.array(limits.acceleration)
-    return TimeLaw(path, *native_fastest(path.columns, path.stops, *most, along_path))
+    ceiling = np.array([_ANY_SPEED if limits.along_path is None else limits.along_path**2])
+    law = TimeLaw(path, *native_fastest(path.columns, path.stops, *most, ceiling))
+    if limits.tip is None:
+        return law
+    # At speed 1 times are lengths, and velocities directions; an interval ends with its own.
+    grid = law.lengths
+    steady = TimeLaw(path, grid, grid, np.ones(len(grid)), np.zeros(len(grid) - 1))
+    sides = (steady.at(s)[:2] for s in (grid[:-1], np.nextafter(grid[1:], 0.0)))
+    first, last = ((_WITHIN * limits.tip.along(*side)) ** 2 for side in sides)
+    ceiling = np.full(len(grid), ceiling[0])
+    ceiling[:-1] = np.minimum(ceiling[:-1], first)
+    ceiling[1:] = np.minimum(ceiling[1:], last)
+    return TimeLaw(path, *native_fastest(path.columns, path.stops, *most, ceiling))
 
 
 def slowed(law: TimeLaw, factor: float) -> TimeLaw:

@@ -57,12 +57,17 @@ struct LawArrays {
   TimeLaw law() const { return {times.span(), lengths.span(), speeds.span(), accelerations.span()}; }
 };
 
-nb::tuple fastest(nb::tuple path, nb::handle stops, nb::handle velocity, nb::handle acceleration, double along_path) {
+nb::tuple fastest(nb::tuple path, nb::handle stops, nb::handle velocity, nb::handle acceleration, nb::handle highest) {
   const PathArrays arrays(path);
   const Floats at(stops, "stops"), speeds(velocity, "velocity"), pushes(acceleration, "acceleration");
+  const Floats ceiling(highest, "ceiling");
   speeds.of_shape({arrays.path().dim()}), pushes.of_shape({arrays.path().dim()});
-  trajectory::OwnTimeLaw law = without_gil(
-      [&] { return trajectory::fastest(arrays.path(), at.span(), {speeds.span(), pushes.span(), along_path}); });
+  trajectory::Grid grid = trajectory::grid_of(arrays.path());
+  if (ceiling.size() != 1) ceiling.of_shape({grid.lengths.size()});
+  trajectory::OwnTimeLaw law = without_gil([&] {
+    return trajectory::fastest(arrays.path(), std::move(grid), at.span(), {speeds.span(), pushes.span()},
+                               ceiling.span());
+  });
   return nb::make_tuple(as_row(std::move(law.times)), as_row(std::move(law.lengths)), as_row(std::move(law.speeds)),
                         as_row(std::move(law.accelerations)));
 }
@@ -89,7 +94,7 @@ nb::tuple largest_shares(nb::tuple path, nb::tuple law, nb::handle velocity, nb:
   speeds.of_shape({arrays.path().dim()}), pushes.of_shape({arrays.path().dim()});
   require_below(samples - 2, MOST_SAMPLES, "samples less two");
   const trajectory::Shares shares = without_gil([&] {
-    return trajectory::largest_shares(arrays.path(), when.law(), {speeds.span(), pushes.span(), 0.0},
+    return trajectory::largest_shares(arrays.path(), when.law(), {speeds.span(), pushes.span()},
                                       static_cast<std::size_t>(samples));
   });
   return nb::make_tuple(shares.velocity, shares.acceleration);

@@ -7,6 +7,9 @@ namespace evenroad::robot {
 
 namespace {
 
+/// Fewer motions than these are not worth a batch for all.
+constexpr std::size_t LEAST_AT_ONCE = 4;
+
 /// Return whether the states of the workspace's motion from number `first` to `last` are free, or sixteen of them.
 bool are_free(Workspace& workspace, int first, int last, bool sixteen_do) {
   Motion& motion = workspace.motion;
@@ -88,7 +91,17 @@ void motions_free(const Checker& checker, Matrix<const double> a, Matrix<const d
   const Borrowed workspace = checker.borrow();
   const Bounds& bounds = checker.robot().bounds;
   std::vector<double> start(a.columns), end(a.columns);
+  Mask proved = 0;
   for (std::size_t row = 0; row < a.rows; row++) {
+    const std::size_t lane = row % LANES, left = a.rows - row;
+    if (lane == 0 && tolerance > 0 && left >= LEAST_AT_ONCE) {
+      proved =
+          proved_at_once(*workspace, {a[row].data(), left, a.columns}, {b[row].data(), left, b.columns}, tolerance);
+    } else if (lane == 0) {
+      proved = 0;
+    }
+    free[row] = (proved >> lane & 1) != 0;
+    if (free[row]) continue;
     free[row] = enter(a[row], bounds, start) && enter(b[row], bounds, end) &&
                 motion_free(*workspace, start, end, Known::NO_ENDPOINT) &&
                 (tolerance <= 0 || motion_proved(*workspace, start, end, limits));

@@ -1,7 +1,8 @@
 // Proofs that a motion is free throughout, not at states alone.
 //
 // The method is that of evenroad.robot.certified, for sixteen stretches of a motion at once: every stretch is tested in
-// its middle with bodies enlarged by what half of the stretch can move them, and halved where that fails.
+// its middle with bodies enlarged by what half of the stretch can move them, and halved where that fails.  Of many
+// short motions, as of a trajectory, sixteen are tried at once, each as one stretch.
 #include "robot/motion_check.hpp"
 
 namespace evenroad::robot {
@@ -14,6 +15,9 @@ constexpr int DEEPEST_STRETCH = 40;
 /// Where stretches move something by more than that, capsules alone decide [m]: shapes are rarely free where they are
 /// not, and two halves cost less than to ask these.
 constexpr double COARSE = 0.005;
+
+/// Motions that move nothing by more than twice that are tried sixteen at once [m].
+constexpr double SHORT = 0.02;
 
 /// What sums of single precision are multiplied by to be no less than the true ones.
 constexpr float UP = 1.0F + 3e-7F;
@@ -108,6 +112,31 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
     if (count == 0) return true;
   }
   return false;
+}
+
+Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const double> b, double tolerance) {
+  const Robot& robot = workspace.checker.robot();
+  const std::size_t count = std::min<std::size_t>(a.rows, LANES), dim = a.columns;
+  std::vector<double> start(dim), end(dim), way(dim), longest(dim);
+  Mask proved = 0;
+  for (std::size_t lane = 0; lane < LANES; lane++) {
+    const std::size_t row = std::min(lane, count - 1);
+    const bool is_inside = enter(a[row], robot.bounds, start) && enter(b[row], robot.bounds, end);
+    if (is_inside && lane < count) proved |= 1U << lane;
+    way_between(start, end, robot.bounds, way);
+    for (std::size_t k = 0; k < dim; k++) {
+      start[k] += 0.5 * way[k];
+      longest[k] = std::max(longest[k], std::abs(way[k]));
+    }
+    workspace.set(static_cast<int>(lane), start);
+  }
+  const double half = 0.5 * std::max({write_speeds(robot.arms, longest, workspace.speeds),
+                                      write_speeds(robot.pair_arms, longest, workspace.pair_speeds),
+                                      write_speeds(robot.shape_arms, longest, workspace.shape_speeds)});
+  if (half > SHORT) return 0;
+  enlarge(workspace, 0.5);
+  workspace.enlarged.shapes_decide = half < std::max(COARSE, 2.0 * tolerance);
+  return proved & ~blocked(workspace, workspace.enlarged, Wanted::ALL);
 }
 
 }  // namespace evenroad::robot

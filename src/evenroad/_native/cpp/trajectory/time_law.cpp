@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "trajectory/fastest_speeds.hpp"
 
@@ -75,22 +76,29 @@ double square_within(const RoundedPath& path, const Turn& turn, std::span<const 
 
 }  // namespace
 
-OwnTimeLaw fastest(const RoundedPath& path, std::span<const double> stops, const Most& most) {
-  OwnTimeLaw law;
-  std::vector<std::size_t> pieces;
-  law.lengths.push_back(0.0);
+Grid grid_of(const RoundedPath& path) {
+  Grid grid{{0.0}, {}};
   for (std::size_t piece = 0; piece < path.pieces(); piece++) {
     const double begin = path.starts[piece], end = path.starts[piece + 1];
     const double share = (end - begin) / path.starts.back();
     const double count = std::max(std::ceil(INTERVALS * share), path.bend[piece] > 0.0 ? PER_ARC : PER_LINE);
-    for (double i = 1.0; i < count; i++) law.lengths.push_back(begin + i * ((end - begin) / count));
-    law.lengths.push_back(end);
-    pieces.resize(law.lengths.size() - 1, piece);
+    for (double i = 1.0; i < count; i++) grid.lengths.push_back(begin + i * ((end - begin) / count));
+    grid.lengths.push_back(end);
+    grid.pieces.resize(grid.lengths.size() - 1, piece);
   }
+  return grid;
+}
+
+OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> stops, const Most& most,
+                   std::span<const double> highest) {
+  OwnTimeLaw law;
+  law.lengths = std::move(grid.lengths);
+  const std::vector<std::size_t>& pieces = grid.pieces;
   const std::size_t intervals = pieces.size(), dim = path.dim();
   OwnMatrix<double> ahead(intervals, dim), ahead_bend(intervals, dim), behind(intervals, dim),
       behind_bend(intervals, dim);
-  std::vector<double> steps(intervals), ceiling(intervals + 1, most.along_path * most.along_path);
+  std::vector<double> steps(intervals), ceiling(highest.begin(), highest.end());
+  ceiling.resize(intervals + 1, highest[0]);
   for (std::size_t i = 0; i < intervals; i++) {
     const Turn begin(path, pieces[i], law.lengths[i]), end(path, pieces[i], law.lengths[i + 1]);
     steps[i] = law.lengths[i + 1] - law.lengths[i];

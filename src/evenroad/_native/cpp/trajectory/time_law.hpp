@@ -31,14 +31,22 @@ struct OwnTimeLaw {
   std::vector<double> times, lengths, speeds, accelerations;
 };
 
-/// Largest velocity and acceleration of each coordinate, and largest speed along the path.
+/// Largest velocity and acceleration of each coordinate.
 struct Most {
   std::span<const double> velocity, acceleration;
-  double along_path;
 };
 
-/// Return the fastest law from rest to rest, also at `stops`: lengths at which the direction jumps.
-OwnTimeLaw fastest(const RoundedPath& path, std::span<const double> stops, const Most& most);
+/// Return the lengths between which the acceleration is constant, and the piece of each interval.
+struct Grid {
+  std::vector<double> lengths;
+  std::vector<std::size_t> pieces;
+};
+Grid grid_of(const RoundedPath& path);
+
+/// Return the fastest law from rest to rest, also at `stops`: lengths at which the direction jumps.  Squares of speeds
+/// along the path are at most those of `ceiling`: one, or one at each length of the grid.
+OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> stops, const Most& most,
+                   std::span<const double> ceiling);
 
 /// Write positions, velocities and accelerations at times; before and after the path one is at rest.
 void write_states(const RoundedPath& path, const TimeLaw& law, std::span<const double> t, Matrix<double> positions,
