@@ -20,17 +20,19 @@ post = er.Scene([er.Box((0.08, 0.08, 0.3), xyz=(0.45, 0.45, 0.15), name="post")]
 world = er.ArmWorld(HOLDING, post)
 
 
-def both_at(xyz, start):
-    """A configuration with which both hands hold the box at a place."""
-    for side, tip in ((-1.0, "tool0"), (1.0, "left_tool0")):
-        hand = er.Pose(xyz) @ er.Pose((0.0, 0.15 * side, 0.0), rpy=(math.pi / 2 * side, 0.0, 0.0))
-        start = reach(er.ArmWorld(BOTH), er.PoseGoal(hand, tip=tip), start).configurations[0]
-    return start
+def hands_at(xyz):
+    """Both hands where they hold the box at a place: one goal of two links."""
+    right, left = (
+        er.PoseGoal(er.Pose(xyz) @ er.Pose((0.0, 0.15 * side, 0.0), rpy=(math.pi / 2 * side, 0.0, 0.0)), tip=tip)
+        for side, tip in ((-1.0, "tool0"), (1.0, "left_tool0"))
+    )
+    return right & left
 
 
-start = both_at((0.28, 0.45, 0.25), np.zeros(12))
-goal = both_at((0.62, 0.45, 0.25), start)
-result = er.plan(world, start, goal, constraints=er.constraints.KeepTogether("tool0", "left_tool0"))
+start = reach(world, hands_at((0.28, 0.45, 0.25)), np.zeros(12)).configurations[0]
+result = er.plan(
+    world, start, hands_at((0.62, 0.45, 0.25)), constraints=er.constraints.KeepTogether("tool0", "left_tool0")
+)
 print(result.status, f"the hands leave their pose by at most {1e3 * result.deviation['together_m']:.2f} mm")
 print(result.trajectory(speed=0.3))
 result.plot("carried.png")

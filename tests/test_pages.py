@@ -118,6 +118,8 @@ LEAVES = {
     "11": ("weld.png",),
     "12": ("door.png",),
     "13": ("carried.png",),
+    "14": ("tray.png",),
+    "15": ("doorway.png", "platform.urdf"),
 }
 """Number of an example -> the files that it leaves in the folder."""
 

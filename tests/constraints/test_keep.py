@@ -123,19 +123,30 @@ def test_two_hands_keep_their_pose_to_each_other():
     arm = ROBOTS["ur5"]
     both = arm.with_tool(arm, "base_link", pose=er.Pose((0.0, 0.9, 0.0), rpy=(0.0, 0.0, math.pi)), prefix="left_")
     both = with_group(both, (*arm.group, *(f"left_{joint}" for joint in arm.group)))
-    world, rows = er.ArmWorld(both), []
+    world, goals = er.ArmWorld(both), []
     for xyz in ((0.4, 0.45, 0.3), (0.45, 0.4, 0.5)):
-        q = rows[0] if rows else np.zeros(12)
-        for side, tip in ((-1.0, "tool0"), (1.0, "left_tool0")):
-            hand = er.Pose(xyz) @ er.Pose((0.0, side * 0.15, 0.0), rpy=(side * math.pi / 2, 0.0, 0.0))
-            q = reach(world, er.PoseGoal(hand, tip=tip), q).configurations[0]
-        rows.append(q)
-    result = er.plan(world, *rows, constraints=er.constraints.KeepTogether("tool0", "left_tool0"))
+        right, left = (
+            er.PoseGoal(er.Pose(xyz) @ er.Pose((0.0, side * 0.15, 0.0), rpy=(side * math.pi / 2, 0.0, 0.0)), tip=tip)
+            for side, tip in ((-1.0, "tool0"), (1.0, "left_tool0"))
+        )
+        goals.append(right & left)
+    start = reach(world, goals[0], np.zeros(12)).configurations[0]
+    result = er.plan(world, start, goals[1], constraints=er.constraints.KeepTogether("tool0", "left_tool0"))
     assert result.solved
     (turn, at), (_, other) = (origins(both, result.path, tip) for tip in ("tool0", "left_tool0"))
+    np.testing.assert_allclose(other[-1], goals[1].others[0].pose.xyz, atol=1e-9)
     held = np.einsum("nji,nj->ni", turn, other - at)
     assert np.linalg.norm(held - held[0], axis=1).max() <= 2e-4
     assert result.deviation["together_m"] <= 1e-4
+
+
+def test_poses_that_links_cannot_reach_together_are_refused_with_the_reason():
+    goal = er.PoseGoal(er.Pose((0.4, 0.1, 0.4)), "tool0") & er.PoseGoal(er.Pose((0.4, 0.1, 0.6)), "wrist_3_link")
+    result = er.plan(er.ArmWorld("ur5"), "home", goal)
+    assert result.status is er.Status.GOAL_UNREACHABLE
+    assert "is reached, but not with the others: the links share joints" in result.message
+    with pytest.raises(EvenroadError, match="a pose goal goes with another one"):
+        goal & "home"
 
 
 def test_constraints_of_both_kinds_of_tip_go_together_and_those_of_one_do_not():

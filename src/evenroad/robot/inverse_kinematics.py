@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Protocol
 
@@ -31,6 +31,8 @@ _ENOUGH = 24
 _POLISHED = 4
 _SAME = 1e-4
 """Distance below which configurations are one posture [rad or m]."""
+_SIDE, _TOGETHER = 8, 1e-16
+"""Number of postures of each link of several, and the largest squared error of those that reach theirs together."""
 _APART = 0.1
 """The same for an arm with redundant joints."""
 _MOST_TURNING = 8
@@ -101,7 +103,35 @@ def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike, *, quickly: bool 
         reason = partial(_why_blocked, world, goal, solved)
         return Reached(solved[:0], len(solved), len(solved), solver, solved[0], reason)
     turned = _with_turns(chain, solved[free], start)
+    if goal.others:
+        return _with_others(world, goal, turned, start, solver)
     return Reached(turned, len(solved), int((~free).sum()), solver, turned[0])
+
+
+def _with_others(world: Checks, goal: PoseGoal, rows: Floats, start: Floats, solver: str) -> Reached:
+    """Return the configurations that reach the goals of other links, too, from those that reach the first one.
+
+    Each link is brought to its goal by joints that the earlier ones do not move by, or where they stay there.
+    """
+    alone = replace(goal, others=())
+    for other in goal.others:
+        reached = [reach(world, other, row) for row in rows[:_SIDE]]
+        rows = np.concatenate([each.configurations[:_SIDE] for each in reached])
+        if not len(rows):
+            return Reached(rows, 0, 0, solver, start, partial(_why_not_both, alone, reached[0].reason))
+    kept = np.ones(len(rows), dtype=np.bool_)
+    for each in (alone, *goal.others):
+        chain, task = task_of(world.robot, each)
+        kept &= chain.reached(rows, task.row, steps=0)[1] <= _TOGETHER
+    if not kept.any():
+        return Reached(rows[:0], 0, 0, solver, start, partial(_why_not_both, alone, lambda: "the links share joints"))
+    rows = rows[kept]
+    rows = rows[np.argsort(np.linalg.norm(rows - start, axis=1), kind="stable")][:MOST]
+    return Reached(rows, len(rows), 0, solver, rows[0])
+
+
+def _why_not_both(goal: PoseGoal, reason: Callable[[], str]) -> str:
+    return f"{goal} is reached, but not with the others: {reason()}"
 
 
 def _why_blocked(world: Checks, goal: PoseGoal, solved: Floats) -> str:

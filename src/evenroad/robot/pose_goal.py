@@ -39,6 +39,8 @@ class PoseGoal:
         Whether any rotation is allowed.
     position_tolerance, angle_tolerance : float
         Largest deviations of the origin and the rotation, >= 0 [m, rad].
+    others : tuple of PoseGoal
+        Goals of other links at the same time: ``goal & other`` has them.
 
     Raises
     ------
@@ -59,6 +61,13 @@ class PoseGoal:
     position_only: bool = False
     position_tolerance: float = 0.0
     angle_tolerance: float = 0.0
+    others: tuple[PoseGoal, ...] = ()
+
+    def __and__(self, other: PoseGoal) -> PoseGoal:
+        """Return the goal that both links reach together, as two hands do."""
+        if not isinstance(other, PoseGoal):
+            raise InvalidValue(f"a pose goal goes with another one, got {shown(other)}")
+        return replace(self, others=(*self.others, replace(other, others=()), *other.others))
 
     def __post_init__(self) -> None:
         if not isinstance(self.pose, Pose):
@@ -74,10 +83,11 @@ class PoseGoal:
     def is_exact(self) -> bool:
         """Whether position and rotation are given in full."""
         loose = self.position_only or self.position_tolerance or self.angle_tolerance
-        return self.free_axis is None and not loose
+        return self.free_axis is None and not loose and not self.others
 
     def __str__(self) -> str:
-        return f"{self.tip or 'the tip'} at ({', '.join(f'{value:g}' for value in self.pose.xyz)})"
+        own = f"{self.tip or 'the tip'} at ({', '.join(f'{value:g}' for value in self.pose.xyz)})"
+        return " and ".join([own, *map(str, self.others)])
 
 
 def as_axis(name: str, axis: str | Sequence[float]) -> Vector:
