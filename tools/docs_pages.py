@@ -48,6 +48,7 @@ REFERENCE = {
     "qmc": ("Engines for SciPy", ("evenroad.qmc",)),
     "worlds": ("Spaces and worlds", ("evenroad.space", "evenroad.world", "evenroad.testing")),
     "arms": ("Arms", ("evenroad.robot",)),
+    "tasks": ("Constraints and tasks", ("evenroad.constraints", "evenroad.task")),
     "geometry": ("Geometry", ("evenroad.geometry",)),
     "robot_roadmaps": (
         "Robots' roadmaps",
@@ -78,6 +79,7 @@ MODULES = {
     "planning": ("io",),
     "qmc": ("qmc",),
     "worlds": ("spaces", "testing"),
+    "tasks": ("constraints",),
     "adapters": ("adapters",),
     "errors": ("errors",),
 }
