@@ -53,12 +53,7 @@ struct Nearest {
 /// Return the distances of a capsule from an obstacle, by the spheres that cover it.
 Floats16 distance_of(const PlacedCapsule& capsule, std::span<const float> samples, float radius,
                      const Obstacle& obstacle) {
-  const auto [centre, half] = seen_from(obstacle, capsule);
-  Floats16 squared = spread(std::numeric_limits<float>::max());
-  for (const float along : samples) {
-    squared = min(squared, squared_distance(obstacle, plus(centre, half, spread(along))));
-  }
-  return sqrt(squared) - (radius + obstacle.rounding);
+  return sqrt(squared_distance(obstacle, capsule, samples)) - (radius + obstacle.rounding);
 }
 
 void offer_obstacles(const Robot& robot, const Scene& scene, const Places& places, Nearest& nearest) {

@@ -24,14 +24,21 @@ EVENROAD_INLINE Mask near_obstacles(const Block& block, const Box16& around) {
   return below_zero(largest(abs(block.centre - around.centre) - block.half - around.half));
 }
 
-/// Return the mask of lanes in which the box around a body or a capsule meets that around one obstacle.
-template <class Placed>
-EVENROAD_INLINE Mask near_one(const Placed& placed, float radius, const Block& block, int k) {
-  const Vec3x16 centre = {spread(block.centre.x[k]), spread(block.centre.y[k]), spread(block.centre.z[k])};
-  const Vec3x16 half = {spread(radius + block.half.x[k]), spread(radius + block.half.y[k]),
-                        spread(radius + block.half.z[k])};
-  return below_zero(largest(abs(placed.centre - centre) - abs(placed.half) - half));
-}
+/// Boxes around a body or a capsule, lane by lane.
+struct Boxes {
+  Vec3x16 centre, half;
+
+  template <class Placed>
+  EVENROAD_INLINE Boxes(const Placed& placed, float radius)
+      : centre(placed.centre), half(abs(placed.half) + spread(Vec3{radius, radius, radius})) {}
+
+  /// Return the mask of lanes in which they meet the box around one obstacle.
+  EVENROAD_INLINE Mask near(const Block& block, int k) const {
+    const Vec3x16 there = spread(Vec3{block.centre.x[k], block.centre.y[k], block.centre.z[k]});
+    const Vec3x16 reach = spread(Vec3{block.half.x[k], block.half.y[k], block.half.z[k]});
+    return below_zero(largest(abs(centre - there) - half - reach));
+  }
+};
 
 constexpr int MOST_OPEN = 64;
 
@@ -44,29 +51,19 @@ struct Open {
 }  // namespace
 
 Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, float radius, const Obstacle& obstacle) {
-  const auto [centre, half] = seen_from(obstacle, capsule);
   const float reach = radius + obstacle.rounding;
-  Mask meeting = 0;
-  for (const float along : samples) {
-    meeting |= below_zero(squared_distance(obstacle, plus(centre, half, spread(along))) - reach * reach);
-  }
-  return meeting;
+  return below_zero(squared_distance(obstacle, capsule, samples) - reach * reach);
 }
 
 Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacle& obstacle, float near,
                     Mask asked, Wanted wanted) {
   const PlacedFrame& frame = places.frames[body.frame];
   const Vec3x16 origin = frame.origin - spread(obstacle.centre);
-  const float* r = obstacle.rotation;
   Mask meeting = 0;
   for (int i = body.inside.first; i < body.inside.end; i++) {
     const auto& [centre, radius] = robot.inside[i];
     const Vec3x16 p = spread(centre);
-    Vec3x16 here = origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
-    if (obstacle.form != Form::ALIGNED) {
-      here = {dot(here, spread(Vec3{r[0], r[3], r[6]})), dot(here, spread(Vec3{r[1], r[4], r[7]})),
-              dot(here, spread(Vec3{r[2], r[5], r[8]}))};
-    }
+    const Vec3x16 here = origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
     const float reach = radius + near + obstacle.rounding;
     meeting |= asked & below_zero(squared_distance(obstacle, here) - reach * reach);
     if (meeting == asked || is_enough(meeting, wanted)) break;
@@ -132,11 +129,12 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
       Mask near_body = ALL_LANES;
       if (many) {
         PlacedBody& body = places.bodies[b];
+        const Boxes boxes(body, 0);
         near_body = 0;
         for (Mask near = near_obstacles(block, number == 0 ? make_around(body, 0) : body.around); near != 0;
              near &= near - 1) {
           const int k = std::countr_zero(near);
-          if ((near_one(body, 0, block, k) & ~blocked) != 0) near_body |= 1U << k;
+          if ((boxes.near(block, k) & ~blocked) != 0) near_body |= 1U << k;
         }
         if (near_body == 0) continue;
       }
@@ -150,10 +148,11 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
         if (!many || std::popcount(near) > 2) {
           near &= near_obstacles(block, many || number == 0 ? make_around(capsule, radius) : capsule.around);
         }
+        const Boxes boxes(capsule, radius);
         for (; near != 0; near &= near - 1) {
           const int k = std::countr_zero(near);
           const bool again = (opened >> k & 1) != 0;
-          if ((near_one(capsule, radius, block, k) & ~(again ? blocked | open[k] : blocked)) == 0) continue;
+          if ((boxes.near(block, k) & ~(again ? blocked | open[k] : blocked)) == 0) continue;
           const Obstacle& obstacle = scene.obstacles->rows[number * LANES + k];
           const Range of = robot.capsules[i].samples;
           const Mask meeting = meeting_one(capsule, samples.subspan(of.first, of.size()), radius, obstacle);

@@ -1,34 +1,59 @@
 // Squared distances of points from one obstacle, at sixteen configurations.
 #pragma once
 
+#include <limits>
+
 #include "robot/scene.hpp"
 
 namespace evenroad::robot {
 
-/// The segment of a capsule: its middle, and from there to an end.
-struct Segment16 {
-  Vec3x16 centre, half;
-};
+namespace detail {
 
-/// Return the segment of a capsule as an obstacle sees it.
-EVENROAD_INLINE Segment16 seen_from(const Obstacle& obstacle, const PlacedCapsule& capsule) {
-  const Vec3x16 centre = capsule.centre - spread(obstacle.centre), half = capsule.half;
-  if (obstacle.form == Form::ALIGNED) return {centre, half};
+EVENROAD_INLINE Vec3x16 turned_into(const Obstacle& obstacle, Vec3x16 v) {
   const float* r = obstacle.rotation;
-  const Vec3x16 x = spread(Vec3{r[0], r[3], r[6]}), y = spread(Vec3{r[1], r[4], r[7]});
-  const Vec3x16 z = spread(Vec3{r[2], r[5], r[8]});
-  return {{dot(centre, x), dot(centre, y), dot(centre, z)}, {dot(half, x), dot(half, y), dot(half, z)}};
+  return {dot(v, spread(Vec3{r[0], r[3], r[6]})), dot(v, spread(Vec3{r[1], r[4], r[7]})),
+          dot(v, spread(Vec3{r[2], r[5], r[8]}))};
 }
 
-/// Return the squared distances of points, as an obstacle sees them, from it without the rounding of its edges.
-EVENROAD_INLINE Floats16 squared_distance(const Obstacle& obstacle, Vec3x16 point) {
+/// Of points as an obstacle of this form sees them.
+EVENROAD_INLINE Floats16 squared_distance(Form form, const Obstacle& obstacle, Vec3x16 point) {
   const Floats16 zero{}, z = max(abs(point.z) - obstacle.half.z, zero);
-  if (obstacle.form == Form::CYLINDER) {
+  if (form == Form::CYLINDER) {
     const Floats16 aside = max(sqrt(fma(point.x, point.x, point.y * point.y)) - obstacle.half.x, zero);
     return fma(aside, aside, z * z);
   }
   const Vec3x16 gap = {max(abs(point.x) - obstacle.half.x, zero), max(abs(point.y) - obstacle.half.y, zero), z};
   return dot(gap, gap);
+}
+
+/// Of the nearest of some points along segments.
+EVENROAD_INLINE Floats16 squared_distance(Form form, const Obstacle& obstacle, Vec3x16 centre, Vec3x16 half,
+                                          std::span<const float> along) {
+  centre = centre - spread(obstacle.centre);
+  if (form != Form::ALIGNED) centre = turned_into(obstacle, centre), half = turned_into(obstacle, half);
+  Floats16 least = spread(std::numeric_limits<float>::max());
+  for (const float place : along) {
+    least = min(squared_distance(form, obstacle, plus(centre, half, spread(place))), least);
+  }
+  return least;
+}
+
+}  // namespace detail
+
+/// Return the squared distances of points along a capsule's segment, from -1 to 1, from an obstacle without the
+/// rounding of its edges: of the nearest one.  The form is asked for once, not at each point.
+EVENROAD_INLINE Floats16 squared_distance(const Obstacle& obstacle, const PlacedCapsule& capsule,
+                                          std::span<const float> along) {
+  const Vec3x16 &centre = capsule.centre, &half = capsule.half;
+  if (obstacle.form == Form::ALIGNED) return detail::squared_distance(Form::ALIGNED, obstacle, centre, half, along);
+  if (obstacle.form == Form::ROTATED) return detail::squared_distance(Form::ROTATED, obstacle, centre, half, along);
+  return detail::squared_distance(Form::CYLINDER, obstacle, centre, half, along);
+}
+
+/// Return the same of points, seen from the obstacle's centre.
+EVENROAD_INLINE Floats16 squared_distance(const Obstacle& obstacle, Vec3x16 point) {
+  if (obstacle.form != Form::ALIGNED) point = detail::turned_into(obstacle, point);
+  return detail::squared_distance(obstacle.form, obstacle, point);
 }
 
 }  // namespace evenroad::robot
