@@ -95,13 +95,16 @@ class Bank:
 def _file(folder: Path, family: str, n: int, d: int) -> Path:
     """Return the file of a cell, in the bank's folder or in the studies."""
     path = folder / family / cell_name(n, d)
-    if folder != DATA or path.exists():
-        return path
+    return path if folder != DATA or path.exists() else large_file(family, path.name, f" of n={n} in d={d}")
+
+
+def large_file(family: str, name: str, which: str = "") -> Path:
+    """Return a file of a family in the studies; NotAvailable if they are not installed."""
     for location in _large_folders():
-        if (large := location / family / path.name).exists():
+        if (large := location / family / name).exists():
             return large
     raise NotAvailable(
-        f"the {family} sets of n={n} in d={d} are in the package evenroad-studies, which is not installed:"
+        f"the {family} sets{which} are in the package evenroad-studies, which is not installed:"
         " pip install evenroad-studies, in a clone ./studies"
     )
 

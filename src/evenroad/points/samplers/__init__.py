@@ -12,6 +12,7 @@ from evenroad._checks import require_known
 from evenroad._rng import RngLike
 from evenroad.errors import UnknownName
 from evenroad.points.bank import TRAINED_FAMILIES, Trained
+from evenroad.points.bank.star import Star as Star
 from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.even import Even as Even
@@ -56,7 +57,7 @@ class NamedSampler(Sampler, Protocol):
 
 
 SAMPLERS: dict[str, Callable[..., NamedSampler]] = {
-    each.name: each for each in (Even, Growing, Korobov, Lattice, Cover, Halton, Sobol, Sukharev, Uniform)
+    each.name: each for each in (Even, Growing, Korobov, Lattice, Cover, Halton, Sobol, Star, Sukharev, Uniform)
 } | {family: partial(Trained, family) for family in TRAINED_FAMILIES}
 """Name -> constructor of a sampler from its options."""
 

@@ -1,0 +1,83 @@
+"""Sets of small star discrepancy in space: annealed for the L2 one, then their coordinates are relaxed for the measure.
+
+A set's order along the axes says how many points every box at the origin holds.  With the other two coordinates kept,
+each box bounds one coordinate of one point from above or below; a point in the middle between its bounds has the least
+excess.  Sweeps over the three axes gain 8 to 20 %.  For all coordinates together the bounds are no differences, as they
+are in the plane (:mod:`evenroad_studies.training.order`), so the places are not the best of their order.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from evenroad._arrays import Floats
+from evenroad._checks import require_count
+from evenroad._rng import RngLike, generator
+from evenroad.points.anneal import LOWEST, Annealed, anneal
+from evenroad.points.measures import MEASURES, star_discrepancy
+from evenroad.points.pointset import BELOW_ONE
+
+STEPS, SWEEPS = 3000, 30
+"""Steps of an annealing, and sweeps over the axes after it; one takes n^3 time, 10 ms for 128 points."""
+
+
+def search_in_space(n: int, *, tries: int = 1, sweeps: int = SWEEPS, rng: RngLike = 0) -> Annealed:
+    """Return n points in three dimensions of small star discrepancy, the best of some tries, and the exact value."""
+    require_count("n", n)
+    seeds = generator(rng).spawn(require_count("tries", tries))
+    starts = (anneal(n, 3, MEASURES["star"], steps=STEPS, rng=each).points for each in seeds)
+    return min((relaxed(each, sweeps) for each in starts), key=lambda made: made.value)
+
+
+def relaxed(points: Floats, sweeps: int = SWEEPS) -> Annealed:
+    """Return the best of what so many sweeps make of points, (n, 3), with its exact star discrepancy."""
+    now, n = points.copy(), len(points)
+    orders = [np.argsort(now[:, axis], kind="stable") for axis in range(3)]
+    ranks = [np.argsort(order) for order in orders]
+    best, value = now.copy(), star_discrepancy(now)
+    reached, low, high = value, np.empty(n), np.empty(n)
+    for _ in range(sweeps):
+        for axis in range(3):
+            order, second, third = orders[axis], (axis + 1) % 3, (axis + 2) % 3
+            others = (now[orders[second], second], now[orders[third], third])
+            coordinate_bounds(ranks[second][order], ranks[third][order], *others, reached, low, high)
+            middle = np.clip(0.5 * (low + np.minimum(high, 1.0)), LOWEST, BELOW_ONE)
+            now[order, axis] = np.maximum.accumulate(middle)
+        reached = star_discrepancy(now)
+        if reached < value:
+            best, value = now.copy(), reached
+    best.setflags(write=False)
+    return Annealed(best, value)
+
+
+@njit(cache=True, fastmath=True)
+def coordinate_bounds(second, third, y, z, t, low, high):  # type: ignore[no-untyped-def]
+    """Write between which bounds each coordinate keeps all boxes within t, in the order of this axis.
+
+    `second` and `third` are the points' ranks along the other axes, y and z the sorted coordinates there, (n,).
+    """
+    n = second.size
+    by_y, by_z, counts = np.ones(n + 1), np.ones(n + 1), np.zeros((n + 1, n + 1))
+    for j in range(n):
+        by_y[j], by_z[j] = 1.0 / max(y[j], 1e-9), 1.0 / max(z[j], 1e-9)
+    for i in range(n):
+        # The open boxes up to point i, which hold those before it ...
+        high[i] = np.inf
+        for j in range(n + 1):
+            least, row = np.inf, counts[j]
+            for k in range(n + 1):
+                least = min(least, (t + row[k]) * by_z[k])
+            high[i] = min(high[i], least * by_y[j])
+        for j in range(second[i] + 1, n + 1):
+            row = counts[j]
+            for k in range(third[i] + 1, n + 1):
+                row[k] += 1.0 / n
+        # ... and the closed ones, which hold it and those on their other sides, too.
+        low[i] = 0.0
+        for j in range(n + 1):
+            row = counts[min(j + 1, n)]
+            most = row[n] - t
+            for k in range(n):
+                most = max(most, (row[k + 1] - t) * by_z[k])
+            low[i] = max(low[i], most * by_y[j])
