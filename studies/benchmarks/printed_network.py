@@ -1,11 +1,11 @@
 """The paper's network as printed, trained: its sets beside published and other ones, and the loss over the steps.
 
     python -m studies.benchmarks.printed_network --train OUT     # minutes a pool on one core; goes on where it stopped
-    python -m studies.benchmarks.printed_network --table OUT --csv CURVES.csv
+    python -m studies.benchmarks.printed_network --table OUT --csv SETS.csv --curves CURVES.csv --picture CURVES.png
 
 A pool is a batch of sets that one network makes of random points.  The protocol, the same for all pools: the 8 nearest
-initial points send messages, three layers of width 64, the logistic function at the end as in the public code, 10 000
-steps of Adam from 1e-3 along a half cosine, Hickernell's discrepancy, seed 0.  Rows that differ say in what.
+initial points send messages, three layers of width 64, the logistic function at the end, 10 000 steps of Adam from 1e-3 along a half cosine, Hickernell's discrepancy, seed 0.  Rows that differ say in what.  Mazes are
+asked with k = 10 symmetrised, start and goal linked by the rule: solved sets, in percent.
 """
 
 from __future__ import annotations
@@ -15,11 +15,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from studies.benchmarks.rows import parser_of
+from matplotlib import colormaps
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from scipy.spatial.distance import pdist
+from studies.benchmarks.rows import parser_of, write_rows
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
+from evenroad.points import draw
+from evenroad.points.bank import TRAINED_FAMILIES, Bank
+from evenroad.points.measures import MEASURES, star_discrepancy
+from evenroad.points.measures.covering import dispersion_bounds
+from evenroad_studies.connected import connected
 from evenroad_studies.network.printed import Printed, train_printed
+from evenroad_studies.problems import PROBLEMS
 
 EVERY = 100
 """Steps between two points of a kept curve; a pool is written after ten times as many."""
@@ -69,10 +79,86 @@ def train_pool(name: str, folder: Path) -> None:
     train_printed(config, rng=0, seen=seen)
 
 
+MAZES = {64: (1, 2), 128: (2,), 256: (3,)}
+"""Number of points in the plane -> levels of mazes that are asked with so many."""
+BESIDE = ("mpmc", "hickernell", "even", "sobol")
+"""What stands beside the pools: those of the bank, and 16 draws of samplers."""
+
+
+def sets_beside(name: str, n: int, d: int) -> list[Floats]:
+    """Return the pool of a family in the bank, or 16 draws of a sampler."""
+    if name in TRAINED_FAMILIES:
+        return list(Bank().cell(name, n, d).load().astype(np.float64))
+    return [draw(name, n, d, rng=seed).points for seed in range(16)]
+
+
+def row_of(name: str, n: int, d: int, sets: list[Floats]) -> dict[str, str]:
+    """Return the mean measures of sets, and how many solve each maze [%]."""
+    l2 = {name: [MEASURES[name].rooted(each) for each in sets] for name in ("hickernell", "star")}
+    stars = [star_discrepancy(each) for each in sets] if d <= 3 else []
+    row = {"d": str(d), "n": str(n), "sets": name, "of": str(len(sets))}
+    row |= {f"L2 {kind}": f"{np.mean(values):.5f}" for kind, values in l2.items()}
+    row["L2 hickernell best"] = f"{min(l2['hickernell']):.5f}"
+    if stars:
+        row |= {"star": f"{np.mean(stars):.4f}", "star best": f"{min(stars):.4f}"}
+        row["largest hole"] = f"{np.mean([dispersion_bounds(each).upper for each in sets]):.4f}"
+    row["least gap"] = f"{np.mean([pdist(each).min() for each in sets]):.4f}"
+    for level in MAZES.get(n, ()) if d == 2 else ():
+        problem = PROBLEMS[f"maze-{level}"].make(0)
+        row[f"maze {level}"] = f"{100 * np.mean([connected(problem, each, (10,))[0, 0] for each in sets]):.0f}"
+    return row
+
+
+def table(folder: Path, out: Path | None) -> dict[str, Pool]:
+    """Print a row for each pool and what stands beside it, and return the pools."""
+    pools = {name: load_pool(folder / f"{name}.npz") for name in POOLS if (folder / f"{name}.npz").exists()}
+    rows, beside = [], set()
+    for name, pool in pools.items():
+        n, d = POOLS[name].n, POOLS[name].d
+        rows.append(row_of(name, n, d, list(pool.points)) | {"seconds": f"{pool.seconds:.0f}"})
+        for other in BESIDE if (n, d) not in beside else ():
+            rows.append(row_of(other, n, d, sets_beside(other, n, d)))
+        beside.add((n, d))
+    rows.sort(key=lambda row: (int(row["d"]), int(row["n"])))
+    columns = list(dict.fromkeys(column for row in rows for column in row))
+    print(*columns, sep=" | ")
+    for row in rows:
+        print(*(row.get(column, "") for column in columns), sep=" | ")
+    write_rows(out, columns, rows)
+    return pools
+
+
+def draw_curves(pools: dict[str, Pool], path: Path) -> None:
+    """Draw the mean loss of each pool over the steps."""
+    figure = Figure(figsize=(7.0, 4.2), layout="constrained")
+    axes = figure.add_subplot()
+    axes.set_prop_cycle(color=colormaps["tab20"].colors)
+    for name, pool in pools.items():
+        axes.loglog(EVERY * np.arange(1, len(pool.curve) + 1), pool.curve, label=name, linewidth=1.2)
+    axes.set(xlabel="steps", ylabel="mean D_H of the batch")
+    axes.legend(fontsize=7, ncols=2, frameon=False)
+    FigureCanvasAgg(figure).print_png(path)
+
+
 def main() -> None:
     parser = parser_of(__doc__)
     parser.add_argument("--train", type=Path, help="folder of the pools, made if it is missing")
+    parser.add_argument("--table", type=Path, help="folder of the pools")
+    parser.add_argument("--csv", type=Path)
+    parser.add_argument("--curves", type=Path)
+    parser.add_argument("--picture", type=Path)
     options = parser.parse_args()
+    if options.table:
+        pools = table(options.table, options.csv)
+        curves = (
+            {"sets": name, "step": str(EVERY * (i + 1)), "loss": f"{loss:.6g}"}
+            for name, pool in pools.items()
+            for i, loss in enumerate(pool.curve)
+            if i % 10 == 9
+        )
+        write_rows(options.curves, ("sets", "step", "loss"), curves)
+        if options.picture:
+            draw_curves(pools, options.picture)
     if options.train:
         options.train.mkdir(exist_ok=True)
         for name, config in POOLS.items():

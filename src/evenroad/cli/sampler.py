@@ -21,7 +21,7 @@ class SamplerOptions:
     """The options of a point set."""
 
     sampler: str | None = None
-    """even, growing, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or uniform
+    """even, growing, hickernell, mpmc, korobov, lattice, cover, halton, sobol, star, sukharev or uniform
     (default: even)."""
     plain: bool = False
     """halton and sobol: the plain sequence instead of the scrambled one."""
