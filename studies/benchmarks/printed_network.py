@@ -4,8 +4,9 @@
     python -m studies.benchmarks.printed_network --table OUT --csv SETS.csv --curves CURVES.csv --picture CURVES.png
 
 A pool is a batch of sets that one network makes of random points.  The protocol, the same for all pools: the 8 nearest
-initial points send messages, three layers of width 64, the logistic function at the end, 10 000 steps of Adam from 1e-3 along a half cosine, Hickernell's discrepancy, seed 0.  Rows that differ say in what.  Mazes are
-asked with k = 10 symmetrised, start and goal linked by the rule: solved sets, in percent.
+initial points send messages, three layers of width 64, the logistic function at the end, 10 000 steps of Adam from 1e-3
+along a half cosine, Hickernell's discrepancy, seed 0.  Rows that differ say in what.  Mazes are asked with k = 10
+symmetrised, start and goal linked by the rule: solved sets, in percent.
 """
 
 from __future__ import annotations

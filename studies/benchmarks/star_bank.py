@@ -1,7 +1,7 @@
 """The bank of least star discrepancies, N = 1 .. 512 in two and three dimensions: checked, or searched on.
 
     python -m studies.benchmarks.star_bank               # every kept value computed anew, beside published ones
-    python -m studies.benchmarks.star_bank --search 64 128 -d 3 --seed 7    # what is better takes the place of what is kept
+    python -m studies.benchmarks.star_bank --search 64 128 -d 3 --seed 7      # better sets take the place of kept ones
 
 In the plane orders of the points are searched and each is placed exactly (``training.order``), in space sets are
 annealed and relaxed (``training.relax``).  Published values that are lower and whose sets we do not have are named.
@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import evenroad_studies
 import numpy as np
 from studies.benchmarks.rows import parser_of, write_rows
 
+import evenroad_studies
 from evenroad import __version__
 from evenroad.points import PointSet, draw
 from evenroad.points.bank.star import LARGEST, Record, records

@@ -56,7 +56,7 @@ class Star:
         if d not in DIMENSIONS or n > LARGEST:
             raise NotAvailable(f"star has sets of n = 1 .. {LARGEST} points in d = 2 and 3, not of n={n} in d={d}")
         first = n * (n - 1) // 2
-        points = PointSet(_sets(d)[first : first + n], Origin(family=self.name, method=METHODS[d]))
+        points = PointSet(_sets(d)[first : first + n].astype(np.float64), Origin(family=self.name, method=METHODS[d]))
         if n not in records(d) or points.hash != records(d)[n].hash:
             raise BrokenFile(f"{_path(d, 'npy')}: the set of {n} points does not match its hash")
         return points
