@@ -150,6 +150,9 @@ def test_a_robot_whose_joints_cannot_move_is_refused_with_the_reason(tmp_path):
     text = urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit effort='1' velocity='1'/>"))
     with pytest.raises(InvalidValue, match="no joint that could be planned for; joint 'a' has no lower and upper"):
         load_model(write(tmp_path, text))
+    locked = text.replace("<limit ", "<limit lower='0' upper='0' ")
+    with pytest.raises(InvalidValue, match="could be planned for; limits that are equal lock a$"):
+        load_model(write(tmp_path, locked))
 
 
 @pytest.mark.parametrize("limit", ["1e6", "1e16"])

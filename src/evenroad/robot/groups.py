@@ -57,6 +57,8 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
         return ()
     free = urdf.free - (frozenset() if srdf is None else srdf.passive)
     said = "".join(f"; {note}" for note in urdf.notes if note.startswith("joint"))
+    locked = [joint.name for joint in urdf.joints if joint.kind != "fixed" and joint.lower == joint.upper]
+    said = said or (f"; limits that are equal lock {', '.join(locked)}" if locked else "")
     loose = {joint.name for joint in urdf.joints if joint.loose}
     return _not_empty(tuple(name for name in urdf.order if name in free - loose), f"robot {urdf.name!r}", said)
 
