@@ -36,7 +36,7 @@ class CellGrid:
     ) -> None:
         occupied = _as_cells("occupied", occupied)
         rows, cols = occupied.shape
-        unknown = np.zeros_like(occupied) if unknown is None else _as_cells("unknown", unknown)
+        unknown = np.zeros((rows, cols), dtype=bool) if unknown is None else _as_cells("unknown", unknown)
         if unknown.shape != (rows, cols):
             raise InvalidValue(f"unknown has shape {unknown.shape}, but occupied {(rows, cols)}")
         if frame is not None and resolution is not None:
@@ -149,7 +149,10 @@ class CellGrid:
 
 
 def _as_cells(name: str, value: Bools) -> Bools:
-    cells = np.array(value, order="C")
+    cells = np.asarray(value)
+    # What its maker cannot change needs no copy, which for 100 million cells takes as long as to read them.
+    if cells is not value or cells.flags.writeable or not cells.flags.owndata or not cells.flags.c_contiguous:
+        cells = np.array(value, order="C")
     if cells.ndim != 2 or cells.size == 0 or cells.dtype != np.bool_:
         raise InvalidValue(
             f"{name} must be a boolean array of shape (rows, cols) with at least one cell,"

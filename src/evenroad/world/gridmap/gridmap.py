@@ -248,6 +248,4 @@ class DiskWorld(OneOrMany):
 
 def _disk_on(grid: GridMap, radius: float) -> Disk:
     radius_in_pixels = max(radius / grid.frame.resolution, _SMALLEST_RADIUS)
-    # The ring of occupied cells stands for everything outside the map.
-    padded = np.pad(grid.occupied, 1, constant_values=True)
-    return Disk(padded, grid.frame.coefficients(), radius_in_pixels)
+    return Disk(grid.occupied, grid.frame.coefficients(), radius_in_pixels)

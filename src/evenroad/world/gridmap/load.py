@@ -135,6 +135,8 @@ def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False)
         warnings.warn(f"{path}: passed over: {', '.join(meta.passed_over)}", stacklevel=2)
     occupied, unknown = classify_pixels(open_image(meta.image), meta)
     obstacles = occupied if unknown_is_free else occupied | unknown
+    for cells in (obstacles, unknown):
+        cells.setflags(write=False)
     rows, cols = obstacles.shape
     x, y, yaw = meta.origin
     frame = MapFrame(rows=rows, cols=cols, resolution=meta.resolution, origin=(x, y), yaw=yaw, y_up=True)
@@ -208,7 +210,7 @@ def _summed_channels(image: Image.Image, *, with_alpha: bool) -> tuple[npt.NDArr
 
 
 LARGEST_IMAGE = 100_000_000
-"""Largest number of pixels of a map: 10 000 x 10 000.  Its world then takes about 0.6 GB."""
+"""Largest number of pixels of a map: 10 000 x 10 000.  Where a disk plans all over it, its world takes 0.1 GB."""
 DARK = 128.0
 """Luminance, of 255, below which a bare image's cell is an obstacle."""
 _FORMATS = ("PNG", "PPM")
@@ -226,7 +228,9 @@ def load_image(path: str | os.PathLike[str], *, dark: float = DARK) -> GridMap:
     if require_positive("dark", dark) > 255.0:
         raise InvalidValue(f"dark must be in (0, 255], got {dark!r}")
     luminance, white = _luminance(open_image(path))
-    return GridMap(luminance < dark * (white / 255.0))
+    occupied = luminance < dark * (white / 255.0)
+    occupied.setflags(write=False)
+    return GridMap(occupied)
 
 
 def open_image(path: str | os.PathLike[str]) -> Image.Image:
@@ -272,7 +276,9 @@ def _in_known_mode(image: Image.Image) -> Image.Image:
         return Image.fromarray(levels)
     if image.has_transparency_data:
         return image.convert("RGBA")
-    if image.mode in ("1", "L"):
+    if image.mode == "L":
+        return image
+    if image.mode == "1":
         return image.convert("L")
     if image.mode in ("RGB", "P"):
         return image.convert("RGB")
@@ -287,7 +293,7 @@ def _luminance(image: Image.Image) -> tuple[npt.NDArray[np.uint8 | np.uint16], i
         paper = Image.new("RGBA", image.size, "white")
         paper.alpha_composite(image)
         image = paper
-    return np.asarray(image.convert("L")), 255
+    return np.asarray(image if image.mode == "L" else image.convert("L")), 255
 
 
 def _reason(error: Exception) -> str:

@@ -11,6 +11,9 @@ using namespace nb::literals;
 
 namespace {
 
+/// Halves of rows and columns are numbers of 32 bits.
+constexpr std::size_t MOST_ROWS = 1'000'000'000;
+
 /// Map points, (n, 2).
 class Points {
  public:
@@ -33,25 +36,17 @@ nb::object as_rows(const std::vector<world::Point>& points) {
   return as_numpy(std::move(values), {points.size(), 2});
 }
 
-bool has_occupied_ring(Matrix<const bool> padded) {
-  bool all = true;
-  for (std::size_t row = 0; row < padded.rows; row++) all &= padded(row, 0) && padded(row, padded.columns - 1);
-  for (std::size_t column = 0; column < padded.columns; column++) {
-    all &= padded(0, column) && padded(padded.rows - 1, column);
-  }
-  return all;
-}
-
-void make_disk(world::Disk* self, nb::handle padded, nb::handle frame, double radius) {
-  const Array<const bool, 2> occupied(padded, "padded");
+void make_disk(world::Disk* self, nb::handle occupied, nb::handle frame, double radius) {
+  const Array<const bool, 2> cells(occupied, "occupied");
   const Floats of(frame, "frame");
   of.of_shape({8});
-  require(occupied.shape(0) >= 3 && occupied.shape(1) >= 3 && has_occupied_ring(occupied.matrix()),
-          "padded must be a map with a ring of occupied cells around it");
+  require(cells.shape(0) >= 1 && cells.shape(1) >= 1, "occupied must have a cell or more");
+  require(cells.shape(0) < MOST_ROWS && cells.shape(1) < MOST_ROWS,
+          "occupied must have at most a billion rows and columns");
   require(radius > 0.0 && radius < 1e300, "radius must be a finite number > 0");
   const double* f = of.data();
   without_gil(
-      [&] { new (self) world::Disk(occupied.matrix(), {f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]}, radius); });
+      [&] { new (self) world::Disk(cells.matrix(), {f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]}, radius); });
 }
 
 nb::object points_free(const world::Disk& disk, nb::handle q) {
@@ -92,13 +87,26 @@ nb::object nearest_free(const world::Disk& disk, double column, double row) {
   return found ? nb::object(nb::make_tuple(found->x - 1.0, found->y - 1.0)) : nb::none();
 }
 
+/// What is known of every cell of the padded grid.
+template <class Of>
+OwnMatrix<std::uint8_t> of_cells(const world::Disk& disk, const Of& of) {
+  OwnMatrix<std::uint8_t> values(disk.rows(), disk.columns());
+  for (std::int64_t row = 0; row < disk.rows(); row++) {
+    for (std::int64_t column = 0; column < disk.columns(); column++) values(row, column) = of(row, column);
+  }
+  return values;
+}
+
 nb::object gates(const world::Disk& disk) {
-  OwnMatrix<std::uint8_t> gates = without_gil([&] { return disk.gates(); });
+  OwnMatrix<std::uint8_t> gates = without_gil([&] {
+    return of_cells(disk, [&](auto row, auto column) { return static_cast<std::uint8_t>(disk.is_gate(row, column)); });
+  });
   return as_bools(std::move(gates.values), {gates.rows, gates.columns});
 }
 
 nb::object cells(const world::Disk& disk) {
-  OwnMatrix<std::uint8_t> cells = disk.cells();
+  OwnMatrix<std::uint8_t> cells =
+      without_gil([&] { return of_cells(disk, [&](auto row, auto column) { return disk.cell(row, column); }); });
   return as_numpy(std::move(cells.values), {cells.rows, cells.columns});
 }
 
@@ -147,7 +155,7 @@ nb::object cells_of(const world::Components& components, std::int32_t component)
 void add_world(nb::module_& module) {
   nb::module_ part = module.def_submodule("world", "A disk on a grid map.");
   nb::class_<world::Disk>(part, "Disk", "What is known of one disk on one map.")
-      .def("__init__", &make_disk, "padded"_a.none(), "frame"_a.none(), "radius"_a)
+      .def("__init__", &make_disk, "occupied"_a.none(), "frame"_a.none(), "radius"_a)
       .def("points_free", &points_free, "q"_a.none())
       .def("motions_free", &motions_free, "a"_a.none(), "b"_a.none())
       .def("nearest_obstacles", &nearest_obstacles, "q"_a.none())

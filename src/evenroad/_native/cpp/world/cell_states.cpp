@@ -2,101 +2,123 @@
 // than the radius for the nearest occupied cell, the cell is blocked.  The nearest is hypot(max(dc - 1, 0), max(dr - 1,
 // 0)), the distance from the obstacles grown by one cell all round: where that is at least the radius, the cell is
 // free.
+//
+// Obstacles that are farther than all of this asks for count as just so far: what is known of a square of cells depends
+// on what lies near it.
 #include "world/cell_states.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace evenroad::world {
 
 namespace {
 
-constexpr int LARGEST_RUN = 65535, LARGEST_SLACK = 255 - FREE;
+/// Largest room beyond the radius that a state tells; motions leap over so much.
+constexpr int LARGEST_SLACK = 32;
+/// Farther than this no obstacle is looked for: its square, twice, is a number of 32 bits.
+constexpr std::int64_t FARTHEST = 32'000;
 
-std::int64_t square(std::int64_t number) { return number * number; }
+/// The part of a grid around a square: what its states depend on.
+struct Around {
+  std::int64_t top, bottom, left, right, reach;
 
-/// Return a / b rounded down, b > 0.
-std::int64_t floor_divided(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
+  Around(const Occupancy& occupancy, double radius, const Square& of)
+      : reach(static_cast<std::int64_t>(std::min(std::ceil(radius), 1e9)) + LARGEST_SLACK + 3) {
+    reach = std::min({reach, std::max(occupancy.rows(), occupancy.columns()), FARTHEST});
+    top = std::max<std::int64_t>(of.top - reach, 0), bottom = std::min(of.top + of.side + reach, occupancy.rows());
+    left = std::max<std::int64_t>(of.left - reach, 0), right = std::min(of.left + of.side + reach, occupancy.columns());
+  }
+};
 
-/// min over j of (i - j)^2 + heights[j]^2 for all i, in linear time: the parabolas' lower envelope, built from left to
-/// right and then read off (Meijster, Roerdink and Hesselink 2000, section 2.2).
-class Envelope {
- public:
-  explicit Envelope(std::size_t columns) : apexes_(columns), starts_(columns) {}
-
-  void write(const std::vector<std::int64_t>& heights, std::vector<std::int64_t>& squared) {
-    const auto count = static_cast<std::int64_t>(heights.size());
-    std::int64_t last = 0;
-    apexes_[0] = starts_[0] = 0;
-    for (std::int64_t next = 1; next < count; next++) {
-      const auto height = [&](std::int64_t apex, std::int64_t at) { return square(at - apex) + square(heights[apex]); };
-      while (last >= 0 && height(apexes_[last], starts_[last]) > height(next, starts_[last])) last--;
-      if (last < 0) {
-        last = 0;
-        apexes_[0] = next, starts_[0] = 0;
-        continue;
-      }
-      const std::int64_t old = apexes_[last];
-      const std::int64_t crossing =
-          floor_divided(square(next) - square(old) + square(heights[next]) - square(heights[old]), 2 * (next - old));
-      if (crossing + 1 < count) last++, apexes_[last] = next, starts_[last] = crossing + 1;
-    }
-    for (std::int64_t i = count - 1; i >= 0; i--) {
-      squared[i] = square(i - apexes_[last]) + square(heights[apexes_[last]]);
-      if (i == starts_[last]) last--;
+bool is_all_free(const Occupancy& occupancy, const Around& around) {
+  std::uint64_t seen = 0;
+  for (std::int64_t row = around.top; row < around.bottom && seen == 0; row++) {
+    for (std::int64_t column = around.left; column < around.right; column += 64) {
+      const std::int64_t more = around.right - column;
+      const std::uint64_t cells = occupancy.window(row, column);
+      seen |= more < 64 ? cells & ((std::uint64_t{1} << more) - 1) : cells;
     }
   }
+  return seen == 0;
+}
 
- private:
-  std::vector<std::int64_t> apexes_, starts_;
-};
+/// Count a row further in the runs of free cells that end at it, one a column.
+void count_row(const Occupancy& occupancy, const Around& around, std::int64_t row, std::vector<std::int32_t>& runs) {
+  const auto most = static_cast<std::int32_t>(around.reach);
+  for (std::int64_t column = around.left; column < around.right; column += 64) {
+    const std::uint64_t cells = occupancy.window(row, column);
+    std::int32_t* run = runs.data() + (column - around.left);
+    const auto count = static_cast<int>(std::min<std::int64_t>(around.right - column, 64));
+    for (int k = 0; k < count; k++) run[k] = (cells >> k & 1) != 0 ? 0 : std::min(run[k] + 1, most);
+  }
+}
+
+/// Write the least of (i - j)^2 + heights[j]^2 over the columns j that are at most `reach` from column i, for `count`
+/// columns i; `heights` begin `reach` columns before the first.
+void square_distances(const std::vector<std::int32_t>& heights, std::int64_t reach, std::vector<std::int32_t>& squared,
+                      std::int64_t count) {
+  std::fill(squared.begin(), squared.begin() + count, static_cast<std::int32_t>(2 * reach * reach));
+  for (std::int64_t away = -reach; away <= reach; away++) {
+    const std::int32_t* height = heights.data() + reach + away;
+    const auto across = static_cast<std::int32_t>(away * away);
+    for (std::int64_t i = 0; i < count; i++) squared[i] = std::min(squared[i], height[i] + across);
+  }
+}
 
 }  // namespace
 
-Runs vertical_runs(Matrix<const bool> padded) {
-  const std::size_t rows = padded.rows, cols = padded.columns;
-  Runs runs{{rows, cols}, {rows, cols}};
-  const auto next = [](bool occupied, int before) {
-    return static_cast<std::uint16_t>(occupied ? 0 : std::min(before + 1, LARGEST_RUN));
-  };
-  for (std::size_t row = 0; row < rows; row++) {
-    for (std::size_t col = 0; col < cols; col++) {
-      runs.above(row, col) = next(padded(row, col), row > 0 ? runs.above(row - 1, col) : LARGEST_RUN);
-    }
+std::unique_ptr<std::uint8_t[]> classify(const Occupancy& occupancy, double radius, const Square& square) {
+  const Around around(occupancy, radius, square);
+  const std::int64_t side = square.side, reach = around.reach, columns = around.right - around.left;
+  auto cells = std::make_unique<std::uint8_t[]>(side * side);
+  if (2.0 * radius > static_cast<double>(std::min(occupancy.rows(), occupancy.columns()))) return cells;
+  const std::int64_t last_row = std::min(square.top + side, occupancy.rows() - 1);
+  const std::int64_t last_column = std::min(square.left + side, occupancy.columns() - 1);
+  if (is_all_free(occupancy, around)) {
+    // Not at the grid's border, where the ring is.
+    std::fill(cells.get(), cells.get() + side * side, static_cast<std::uint8_t>(FREE + LARGEST_SLACK));
+    return cells;
   }
-  for (std::size_t row = rows; row-- > 0;) {
-    for (std::size_t col = 0; col < cols; col++) {
-      runs.below(row, col) = next(padded(row, col), row + 1 < rows ? runs.below(row + 1, col) : LARGEST_RUN);
-    }
+  // The runs below each row of the square, from its last row up.
+  std::vector<std::int32_t> run(columns, static_cast<std::int32_t>(reach)), below((last_row - square.top) * columns);
+  for (std::int64_t row = around.bottom - 1; row >= square.top; row--) {
+    count_row(occupancy, around, row, run);
+    if (row < last_row) std::copy(run.begin(), run.end(), below.begin() + (row - square.top) * columns);
   }
-  return runs;
-}
-
-OwnMatrix<std::uint8_t> classify(const Runs& runs, double radius) {
-  const std::size_t rows = runs.above.rows, cols = runs.above.columns;
+  // The squared heights of the nearest obstacles in each column, with `reach` columns on both sides of the square.
+  const auto far = static_cast<std::int32_t>(reach * reach);
+  std::vector<std::int32_t> heights(side + 2 * reach, far), grown(side + 2 * reach, far), to_centre(side),
+      to_grown(side);
+  const std::int64_t skipped = reach - (square.left - around.left);
+  std::fill(run.begin(), run.end(), static_cast<std::int32_t>(reach));
+  for (std::int64_t row = around.top; row < square.top; row++) count_row(occupancy, around, row, run);
   const double squared_radius = radius * radius;
-  OwnMatrix<std::uint8_t> cells(rows, cols);
-  Envelope envelope(cols);
-  std::vector<std::int64_t> heights(cols), grown(cols), to_centre(cols), to_grown(cols);
-  for (std::size_t row = 1; row + 1 < rows; row++) {
-    for (std::size_t col = 0; col < cols; col++) heights[col] = std::min(runs.above(row, col), runs.below(row, col));
-    for (std::size_t col = 0; col < cols; col++) {
-      std::int64_t lowest = heights[col];
-      if (col > 0) lowest = std::min(lowest, heights[col - 1]);
-      if (col + 1 < cols) lowest = std::min(lowest, heights[col + 1]);
-      grown[col] = std::max<std::int64_t>(lowest - 1, 0);
+  for (std::int64_t row = square.top; row < last_row; row++) {
+    count_row(occupancy, around, row, run);
+    if (row == 0) continue;
+    std::int32_t* down = below.data() + (row - square.top) * columns;
+    for (std::int64_t k = 0; k < columns; k++) down[k] = std::min(down[k], run[k]);
+    for (std::int64_t k = 0; k < columns; k++) {
+      const std::int32_t lowest =
+          std::min({down[std::max<std::int64_t>(k - 1, 0)], down[k], down[std::min(k + 1, columns - 1)]});
+      const std::int32_t shrunk = std::max(lowest - 1, 0);
+      heights[skipped + k] = down[k] * down[k], grown[skipped + k] = shrunk * shrunk;
     }
-    envelope.write(heights, to_centre);
-    envelope.write(grown, to_grown);
-    for (std::size_t col = 1; col + 1 < cols; col++) {
-      const auto centre = static_cast<double>(to_centre[col]), gap = static_cast<double>(to_grown[col]);
-      if (to_centre[col] == 0 || centre < squared_radius) continue;
+    square_distances(heights, reach, to_centre, side);
+    square_distances(grown, reach, to_grown, side);
+    for (std::int64_t column = std::max<std::int64_t>(square.left, 1); column < last_column; column++) {
+      const std::int64_t k = column - square.left;
+      const auto centre = static_cast<double>(to_centre[k]), gap = static_cast<double>(to_grown[k]);
+      std::uint8_t& cell = cells[(row - square.top) * side + k];
+      if (to_centre[k] == 0 || centre < squared_radius) continue;
       if (gap < squared_radius) {
-        cells(row, col) = UNDECIDED;
+        cell = UNDECIDED;
         continue;
       }
       const double slack = std::min(std::floor(std::sqrt(gap) - radius), static_cast<double>(LARGEST_SLACK));
-      cells(row, col) = static_cast<std::uint8_t>(FREE + static_cast<int>(slack));
+      cell = static_cast<std::uint8_t>(FREE + static_cast<int>(slack));
     }
   }
   return cells;

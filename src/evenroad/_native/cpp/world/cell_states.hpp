@@ -4,9 +4,9 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <memory>
 
-#include "common/matrix.hpp"
+#include "world/occupancy.hpp"
 
 namespace evenroad::world {
 
@@ -14,14 +14,12 @@ namespace evenroad::world {
 /// FREE + s: every point is at least the radius + s from every obstacle.
 enum CellState : std::uint8_t { BLOCKED, UNDECIDED, FREE };
 
-/// How many rows up, and how many down, the nearest occupied cell of the same column is; 0 in one, at most 65535.
-struct Runs {
-  OwnMatrix<std::uint16_t> above, below;
+/// A square of a grid's cells: its first row and column, and the number of either.
+struct Square {
+  std::int64_t top, left, side;
 };
 
-Runs vertical_runs(Matrix<const bool> padded);
-
-/// Return the state of every cell for a disk of this radius.
-OwnMatrix<std::uint8_t> classify(const Runs& runs, double radius);
+/// Return the states of the cells of a square for a disk of this radius, row by row; BLOCKED beyond the grid.
+std::unique_ptr<std::uint8_t[]> classify(const Occupancy& occupancy, double radius, const Square& square);
 
 }  // namespace evenroad::world

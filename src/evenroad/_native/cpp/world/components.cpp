@@ -86,7 +86,9 @@ Components::Components(const Disk& disk) : cells_(disk.rows(), disk.columns()), 
   // Cells first, and behind them the pieces of those at gates.
   std::vector<std::int32_t> parent(cells + first_.back(), -1);
   for (std::size_t cell = 0; cell < cells; cell++) {
-    const bool whole = number_.values[cell] < 0 && disk.cells().values[cell] != BLOCKED;
+    const auto row = static_cast<std::int64_t>(cell) / disk.columns(),
+               column = static_cast<std::int64_t>(cell) % disk.columns();
+    const bool whole = number_.values[cell] < 0 && disk.cell(row, column) != BLOCKED;
     if (whole) parent[cell] = static_cast<std::int32_t>(cell);
   }
   for (std::size_t piece = cells; piece < parent.size(); piece++) parent[piece] = static_cast<std::int32_t>(piece);
@@ -99,13 +101,13 @@ Components::Components(const Disk& disk) : cells_(disk.rows(), disk.columns()), 
 }
 
 void Components::number_gates(const Disk& disk) {
-  const OwnMatrix<std::uint8_t>& gates = disk.gates();
   Pieces pieces;
   first_.push_back(0);
   for (std::int64_t row = 0; row < disk.rows(); row++) {
     for (std::int64_t column = 0; column < disk.columns(); column++) {
-      number_(row, column) = gates(row, column) != 0 ? static_cast<std::int32_t>(opened_.size()) : -1;
-      if (gates(row, column) == 0) continue;
+      const bool is_gate = disk.is_gate(row, column);
+      number_(row, column) = is_gate ? static_cast<std::int32_t>(opened_.size()) : -1;
+      if (!is_gate) continue;
       opened_.push_back(open_parts(disk, row, column));
       first_.push_back(first_.back() + pieces_of(opened_.back(), pieces));
     }

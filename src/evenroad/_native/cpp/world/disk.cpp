@@ -1,5 +1,5 @@
-// Seen from a point of cell (row, column), only one or two squares of each column can be the nearest: the one in the
-// same row if it is occupied, else the first above and the first below.
+// Seen from a point of cell (row, column), only one or two squares of each row can be the nearest: the one in the same
+// column if it is occupied, else the first to the left and the first to the right.
 #include "world/disk.hpp"
 
 #include <algorithm>
@@ -24,10 +24,7 @@ bool is_too_close(Point corner, Point by, double squared_length, double limit) {
 
 }  // namespace
 
-const OwnMatrix<std::uint8_t>& Disk::gates() const {
-  std::call_once(found_gates_, [this] { gates_ = find_gates(*this); });
-  return gates_;
-}
+std::unique_ptr<std::uint8_t[]> Disk::gates_of(const Square& square) const { return find_gates(*this, square); }
 
 bool Disk::is_free(Point at) const {
   if (!is_inside(at)) return false;
@@ -40,13 +37,14 @@ bool Disk::is_free(Point at) const {
 
 double Disk::squared_gap(Point at, std::int64_t row, std::int64_t column, std::int64_t reach, double enough) const {
   double least = std::numeric_limits<double>::infinity();
-  const std::int64_t last = std::min(column + reach, columns() - 1);
-  for (std::int64_t other = std::max<std::int64_t>(column - reach, 0); other <= last; other++) {
-    const auto left = static_cast<double>(other);
-    const double gap_x = std::max(std::max(left - at.x, at.x - (left + 1.0)), 0.0);
-    double gap_y = 0.0;
-    if (const std::int64_t up = above(row, other); up > 0) {
-      gap_y = std::min(at.y - static_cast<double>(row + 1 - up), static_cast<double>(row + below(row, other)) - at.y);
+  const std::int64_t last = std::min(row + reach, rows() - 1);
+  for (std::int64_t other = std::max<std::int64_t>(row - reach, 0); other <= last; other++) {
+    const auto top = static_cast<double>(other);
+    const double gap_y = std::max(std::max(top - at.y, at.y - (top + 1.0)), 0.0);
+    double gap_x = 0.0;
+    if (const std::int64_t left = occupancy_.to_left(other, column, reach); left > 0) {
+      const std::int64_t right = occupancy_.to_right(other, column, reach);
+      gap_x = std::min(at.x - static_cast<double>(column + 1 - left), static_cast<double>(column + right) - at.x);
     }
     least = std::min(least, gap_x * gap_x + gap_y * gap_y);
     if (least < enough) break;
@@ -101,15 +99,17 @@ bool Disk::is_segment_free(Point from, Point to) const {
 // the segment goes to sees the corner.
 bool Disk::passes_a_corner(std::int64_t row, std::int64_t column, Point from, Point by, double squared_length) const {
   const double limit = radius_ * radius_ * squared_length;
-  const std::int64_t near = reach(), last = std::min(column + near, columns() - 1);
-  for (std::int64_t other = std::max<std::int64_t>(column - near, 0); other <= last; other++) {
-    const std::int64_t up = above(row, other), down = below(row, other);
-    if (other == column || up == 0) continue;
-    const double x = static_cast<double>(other < column ? other + 1 : other) - from.x;
-    const Point upper{x, static_cast<double>(row + 1 - up) - from.y},
-        lower{x, static_cast<double>(row + down) - from.y};
-    if (up <= near && is_too_close(upper, by, squared_length, limit)) return true;
-    if (down <= near && is_too_close(lower, by, squared_length, limit)) return true;
+  const std::int64_t near = reach(), last = std::min(row + near, rows() - 1);
+  for (std::int64_t other = std::max<std::int64_t>(row - near, 0); other <= last; other++) {
+    if (other == row) continue;
+    const std::int64_t left = occupancy_.to_left(other, column, near);
+    if (left == 0) continue;
+    const std::int64_t right = occupancy_.to_right(other, column, near);
+    const double y = static_cast<double>(other < row ? other + 1 : other) - from.y;
+    const Point nearer{static_cast<double>(column + 1 - left) - from.x, y},
+        farther{static_cast<double>(column + right) - from.x, y};
+    if (left <= near && is_too_close(nearer, by, squared_length, limit)) return true;
+    if (right <= near && is_too_close(farther, by, squared_length, limit)) return true;
   }
   return false;
 }

@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <mutex>
 
-#include "common/matrix.hpp"
-#include "world/cell_states.hpp"
+#include "world/tiles.hpp"
 
 namespace evenroad::world {
 
@@ -36,28 +34,31 @@ struct Frame {
   }
 };
 
-/// What is known of one disk on one map; it never changes.
+/// What is known of one disk on one map, of each part from when it is first asked for; what it says never changes.
 class Disk {
  public:
-  /// Take a padded map, whose ring is occupied; the radius is in pixels.
-  Disk(Matrix<const bool> padded, const Frame& frame, double radius)
+  /// Take the occupied cells of a map; the radius is in pixels.
+  Disk(Matrix<const bool> map, const Frame& frame, double radius)
       : frame_(frame),
         radius_(radius),
         reach_(static_cast<std::int64_t>(std::min(std::ceil(radius), 1e9))),
-        runs_(vertical_runs(padded)),
-        cells_(classify(runs_, radius)) {}
+        occupancy_(map),
+        cells_(rows(), columns(), shift()),
+        gates_(rows(), columns(), shift()) {}
 
   const Frame& frame() const { return frame_; }
   double radius() const { return radius_; }
-  std::int64_t rows() const { return static_cast<std::int64_t>(cells_.rows); }
-  std::int64_t columns() const { return static_cast<std::int64_t>(cells_.columns); }
-  std::uint8_t cell(std::int64_t row, std::int64_t column) const { return cells_(row, column); }
-  const OwnMatrix<std::uint8_t>& cells() const { return cells_; }
-  /// The cells at gates (see gates): 1, else 0; found when first needed.
-  const OwnMatrix<std::uint8_t>& gates() const;
-  bool is_gate(std::int64_t row, std::int64_t column) const { return gates_(row, column) != 0; }
-  std::uint16_t above(std::int64_t row, std::int64_t column) const { return runs_.above(row, column); }
-  std::uint16_t below(std::int64_t row, std::int64_t column) const { return runs_.below(row, column); }
+  std::int64_t rows() const { return occupancy_.rows(); }
+  std::int64_t columns() const { return occupancy_.columns(); }
+  const Occupancy& occupancy() const { return occupancy_; }
+  /// Return the state of a cell of the padded grid.
+  std::uint8_t cell(std::int64_t row, std::int64_t column) const {
+    return cells_.at(row, column, [this](const Square& square) { return classify(occupancy_, radius_, square); });
+  }
+  /// Say whether a cell is at a gate (see gates).
+  bool is_gate(std::int64_t row, std::int64_t column) const {
+    return gates_.at(row, column, [this](const Square& square) { return gates_of(square); }) != 0;
+  }
 
   /// Say whether padded coordinates are inside of the map; on its border the distance to the outside is 0.
   bool is_inside(Point at) const {
@@ -70,23 +71,29 @@ class Disk {
   /// Say whether the disk can move straight between two map points.
   bool is_motion_free(Point from, Point to) const;
 
-  /// Return the squared distance from a point of a cell to the obstacles of columns within `reach`; once one is found
-  /// nearer than `enough`, the nearest is not looked for.
+  /// Return the squared distance from a point of a cell to the obstacles of rows and columns within `reach`, or more
+  /// than its square; once one is found nearer than `enough`, the nearest is not looked for.
   double squared_gap(Point at, std::int64_t row, std::int64_t column, std::int64_t reach, double enough) const;
-  /// Columns beyond this many do not matter.
+  /// Rows and columns beyond this many do not matter.
   std::int64_t reach() const { return reach_; }
 
  private:
+  /// Return how many bits of a row or column number count inside of a tile: so large that what lies around a tile, on
+  /// which it depends, is not much more than itself.
+  int shift() const {
+    int shift = 7;
+    while (shift < 14 && std::int64_t{1} << shift < std::min(2 * reach_, std::max(rows(), columns()))) shift++;
+    return shift;
+  }
+  std::unique_ptr<std::uint8_t[]> gates_of(const Square& square) const;
   bool is_segment_free(Point from, Point to) const;
   bool passes_a_corner(std::int64_t row, std::int64_t column, Point from, Point by, double squared_length) const;
 
   Frame frame_;
   double radius_;
   std::int64_t reach_;
-  Runs runs_;
-  OwnMatrix<std::uint8_t> cells_;
-  mutable std::once_flag found_gates_;
-  mutable OwnMatrix<std::uint8_t> gates_{0, 0};
+  Occupancy occupancy_;
+  Tiles cells_, gates_;
 };
 
 }  // namespace evenroad::world

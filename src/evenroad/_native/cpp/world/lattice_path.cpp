@@ -31,11 +31,6 @@ constexpr std::int64_t RINGS = 13;
 /// Share of the least cost that counts as a bound: what is rounded down on the way.
 constexpr double BOUND = 0.97;
 
-/// A point of the half lattice, in half pixels of the padded plane.
-struct Node {
-  std::int64_t column, row;
-};
-
 /// The queue: nodes in buckets by key, first out what came last.  Its keys never lie farther apart than its buckets.
 class Buckets {
  public:
@@ -44,20 +39,29 @@ class Buckets {
   std::int64_t key() const { return key_; }
   bool empty() const { return waiting_ == 0; }
 
-  void put(std::int64_t node, std::int64_t key) {
-    std::int64_t& head = heads_[key % COUNT];
-    entries_.push_back({node, head});
-    head = static_cast<std::int64_t>(entries_.size()) - 1;
+  void put(Node node, std::int64_t key) {
+    std::int32_t& head = heads_[key % COUNT];
+    // Entries that were taken are written again: the queue is as large as what waits.
+    std::int32_t entry = spare_;
+    if (entry >= 0) {
+      spare_ = entries_[entry].next;
+    } else {
+      entry = static_cast<std::int32_t>(entries_.size());
+      entries_.emplace_back();
+    }
+    entries_[entry] = {node, head};
+    head = entry;
     waiting_++;
   }
 
-  std::int64_t take() {
+  Node take() {
     while (heads_[key_ % COUNT] < 0) key_++;
-    std::int64_t& head = heads_[key_ % COUNT];
-    const Entry entry = entries_[head];
-    head = entry.next;
+    std::int32_t& head = heads_[key_ % COUNT];
+    const std::int32_t taken = head;
+    head = entries_[taken].next;
+    entries_[taken].next = spare_, spare_ = taken;
     waiting_--;
-    return entry.node;
+    return entries_[taken].node;
   }
 
   /// More than the largest step of a key, twice the costliest step.
@@ -65,10 +69,12 @@ class Buckets {
 
  private:
   struct Entry {
-    std::int64_t node, next;
+    Node node;
+    std::int32_t next;
   };
 
-  std::array<std::int64_t, COUNT> heads_;
+  std::array<std::int32_t, COUNT> heads_;
+  std::int32_t spare_ = -1;
   std::vector<Entry> entries_;
   std::int64_t key_, waiting_ = 0;
 };
@@ -76,13 +82,12 @@ class Buckets {
 class Search {
  public:
   Search(const Disk& disk, std::span<const Point> goals, std::int64_t most)
-      : disk_(disk), wide_(2 * disk.columns() + 1), most_(most), nodes_((2 * disk.rows() + 1) * wide_), goals_(goals) {
-    disk.gates();
+      : disk_(disk), most_(most), nodes_(2 * disk.rows() + 1, 2 * disk.columns() + 1), goals_(goals) {
     for (std::size_t goal = 0; goal < goals.size(); goal++) {
       const Point at = disk.frame().to_padded(goals[goal]);
       targets_.push_back({2.0 * at.x, 2.0 * at.y});
-      for (const std::int64_t node : links(goals[goal])) {
-        if (goal_of(node) < 0) goal_nodes_.push_back({node, static_cast<std::int64_t>(goal)});
+      for (const Node node : links(goals[goal])) {
+        if (goal_of(node) < 0) goal_nodes_.push_back({number(node), static_cast<std::int64_t>(goal)});
       }
       // The first goal that a node leads to is the one that counts.
       std::sort(goal_nodes_.begin(), goal_nodes_.end(),
@@ -94,15 +99,16 @@ class Search {
     LatticePath found;
     Buckets queue = seeded(start);
     while (!queue.empty() && motions_ < most_) {
-      const std::int64_t node = queue.take();
-      if (nodes_[node].is_closed) continue;
-      nodes_[node].is_closed = true;
+      const Node node = queue.take();
+      NodeState& state = *nodes_.find(node);
+      if (state.is_closed) continue;
+      state.is_closed = true;
       found.expanded++;
       if (const std::int64_t goal = goal_of(node); goal >= 0) {
         found.goal = goal, found.points = trace(node, start, goals_[goal]);
         break;
       }
-      expand(node, queue);
+      expand(node, state.cost, queue);
     }
     found.motions = motions_;
     return found;
@@ -113,7 +119,8 @@ class Search {
     std::int64_t node, goal;
   };
 
-  Node node_at(std::int64_t node) const { return {node % wide_, node / wide_}; }
+  /// Return the number of a node, which no other one has.
+  static std::int64_t number(Node at) { return static_cast<std::int64_t>(at.row) << 32 | at.column; }
   Point map_point(Node at) const {
     return disk_.frame().to_map({0.5 * static_cast<double>(at.column), 0.5 * static_cast<double>(at.row)});
   }
@@ -125,16 +132,16 @@ class Search {
 
   /// Say whether a node lies in a cell of a gate, or between two.
   bool is_at_gate(Node at) const {
-    const auto before = [](std::int64_t half, std::int64_t count) { return half > 0 ? (half - 1) / 2 : count - 1; };
-    return disk_.is_gate(at.row / 2, at.column / 2) ||
-           disk_.is_gate(before(at.row, disk_.rows()), before(at.column, disk_.columns()));
+    const auto before = [](std::int64_t half) { return std::max<std::int64_t>(half - 1, 0) / 2; };
+    return disk_.is_gate(at.row / 2, at.column / 2) || disk_.is_gate(before(at.row), before(at.column));
   }
 
   /// Return to which goal a node leads, -1 to none.
-  std::int64_t goal_of(std::int64_t node) const {
-    const auto at = std::lower_bound(goal_nodes_.begin(), goal_nodes_.end(), node,
-                                     [](const GoalNode& each, std::int64_t wanted) { return each.node < wanted; });
-    return at != goal_nodes_.end() && at->node == node ? at->goal : -1;
+  std::int64_t goal_of(Node node) const {
+    const std::int64_t wanted = number(node);
+    const auto at = std::lower_bound(goal_nodes_.begin(), goal_nodes_.end(), wanted,
+                                     [](const GoalNode& each, std::int64_t of) { return each.node < of; });
+    return at != goal_nodes_.end() && at->node == wanted ? at->goal : -1;
   }
 
   /// Return a lower bound of the cost from a node to the nearest target.
@@ -149,7 +156,7 @@ class Search {
   }
 
   /// Return the nodes near a map point that can be reached straight, ring by ring until there are enough.
-  std::vector<std::int64_t> links(Point from) {
+  std::vector<Node> links(Point from) {
     const Point at = disk_.frame().to_padded(from);
     // Far outside there is nothing to link to; nor is there at what is no number.
     const auto nearest = [](double along) {
@@ -157,15 +164,16 @@ class Search {
     };
     const std::int64_t column = nearest(at.x), row = nearest(at.y);
     const std::int64_t last_row = 2 * disk_.rows() - 1, last_column = 2 * disk_.columns() - 1;
-    std::vector<std::int64_t> linked;
+    std::vector<Node> linked;
     for (std::int64_t ring = 0; ring < RINGS && linked.size() < LINKS; ring++) {
       for (std::int64_t r = std::max<std::int64_t>(row - ring, 0); r <= std::min(row + ring, last_row); r++) {
         for (std::int64_t c = std::max<std::int64_t>(column - ring, 0); c <= std::min(column + ring, last_column);
              c++) {
           if (std::max(std::abs(r - row), std::abs(c - column)) != ring) continue;
-          if (!is_centre({c, r}) && !is_at_gate({c, r})) continue;
+          const Node node{static_cast<std::int32_t>(c), static_cast<std::int32_t>(r)};
+          if (!is_centre(node) && !is_at_gate(node)) continue;
           motions_++;
-          if (disk_.is_motion_free(from, map_point({c, r}))) linked.push_back(r * wide_ + c);
+          if (disk_.is_motion_free(from, map_point(node))) linked.push_back(node);
         }
       }
     }
@@ -175,15 +183,15 @@ class Search {
   /// Put the nodes near the start into the queue.
   Buckets seeded(Point start) {
     const Point at = disk_.frame().to_padded(start);
-    const std::vector<std::int64_t> linked = links(start);
+    const std::vector<Node> linked = links(start);
     std::vector<std::int64_t> keys;
     std::int64_t least = std::int64_t{1} << 60;
-    for (const std::int64_t node : linked) {
-      const auto [column, row] = node_at(node);
-      const double away = std::hypot(0.5 * static_cast<double>(column) - at.x, 0.5 * static_cast<double>(row) - at.y);
+    for (const Node node : linked) {
+      const double away =
+          std::hypot(0.5 * static_cast<double>(node.column) - at.x, 0.5 * static_cast<double>(node.row) - at.y);
       const auto cost = static_cast<std::int32_t>(10.0 * away);
       nodes_.reach(node, cost, NodeMemory::SEED);
-      keys.push_back(cost + bound({column, row}));
+      keys.push_back(cost + bound(node));
       least = std::min(least, keys.back());
     }
     // The keys of the seeds may lie far apart, as no two steps of the search do: late ones count as less near.
@@ -195,18 +203,17 @@ class Search {
   }
 
   /// Put the nodes that a node leads to into the queue.
-  void expand(std::int64_t node, Buckets& queue) {
-    const Node here = node_at(node);
+  void expand(Node here, std::int32_t spent, Buckets& queue) {
     const std::size_t first = is_centre(here) ? 0 : OVER_CELLS, last = is_at_gate(here) ? STEPS.size() : OVER_CELLS;
     for (std::size_t step = first; step < last; step++) {
       // Never out of the array: nothing is free on its ring.
       const Node there{here.column + STEPS[step].right, here.row + STEPS[step].down};
-      const std::int64_t to = there.row * wide_ + there.column;
-      const std::int32_t cost = nodes_[node].cost() + STEPS[step].cost;
-      if (nodes_[to].is_closed || (nodes_[to].is_reached() && nodes_[to].cost() <= cost)) continue;
+      const std::int32_t cost = spent + STEPS[step].cost;
+      const NodeState* const known = nodes_.find(there);
+      if (known != nullptr && (known->is_closed || known->cost <= cost)) continue;
       if (!is_step_free(step, here, there)) continue;
-      nodes_.reach(to, cost, static_cast<std::uint8_t>(step));
-      queue.put(to, std::max(cost + bound(there), queue.key()));
+      nodes_.reach(there, cost, static_cast<std::uint8_t>(step));
+      queue.put(there, std::max(cost + bound(there), queue.key()));
     }
   }
 
@@ -217,12 +224,11 @@ class Search {
     return disk_.is_motion_free(map_point(from), map_point(to));
   }
 
-  std::vector<Point> trace(std::int64_t node, Point start, Point goal) const {
-    std::vector<Point> points = {goal, map_point(node_at(node))};
-    while (nodes_[node].step != NodeMemory::SEED) {
-      const Step& step = STEPS[nodes_[node].step];
-      node -= step.down * wide_ + step.right;
-      points.push_back(map_point(node_at(node)));
+  std::vector<Point> trace(Node node, Point start, Point goal) const {
+    std::vector<Point> points = {goal, map_point(node)};
+    for (std::uint8_t by; (by = nodes_.find(node)->step) != NodeMemory::SEED;) {
+      node.column -= STEPS[by].right, node.row -= STEPS[by].down;
+      points.push_back(map_point(node));
     }
     points.push_back(start);
     std::reverse(points.begin(), points.end());
@@ -230,7 +236,7 @@ class Search {
   }
 
   const Disk& disk_;
-  std::int64_t wide_, most_, motions_ = 0;
+  std::int64_t most_, motions_ = 0;
   NodeMemory nodes_;
   std::span<const Point> goals_;
   /// The goals on the lattice, in half pixels; which nodes lead to them, by node.

@@ -43,19 +43,23 @@ void look_at_cell(const Disk& disk, std::int64_t row, std::int64_t column, Point
 NearestObstacle nearest_obstacle(const Disk& disk, Point at) {
   if (!disk.is_inside(at)) return {at, 0.0};
   const auto column = static_cast<std::int64_t>(at.x), row = static_cast<std::int64_t>(at.y);
+  const Occupancy& occupancy = disk.occupancy();
   double best = INF;
   Point nearest = at;
-  for (std::int64_t away = 0; away < disk.columns(); away++) {
-    // So many columns off, everything is at least away - 1 away.
+  for (std::int64_t away = 0; away < disk.rows(); away++) {
+    // So many rows off, everything is at least away - 1 away.
     const double least = static_cast<double>(away) - 1.0;
     if (away > 1 && least * least >= best) break;
-    for (const std::int64_t other : {column - away, column + away}) {
-      if (other < 0 || other >= disk.columns()) continue;
-      const auto left = static_cast<double>(other);
-      Point near{std::min(std::max(at.x, left), left + 1.0), at.y};
-      if (const std::int64_t up = disk.above(row, other); up > 0) {
-        const auto upper = static_cast<double>(row + 1 - up), lower = static_cast<double>(row + disk.below(row, other));
-        near.y = at.y - upper <= lower - at.y ? upper : lower;
+    const std::int64_t most =
+        best < INF ? static_cast<std::int64_t>(std::sqrt(best)) + 1 : std::max(column, disk.columns() - 1 - column);
+    for (const std::int64_t other : {row - away, row + away}) {
+      if (other < 0 || other >= disk.rows()) continue;
+      const auto top = static_cast<double>(other);
+      Point near{at.x, std::min(std::max(at.y, top), top + 1.0)};
+      if (const std::int64_t left = occupancy.to_left(other, column, most); left > 0) {
+        const double before = static_cast<double>(column + 1 - left);
+        const double after = static_cast<double>(column + occupancy.to_right(other, column, most));
+        near.x = at.x - before <= after - at.x ? before : after;
       }
       if (const double squared = squared_distance(near, at); squared < best) best = squared, nearest = near;
     }

@@ -1,78 +1,134 @@
-// What a search knows of the nodes of a lattice, in memory that is zero at first: a query costs what it touches, not
-// what the map has.
+// What a search knows of the nodes of a half lattice, in blocks that are taken when a node of theirs is reached: a
+// query costs what it touches, not what the map has.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace evenroad::world {
 
-/// One node; all zero where it was not reached.
+/// A point of the half lattice, in half pixels of the padded plane.
+struct Node {
+  std::int32_t column, row;
+};
+
+/// One node.
 struct NodeState {
-  std::int32_t cost_and_one;
+  std::int32_t cost;
+  /// The search that reached it: of another one nothing holds.
+  std::uint16_t search;
   /// The step by which it was reached.
   std::uint8_t step;
   bool is_closed;
-
-  bool is_reached() const { return cost_and_one > 0; }
-  std::int32_t cost() const { return cost_and_one - 1; }
 };
 
-/// The nodes of one search: small lattices in memory that the thread keeps, large ones in pages that the system zeroes
-/// when they are touched.
+/// The nodes of the one search of a thread, which keeps the memory for the next one.
 class NodeMemory {
  public:
   /// The step of a node that the search began with.
   static constexpr std::uint8_t SEED = 0xff;
 
-  explicit NodeMemory(std::size_t nodes) {
-    if (nodes <= KEPT) {
-      std::vector<NodeState>& kept = kept_by_thread();
-      if (kept.size() < nodes) kept.resize(nodes);
-      nodes_ = kept.data();
-      return;
-    }
-    own_.reset(static_cast<NodeState*>(std::calloc(nodes, sizeof(NodeState))));
-    if (own_ == nullptr) throw std::bad_alloc();
-    nodes_ = own_.get();
+  NodeMemory(std::int64_t rows, std::int64_t columns) : wide_((columns >> SHIFT) + 1) {
+    const auto blocks = static_cast<std::size_t>(wide_ * ((rows >> SHIFT) + 1));
+    for (Blocks& each : kept_.blocks) each.of_place.resize(std::max(each.of_place.size(), blocks));
+    if (++kept_.search != 0) return;
+    // Numbers of searches repeat: nothing of old ones may be left.
+    for (Blocks& each : kept_.blocks) each.spare.clear();
+    kept_.search = 1;
   }
 
   NodeMemory(const NodeMemory&) = delete;
   NodeMemory& operator=(const NodeMemory&) = delete;
 
   ~NodeMemory() {
-    // What the thread keeps is zero again.
-    for (const std::int64_t node : touched_) nodes_[node] = {};
+    for (Blocks& each : kept_.blocks) {
+      for (auto& [place, block] : each.taken) {
+        each.of_place[place] = nullptr;
+        if (each.spare.size() < MOST_KEPT) each.spare.push_back(std::move(block));
+      }
+      each.taken.clear();
+    }
   }
 
-  NodeState& operator[](std::int64_t node) { return nodes_[node]; }
-  const NodeState& operator[](std::int64_t node) const { return nodes_[node]; }
+  /// Return what is known of a node, or null where it was not reached.
+  NodeState* find(Node at) const {
+    NodeState* const block = kept_.blocks[kind(at)].of_place[place(at)];
+    if (block == nullptr) return nullptr;
+    NodeState& state = block[inside(at)];
+    return state.search == kept_.search ? &state : nullptr;
+  }
 
   /// Note that a node was reached at a cost, by a step.
-  void reach(std::int64_t node, std::int32_t cost, std::uint8_t step) {
-    if (own_ == nullptr && !nodes_[node].is_reached()) touched_.push_back(node);
-    nodes_[node].cost_and_one = cost + 1, nodes_[node].step = step;
+  void reach(Node at, std::int32_t cost, std::uint8_t step) {
+    Blocks& blocks = kept_.blocks[kind(at)];
+    NodeState*& block = blocks.of_place[place(at)];
+    if (block == nullptr) block = take(blocks, place(at), kind(at) == 0 ? SIDE * SIDE : 3 * SIDE * SIDE);
+    block[inside(at)] = {cost, kept_.search, step, false};
   }
 
  private:
-  /// Most nodes that a thread keeps memory for: 32 MB.
-  static constexpr std::size_t KEPT = std::size_t{1} << 22;
+  /// Nodes whose numbers of column and row agree but for so many bits are one block.  Centres of cells, whose numbers
+  /// are odd, have blocks of their own: away from gates there are no others.
+  static constexpr int SHIFT = 7, HALF = SHIFT - 1;
+  static constexpr std::size_t SIDE = std::size_t{1} << HALF;
+  /// Number of blocks of either kind that a thread keeps: 32 and 96 MB.
+  static constexpr std::size_t MOST_KEPT = 1024;
 
   struct Free {
-    void operator()(void* memory) const { std::free(memory); }
+    void operator()(NodeState* memory) const { std::free(memory); }
+  };
+  using Block = std::unique_ptr<NodeState[], Free>;
+
+  struct Blocks {
+    /// The block of each place, null where none is taken.
+    std::vector<NodeState*> of_place;
+    std::vector<std::pair<std::size_t, Block>> taken;
+    std::vector<Block> spare;
   };
 
-  static std::vector<NodeState>& kept_by_thread() {
-    thread_local std::vector<NodeState> kept;
+  struct Kept {
+    Blocks blocks[2];
+    /// The number of the search.
+    std::uint16_t search = 0;
+  };
+
+  static Kept& kept_by_thread() {
+    thread_local Kept kept;
     return kept;
   }
 
-  NodeState* nodes_ = nullptr;
-  std::unique_ptr<NodeState[], Free> own_;
-  std::vector<std::int64_t> touched_;
+  static int kind(Node at) { return (at.row & at.column & 1) != 0 ? 0 : 1; }
+
+  std::size_t place(Node at) const {
+    return static_cast<std::size_t>((at.row >> SHIFT) * wide_ + (at.column >> SHIFT));
+  }
+
+  static std::size_t inside(Node at) {
+    const auto row = static_cast<std::size_t>(at.row), column = static_cast<std::size_t>(at.column);
+    const std::size_t cell = (row >> 1 & (SIDE - 1)) << HALF | (column >> 1 & (SIDE - 1));
+    return kind(at) == 0 ? cell : ((row & 1) << 1 | (column & 1)) << 2 * HALF | cell;
+  }
+
+  static NodeState* take(Blocks& blocks, std::size_t place, std::size_t nodes) {
+    Block block;
+    if (blocks.spare.empty()) {
+      block.reset(static_cast<NodeState*>(std::calloc(nodes, sizeof(NodeState))));
+      if (block == nullptr) throw std::bad_alloc();
+    } else {
+      block = std::move(blocks.spare.back());
+      blocks.spare.pop_back();
+    }
+    blocks.taken.emplace_back(place, std::move(block));
+    return blocks.taken.back().second.get();
+  }
+
+  std::int64_t wide_;
+  Kept& kept_ = kept_by_thread();
 };
 
 }  // namespace evenroad::world

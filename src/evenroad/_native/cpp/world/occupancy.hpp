@@ -1,0 +1,72 @@
+// Which cells of a map are occupied, a bit each, with one ring of occupied cells around for the outside.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "common/matrix.hpp"
+
+namespace evenroad::world {
+
+/// Rows and columns count the ring; whatever lies beyond it to the left and right is occupied, too.
+class Occupancy {
+ public:
+  explicit Occupancy(Matrix<const bool> map)
+      : rows_(static_cast<std::int64_t>(map.rows) + 2),
+        columns_(static_cast<std::int64_t>(map.columns) + 2),
+        words_((columns_ + 63) / 64 + 2),
+        bits_(rows_ * words_, ~std::uint64_t{0}) {
+    for (std::int64_t row = 1; row + 1 < rows_; row++) {
+      const bool* cells = map.data + (row - 1) * (columns_ - 2);
+      std::uint64_t* words = bits_.data() + row * words_ + 1;
+      // Column 0 is the ring: the cells of a word are those from one before it.
+      for (std::int64_t first = 0; first < columns_; first += 64, words++) {
+        const std::int64_t begin = std::max<std::int64_t>(first, 1), end = std::min(first + 64, columns_ - 1);
+        std::uint64_t free = 0;
+        for (std::int64_t column = begin; column < end; column++) {
+          free |= std::uint64_t{!cells[column - 1]} << (column - first);
+        }
+        *words = ~free;
+      }
+    }
+  }
+
+  std::int64_t rows() const { return rows_; }
+  std::int64_t columns() const { return columns_; }
+
+  /// Return 64 columns of a row from one on, which is at least -64 and at most the number of columns.
+  std::uint64_t window(std::int64_t row, std::int64_t first) const {
+    const std::uint64_t at = static_cast<std::uint64_t>(first + 64);
+    const std::uint64_t* word = bits_.data() + row * words_ + (at >> 6);
+    const std::uint64_t shift = at & 63;
+    return shift == 0 ? word[0] : word[0] >> shift | word[1] << (64 - shift);
+  }
+
+  bool is_occupied(std::int64_t row, std::int64_t column) const { return (window(row, column) & 1) != 0; }
+
+  /// Return how many columns to the left of one of the map the nearest occupied cell is, 0 in one; more than `most`
+  /// where it is farther.
+  std::int64_t to_left(std::int64_t row, std::int64_t column, std::int64_t most) const {
+    for (std::int64_t away = 0; away <= most; away += 64) {
+      if (const std::uint64_t seen = window(row, std::max<std::int64_t>(column - away - 63, -64)); seen != 0) {
+        return away + std::countl_zero(seen);
+      }
+    }
+    return most + 1;
+  }
+
+  /// The same to the right.
+  std::int64_t to_right(std::int64_t row, std::int64_t column, std::int64_t most) const {
+    for (std::int64_t away = 0; away <= most; away += 64) {
+      if (const std::uint64_t seen = window(row, column + away); seen != 0) return away + std::countr_zero(seen);
+    }
+    return most + 1;
+  }
+
+ private:
+  std::int64_t rows_, columns_, words_;
+  std::vector<std::uint64_t> bits_;
+};
+
+}  // namespace evenroad::world
