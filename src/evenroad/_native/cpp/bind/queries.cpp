@@ -152,7 +152,8 @@ void add_queries(nb::module_& part) {
       .def("__init__", &make_many_queries, nb::keep_alive<1, 6>())
       .def("go_on",
            [](ManyQueries& many, std::int64_t threads, double seconds) {
-             require_below(threads - 1, MOST_THREADS, "threads less one");
+             require_below(threads, MOST_THREADS + 1, "threads");
+             require(threads >= 1, "threads must be 1 or more");
              return without_gil([&] { return many.queries.go_on(static_cast<std::size_t>(threads), seconds); });
            })
       .def_prop_ro("columns", &columns_of);
