@@ -19,7 +19,7 @@ from studies.benchmarks.plan_call import BOXES, boxes_around
 from studies.benchmarks.rows import parser_of
 
 import evenroad as er
-from evenroad.planning.connectors import BEFORE_QUICK_PROOF
+from evenroad.planning.connectors import RESTART
 from evenroad.roadmap.connector import Smooth
 from evenroad_studies.arms.problems import draw_problem
 from evenroad_studies.arms.robots import arm_named
@@ -60,7 +60,7 @@ def in_scenes(name: str, count: int) -> None:
         worlds: list[Any] = [each.world for each in problems]
         starts, goals = np.array([each.start for each in problems]), np.array([each.goal for each in problems])
         print(f"{name}, {generator}: {rates(worlds, starts, goals, REPEATS)}")
-        soon = er.plan_many(worlds, starts, goals, limits={"motions": BEFORE_QUICK_PROOF}).solved
+        soon = er.plan_many(worlds, starts, goals, limits={"motions": RESTART}).solved
         kept = [world for world, is_soon in zip(worlds, soon, strict=True) if is_soon]
         print(f"{name}, {generator}, one call: {rates(kept, starts[soon], goals[soon], REPEATS)}", flush=True)
 

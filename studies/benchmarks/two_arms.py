@@ -1,10 +1,12 @@
-"""Robots with two arms, of 14 to 20 joints, and upper bodies of 30: whether trees join two postures, and how soon.
+"""Robots with two arms, of 14 to 20 joints, and upper bodies of 30: whether `er.plan` joins two postures, and how soon.
 
     python -m studies.benchmarks.two_arms --count 125     # 500 problems of four robots, and 125 of 30 joints
 
 Each hand goes to a place of a shelf, in a box or low on a table, or both arms go through many boxes, where there is a
-path by construction.  Of the others a problem counts as solvable if trees solve it, driven by any of four sequences.
-Times are milliseconds of processor time of one thread, printed as median / mean / 95 % / longest.
+path by construction.  Of the others a problem counts as solvable if any planner solves it: `er.plan`, trees driven by
+any of three other sequences, or OMPL's RRT-Connect with `--ompl`, of which each query gets so many seconds (extra
+[ompl]).  Times are milliseconds of processor time of one thread, from a robot and a scene to the smoothed path of
+`er.plan`, to the first path of OMPL, printed as median / mean / 95 % / longest.
 """
 
 from __future__ import annotations
@@ -38,9 +40,10 @@ JOINTS = {14: (0, 7, 0), 16: (2, 7, 0), 18: (0, 9, 0), 20: (2, 9, 0), 30: (3, 7,
 
 KINDS = ("shelf", "box", "table", "passage")
 
-MOST_MOTIONS = 100_000
-OTHERS = 3
-"""So many other sequences, with as many motions each, look for a path where there was none."""
+SECONDS = 5.0
+"""Wall time of a plan, its default."""
+OTHERS, MOST_MOTIONS = 3, 100_000
+"""So many other sequences, with so many motions each, look for a path where there was none."""
 
 BOXES = 1000
 """So many boxes are tried, and kept where a path does not touch them."""
@@ -204,37 +207,56 @@ def has_path(world: ArmWorld, problem: Problem) -> bool:
     return False
 
 
+def by_ompl(world: ArmWorld, problem: Problem, seconds: float) -> float | None:
+    """Return the processor time [ms] in which OMPL's RRT-Connect finds a path, or None."""
+    from ompl import geometric as og
+    from ompl import util as ou
+
+    from evenroad.adapters.ompl import solve, space_information
+
+    ou.setLogLevel(ou.LogLevel.LOG_NONE)
+    begin = time.thread_time()
+    path = solve(og.RRTConnect(space_information(world)), problem.start, problem.goal, seconds=seconds)
+    return None if path is None else 1e3 * (time.thread_time() - begin)
+
+
+def spread_of(times: list[float]) -> str:
+    if not times:
+        return "none"
+    return f"{np.median(times):.2f} / {np.mean(times):.2f} / {np.quantile(times, 0.95):.2f} / {max(times):.1f} ms"
+
+
 def main() -> None:
     parser = parser_of(__doc__)
     parser.add_argument("--count", type=int, default=100, help="problems of each robot")
     parser.add_argument("--joints", nargs="*", type=int, default=list(JOINTS))
+    parser.add_argument("--ompl", type=float, default=0.0, help="seconds of OMPL's RRT-Connect, 0 for none [s]")
     parser.add_argument("--tuning", action="store_true", help="the problems that constants are chosen on")
     options = parser.parse_args()
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
     for joints in options.joints:
         pool = Pool.of(robot_of(joints))
         times: list[float] = []
-        motions: list[int] = []
-        failed: list[tuple[str, int, int]] = []
-        unsolved: list[tuple[str, int, int]] = []
+        theirs: list[float] = []
+        failed: list[tuple[str, int, str]] = []
+        unsolved: list[tuple[str, int, str]] = []
         for problem in problems(pool, (TUNING if options.tuning else REPORTING)[: options.count]):
-            world = ArmWorld(problem.robot, problem.scene)
             begin = time.thread_time()
-            goals = problem.goal[np.newaxis]
-            found = connect(world, problem.start, goals, most_motions=MOST_MOTIONS, seconds=60)
+            world = ArmWorld(problem.robot, problem.scene)
+            result = er.plan(world, problem.start, problem.goal, seconds=SECONDS)
             spent = 1e3 * (time.thread_time() - begin)
-            if found.goal >= 0:
+            ompl = by_ompl(world, problem, options.ompl) if options.ompl else None
+            theirs += [] if ompl is None else [ompl]
+            if result.solved:
                 times.append(spent)
-                motions.append(found.motions)
             else:
-                (failed if has_path(world, problem) else unsolved).append((problem.kind, problem.seed, round(spent)))
+                is_solvable = ompl is not None or has_path(world, problem)
+                (failed if is_solvable else unsolved).append((problem.kind, problem.seed, result.message))
         solvable = len(times) + len(failed)
-        print(
-            f"{joints} joints: {len(times)} of {solvable} solvable problems;"
-            f" {np.median(times):.2f} / {np.mean(times):.2f} / {np.quantile(times, 0.95):.2f} / {max(times):.1f} ms,"
-            f" motions {np.median(motions):.0f} / {np.mean(motions):.0f}; failed {failed}; solved by none {unsolved}",
-            flush=True,
-        )
+        print(f"{joints} joints: {len(times)} of {solvable} solvable problems; {spread_of(times)}")
+        if options.ompl:
+            print(f"  OMPL's RRT-Connect: {len(theirs)} of {solvable}; {spread_of(theirs)}")
+        print(f"  failed {failed}; solved by none {unsolved}", flush=True)
 
 
 if __name__ == "__main__":

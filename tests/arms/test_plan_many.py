@@ -1,7 +1,5 @@
 """Many queries in one call: every answer is that of `er.plan`, and errors name rows."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -51,7 +49,7 @@ def test_each_answer_is_that_of_one_plan_whatever_the_number_of_threads(asked, s
 
 def test_what_one_call_of_compiled_code_leaves_open_is_planned_on(asked, monkeypatch):
     at_once = er.plan_many(*asked, limits=MOST)
-    monkeypatch.setattr("evenroad.planning.many.ARM_TREES", SimpleNamespace(stages=((12, True),)))
+    monkeypatch.setattr("evenroad.planning.many.RESTART", 12)
     later = er.plan_many(*asked, limits=MOST)
     np.testing.assert_array_equal(later.waypoints, at_once.waypoints)
     np.testing.assert_array_equal(later.offsets, at_once.offsets)

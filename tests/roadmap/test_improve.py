@@ -9,7 +9,8 @@ from evenroad.errors import InvalidValue
 from evenroad.planning import Problem, plan
 from evenroad.planning.trees import default_planner, solve_by
 from evenroad.roadmap import Budget
-from evenroad.roadmap.connector import Connection
+from evenroad.roadmap.attempt import NO_LIMIT
+from evenroad.roadmap.connector import Connection, Search
 from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld, GridMap
 
@@ -20,10 +21,13 @@ HEIGHTS = (0.9, 0.7, 0.8, 0.3, 0.6)
 class Detours:
     """Goes over a point above the middle of the unit square, and does not smooth."""
 
-    planner, varies, stages = "detours", True, ()
+    planner, varies = "detours", True
 
     def __init__(self):
         self.asked, self.most = [], []
+
+    def searches(self, dim):
+        yield Search(NO_LIMIT, "none")
 
     def connect(self, world, start, goals, *, variant, most_motions, seconds):
         self.asked.append(variant)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -11,7 +13,8 @@ from evenroad._arrays import Floats
 from evenroad._native.planning import Answer, Drivers, Improver, Points, answer
 from evenroad.planning import arm_trees
 from evenroad.planning.plain_trees import grow_trees
-from evenroad.roadmap.connector import Connection, Connector, Smooth
+from evenroad.roadmap.attempt import NO_LIMIT
+from evenroad.roadmap.connector import Connection, Connector, Search, Smooth
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.robot import ArmWorld
 from evenroad.robot.tree_sequences import cube_points, drivers, drivers_by, native_points, shifted_cube_points
@@ -19,12 +22,14 @@ from evenroad.space.batch import as_batch
 from evenroad.world import World
 from evenroad.world.gridmap.gridmap import DiskWorld
 
-BEFORE_PROOF = 20_000
-"""Number of motions after which the world tries to prove that there is no path: more than hard queries need."""
+RESTART = 4_000
+"""Number of motions after which trees begin again, elsewhere: most queries need fewer."""
+BEFORE_QUICK_PROOF, BEFORE_PROOF = 4_000, 20_000
+"""Numbers of motions after which the world tries to prove that there is no path: more than hard queries need."""
+FEW_JOINTS = 7
+"""With more joints queries need more motions, about as the square of their number, and a proof takes longer."""
 BEFORE_PROOF_OF_CELLS = 200_000
 """The same for a search of cells, which begins again after it."""
-BEFORE_QUICK_PROOF = 4_000
-"""Number of motions after which a world with a quick proof tries it: most queries need fewer."""
 
 SMOOTHING = 500
 """Number of batches of sixteen checks after which no waypoint of an arm's path slides any more."""
@@ -47,6 +52,25 @@ def drivers_of(dim: int, variant: int) -> Drivers:
     return drivers_by(Points(shifted_cube_points(dim, variant)), dim) if variant else drivers(dim)
 
 
+def restarts(dim: int) -> Iterator[Search]:
+    """Yield searches of trees that begin again and again: the time that one takes varies by far.
+
+    They last 1, 1, 2, 1, 1, 2, 4 ... times as long (M. Luby, A. Sinclair and D. Zuckerman, 1993).
+    """
+    motions, more = 0, max(1.0, dim / FEW_JOINTS) ** 2
+    for number in count(1):
+        most = RESTART * luby(number)
+        before, motions = motions, motions + most
+        is_quick, is_any = (before < more * due <= motions for due in (BEFORE_QUICK_PROOF, BEFORE_PROOF))
+        yield Search(most, "any" if is_any else "quick" if is_quick else "none")
+
+
+def luby(i: int) -> int:
+    """Return term i >= 1 of 1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8 ..."""
+    power = 1 << i.bit_length()
+    return power // 2 if power == i + 1 else luby(i - power // 2 + 1)
+
+
 @dataclass(frozen=True)
 class ArmTrees:
     """Two trees in compiled code, every motion proved free; for arms.
@@ -56,11 +80,14 @@ class ArmTrees:
 
     planner: ClassVar[str] = "trees"
     varies: ClassVar[bool] = True
-    stages: ClassVar[tuple[tuple[int, bool], ...]] = ((BEFORE_QUICK_PROOF, True), (BEFORE_PROOF, False))
 
     inside: ArmWorld | None = None
     shortest: bool = False
     """Whether smoothed paths are the shortest, however near to obstacles."""
+
+    def searches(self, dim: int) -> Iterator[Search]:
+        """See :func:`restarts`."""
+        return restarts(dim)
 
     def connect(
         self,
@@ -125,7 +152,11 @@ class Cells:
 
     planner: ClassVar[str] = "cells"
     varies: ClassVar[bool] = False
-    stages: ClassVar[tuple[tuple[int, bool], ...]] = ((BEFORE_PROOF_OF_CELLS, False),)
+
+    def searches(self, dim: int) -> Iterator[Search]:
+        """Yield the search up to a proof, and all of it."""
+        yield Search(BEFORE_PROOF_OF_CELLS, "any")
+        yield Search(NO_LIMIT, "none")
 
     def connect(
         self,
@@ -160,7 +191,10 @@ class PlainTrees:
 
     planner: ClassVar[str] = "trees"
     varies: ClassVar[bool] = True
-    stages: ClassVar[tuple[tuple[int, bool], ...]] = ((BEFORE_QUICK_PROOF, True), (BEFORE_PROOF, False))
+
+    def searches(self, dim: int) -> Iterator[Search]:
+        """See :func:`restarts`."""
+        return restarts(dim)
 
     def connect(
         self, world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float

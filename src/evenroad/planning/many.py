@@ -14,7 +14,7 @@ from evenroad._native.planning import ManyQueries
 from evenroad._rng import RngLike
 from evenroad._threads import in_order, processors
 from evenroad.errors import InvalidValue, shown
-from evenroad.planning.connectors import ARM_TREES, drivers_of, smoothing_of
+from evenroad.planning.connectors import RESTART, drivers_of, smoothing_of
 from evenroad.planning.many_results import Part, PlanResults, joined
 from evenroad.planning.plan import budget_of, plan
 from evenroad.planning.trees import variant_of
@@ -152,7 +152,7 @@ def _by_compiled_code(
     dim, is_arm = terminals.shape[2], np.array([isinstance(world, ArmWorld) for world in different])
     rows = np.flatnonzero(is_arm[of])
     arms = [world for world, arm in zip(different, is_arm, strict=True) if arm]
-    smoothing, first = smoothing_of(smooth), ARM_TREES.stages[0][0]
+    smoothing, first = smoothing_of(smooth), RESTART
     queries = ManyQueries(
         [world.checker for world in arms],
         [world.roomier.checker if smoothing == "apart" else None for world in arms],

@@ -6,7 +6,6 @@ Each plans until there is a path, a proof that there is none, or the budget is s
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
@@ -20,7 +19,7 @@ from evenroad.planning.connectors import CELLS, ArmTrees, connector_of, trees_fo
 from evenroad.planning.growing import GrowingPRM
 from evenroad.planning.improve import improved, rest_of
 from evenroad.roadmap.answer import connected, gave_up, path_message, proof_of, refusal, shown_apart
-from evenroad.roadmap.attempt import NO_LIMIT, Attempt
+from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.connector import Connection, Connector, require_smooth
 from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.query import Query
@@ -28,6 +27,8 @@ from evenroad.roadmap.result import NO_POINTS, PlanResult, Status, make_result
 from evenroad.space.path import path_length
 from evenroad.world.gridmap.gridmap import DiskWorld
 
+_NOTHING = Connection(np.empty((0, 0)), -1, 0, 0, 0)
+"""What searches found before the first."""
 TO_NEAREST = 300
 """Largest number of motions checked towards the nearest of several goals alone."""
 
@@ -120,28 +121,9 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
     attempt = Attempt(world, query, NO_POINTS, "none", connector.planner)
     if (refused := refusal(attempt)) is not None:
         return refused
-    stages = [*connector.stages, (NO_LIMIT, False)]
-    if first is None:
-        connection = found = _connection(attempt, connector, stages[0][0], variant)
-    else:
-        connection = found = Connection(first.raw, -1, *first.counts[:3])
-        attempt.take(found.motions, first.seconds[0])
-    for number, ((most, quickly), (more, _)) in enumerate(pairwise(stages), 1):
-        if connection.goal >= 0:
-            break
-        ended = found.motions < most or attempt.left() is None
-        if (apart_for := shown_apart(attempt, quickly=quickly and not ended)) is not None:
-            return apart_for
-        if ended:
-            break
-        if connector.varies:
-            # Another search, and further: one that lasts long is rarely soon at its end.
-            found = _connection(attempt, connector, more, variant + number)
-            connection = _after(connection, found)
-        else:
-            # The same again, and further.
-            attempt.motions_checked -= found.motions
-            connection = found = _connection(attempt, connector, more, variant)
+    connection = _first_path(attempt, connector, variant, first)
+    if isinstance(connection, PlanResult):
+        return connection
     if connection.goal >= 0:
         result = connected(attempt, connection)
         return improved(attempt, connector, result, variant) if improve else result
@@ -150,10 +132,39 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
     return _growing(improve).solve(rest_of(attempt, left))
 
 
+def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Answer | None) -> Connection | PlanResult:
+    """Search until there is a path or the budget is spent, or return the result that there is none.
+
+    `first` is what the first search found where that is done.
+    """
+    connection, is_tried = _NOTHING, False
+    for number, search in enumerate(connector.searches(attempt.world.space.dim)):
+        if number == 0 and first is not None:
+            found = Connection(first.raw, -1, *first.counts[:3])
+            attempt.take(found.motions, first.seconds[0])
+        elif connector.varies:
+            found = _connection(attempt, connector, search.most, variant + number)
+        else:
+            # The same again, and further.
+            attempt.motions_checked -= connection.motions
+            connection, found = _NOTHING, _connection(attempt, connector, search.most, variant)
+        connection = _after(connection, found)
+        if connection.goal >= 0:
+            break
+        has_ended = found.motions < search.most or attempt.left() is None
+        proof = "any" if has_ended and not is_tried else search.proof
+        if proof != "none" and (apart_for := shown_apart(attempt, quickly=proof == "quick")) is not None:
+            return apart_for
+        is_tried |= proof == "any"
+        if has_ended:
+            break
+    return connection
+
+
 def _answer(problem: Problem, connector: ArmTrees, variant: int) -> Answer:
     """Return what one call of compiled code finds, which most queries are answered by."""
     require_smooth(problem.smooth)
-    budget, most = problem.budget, connector.stages[0][0]
+    budget, most = problem.budget, next(connector.searches(len(problem.start))).most
     world: Any = problem.world
     return connector.answer(
         world,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol, TypeAlias
+from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
 from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue, shown
@@ -34,6 +35,15 @@ class Connection:
     """Number of motions checked."""
 
 
+class Search(NamedTuple):
+    """One search for a path."""
+
+    most: int
+    """Largest number of motions checked."""
+    proof: Literal["none", "quick", "any"]
+    """How the world then tries to prove that there is no path."""
+
+
 class Connector(Protocol):
     """A search for paths in worlds of one kind, which also smooths them."""
 
@@ -45,9 +55,8 @@ class Connector(Protocol):
     def varies(self) -> bool:
         """Whether each variant finds another path; a planner that improves then uses many."""
 
-    @property
-    def stages(self) -> tuple[tuple[int, bool], ...]:
-        """Numbers of motions after which the world tries to prove that there is no path, and whether quickly."""
+    def searches(self, dim: int) -> Iterator[Search]:
+        """Yield the searches to make in a space of this dimension, each of another variant where it `varies`."""
 
     def connect(
         self, world: Any, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float

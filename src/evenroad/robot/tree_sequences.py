@@ -17,9 +17,12 @@ _STEPS = 2048
 PAIRS = 96
 """Number of pairs of places that shortening joins."""
 _MANY = 8
-"""Dimension from which nearly all of a ball lies at its surface, and lengths are spread otherwise."""
-_SHORTEST = 0.1
-"""Of these lengths, as a share of the radius."""
+"""Dimension from which nearly all of a ball lies at its surface, and steps are spread otherwise."""
+_SHORTEST = 0.6
+"""Of these steps, as a share of the radius."""
+_FEW = 3
+"""So many pairs of these steps have one in which only some joints move: out of a narrow place hardly any others lead.
+"""
 
 
 @once
@@ -64,24 +67,46 @@ def ball_points(dim: int) -> Floats:
     """Return 2048 points in the unit ball, (2048, dim): the steps that trees try around their nodes.
 
     Directions are spread evenly.  So is the ball's volume in up to 7 dimensions; in more, where hardly a point of such
-    a ball would be near its centre, the logarithm of the length is, from 0.1 to 1.
+    a ball would be near its centre, the logarithm of the length is, from 0.6 to 1, and some steps move a few joints.
     """
+    ball = _even_ball(dim)
+    if dim < _MANY:
+        return ball
+    # Trees take steps in turn around the node that was tried least and the one nearest to a point.
+    pairs = np.arange(_STEPS)[:, np.newaxis] // 2 % _FEW == 0
+    inside = np.linalg.norm(ball, axis=1, keepdims=True) ** dim
+    return _of_lengths(np.where(pairs & ~_some_joints(dim), 0.0, ball), _SHORTEST ** (1.0 - inside))
+
+
+def _even_ball(dim: int) -> Floats:
+    """Return 2048 points spread evenly in the unit ball, (2048, dim)."""
     even = reversed_halton(_STEPS, 2 * (-(-dim // 2)) + 1)
     radius, others = even[:, :1], even[:, 1:]
     # Two normal numbers of two even ones (Box and Muller); their direction is even on the sphere.
     size = np.sqrt(-2.0 * np.log(1.0 - others[:, 0::2]))
     angle = 2.0 * np.pi * others[:, 1::2]
     normal = np.concatenate([size * np.cos(angle), size * np.sin(angle)], axis=1)[:, :dim]
-    direction = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-    length = radius ** (1.0 / dim) if dim < _MANY else _SHORTEST ** (1.0 - radius)
-    return _read_only(np.ascontiguousarray(direction * length))
+    return _of_lengths(normal, radius ** (1.0 / dim))
+
+
+def _some_joints(dim: int) -> npt.NDArray[np.bool_]:
+    """Return which joints move in each step, (2048, dim): two or more, the logarithm of their number spread evenly."""
+    # Multiples of the roots of primes: even, and no two alike.
+    even = np.outer(np.arange(1.0, _STEPS + 1.0), np.sqrt(_primes(dim + 1))) % 1.0
+    number = np.rint(2.0 * (0.5 * dim) ** even[:, :1])
+    return even[:, 1:].argsort(axis=1).argsort(axis=1) < number
+
+
+def _of_lengths(directions: Floats, lengths: Floats) -> Floats:
+    """Return vectors in these directions, (n, dim), of these lengths, (n, 1)."""
+    unit = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    return _read_only(np.ascontiguousarray(unit * lengths))
 
 
 @once
 def sphere_points(dim: int) -> Floats:
     """Return 2048 directions of length 1 spread evenly, (2048, dim)."""
-    points = ball_points(dim)
-    return _read_only(points / np.linalg.norm(points, axis=1, keepdims=True))
+    return _of_lengths(_even_ball(dim), np.ones((_STEPS, 1)))
 
 
 @once
