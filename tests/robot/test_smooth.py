@@ -56,7 +56,9 @@ def test_a_plan_is_drawn_tight_unless_quick_shortcuts_or_no_smoothing_are_wanted
     raw = plans[False].path
     np.testing.assert_array_equal(plans["quick"].path, shorten(world, raw)[0])
     np.testing.assert_array_equal(plans[True].path, smooth_apart(world, raw, batches=500)[0])
-    assert plans[True].cost < plans["quick"].cost < plans[False].cost
+    assert max(plans[True].cost, plans["quick"].cost) < plans[False].cost
+    # To keep 5 mm off may cost 2 % of the length.
+    assert plans[True].cost < 1.02 * plans["quick"].cost
     assert all(proved(world, each.path) for each in plans.values())
     said = "smooth must be True, False or \"quick\", got 'fast'"
     refused(er.errors.InvalidValue, said, er.plan, world, path[0], path[-1], smooth="fast")
