@@ -20,9 +20,6 @@ from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 from evenroad.space.path import path_length
 
-LONGER, APART = 0.02, 0.4
-"""By how much of its length a path may be longer that keeps away from obstacles, and how much of the work goes into it.
-"""
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
 
@@ -143,12 +140,12 @@ def smooth_apart(world: ArmWorld, path: Floats, *, batches: int) -> tuple[Floats
     clearance, where all its motions must be proved.  Where an end is nearer to an obstacle it stays as it is.
     """
     shortest, motions = smooth(world, path, batches=batches)
-    roomier = world.roomier
-    if len(path) < 3 or not roomier.valid(path[[0, -1]]).all():
+    if len(path) < 3 or world.roomier.fixed_contact is not None:
         return shortest, motions
-    apart, more = smooth(roomier, path, batches=int(APART * batches), proved=False)
-    is_short = len(apart) and path_length(apart, world.space) <= (1.0 + LONGER) * path_length(shortest, world.space)
-    return apart if is_short else shortest, motions + more
+    guides = native_points(share_pairs, PAIRS), native_points(sphere_points, world.space.dim)
+    length = path_length(shortest, world.space)
+    apart, more = planning.draw_apart(checks_of(world.roomier), path, length, *guides)
+    return shortest if apart is None else apart, motions + more
 
 
 def improver(

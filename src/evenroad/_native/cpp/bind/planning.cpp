@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "planning/apart.hpp"
 #include "planning/improver.hpp"
 #include "planning/native_checks.hpp"
 #include "planning/path_proof.hpp"
@@ -100,6 +101,16 @@ nb::tuple smooth(NativeChecks& checks, nb::handle path, const Points& pairs, con
   const bool is_proved = without_gil([&] { return planning::smooth(smoothed, by, most_batches, proved, checks); });
   const nb::object found = is_proved ? points_of(smoothed) : nb::none();
   return nb::make_tuple(found, checks.counts.motions);
+}
+
+nb::tuple draw_apart(NativeChecks& roomier, nb::handle path, double shortest, const Points& pairs,
+                     const Points& directions) {
+  const FloatRows points(path, "path");
+  const planning::Guides by{pairs.of(2, true, "pairs"), directions.of(roomier.joints.size(), false, "directions")};
+  Path apart = path_from(points, roomier);
+  const bool is_apart = without_gil([&] { return planning::draw_apart(apart, shortest, by, roomier); });
+  const nb::object found = is_apart ? points_of(apart) : nb::none();
+  return nb::make_tuple(found, roomier.counts.motions);
 }
 
 nb::object prove_or_bend(NativeChecks& checks, nb::handle path, double margin, const Points& directions) {
@@ -222,6 +233,7 @@ void add_planning(nb::module_& module) {
       });
   part.def("shorten", &shorten);
   part.def("smooth", &smooth);
+  part.def("draw_apart", &draw_apart);
   part.def("prove_or_bend", &prove_or_bend);
   part.attr("CLEARANCES") = nb::make_tuple(planning::CLEARANCES[0], planning::CLEARANCES[1]);
   add_tree(part);

@@ -1,12 +1,11 @@
-// The shortest paths touch what they pass, so the last smoothing begins again from what the trees found.
+// What a query asks of compiled code is done in one go: Python reads it before, and goes on where there is no path.
 #include "planning/query.hpp"
 
 #include <chrono>
-#include <span>
 
+#include "planning/apart.hpp"
 #include "planning/native_checks.hpp"
 #include "planning/path_proof.hpp"
-#include "space/all_distances.hpp"
 
 namespace evenroad::planning {
 
@@ -16,10 +15,7 @@ namespace {
 constexpr std::int64_t SLICE = 1000;
 
 /// After so many batches no waypoint slides any more.
-constexpr std::int64_t SLIDING = 500, SLIDING_APART = 200;
-
-/// By this share a path may be longer that keeps away from obstacles.
-constexpr double LONGER = 0.02;
+constexpr std::int64_t SLIDING = 500;
 
 class Clock {
  public:
@@ -28,27 +24,6 @@ class Clock {
  private:
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
-
-/// Return whether both ends of a path are free.
-bool are_ends_free(const Path& path, MotionChecks& checks) {
-  for (std::size_t lane = 0; lane < LANES; lane++) {
-    const ConstConfiguration end = path[lane == 0 ? 0 : path.size() - 1];
-    for (std::size_t k = 0; k < end.size(); k++) checks.state(k, lane) = end[k];
-  }
-  return checks.touching().lanes == 0;
-}
-
-/// Return the length of a path as the space of the joints measures it.
-double length_of(const std::vector<double>& points, const Joints& joints) {
-  const std::size_t dim = joints.size(), motions = points.size() / dim - 1;
-  const std::vector<double> scale(dim, 1.0);
-  double length = 0.0;
-  for (const double each :
-       space::row_distances({points.data(), motions, dim}, {points.data() + dim, motions, dim}, scale, joints.period)) {
-    length += each;
-  }
-  return length;
-}
 
 /// Divide a straight path into so many equal motions.
 void divide(Path& path, std::int64_t motions, const Joints& joints) {
@@ -100,11 +75,12 @@ void keep_apart(Answer& answer, std::shared_ptr<const robot::Checker> roomier, c
   Path path(answer.raw, checks.joints);
   const bool is_straight = path.size() == 2;
   // One step of a tree is short: it stays as it is.
-  if (answer.nodes > 2 && are_ends_free(path, checks) && !(is_straight && is_proved(path, 0, 2, checks))) {
+  if (answer.nodes > 2 && !(is_straight && is_proved(path, 0, 2, checks))) {
     if (is_straight) divide(path, answer.nodes - 1, checks.joints);
-    const bool holds = smooth(path, drivers.guides, SLIDING_APART, false, checks);
-    const double length = length_of(path.points(), checks.joints);
-    if (holds && length <= (1.0 + LONGER) * answer.length) answer.path = path.points(), answer.length = length;
+    if (draw_apart(path, answer.length, drivers.guides, checks)) {
+      answer.path = path.points();
+      answer.length = length_of(answer.path, checks.joints);
+    }
   }
   answer.smoothing_motions += checks.counts.motions;
   answer.smoothing_seconds += clock.seconds();
