@@ -46,7 +46,7 @@ def test_a_page_needs_no_network_and_no_text_of_a_plan_ends_its_script(reach):
     text = page_of(replace(reach, message="</script><script>alert(1)"))
     assert not re.search(r"https?://", text)
     assert text.count("</script>") == 2
-    assert _data(text)["title"] == "solved: </script><script>alert(1)"
+    assert _data(text)["title"].startswith("solved: </script><script>alert(1); keeps")
 
 
 def test_what_cannot_be_played_is_refused(reach, tmp_path):
@@ -57,3 +57,9 @@ def test_what_cannot_be_played_is_refused(reach, tmp_path):
         page_of(replace(reach, world=None))
     with pytest.raises(UnknownName, match="html"):
         save_page(tmp_path / "page.pdf", reach)
+
+
+def test_the_page_names_the_link_and_the_obstacle_that_come_nearest_and_how_far(reach):
+    link, obstacle = reach.nearest
+    said = _data(page_of(reach))["title"]
+    assert said.endswith(f"keeps {1e3 * reach.clearance:.1f} mm from obstacles: {link} from {obstacle}")

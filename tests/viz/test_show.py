@@ -1,6 +1,7 @@
 """What is shown, and where: in the browser, below a notebook's cell, or in a viewer of pictures."""
 
 import sys
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +10,7 @@ from PIL import Image
 
 import evenroad as er
 import evenroad.viz.show as shows
+from evenroad.viz.posture import at_home, draw_arm_world, in_words
 from tests.refused import refused
 
 CELLS = np.zeros((40, 60), dtype=bool)
@@ -87,3 +89,34 @@ def test_maps_and_disks_are_pictures(what, notebook, monkeypatch):
 @pytest.mark.parametrize("what", ["plan.json", None, np.zeros((3, 2))])
 def test_only_plans_and_maps_are_shown(what):
     refused(er.errors.InvalidValue, "a plan or a map can be shown", er.show, what)
+
+
+def test_an_arm_in_its_scene_is_a_picture_at_the_configuration_that_is_asked_for(notebook):
+    world = er.ArmWorld("ur5", "box-reach")
+    home, inside = (np.asarray(er.show(world, q)) for q in (None, "inside"))
+    assert len(notebook) == 2
+    assert home.shape == inside.shape
+    assert (home != inside).any(axis=2).mean() > 0.02
+
+
+def test_what_touches_is_red_and_the_title_says_it_or_how_far_the_nearest_bodies_are():
+    world = er.ArmWorld("ur5", er.Scene([er.Sphere(0.2, xyz=(0.5, 0, 0.5), name="ball")]))
+    near, far = world.distance("home"), in_words(world, world._row("home"))
+    assert far == f"free; {1e3 * near.metres:.1f} mm from {near.pair[0]} to {near.pair[1]}"
+    touching = {"shoulder_lift_joint": -0.9, "elbow_joint": 0.3}
+    assert "touches 'ball'" in in_words(world, world._row(touching))
+    red = [np.asarray(draw_arm_world(world, q))[..., :3].astype(int) for q in ("home", touching)]
+    counts = [((each[..., 0] > 150) & (each[..., 1] < 80) & (each[..., 2] < 80)).sum() for each in red]
+    assert counts[1] > counts[0] + 500
+
+
+def test_a_robot_without_home_stands_at_zero():
+    world = er.ArmWorld(replace(er.load_robot("ur5"), states={}))
+    assert np.array_equal(at_home(world), np.zeros(6))
+
+
+def test_a_configuration_is_for_a_world_alone_and_must_be_one_of_its_robot():
+    refused(er.errors.InvalidValue, r"q says where .* er\.ArmWorld.*'home'", er.show, MAP, "home")
+    world = er.ArmWorld("ur5")
+    refused(er.errors.InvalidValue, "must be 6 finite numbers", er.show, world, (0, 1))
+    refused(er.errors.UnknownName, "nosuch", er.show, world, {"nosuch": 1.0})

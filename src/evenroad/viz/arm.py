@@ -106,9 +106,9 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = 
         for q, colour in ((result.start, style.START), (result.goal, style.GOAL))
     )
     if result.status is Status.START_INVALID:
-        picture = _touching(scene, result.start).picture(result.start, (goal,))
+        picture = with_contact(scene, result.start).picture(result.start, (goal,))
     elif result.status is Status.GOAL_INVALID:
-        picture = _touching(scene, result.goal).picture(result.goal, (start,))
+        picture = with_contact(scene, result.goal).picture(result.goal, (start,))
     elif result.path is None:
         picture = scene.picture(result.start, (goal,))
     else:
@@ -116,12 +116,16 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = 
         trails = [replace(trail, opacity=0.999, hidden=_HIDDEN) for trail in scene.trails]
         ghosts = scene.ghost(between, style.MILESTONE, _BETWEEN)
         picture = scene.picture(middle, (ghosts, start, goal, *trails))
-    title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
-    if result.clearance is not None:
-        title += f"; keeps {1e3 * result.clearance:.1f} mm from obstacles"
-    if result.nearest is not None:
-        title += ": {} from {}".format(*result.nearest)
+    title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}{kept_distance(result)}"
     return Sheet.of_picture(picture, title, _legend(result, world)).image
+
+
+def kept_distance(result: PlanResult) -> str:
+    """Return how far a path of an arm keeps from obstacles, and which two come nearest, as the end of a sentence."""
+    if result.clearance is None:
+        return ""
+    pair = "" if result.nearest is None else ": {} from {}".format(*result.nearest)
+    return f"; keeps {1e3 * result.clearance:.1f} mm from obstacles{pair}"
 
 
 def save_arm_picture(
@@ -193,7 +197,7 @@ def _trails(result: PlanResult, world: ArmWorld) -> list[Part]:
     return [part_of(tube(points, _THICK), rgb(style.PATH)) for points in tips]
 
 
-def _touching(scene: ArmScene, q: Floats) -> ArmScene:
+def with_contact(scene: ArmScene, q: Floats) -> ArmScene:
     """Return a scene with the links and obstacles in red that touch at a configuration."""
     reason = scene.world.explain(q)
 

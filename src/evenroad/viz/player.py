@@ -20,7 +20,7 @@ from evenroad.robot import ArmWorld, tip_links
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import configuration_at
-from evenroad.viz.arm import chosen_camera
+from evenroad.viz.arm import chosen_camera, kept_distance
 from evenroad.viz.bodies import CAPSULES, COLLISION, VISUAL, indexed, obstacle_part, robot_sets
 from evenroad.viz.result import plot_map
 from evenroad.viz.stage import Part
@@ -84,7 +84,7 @@ def page_of(result: PlanResult, *, file: RobotFile | None = None, timed: tuple[F
         chosen = np.unique(np.linspace(0, len(timed[0]) - 1, _MOST).astype(int))
         times, states = timed[0][chosen], timed[1][chosen]
     data: dict[str, Any] = {
-        "title": f"{result.status}: {result.message}",
+        "title": f"{result.status}: {result.message}" + (kept_distance(result) if isinstance(world, ArmWorld) else ""),
         "timed": timed is not None,
         "times": _rounded(times, 4),
         "clearance": clearances(world, states),

@@ -1,4 +1,4 @@
-"""Showing a plan or a map: in the browser, or below a notebook's cell."""
+"""Showing a plan, a map, or an arm in its scene: in the browser, or below a notebook's cell."""
 
 from __future__ import annotations
 
@@ -13,21 +13,27 @@ from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld
 from evenroad.robot.cache import file_of
 from evenroad.viz.page import ArmPage
+from evenroad.viz.posture import draw_arm_world
 from evenroad.world.gridmap import GridMap
 
 HEIGHT = 600
 """Height of the page below a notebook's cell [pixels]."""
 
 
-def show(what: PlanResult | GridMap, *, port: int = 0) -> Any:
+def show(what: PlanResult | GridMap | ArmWorld, q: Any = None, *, port: int = 0) -> Any:
     """Show a plan: of an arm as a page in the browser, with its path under a slider; others and maps as a picture.
 
-    In a notebook it appears below the cell.  Elsewhere a page is served until Ctrl-C.
+    An arm in its scene is a picture, too: the robot at a configuration, with what touches in red.  Its title says what
+    touches, or which two bodies are nearest, and how far.  In a notebook all appears below the cell.  Elsewhere a page
+    is served until Ctrl-C.
 
     Parameters
     ----------
-    what : PlanResult or GridMap
-        A plan that knows its world, or a map.
+    what : PlanResult, GridMap or ArmWorld
+        A plan that knows its world, a map, or an arm in its scene.
+    q : array_like, shape (dim,), mapping or str, optional
+        The configuration at which an arm's world shows the robot, as `ArmWorld.valid` takes one.  Default: the state
+        ``home``, or where there is none all joints at 0, or at the nearest to it within limits.
     port : int
         Where the page of an arm is served, on this computer alone; 0 takes any that is free.
 
@@ -39,7 +45,9 @@ def show(what: PlanResult | GridMap, *, port: int = 0) -> Any:
     Raises
     ------
     InvalidValue
-        If it is neither a plan nor a map.
+        If it is none of these, or `q` is not a configuration of the robot, or is given with a plan or a map.
+    UnknownName
+        If `q` names a state or a joint that does not exist.
     NotAvailable
         If its world cannot be drawn, viser is not installed, or there is no browser.
 
@@ -48,12 +56,16 @@ def show(what: PlanResult | GridMap, *, port: int = 0) -> Any:
     >>> import evenroad as er
     >>> result = er.plan(er.ArmWorld("ur5"), (0, -1.5, 0, -1.5, 0, 0), (1, -1.5, 0.5, -1.5, 0, 0))
     >>> er.show(result)  # doctest: +SKIP
+    >>> er.show(er.ArmWorld("ur5", "box-reach"), "inside")  # doctest: +SKIP
     """
-    if not isinstance(what, PlanResult | GridMap):
-        raise InvalidValue(f"a plan or a map can be shown, as er.plan and er.load_map give it, got {shown(what)}")
+    if not isinstance(what, PlanResult | GridMap | ArmWorld):
+        kinds = "a plan or a map can be shown, as er.plan and er.load_map give it, and er.ArmWorld(robot, scene)"
+        raise InvalidValue(f"{kinds}, got {shown(what)}")
+    if q is not None and not isinstance(what, ArmWorld):
+        raise InvalidValue(f"q says where a robot stands in an er.ArmWorld, got q={shown(q)} with a plan or a map")
     notebook = _notebook()
     if not isinstance(what, PlanResult) or not isinstance(what.world, ArmWorld):
-        picture = what.plot()
+        picture = draw_arm_world(what, q) if isinstance(what, ArmWorld) else what.plot()
         if notebook is None:
             picture.show()
         else:
