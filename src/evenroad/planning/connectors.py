@@ -23,7 +23,7 @@ from evenroad.world import World
 from evenroad.world.gridmap.gridmap import DiskWorld
 
 RESTART = 4_000
-"""Number of motions after which trees begin again, elsewhere: most queries need fewer."""
+"""Number of motions of the first search, after which trees begin again, elsewhere: most queries need fewer."""
 BEFORE_QUICK_PROOF, BEFORE_PROOF = 4_000, 20_000
 """Numbers of motions after which the world tries to prove that there is no path: more than hard queries need."""
 FEW_JOINTS = 7

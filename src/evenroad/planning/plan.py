@@ -36,6 +36,8 @@ from evenroad.world import ShowsApart, World
 PLANNERS: dict[str, Callable[[], Planner]] = {"rrtconnect": RRTConnect, "prm": PRM, "fmt": FMT}
 """Planners by name."""
 
+_PLAIN = Reading()
+
 
 @dataclass(frozen=True)
 class Options:
@@ -127,7 +129,8 @@ def plan(
     <Status.SOLVED: 'solved'>
     """
     given = None if planner is None else _as_planner(planner)
-    request = read_request(world, start, goal, Reading(degrees, tip, frame), given, **of_world)
+    reading = Reading(degrees, tip, frame) if degrees or tip or frame else _PLAIN
+    request = read_request(world, start, goal, reading, given, **of_world)
     within = None if given is None else _within(given, request.world)
     options = Options(budget_of(within, seconds, limits), smooth, rng, certified, constraints)
     return finished(request, solve(request, within, options), certified=certified)[0]
@@ -188,9 +191,16 @@ def solve(request: Request, planner: Planner | None, options: Options) -> PlanRe
     apart = None if given is None else given.apart(request.world, straight=straight)
 
     def plan_once(world: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
-        budget, connector = options.budget, connector_of(world)
-        how = dict(budget=budget, smooth=smooth, rng=options.rng, apart=apart, connector=connector)
-        problem = Problem(world, start, goals, **how)  # type: ignore[arg-type]
+        problem = Problem(
+            world,
+            start,
+            goals,
+            budget=options.budget,
+            smooth=smooth,
+            rng=options.rng,
+            apart=apart,
+            connector=connector_of(world),
+        )
         found = (default_planner(world) if planner is None else planner).solve(problem)
         # Under constraints most short motions leave them: that says nothing.
         return found if isinstance(world, KeptWorld) else with_reasons(world, found)
@@ -224,7 +234,7 @@ def finished(request: Request, result: PlanResult, *, certified: bool = False) -
         result = replace(result, message=f"{result.message}; not tested, as the scene allows: {untested}")
     if certified:
         result = require_certified(world, result)
-    if not result.solved or result.path is None:
+    if result.path is None or not result.solved:
         return result, None
     meshes = mesh_check(request, result.path)
     if meshes is None or meshes.verdict != "in collision":

@@ -141,7 +141,11 @@ def request_in(world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[
     """Read start and goals of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
     goals = _goal_list(goal, world.dim)
     first = _configuration(world.robot, world.scene, "start", start, reading)
-    given = _goals_in(world, first, goals, reading)
+    if len(goals) == 1 and type(goals[0]) is np.ndarray:
+        # Most goals: read at once, as `goals_of` would.
+        given = Goals(_configuration(world.robot, world.scene, "goal", goals[0], reading)[np.newaxis], ("",))
+    else:
+        given = _goals_in(world, first, goals, reading)
     return Request(world, first, given.configurations, given)
 
 

@@ -10,12 +10,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._native.planning import Answer
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.constraints.kept_world import KeptWorld
 from evenroad.errors import InvalidValue
-from evenroad.planning.connectors import CELLS, ArmTrees, connector_of, trees_for
+from evenroad.planning.connectors import CELLS, RESTART, ArmTrees, connector_of, trees_for
 from evenroad.planning.growing import GrowingPRM
 from evenroad.planning.improve import improved, rest_of
 from evenroad.roadmap.answer import connected, gave_up, path_message, proof_of, refusal, shown_apart
@@ -96,7 +97,12 @@ def default_planner(world: Any, *, improve: bool = False) -> Planner:
     connector = connector_of(world)
     if connector is None:
         return RRTConnect(improve) if isinstance(world, KeptWorld) else _growing(improve)
-    return GridSearch(improve) if connector is CELLS else RRTConnect(improve)
+    if connector is CELLS:
+        return GridSearch(improve)
+    return RRTConnect(improve) if improve else _TREES
+
+
+_TREES = RRTConnect()
 
 
 def _growing(improve: bool) -> GrowingPRM:
@@ -164,7 +170,7 @@ def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Ans
 def _answer(problem: Problem, connector: ArmTrees, variant: int) -> Answer:
     """Return what one call of compiled code finds, which most queries are answered by."""
     require_smooth(problem.smooth)
-    budget, most = problem.budget, next(connector.searches(len(problem.start))).most
+    budget, most = problem.budget, RESTART
     world: Any = problem.world
     return connector.answer(
         world,
@@ -179,16 +185,16 @@ def _answer(problem: Problem, connector: ArmTrees, variant: int) -> Answer:
 
 def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult:
     """Return the result of an answer with a path."""
-    world, start, goals, path, raw = problem.world, problem.start, problem.goals, found.path, found.raw
-    # Sums of more numbers have another order in NumPy, and so another last bit.
-    length, raw_length = (
-        native if len(points) == 2 else path_length(points, world.space)
-        for points, native in ((path, found.length), (raw, found.raw_length))
-    )
-    for array in (start, goals):
-        array.setflags(write=False)
+    world, start, goals = problem.world, problem.start, problem.goals
     nodes, configurations, motions, smoothing = found.counts
-    counts = dict(nodes=nodes, configurations_checked=configurations, edges_checked=motions)
+    path = raw = found.path
+    length = raw_length = _length(path, found.length, world)
+    if smoothing:
+        raw = found.raw
+        raw_length = _length(raw, found.raw_length, world)
+    start.setflags(write=False)
+    goals.setflags(write=False)
+    counts = {"nodes": nodes, "configurations_checked": configurations, "edges_checked": motions}
     search, shortcut = found.seconds
     timings = {"search": search}
     if problem.smooth:
@@ -210,6 +216,11 @@ def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult
         counts=counts,
         timings=timings,
     )
+
+
+def _length(path: Floats, native: float, world: Any) -> float:
+    """Return the length of a path: sums of eight numbers or more have another order in NumPy, another last bit."""
+    return native if len(path) <= 8 else path_length(path, world.space)
 
 
 def variant_of(rng: RngLike) -> int:

@@ -21,6 +21,8 @@ from evenroad.world.protocol import Apart
 MANY = 8
 """Number of goal poses from which on those that are hard to reach count only where no other is reached."""
 
+_POSES = (Pose, PoseGoal)
+
 
 @dataclass(frozen=True, eq=False)
 class Goals:
@@ -70,7 +72,7 @@ class Goals:
 def require_tips(robot: Robot, targets: Sequence[Any], tip: str = "", frame: str = "") -> None:
     """Raise what `goals_of` would for a pose of an impossible link or frame: making a world first is expensive."""
     for target in targets:
-        if isinstance(target, Pose | PoseGoal):
+        if isinstance(target, _POSES):
             goal = as_pose_goal(target, tip, frame)
             chain_of(robot, goal.tip or default_tip(robot))
             frame_pose(robot, goal.frame)
@@ -91,9 +93,9 @@ def goals_of(
     names: list[str] = []
     poses = []
     began = now()
-    many = sum(isinstance(target, Pose | PoseGoal) for target in targets) >= MANY
+    many = len(targets) >= MANY and sum(isinstance(target, _POSES) for target in targets) >= MANY
     for target in targets:
-        if not isinstance(target, Pose | PoseGoal):
+        if not isinstance(target, _POSES):
             rows.append(read(target)[np.newaxis])
             names.append(target.strip() if isinstance(target, str) else "")
             continue

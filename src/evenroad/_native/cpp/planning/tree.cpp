@@ -12,8 +12,9 @@ namespace {
 
 constexpr int WIDTH = 16;
 
-/// Room for nodes at first.  Not a power of two: columns would then take each other's place in the cache.
-constexpr std::size_t FIRST_CAPACITY = 1040;
+/// Room for nodes at first, which most queries need no more than, and then.  Not a power of two: columns would then
+/// take each other's place in the cache.
+constexpr std::size_t FIRST_CAPACITY = 2 * WIDTH, NEXT_CAPACITY = 1040;
 
 constexpr float FAR = 1e15F;
 /// In place of a squared distance: more than any of a node.
@@ -110,7 +111,7 @@ void Tree::write_columns(Node node) {
 }
 
 void Tree::make_room() {
-  capacity_ = capacity_ == 0 ? FIRST_CAPACITY : 2 * capacity_;
+  capacity_ = capacity_ == 0 ? FIRST_CAPACITY : std::max(NEXT_CAPACITY, 2 * capacity_);
   columns_.assign(dim_ * capacity_, FAR), cost_column_.assign(capacity_, FAR);
   for (Node node = 0; node < size(); node++) write_columns(node);
 }

@@ -49,10 +49,11 @@ TreeSteps::TreeSteps(const Joints& joints, const Sequences& sequences, const Pat
   for (std::size_t k = 0; k < joints.size(); k++) {
     radii_[k] = std::min({LARGEST_BALL, BALL_SHARE * longest_, 0.5 * joints.range(k)});
   }
-  for (Step& step : offered_) step.target.resize(joints.size());
 }
 
 std::span<const Step> TreeSteps::next(Tree& tree, std::size_t side, std::size_t most, MotionChecks& checks) {
+  // Most queries need no step.
+  for (Step& step : offered_) step.target.resize(joints_.size());
   write_sample();
   const Node origin = closest(tree, side);
   if (origin == NO_NODE) return {};
