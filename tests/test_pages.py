@@ -120,6 +120,7 @@ LEAVES = {
     "13": ("carried.png",),
     "14": ("tray.png",),
     "15": ("doorway.png", "platform.urdf"),
+    "16": ("moving.png",),
 }
 """Number of an example -> the files that it leaves in the folder."""
 

@@ -15,6 +15,7 @@ from evenroad.geometry import Sphere as Sphere
 from evenroad.planning import FMT as FMT
 from evenroad.planning import PRM as PRM
 from evenroad.planning import PlanResults as PlanResults
+from evenroad.planning import Replanner as Replanner
 from evenroad.planning import RRTConnect as RRTConnect
 from evenroad.planning import plan as plan
 from evenroad.planning import plan_many as plan_many

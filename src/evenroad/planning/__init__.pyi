@@ -4,6 +4,7 @@ from evenroad.planning.many_results import PlanResults as PlanResults
 from evenroad.planning.plan import plan as plan
 from evenroad.planning.prm import FMT as FMT
 from evenroad.planning.prm import PRM as PRM
+from evenroad.planning.replanner import Replanner as Replanner
 from evenroad.planning.trees import GridSearch as GridSearch
 from evenroad.planning.trees import RRTConnect as RRTConnect
 from evenroad.roadmap.problem import Planner as Planner

@@ -30,6 +30,7 @@ from evenroad.robot.robot import Robot, within_scene
 from evenroad.robot.scene import Scene, limits_in_words, smaller_scene
 from evenroad.robot.separated import apart
 from evenroad.robot.states import as_configuration
+from evenroad.robot.world_changes import WorldChanges
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import SLACK
@@ -43,7 +44,7 @@ VALIDATION_TOLERANCE = 1e-6
 
 @explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
-class ArmWorld(ArmDistances, OneOrMany):
+class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
     """The configurations in which a robot touches neither a scene's obstacles nor itself.
 
     Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested as capsules.  Where

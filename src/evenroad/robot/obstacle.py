@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import count
 from struct import Struct
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -124,7 +126,14 @@ class Obstacle:
 
     def at(self, pose: Pose) -> Obstacle:
         """Return the obstacle in another pose."""
-        return replace(self, body=replace(self.body, pose=pose))
+        if not self.row:
+            return replace(self, body=replace(self.body, pose=pose))
+        # Nothing else changes, so nothing is looked at again.
+        body, moved = object.__new__(type(self.body)), object.__new__(Obstacle)
+        body.__dict__.update(self.body.__dict__, pose=pose)
+        numbers = (*_ROW.unpack(self.row)[:4], *pose.rotation, *pose.xyz, self.clearance)
+        moved.__dict__.update(self.__dict__, body=body, row=_ROW.pack(*numbers))
+        return moved
 
     @property
     def shape(self) -> str:
@@ -145,6 +154,35 @@ class Obstacle:
     def rotation(self) -> tuple[float, ...]:
         """From the body's frame to that of the robot's root link, (9,) row by row."""
         return self.body.pose.rotation
+
+
+Bodies: TypeAlias = "Sequence[Obstacle | Shape]"
+
+
+def as_obstacles(bodies: object, others: Sequence[Obstacle], scene: str) -> tuple[Obstacle, ...]:
+    """Return shapes and obstacles as obstacles; a shape without a name gets one that neither they nor `others` have."""
+    if isinstance(bodies, Shape | Obstacle):
+        bodies = [bodies]
+    if isinstance(bodies, str) or not isinstance(bodies, Iterable):
+        hint = "a scene is read from its file by load_scene, and its name is name=..."
+        raise InvalidValue(f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}; {hint}")
+    listed = tuple(bodies)
+    for each in listed:
+        if not isinstance(each, Shape | Obstacle):
+            raise InvalidValue(
+                f"obstacles of scene {scene!r} must be shapes, as er.Box((x, y, z), xyz=...), got {shown(each)}"
+            )
+    if all(isinstance(each, Obstacle) for each in listed):
+        return listed
+    taken = {each.name for each in (*listed, *others)}
+    obstacles = []
+    for each in listed:
+        if isinstance(each, Shape):
+            name = each.name or next(text for k in count() if (text := f"{each.kind} {k}") not in taken)
+            taken.add(name)
+            each = Obstacle(name, each)
+        obstacles.append(each)
+    return tuple(obstacles)
 
 
 def box_rows(size: npt.ArrayLike, xyz: npt.ArrayLike, xyzw: npt.ArrayLike | None) -> Floats:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from functools import cached_property
-from itertools import count
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,23 +13,22 @@ import numpy.typing as npt
 from evenroad._above import above
 from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls
-from evenroad._checks import counted, require_known
+from evenroad._checks import counted
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, shown
-from evenroad.geometry.shapes import PRIMITIVES, Shape
+from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.robot.held import HeldObject
 from evenroad.robot.obstacle import MARGIN as MARGIN
+from evenroad.robot.obstacle import Bodies, as_obstacles, box_rows, boxes_of, smaller_rows
 from evenroad.robot.obstacle import Cut as Cut
 from evenroad.robot.obstacle import Obstacle as Obstacle
 from evenroad.robot.obstacle import Seen as Seen
-from evenroad.robot.obstacle import box_rows, boxes_of, smaller_rows
-
-Bodies: TypeAlias = "Sequence[Obstacle | Shape]"
+from evenroad.robot.scene_changes import SceneChanges
 
 
 @explains_calls
 @dataclass(frozen=True, init=False, repr=False)
-class Scene:
+class Scene(SceneChanges):
     """Obstacles, no two of one name; allowed contacts and named configurations.
 
     Parameters
@@ -98,7 +96,7 @@ class Scene:
             scene = above("Scene")(obstacles, name)
             set_fields(self, **{each.name: getattr(scene, each.name) for each in fields(scene)})
             return
-        set_fields(self, name=name, obstacles=_as_obstacles(obstacles, (), name), **values)
+        set_fields(self, name=name, obstacles=as_obstacles(obstacles, (), name), **values)
         self._require_names()
 
     @classmethod
@@ -152,9 +150,15 @@ class Scene:
         return scene
 
     def __getattr__(self, name: str) -> Any:
-        # Boxes of arrays become objects when these are first used.
-        if name != "obstacles" or "rows" not in self.__dict__:
+        # Boxes of arrays, and what was moved, become objects when these are first used.
+        if name != "obstacles" or not self.__dict__.keys() & {"rows", "moved_from"}:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        if "moved_from" in self.__dict__:
+            base, poses = self.moved_from
+            obstacles = list(base.obstacles)
+            for number, pose in poses.items():
+                obstacles[number] = obstacles[number].at(pose)
+            return self.__dict__.setdefault(name, tuple(obstacles))
         return self.__dict__.setdefault(name, boxes_of(self.rows, self.names))
 
     @cached_property
@@ -169,6 +173,11 @@ class Scene:
         Their kind; full extents of a box, or radius and length without caps, and zeros [m]; rotation to the root link's
         frame, row by row; centre in that frame [m]; clearance [m].
         """
+        if "moved_from" in self.__dict__ and not self.moved_from[0].surfaces:
+            base, poses = self.moved_from
+            rows = base.rows.copy()
+            rows[list(poses), 4:16] = [(*pose.rotation, *pose.xyz) for pose in poses.values()]
+            return rows
         return np.frombuffer(b"".join([obstacle.row for obstacle in self.obstacles])).reshape(-1, 17)
 
     @cached_property
@@ -208,102 +217,6 @@ class Scene:
             rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))  # -0.0 is 0.0
         return fingerprint_of(rows, self.allowed, *sorted(self.near_ends))
 
-    def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
-        """Return the scene with more obstacles, and more contacts left untested.
-
-        Parameters
-        ----------
-        *obstacles : Shape, Obstacle, or sequence of such
-            Of new names.
-        allowed : sequence of (str, str)
-            Contacts that are not tested, (link, obstacle).
-
-        Returns
-        -------
-        Scene
-
-        Raises
-        ------
-        InvalidValue
-            As :class:`Scene`.
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> er.load_scene("box-reach").with_(er.Sphere(0.05, xyz=(0.3, 0.3, 0.3), name="ball")).obstacles[-1].name
-        'ball'
-        """
-        more: list[object] = []
-        for each in obstacles:
-            more += each if isinstance(each, list | tuple) else [each]
-        added = _as_obstacles(more, self.obstacles, self.name)
-        return replace(self, obstacles=(*self.obstacles, *added), allowed=self.allowed.union(allowed))
-
-    def with_clearance(self, clearance: Mapping[str, float]) -> Scene:
-        """Return the scene with obstacles from which robots keep more away.
-
-        Parameters
-        ----------
-        clearance : mapping of str to float
-            Obstacle -> distance to keep, 0 to 1 [m], beside the clearance of a world and the padding of links.
-
-        Returns
-        -------
-        Scene
-
-        Raises
-        ------
-        UnknownName
-            If there is no such obstacle.
-        InvalidValue
-            If a distance is not such a number.
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> scene = er.load_scene("box-reach").with_clearance({"box top": 0.01})
-        >>> scene.obstacles[scene.names.index("box top")].clearance
-        0.01
-        """
-        if not isinstance(clearance, Mapping):
-            raise InvalidValue(f"clearance must be a mapping, obstacle -> metres, got {shown(clearance)}")
-        for name in clearance:
-            require_known(f"obstacle of scene {self.name!r}:", name, self.names)
-        changed = (replace(each, clearance=clearance.get(each.name, each.clearance)) for each in self.obstacles)
-        return replace(self, obstacles=tuple(changed))
-
-    def without(self, *names: str) -> Scene:
-        """Return the scene without some obstacles, and without what was allowed to touch them.
-
-        Parameters
-        ----------
-        *names : str
-            Of the obstacles.
-
-        Returns
-        -------
-        Scene
-
-        Raises
-        ------
-        UnknownName
-            If there is no such obstacle.
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> er.Scene([er.Sphere(0.1, name="ball"), er.Sphere(0.2, name="moon")]).without("moon")
-        Scene('scene', 1 obstacle: ball)
-        """
-        for name in names:
-            require_known(f"obstacle of scene {self.name!r}:", name, self.names)
-        return replace(
-            self,
-            obstacles=tuple(obstacle for obstacle in self.obstacles if obstacle.name not in names),
-            allowed=frozenset((link, name) for link, name in self.allowed if name not in names),
-            near_ends=frozenset(each for each in self.near_ends if each[1] not in names),
-        )
-
 
 def smaller_scene(scene: Scene, by: float) -> Scene:
     """Return a scene for checks alone: its obstacles reach less far by a distance [m]; clouds and meshes are gone."""
@@ -314,32 +227,6 @@ def smaller_scene(scene: Scene, by: float) -> Scene:
     del made.__dict__["obstacles"]
     set_fields(made, allowed=frozenset(each for each in scene.allowed if each[1] in names), rows=rows, names=names)
     return made
-
-
-def _as_obstacles(bodies: object, others: Sequence[Obstacle], scene: str) -> tuple[Obstacle, ...]:
-    """Return shapes and obstacles as obstacles; a shape without a name gets one that neither they nor `others` have."""
-    if isinstance(bodies, Shape | Obstacle):
-        bodies = [bodies]
-    if isinstance(bodies, str) or not isinstance(bodies, Iterable):
-        hint = "a scene is read from its file by load_scene, and its name is name=..."
-        raise InvalidValue(f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}; {hint}")
-    listed = tuple(bodies)
-    for each in listed:
-        if not isinstance(each, Shape | Obstacle):
-            raise InvalidValue(
-                f"obstacles of scene {scene!r} must be shapes, as er.Box((x, y, z), xyz=...), got {shown(each)}"
-            )
-    if all(isinstance(each, Obstacle) for each in listed):
-        return listed
-    taken = {each.name for each in (*listed, *others)}
-    obstacles = []
-    for each in listed:
-        if isinstance(each, Shape):
-            name = each.name or next(text for k in count() if (text := f"{each.kind} {k}") not in taken)
-            taken.add(name)
-            each = Obstacle(name, each)
-        obstacles.append(each)
-    return tuple(obstacles)
 
 
 def limits_in_words(scene: Scene | None, joint: str, lower: float, upper: float) -> str:

@@ -1,0 +1,281 @@
+"""Replanner: a path to one goal, again and again, from where the arm is and among what is there now."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from time import perf_counter as now
+from typing import Any
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad._call import explains_calls
+from evenroad._checks import counted, require_count
+from evenroad._native.planning import Points, answer, shorten
+from evenroad._rng import RngLike
+from evenroad._shared import OwnLock, once
+from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.pose import Pose
+from evenroad.planning.arm_trees import checks_of
+from evenroad.planning.connectors import drivers_of
+from evenroad.planning.read_request import request_in
+from evenroad.planning.request import ConfigurationLike, Reading
+from evenroad.planning.tip_motion import unreached
+from evenroad.planning.trees import variant_of
+from evenroad.roadmap.answer import path_message, refusal
+from evenroad.roadmap.attempt import Attempt
+from evenroad.roadmap.query import Query
+from evenroad.roadmap.result import NO_POINTS, PlanResult, Status, make_result
+from evenroad.robot import ArmWorld, Scene
+from evenroad.robot.arm_world import VALIDATION_TOLERANCE
+from evenroad.robot.obstacle import Bodies
+from evenroad.robot.states import as_configuration
+from evenroad.robot.tree_sequences import PAIRS, share_pairs
+from evenroad.space.path import path_length
+
+VARIANTS = 8
+"""Number of even sequences that updates without a path take in turn."""
+SHORTCUTS = 8
+"""Number of pairs of places along a path that each update tries for a shorter way: the next one tries others."""
+
+
+@explains_calls
+class Replanner:
+    """A path of an arm to its goal that is kept while it is free, and planned anew where it is not.
+
+    Every update is told where the arm is and how the scene has changed.  What is left of the last path is proved free
+    in the scene as it is now, and cut short where that has become possible.  Where it is not free, a new path is
+    planned from where the arm is.  So no path is handed out that the scene does not allow.
+
+    Parameters
+    ----------
+    world : ArmWorld
+        The arm and its scene at the beginning.
+    goal : as of :func:`evenroad.plan`
+        A configuration, a named state, a pose, or several of them.  Of a pose all postures count that are free in the
+        scene of the update.
+    motions : int
+        Largest number of motions that trees check in one update, >= 1.  The next update without a path grows other
+        trees.
+    rng : int, SeedSequence or Generator
+        Seed of what drives the trees.
+    tip, frame : str
+        The link that goal poses place, and the link in whose frame; default: the last link, and the root.
+
+    Attributes
+    ----------
+    world : ArmWorld
+        The arm and its scene at the last update.
+    path : ndarray, shape (p, dim), or None
+        The path of the last update.
+
+    Raises
+    ------
+    InvalidValue, UnknownName
+        If the world is none of an arm, or the goal is not one of these.
+
+    Notes
+    -----
+    Updates of several threads are answered one after the other.  The same updates give the same paths.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> live = er.Replanner(er.ArmWorld("ur5", er.Scene([er.Box((0.1, 0.1, 0.1), xyz=(2, 0, 0), name="box")])), "home")
+    >>> q = [1.5, -1.5, 0, -1.5, 0, 0]
+    >>> live.update(q).solved, len(live.path)
+    (True, 2)
+    >>> live.update(q, moved={"box": er.Pose((0.17, 0.17, 0.9))}).solved, len(live.path) > 2
+    (True, True)
+    """
+
+    def __init__(
+        self,
+        world: ArmWorld,
+        goal: Any,
+        *,
+        motions: int = 600,
+        rng: RngLike = 0,
+        tip: str = "",
+        frame: str = "",
+    ) -> None:
+        if not isinstance(world, ArmWorld):
+            raise InvalidValue(f"world must be an ArmWorld, as er.ArmWorld(robot, scene), got {shown(world)}")
+        self.world: ArmWorld = world
+        self.path: Floats | None = None
+        self._motions = require_count("motions", motions)
+        middle = world.space.from_cube(np.full((1, world.dim), 0.5))[0]
+        # In an empty scene: a posture that is blocked now may be free at a later update.
+        empty = replace(world.scene, obstacles=(), allowed=frozenset())
+        self._request = request_in(world.within(empty), middle, goal, Reading(tip=tip, frame=frame))
+        variant = variant_of(rng)
+        self._variant, self._drivers = variant, [drivers_of(world.dim, variant)]
+        self._last: tuple[Floats, int] | None = None
+        """The last path and the row of its goal: what blocks it now may leave it again."""
+        self._failures = self._cut = 0
+        self._lock = OwnLock()
+
+    def __repr__(self) -> str:
+        return f"Replanner({self.world!r}, {counted(len(self._request.goals), 'goal')})"
+
+    def update(
+        self,
+        q: ConfigurationLike,
+        scene: Scene | None = None,
+        *,
+        moved: Mapping[str, Pose] | None = None,
+        added: Bodies = (),
+        removed: Any = (),
+    ) -> PlanResult:
+        """Return a path from where the arm is, free in the scene as it is now, or why there is none.
+
+        Parameters
+        ----------
+        q : array_like, shape (dim,), mapping or str
+            Where the arm is, as a start of :func:`evenroad.plan`.
+        scene : Scene, optional
+            The scene as it is now, in place of that of the last update.
+        moved : mapping of str to Pose, optional
+            Obstacle -> its pose now.
+        added : sequence of Shape or Obstacle
+            New obstacles.
+        removed : sequence of str
+            Obstacles that are gone; they leave before others are added or moved.
+
+        Returns
+        -------
+        PlanResult
+            Its `planner` says whether the path is ``kept`` or from new ``trees``.  Without a path the arm should stop:
+            the status is ``budget_spent`` where the trees of the next update may find one.
+
+        Raises
+        ------
+        InvalidValue, UnknownName
+            If an argument is not one of these; nothing has changed then.
+        """
+        with self._lock:
+            began, world = now(), self.world if scene is None else replace(self.world, scene=scene)
+            if removed:
+                world = world.without(*([removed] if isinstance(removed, str) else removed))
+            if added:
+                world = world.with_(added)
+            if moved is not None:
+                world = world.moved(moved)
+            start = as_configuration(world.robot, q, world.scene, name="q")
+            self.world, self.path = world, None
+            result = self._kept(start, began)
+            result = self._planned(start, began) if result is None else result
+            self.path = result.path
+            return result
+
+    def _kept(self, start: Floats, began: float) -> PlanResult | None:
+        """Return what is left of the last path from where the arm is, made shorter, or None where it is not free."""
+        if self._last is None:
+            return None
+        path, goal = self._last
+        for rest in ways_on(self.world, start, path):
+            if self.world.checker.motion_valid(rest[:-1], rest[1:], VALIDATION_TOLERANCE).all():
+                break
+        else:
+            return None
+        rest, more = self._shortened(rest)
+        return self._result(start, rest, goal, "kept", {"shortcut_motions": more}, began)
+
+    def _shortened(self, path: Floats) -> tuple[Floats, int]:
+        """Return a path that is not longer, and the number of motions checked; each update cuts other corners."""
+        if len(path) == 2:
+            return path, 0
+        self._cut = (self._cut + 1) % len(_pairs())
+        return shorten(checks_of(self.world), path, _pairs()[self._cut], SHORTCUTS)
+
+    def _planned(self, start: Floats, began: float) -> PlanResult:
+        """Return a new path from where the arm is, to the nearest of the goals that was not tried just before."""
+        world, request = self.world, replace(self._request, world=self.world, start=start)
+        if (result := unreached(request)) is not None:
+            return result
+        goals = request.goals
+        (free,) = np.nonzero(world.valid(goals))
+        if not len(free) or not world.valid(start):
+            found = refusal(Attempt(world, Query(start, goals), NO_POINTS, "none", "trees"))
+            assert found is not None
+            return found
+        order = free[np.argsort(world.space.distance(np.broadcast_to(start, goals[free].shape), goals[free]))]
+        goal = int(order[self._failures % len(order)])
+        found = answer(world.checker, start, goals[goal], self._driver(), self._motions, np.inf, "none")
+        nodes, configurations, motions, _ = found.counts
+        counts = dict(nodes=nodes, configurations_checked=configurations, edges_checked=motions)
+        if found.ended != "solved":
+            self._failures += 1
+            message = f"no path within {motions} motions; the next update grows other trees"
+            return make_result(
+                world,
+                start,
+                goals,
+                Status.BUDGET_SPENT,
+                message,
+                planner="trees",
+                counts=counts,
+                timings={"search": now() - began},
+            )
+        self._failures = 0
+        path, counts["shortcut_motions"] = self._shortened(found.path)
+        return self._result(start, path, goal, "trees", counts, began)
+
+    def _driver(self) -> Any:
+        """Return the sequences that drive this update's trees."""
+        number = self._failures % VARIANTS
+        while len(self._drivers) <= number:
+            self._drivers.append(drivers_of(self.world.dim, self._variant + len(self._drivers)))
+        return self._drivers[number]
+
+    def _result(
+        self, start: Floats, path: Floats, goal: int, planner: str, counts: dict[str, int], began: float
+    ) -> PlanResult:
+        """Return the result with a path that is proved."""
+        world, goals = self.world, self._request.goals
+        self._last, length = (path, goal), path_length(path, world.space)
+        path.setflags(write=False)
+        return make_result(
+            world,
+            start,
+            goals,
+            Status.SOLVED,
+            path_message(path, length, goal, len(goals)),
+            planner=planner,
+            goal_index=goal,
+            path=path,
+            milestone_path=path,
+            proof=world.proof,
+            cost=length,
+            milestone_cost=length,
+            counts=counts,
+            timings={"search": now() - began},
+        )
+
+
+@once
+def _pairs() -> tuple[Points, ...]:
+    """Return the pairs of places that updates try to join, some for each."""
+    pairs = share_pairs(PAIRS)
+    return tuple(Points(pairs[i : i + SHORTCUTS]) for i in range(0, len(pairs), SHORTCUTS))
+
+
+def ways_on(world: ArmWorld, q: Floats, path: Floats) -> list[Floats]:
+    """Return paths from a configuration, (dim,), on to the end of a path, (p, dim), best first.
+
+    The first leads on to the next waypoint; where the configuration is beside the path, the second leads to the nearest
+    place of the path before.
+    """
+    flat = world.space.flat
+    a, way = path[:-1], flat.difference(path[:-1], path[1:])
+    aside = flat.difference(a, np.broadcast_to(q, a.shape))
+    squared = np.einsum("ij,ij->i", way, way)
+    share = np.clip(np.einsum("ij,ij->i", aside, way) / np.where(squared > 0.0, squared, 1.0), 0.0, 1.0)
+    away = np.linalg.norm(aside - share[:, np.newaxis] * way, axis=1)
+    nearest = len(away) - 1 - int(np.argmin(away[::-1]))
+    on = np.concatenate([q[np.newaxis], path[nearest + 1 :]])
+    if away[nearest] <= 1e-9:
+        return [on]
+    place = world.space.interpolate(path[nearest : nearest + 1], path[nearest + 1 : nearest + 2], share[nearest])
+    return [on, np.concatenate([q[np.newaxis], place, path[nearest + 1 :]])]
