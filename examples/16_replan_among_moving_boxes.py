@@ -7,10 +7,10 @@ from evenroad.space.path import configuration_at
 
 robot = er.load_robot("ur5")
 rng = np.random.default_rng(8)
-places = rng.normal(size=(30, 3))
-places *= rng.uniform(0.5, 1.0, (30, 1)) / np.linalg.norm(places, axis=1, keepdims=True)
-ways = rng.uniform(-0.15, 0.15, (30, 3))
-world = er.ArmWorld(robot, er.Scene.of_boxes(np.full((30, 3), 0.06), places), clearance=0.01)
+positions = rng.normal(size=(30, 3))
+positions *= rng.uniform(0.5, 1.0, (30, 1)) / np.linalg.norm(positions, axis=1, keepdims=True)
+directions = rng.uniform(-0.15, 0.15, (30, 3))
+world = er.ArmWorld(robot, er.Scene.of_boxes(np.full((30, 3), 0.06), positions), clearance=0.01)
 q, goal = robot.configuration([-1.5, -1.2, 1.2, -1.6, -1.57, 0.0]), [1.5, -1.0, 1.0, -1.6, -1.57, 0.0]
 
 live = er.Replanner(world, goal)
@@ -18,7 +18,7 @@ kept = planned = stopped = 0
 drawn = None
 for tick in range(2000):
     # Each box floats to and fro, once in six seconds.
-    poses = [er.Pose(tuple(place)) for place in places + np.sin(0.01 * tick) * ways]
+    poses = [er.Pose(tuple(position)) for position in positions + np.sin(0.01 * tick) * directions]
     result = live.update(q, moved=dict(zip(world.scene.names, poses, strict=True)))
     if result.path is None:
         # No path that is proved free now: the arm stands still until the next update.

@@ -82,7 +82,7 @@ def _needs(name, thing):
     inherits = inspect.isclass(thing) and "__init__" not in vars(thing)
     if not _parameters(thing) or inherits or name == "er.spaces.Space":
         return
-    yield "Attributes" if name in ("er.Trajectory", "er.PlanResult", "er.PlanResults") else "Parameters"
+    yield "Attributes" if name in ("er.Trajectory", "er.PlanResult") else "Parameters"
     if inspect.isfunction(thing) and inspect.signature(thing).return_annotation not in (None, "None"):
         yield "Returns"
     yield "Examples"

@@ -139,6 +139,18 @@ def a_kept_roadmap():
     return [*asks, lambda: kept.within(world).plan(*ends()[0])]
 
 
+def a_scene_that_changes():
+    world = er.ArmWorld(robot(), box_scene())
+    pose = er.Pose((0.4, 0.4, 0.4))
+
+    def updated(a, b):
+        live = er.Replanner(world, b)
+        return live.update(a), live.update(a, moved={"roof": pose}), live.world.valid(ends()[:, 0])
+
+    changed = [lambda: world.moved({"roof": pose}).valid(ends()[:, 0]), lambda: world.without("left").scene.rows]
+    return [*changed, *(lambda a=a, b=b: updated(a, b) for a, b in ends()[:4])]
+
+
 def a_disk_on_a_map():
     world = load_maze(2).world()
     q = ends(world)
@@ -206,6 +218,7 @@ VALUES = [
     one_call,
     points_and_rules,
     a_kept_roadmap,
+    a_scene_that_changes,
     a_disk_on_a_map,
     a_function,
     a_robot_roadmap,

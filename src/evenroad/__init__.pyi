@@ -14,7 +14,6 @@ from evenroad.geometry import Pose as Pose
 from evenroad.geometry import Sphere as Sphere
 from evenroad.planning import FMT as FMT
 from evenroad.planning import PRM as PRM
-from evenroad.planning import PlanResults as PlanResults
 from evenroad.planning import Replanner as Replanner
 from evenroad.planning import RRTConnect as RRTConnect
 from evenroad.planning import plan as plan

@@ -28,17 +28,19 @@ class Boxes:
     """Boxes that float, and turn back at two balls around the base."""
 
     def __init__(self, count: int, rng: np.random.Generator) -> None:
-        ways, self.speeds = (rng.normal(size=(count, 3)) for _ in range(2))
-        self.places = ways * rng.uniform(NEAR, FAR, (count, 1)) / np.linalg.norm(ways, axis=1, keepdims=True)
+        directions, self.speeds = (rng.normal(size=(count, 3)) for _ in range(2))
+        self.positions = (
+            directions * rng.uniform(NEAR, FAR, (count, 1)) / np.linalg.norm(directions, axis=1, keepdims=True)
+        )
         self.speeds *= 0.3 * rng.random((count, 1)) / np.linalg.norm(self.speeds, axis=1, keepdims=True)
-        self.scene = er.Scene.of_boxes(rng.uniform(0.02, 0.06, (count, 3)), self.places)
+        self.scene = er.Scene.of_boxes(rng.uniform(0.02, 0.06, (count, 3)), self.positions)
 
     def move(self) -> dict[str, er.Pose]:
         """Float on for one tick, and return where all of them are."""
-        self.places = self.places + TICK * self.speeds
-        away = np.linalg.norm(self.places, axis=1)
+        self.positions = self.positions + TICK * self.speeds
+        away = np.linalg.norm(self.positions, axis=1)
         self.speeds[(away < NEAR) | (away > FAR)] *= -1.0
-        return {name: er.Pose(tuple(place)) for name, place in zip(self.scene.names, self.places, strict=True)}
+        return {name: er.Pose(tuple(position)) for name, position in zip(self.scene.names, self.positions, strict=True)}
 
 
 def drive(boxes: Boxes, goals: Floats, updates: int, took: dict[str, list[float]]) -> int:

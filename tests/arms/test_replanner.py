@@ -139,8 +139,8 @@ def test_a_pose_is_reached_in_a_posture_that_is_free_now():
     assert first.solved
     assert len(first.goals) > 1
     # A box into the arm in that posture, but neither where it starts nor in all others.
-    for place in np.random.default_rng(0).uniform(-0.1, 0.1, (200, 3)) + tips(world, first.path[-1]):
-        moved = {"box 0": er.Pose(tuple(place.tolist()))}
+    for position in np.random.default_rng(0).uniform(-0.1, 0.1, (200, 3)) + tips(world, first.path[-1]):
+        moved = {"box 0": er.Pose(tuple(position.tolist()))}
         free = world.moved(moved).valid(np.stack([start, first.path[-1], *first.goals]))
         if free[0] and not free[1] and free[2:].any():
             break

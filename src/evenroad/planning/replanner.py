@@ -44,8 +44,8 @@ SHORTCUTS = 8
 class Replanner:
     """A path of an arm to its goal that is kept while it is free, and planned anew where it is not.
 
-    Every update is told where the arm is and how the scene has changed.  What is left of the last path is proved free
-    in the scene as it is now, and cut short where that has become possible.  Where it is not free, a new path is
+    An update takes where the arm is, and what has changed in the scene.  The rest of the last path is proved free in
+    the scene as it is now, and cut short where that has become possible.  Where it is not free, a new path is
     planned from where the arm is.  So no path is handed out that the scene does not allow.
 
     Parameters
@@ -82,12 +82,11 @@ class Replanner:
     Examples
     --------
     >>> import evenroad as er
-    >>> live = er.Replanner(er.ArmWorld("ur5", er.Scene([er.Box((0.1, 0.1, 0.1), xyz=(2, 0, 0), name="box")])), "home")
-    >>> q = [1.5, -1.5, 0, -1.5, 0, 0]
-    >>> live.update(q).solved, len(live.path)
-    (True, 2)
-    >>> live.update(q, moved={"box": er.Pose((0.17, 0.17, 0.9))}).solved, len(live.path) > 2
-    (True, True)
+    >>> live = er.Replanner(er.ArmWorld("ur5", "box-reach"), "inside")
+    >>> live.update("home").planner
+    'trees'
+    >>> live.update("home", moved={"box top": er.Pose((0.6, 0, 0.9))}).planner
+    'kept'
     """
 
     def __init__(
@@ -153,6 +152,13 @@ class Replanner:
         ------
         InvalidValue, UnknownName
             If an argument is not one of these; nothing has changed then.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> live = er.Replanner(er.ArmWorld("ur5"), "home")
+        >>> live.update([1, 0, 0, 0, 0, 0], added=[er.Sphere(0.2, xyz=(0, 0.1, 0.9), name="ball")]).status
+        <Status.GOAL_INVALID: 'goal_invalid'>
         """
         with self._lock:
             began, world = now(), self.world if scene is None else replace(self.world, scene=scene)
@@ -174,7 +180,7 @@ class Replanner:
         if self._last is None:
             return None
         path, goal = self._last
-        for rest in ways_on(self.world, start, path):
+        for rest in paths_on(self.world, start, path):
             if self.world.checker.motion_valid(rest[:-1], rest[1:], VALIDATION_TOLERANCE).all():
                 break
         else:
@@ -202,10 +208,10 @@ class Replanner:
             return found
         order = free[np.argsort(world.space.distance(np.broadcast_to(start, goals[free].shape), goals[free]))]
         goal = int(order[self._failures % len(order)])
-        found = answer(world.checker, start, goals[goal], self._driver(), self._motions, np.inf, "none")
-        nodes, configurations, motions, _ = found.counts
+        answered = answer(world.checker, start, goals[goal], self._driver(), self._motions, np.inf, "none")
+        nodes, configurations, motions, _ = answered.counts
         counts = dict(nodes=nodes, configurations_checked=configurations, edges_checked=motions)
-        if found.ended != "solved":
+        if answered.ended != "solved":
             self._failures += 1
             message = f"no path within {motions} motions; the next update grows other trees"
             return make_result(
@@ -219,7 +225,7 @@ class Replanner:
                 timings={"search": now() - began},
             )
         self._failures = 0
-        path, counts["shortcut_motions"] = self._shortened(found.path)
+        path, counts["shortcut_motions"] = self._shortened(answered.path)
         return self._result(start, path, goal, "trees", counts, began)
 
     def _driver(self) -> Any:
@@ -261,21 +267,21 @@ def _pairs() -> tuple[Points, ...]:
     return tuple(Points(pairs[i : i + SHORTCUTS]) for i in range(0, len(pairs), SHORTCUTS))
 
 
-def ways_on(world: ArmWorld, q: Floats, path: Floats) -> list[Floats]:
+def paths_on(world: ArmWorld, q: Floats, path: Floats) -> list[Floats]:
     """Return paths from a configuration, (dim,), on to the end of a path, (p, dim), best first.
 
     The first leads on to the next waypoint; where the configuration is beside the path, the second leads to the nearest
     place of the path before.
     """
     flat = world.space.flat
-    a, way = path[:-1], flat.difference(path[:-1], path[1:])
+    a, along = path[:-1], flat.difference(path[:-1], path[1:])
     aside = flat.difference(a, np.broadcast_to(q, a.shape))
-    squared = np.einsum("ij,ij->i", way, way)
-    share = np.clip(np.einsum("ij,ij->i", aside, way) / np.where(squared > 0.0, squared, 1.0), 0.0, 1.0)
-    away = np.linalg.norm(aside - share[:, np.newaxis] * way, axis=1)
+    squared = np.einsum("ij,ij->i", along, along)
+    share = np.clip(np.einsum("ij,ij->i", aside, along) / np.where(squared > 0.0, squared, 1.0), 0.0, 1.0)
+    away = np.linalg.norm(aside - share[:, np.newaxis] * along, axis=1)
     nearest = len(away) - 1 - int(np.argmin(away[::-1]))
     on = np.concatenate([q[np.newaxis], path[nearest + 1 :]])
     if away[nearest] <= 1e-9:
         return [on]
-    place = world.space.interpolate(path[nearest : nearest + 1], path[nearest + 1 : nearest + 2], share[nearest])
-    return [on, np.concatenate([q[np.newaxis], place, path[nearest + 1 :]])]
+    beside = world.space.interpolate(path[nearest : nearest + 1], path[nearest + 1 : nearest + 2], share[nearest])
+    return [on, np.concatenate([q[np.newaxis], beside, path[nearest + 1 :]])]

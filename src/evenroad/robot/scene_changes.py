@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from evenroad._call import explains_calls
 from evenroad._checks import require_known
@@ -13,10 +13,6 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Shape
 from evenroad.robot.obstacle import Bodies, Obstacle, as_obstacles
-
-if TYPE_CHECKING:
-    from evenroad.robot.scene import Scene
-
 
 _DERIVED = ("obstacles", "moved_from", "rows", "names", "numbers", "surfaces")
 """A scene's obstacles, and what it makes of them."""
@@ -31,14 +27,16 @@ class SceneChanges:
         obstacles: tuple[Obstacle, ...]
         allowed: frozenset[tuple[str, str]]
         near_ends: frozenset[tuple[str, str, float]]
-        names: tuple[str, ...]
+
+        @property
+        def names(self) -> tuple[str, ...]: ...  # noqa: D102
 
     @cached_property
     def numbers(self) -> Mapping[str, int]:
         """The number of each obstacle, by name."""
         return {name: number for number, name in enumerate(self.names)}
 
-    def moved(self, poses: Mapping[str, Pose]) -> Scene:
+    def moved(self, poses: Mapping[str, Pose]) -> Self:
         """Return the scene with obstacles in other poses, in some microseconds each.
 
         Parameters
@@ -77,14 +75,14 @@ class SceneChanges:
         # Obstacles are made when they are first used.
         return self._changed(moved_from=(base, {**before, **changed}), names=self.names, numbers=numbers)
 
-    def _changed(self, **parts: Any) -> Scene:
+    def _changed(self, **parts: Any) -> Self:
         """Return a scene with other parts that fit each other."""
         scene: Any = object.__new__(type(self))
         made = {name: part for name, part in self.__dict__.items() if name not in _DERIVED}
         scene.__dict__.update(made, **parts)
-        return scene  # type: ignore[no-any-return]
+        return scene
 
-    def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
+    def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Self:
         """Return the scene with more obstacles, and more contacts left untested.
 
         Parameters
@@ -116,7 +114,7 @@ class SceneChanges:
         changed: Any = self
         return replace(changed, obstacles=(*self.obstacles, *added), allowed=self.allowed.union(allowed))
 
-    def with_clearance(self, clearance: Mapping[str, float]) -> Scene:
+    def with_clearance(self, clearance: Mapping[str, float]) -> Self:
         """Return the scene with obstacles from which robots keep more away.
 
         Parameters
@@ -150,7 +148,7 @@ class SceneChanges:
         scene: Any = self
         return replace(scene, obstacles=tuple(changed))
 
-    def without(self, *names: str) -> Scene:
+    def without(self, *names: str) -> Self:
         """Return the scene without some obstacles, and without what was allowed to touch them.
 
         Parameters

@@ -48,16 +48,81 @@ class WorldChanges:
         return self.within(self.scene.moved(poses))
 
     def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Self:
-        """Return the world with more obstacles; parameters and errors as of :meth:`evenroad.Scene.with_`."""
+        """Return the world with more obstacles.
+
+        Parameters
+        ----------
+        *obstacles : Shape, Obstacle, or sequence of such
+            Of new names.
+        allowed : sequence of (str, str)
+            Contacts that are not tested, (link, obstacle).
+
+        Returns
+        -------
+        ArmWorld
+
+        Raises
+        ------
+        UnknownName, InvalidValue
+            As :meth:`evenroad.Scene.with_`.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.ArmWorld("ur5").with_(er.Sphere(0.2, xyz=(0, 0.1, 0.5))).valid("home")
+        False
+        """
         return self.within(self.scene.with_(*obstacles, allowed=allowed))
 
     def without(self, *names: str) -> Self:
-        """Return the world without some obstacles; parameters and errors as of :meth:`evenroad.Scene.without`."""
+        """Return the world without some obstacles.
+
+        Parameters
+        ----------
+        *names : str
+            Of the obstacles.
+
+        Returns
+        -------
+        ArmWorld
+
+        Raises
+        ------
+        UnknownName
+            If there is no such obstacle.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.ArmWorld("ur5", "box-reach").without("box top").scene.names[-1]
+        'box back'
+        """
         return self.within(self.scene.without(*names))
 
     def within(self, scene: Scene) -> Self:
-        """Return the same world with the obstacles of another scene, whose limits are not looked at."""
+        """Return the same world with the obstacles of another scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            Its ranges of joints are not looked at.
+
+        Returns
+        -------
+        ArmWorld
+
+        Raises
+        ------
+        UnknownName, InvalidValue
+            If the scene does not fit the robot.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.ArmWorld("ur5", "box-reach").within(er.Scene()).scene.names
+        ()
+        """
         world: Any = object.__new__(type(self))
         world.__dict__.update({name: self.__dict__[name] for name in _STAYS}, scene=scene)
         _ = world.native_scene  # at once: it refuses obstacles that are too far
-        return world  # type: ignore[no-any-return]
+        return world
