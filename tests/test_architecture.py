@@ -12,6 +12,8 @@ import pytest
 
 import evenroad
 from evenroad.cli.verbs import ENTRY_POINTS, OF_STUDIES
+from evenroad.points.bank import TRAINED_FAMILIES
+from evenroad.points.bank.bank import MAKERS
 
 ROOT = Path(evenroad.__file__).parent
 
@@ -108,12 +110,13 @@ def test_nobody_imports_the_adapters():
     assert [part for part, others in MAY_IMPORT.items() if "adapters" in others] == []
 
 
-def test_evenroad_imports_nothing_of_the_studies_and_knows_their_verbs_by_entry_points():
+def test_evenroad_imports_nothing_of_the_studies_and_knows_their_verbs_and_network_by_entry_points():
     importing = [path for path in MODULES if "import evenroad_studies" in path.read_text()]
     importing += [path for path in MODULES if "from evenroad_studies" in path.read_text()]
     assert importing == []
     settings = tomllib.loads((ROOT.parents[1] / "studies" / "pyproject.toml").read_text(encoding="utf-8"))
     assert set(settings["project"]["entry-points"][ENTRY_POINTS]) == set(OF_STUDIES)
+    assert set(settings["project"]["entry-points"][MAKERS]) < set(TRAINED_FAMILIES)
 
 
 def test_no_module_is_longer_than_400_lines_and_none_of_tests_than_350():

@@ -1,5 +1,7 @@
 """Tests of evenroad.points.samplers.even."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -26,6 +28,16 @@ class TestEven(SamplerContract):
     def test_in_three_and_four_dimensions_it_is_the_lattice_of_all_directions_under_its_own_name(self, d):
         points = self.sampler.draw(50, d, rng=3)
         assert points == Lattice().draw(50, d, rng=3).with_origin(family="even")
+
+    @pytest.mark.parametrize("d", [2, 6])
+    def test_a_large_set_takes_hardly_more_memory_than_its_points(self, d):
+        n = 2**20 + 7
+        tracemalloc.start()
+        try:
+            assert self.sampler.draw(n, d).points.nbytes == 8 * n * d
+            assert tracemalloc.get_traced_memory()[1] < 1.25 * 8 * n * d
+        finally:
+            tracemalloc.stop()
 
     def test_each_set_has_its_axes_in_another_order(self):
         n, d = 50, 6

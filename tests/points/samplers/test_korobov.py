@@ -30,7 +30,7 @@ class TestKorobov(SamplerContract):
     sampler = Korobov()
     shapes = ((1, 1), (1, 4), (2, 3), (7, 1), (64, 2), (97, 14), (100, 3))
 
-    # One block of points, a little more, and products up to 2**52.
+    # Less than a block of points, many, and numbers of 26 bits.
     @pytest.mark.parametrize(("n", "vector"), [(97, (1, 5)), (2**14 + 1, (1, 7, 16384)), (2**26 - 5, (2**26 - 6,))])
     def test_blocks_of_floats_give_the_bits_of_whole_numbers(self, n, vector):
         shift = np.random.default_rng(n).random(len(vector))

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib.util import find_spec
@@ -27,6 +28,8 @@ DATA = Path(__file__).parent / "data"
 INDEX = "index.json"
 STUDIES, LARGE_SETS = "evenroad_studies", "sets"
 """The package with the files of larger sets, and their folder in it."""
+MAKERS = "evenroad.trained"
+"""Group of entry points of another package that make a set where the bank has none: family -> function."""
 MOST_IN_THE_CORE = 256
 """Number of points of the largest sets in evenroad's own wheel."""
 SEED = 20261121
@@ -183,7 +186,7 @@ class Trained:
     """Draws a set of a trained family, ``hickernell`` or ``mpmc``, from a bank, by default the shipped one.
 
     Where the bank has no pool, sets of ``hickernell`` are annealed: 0.3 s for 96 points in the plane, 5 s for 512 in
-    ten dimensions, the first time in a process.
+    ten dimensions, the first time in a process.  The network of evenroad-studies makes those of ``mpmc``, in as long.
     """
 
     family: str
@@ -200,8 +203,8 @@ class Trained:
 
     @property
     def any_n(self) -> bool:
-        """Whether it has a set of every n, up to what is annealed in some seconds."""
-        return self.family == "hickernell"
+        """Whether it has a set of every n, up to what is made in some seconds."""
+        return self.family == "hickernell" or _maker(self.family) is not None
 
     @property
     def about(self) -> str:
@@ -217,13 +220,15 @@ class Trained:
             if "pip install" in str(error):
                 # Not annealed: it would be another set than with the studies installed.
                 raise
-            steps = min(STEPS, int(WORK / (n * n * d)))
-            if self.family == "hickernell" and steps >= FEWEST_STEPS:
-                replica = int(generator(rng).integers(POOL))
-                return _annealed(n, d, steps, replica).with_origin(seed=seed_of(rng))
+            replica = int(generator(rng).integers(POOL))
+            made = _made(self.family, n, d, replica)
+            if made is not None:
+                return made.with_origin(seed=seed_of(rng))
+            if self.family == "mpmc" and _maker("mpmc") is None:
+                raise NotAvailable(f"{error}; for other sets: pip install evenroad-studies") from None
             how = "--method mpmc" if self.family == "mpmc" else "--objective hickernell"
-            made = f"evenroad train -n {n} -d {d} {how} --sets 1 -o sets/"
-            raise NotAvailable(f"{error}; evenroad-studies makes one: {made}") from None
+            command = f"evenroad train -n {n} -d {d} {how} --sets 1 -o sets/"
+            raise NotAvailable(f"{error}; evenroad-studies makes one: {command}") from None
         replica = int(generator(rng).integers(cell.sets))
         made_by = {name: getattr(cell, name) for name in ("method", "objective", "steps", "version")}
         origin = Origin(family=self.family, seed=seed_of(rng), replica=replica, **made_by)
@@ -231,13 +236,33 @@ class Trained:
 
 
 @lru_cache(maxsize=64)
-def _annealed(n: int, d: int, steps: int, replica: int) -> PointSet:
-    """Return a set of the pool that is annealed when it is drawn from: that of the bank's seeds."""
+def _made(family: str, n: int, d: int, replica: int) -> PointSet | None:
+    """Return a set of the pool that is made when it is drawn from, from the bank's seeds; None if it takes long."""
+    seeds = np.random.SeedSequence(SEED, spawn_key=(replica,))
+    if family == "mpmc":
+        maker = _maker(family)
+        made: PointSet | None = None if maker is None else maker(n, d, seeds)
+        return made if made is None else made.with_origin(replica=replica)
+    steps = min(STEPS, int(WORK / (n * n * d)))
+    if steps < FEWEST_STEPS:
+        return None
     # Imported late: most draws find their set in a file.
     from evenroad.points.anneal import anneal
     from evenroad.points.measures import MEASURES
 
-    seeds = np.random.SeedSequence(SEED, spawn_key=(replica,))
     points = anneal(n, d, MEASURES["hickernell"], steps=steps, rng=seeds).points
-    made = Origin(family="hickernell", method="annealed", objective="hickernell", steps=steps, replica=replica)
-    return PointSet(points, made)
+    origin = Origin(family="hickernell", method="annealed", objective="hickernell", steps=steps, replica=replica)
+    return PointSet(points, origin)
+
+
+@lru_cache(maxsize=4)
+def _maker(family: str) -> Callable[[int, int, np.random.SeedSequence], PointSet | None] | None:
+    """Return what an installed package makes sets of a family with."""
+    # Imported late, since it takes long.
+    from importlib.metadata import entry_points
+
+    for found in entry_points(group=MAKERS):
+        if found.name == family:
+            maker: Callable[[int, int, np.random.SeedSequence], PointSet | None] = found.load()
+            return maker
+    return None

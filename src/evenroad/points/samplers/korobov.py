@@ -34,6 +34,12 @@ FEWEST_TRIED = 32
 BLOCK = 2**14
 """Number of lattice points, of all multipliers, between two checks of which multipliers can still win."""
 
+ROWS = 2**13
+"""Number of points of a set that are made together."""
+
+PART = 2**18
+"""Number of lattice points of which the energy of one multiplier is summed at a time."""
+
 TIE = 1e-9
 """Relative difference below which energies are equal: rounding does not choose between mirrored lattices."""
 
@@ -76,21 +82,22 @@ class Korobov:
 def shifted_lattice(n: int, vector: Sequence[int], shift: Floats) -> Floats:
     """Return the points i z / n + shift modulo 1, i = 0 .. n - 1, (n, d), read-only; n <= 2**26 and 0 <= z < n.
 
-    In blocks of rows, so that no second array of this size is needed, and without integer division, which takes ten
-    times as long: products stay below 2**52, so every step is exact, and so is taking 1 off what is not below it.
+    In blocks of rows, so that no second array of this size is needed.  The remainders of a block are those of the first
+    one plus a whole number, minus n where they reach it: no number is divided, and below 2**53 each is exact.
     """
-    z, points = np.array(vector, dtype=np.float64), np.empty((n, len(vector)))
-    for first in range(0, n, BLOCK):
-        i = np.arange(first, min(first + BLOCK, n), dtype=np.float64)
-        for axis, step in enumerate(z):
-            rest = i * step
-            rest -= np.floor(rest / n) * n
-            # The quotient may round up to the next whole number: the rest is then -n + r.
-            rest[rest < 0.0] += n
+    rows, points = min(n, ROWS), np.empty((n, len(vector)))
+    remainders = np.array([np.arange(rows) * z % n for z in vector], dtype=np.float64)
+    sums, wholes = np.empty(rows), np.empty(rows)
+    for first in range(0, n, rows):
+        block = points[first : first + rows]
+        rest, whole = sums[: len(block)], wholes[: len(block)]
+        for axis, z in enumerate(vector):
+            np.add(remainders[axis, : len(block)], first * int(z) % n, out=rest)
+            np.greater_equal(rest, n, out=whole)
+            rest -= np.multiply(whole, n, out=whole)
             rest /= n
             rest += shift[axis]
-            rest[rest >= 1.0] -= 1.0
-            points[first : first + BLOCK, axis] = rest
+            np.subtract(rest, np.floor(rest, out=whole), out=block[:, axis])
     points.setflags(write=False)
     return points
 
@@ -163,7 +170,9 @@ def _least_energy(candidates: Ints, n: int, d: int) -> int:
         if looks & (looks - 1) == 0:
             # A whole energy costs as much as many looks: ever more rarely, after 1, 2, 4, 8, ... looks.
             promising = vectors[[np.argmin(log_sums)]]
-            limit = min(limit, _log_energies(promising, n, 1, half)[0] + TIE)
+            parts = range(1, half + 1, PART)
+            whole = [_log_energies(promising, n, at, min(half, at + PART - 1))[0] for at in parts]
+            limit = min(limit, np.logaddexp.reduce(whole) + TIE)
         in_race = log_sums <= limit
         candidates, vectors, log_sums = candidates[in_race], vectors[in_race], log_sums[in_race]
     return int(candidates[log_sums <= log_sums.min() + TIE][0])
