@@ -11,7 +11,7 @@ from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.robot import ArmWorld, Joint, Obstacle, Robot, Scene, link_poses, load_robot
 from evenroad.robot import closed_form as closed
 from evenroad.robot.chain import TURN, chain_of, default_tip
-from evenroad.robot.inverse_kinematics import MOST, reach, task_of
+from evenroad.robot.inverse_kinematics import MOST, reach, reach_quickly, task_of
 from evenroad.robot.pose_goal import PoseGoal, as_axis, pose_of
 from tests.refused import refused
 from tests.robot.kernel_arms import random_tree
@@ -65,6 +65,21 @@ def test_the_posture_that_made_a_pose_is_among_those_found_without_a_closed_form
         for q, pose in zip(own, tips(UR5, own, "tool0"), strict=True)
     ]
     assert np.mean(hit) >= 0.99
+
+
+@pytest.mark.parametrize("robot", [UR5, ARM7], ids=lambda robot: robot.name)
+def test_many_goals_at_once_are_reached_as_each_alone_and_those_that_are_not_say_why(robot):
+    world, tip = ArmWorld(robot, "box-reach" if robot is UR5 else EMPTY), default_tip(robot)
+    made = tips(robot, random_free(world, 9, seed=5), tip)
+    goals = [PoseGoal(Pose.from_matrix(pose), tip, free_axis=axis) for pose in made for axis in (None, "z")]
+    goals += [PoseGoal(Pose((9.0, 0.0, 0.0)), tip), PoseGoal(Pose((0.0, 0.0, 0.05)), tip, position_only=True)]
+    start = np.full(world.dim, 0.3)
+    for goal, found in zip(goals, reach_quickly(world, goals, start), strict=True):
+        alone = reach(world, goal, start, quickly=True)
+        assert np.array_equal(found.configurations, alone.configurations)
+        assert np.array_equal(found.nearest, alone.nearest)
+        assert (found.branches, found.blocked, found.solver) == (alone.branches, alone.blocked, alone.solver)
+        assert len(found.configurations) or found.why == alone.why
 
 
 def test_a_closed_form_finds_the_posture_that_made_a_pose_every_time():

@@ -58,6 +58,16 @@ class Chain:
     def tip_poses(self, q: Floats) -> Floats: ...
     def derivatives(self, q: Floats) -> Floats: ...
     def reach(self, q: Floats, task: Floats, limits: Floats, steps: int, enough: int) -> tuple[Floats, Floats]: ...
+    def reach_all(
+        self,
+        known: tuple[Floats, Floats, Floats],
+        pick: tuple[int, int, int],
+        tasks: Floats,
+        limits: Floats,
+        turns: tuple[Bools, Floats],
+        apart: float,
+        effort: tuple[int, int],
+    ) -> tuple[Floats, Ints, Floats, Floats]: ...
     def follow(
         self, q: Floats, towards: Floats, task: Floats, poses: Floats, limits: Floats, steps: int, longest: float
     ) -> Floats: ...

@@ -12,7 +12,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
 from evenroad.robot.chain import chain_of, default_tip, frame_pose
-from evenroad.robot.inverse_kinematics import Checks, Reached, reach, task_of
+from evenroad.robot.inverse_kinematics import Checks, Reached, reach, reach_quickly, task_of
 from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
 from evenroad.robot.robot import Robot
 from evenroad.robot.separated import InScene, apart
@@ -93,15 +93,17 @@ def goals_of(
     names: list[str] = []
     poses = []
     began = now()
-    many = len(targets) >= MANY and sum(isinstance(target, _POSES) for target in targets) >= MANY
+    wanted = [as_pose_goal(target, tip, frame) for target in targets if isinstance(target, _POSES)]
+    wanted = [goal if goal.tip else replace(goal, tip=default_tip(world.robot)) for goal in wanted]
+    many = len(wanted) >= MANY
+    found = reach_quickly(world, wanted, start) if many else [reach(world, goal, start) for goal in wanted]
+    with_postures = zip(wanted, found, strict=True)
     for target in targets:
         if not isinstance(target, _POSES):
             rows.append(read(target)[np.newaxis])
             names.append(target.strip() if isinstance(target, str) else "")
             continue
-        goal = as_pose_goal(target, tip, frame)
-        goal = goal if goal.tip else replace(goal, tip=default_tip(world.robot))
-        reached = reach(world, goal, start, quickly=many)
+        goal, reached = next(with_postures)
         poses.append((goal, reached))
         rows.append(reached.configurations)
         names += [str(goal)] * len(reached.configurations)

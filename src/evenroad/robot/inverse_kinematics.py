@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Protocol
@@ -14,29 +14,27 @@ import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
 from evenroad._checks import as_row
-from evenroad.robot.chain import TURN, Chain, chain_of, default_tip, frame_pose
+from evenroad.robot.chain import Chain, chain_of, default_tip, frame_pose
 from evenroad.robot.closed_form import branches, closed_form
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.pose_task import PoseTask
 from evenroad.robot.robot import Robot
+from evenroad.robot.whole_turns import MOST, distinct, with_turns, wrapped
 
 STARTS = 64
 """Number of even configurations, with the nearest tips, at which numeric solutions begin; then as many again."""
 
-MOST = 64
-"""Largest number of configurations of one goal, the nearest of all with their whole turns."""
-
+_PICKS = (0, STARTS, 1), (STARTS, 4 * STARTS, 1), (4 * STARTS, 2**31, 4)
+"""The even configurations at which they begin, stage by stage: from, to below, every."""
 _ENOUGH = 24
 """Number of configurations after which the search ends for an arm with more joints than the pose has numbers."""
 _POLISHED = 4
 _SAME = 1e-4
 """Distance below which configurations are one posture [rad or m]."""
-_SIDE, _TOGETHER = 8, 1e-16
-"""Number of postures of each link of several, and the largest squared error of those that reach theirs together."""
 _APART = 0.1
 """The same for an arm with redundant joints."""
-_MOST_TURNING = 8
-"""Largest number of joints that are tried in other turns, too."""
+_SIDE, _TOGETHER = 8, 1e-16
+"""Number of postures of each link of several, and the largest squared error of those that reach theirs together."""
 _COARSE = 1e-2
 """Largest deviation of a solution in closed form [m, rad]."""
 
@@ -102,10 +100,44 @@ def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike, *, quickly: bool 
     if not free.any():
         reason = partial(_why_blocked, world, goal, solved)
         return Reached(solved[:0], len(solved), len(solved), solver, solved[0], reason)
-    turned = _with_turns(chain, solved[free], start)
+    turned = with_turns(chain, solved[free], start, np.zeros(int(free.sum()), dtype=np.int64))[0]
     if goal.others:
         return _with_others(world, goal, turned, start, solver)
     return Reached(turned, len(solved), int((~free).sum()), solver, turned[0])
+
+
+def reach_quickly(world: Checks, goals: Sequence[PoseGoal], start: Floats) -> list[Reached]:
+    """Return the free configurations that bring links to each of many goals, from few beginnings, as `reach` does.
+
+    Raises as that.
+    """
+    found: list[Reached | None] = [None] * len(goals)
+    together: dict[tuple[int, bool], list[tuple[int, PoseTask]]] = {}
+    chains: dict[int, Chain] = {}
+    for number, goal in enumerate(goals):
+        chain, task = task_of(world.robot, goal)
+        if goal.others or (goal.is_exact and closed_form(chain) is not None):
+            found[number] = reach(world, goal, start, quickly=True)
+            continue
+        chains[id(chain)] = chain
+        together.setdefault((id(chain), len(chain.moving) > task.numbers), []).append((number, task))
+    for (chain_id, spare), some in together.items():
+        chain, tasks = chains[chain_id], np.stack([task.row for _, task in some])
+        apart, enough = (_APART, _ENOUGH) if spare else (_SAME, 2**31)
+        q, of, nearest, _ = chain.reached_all(start, tasks, _PICKS[0], apart=apart, enough=enough)
+        free = world.valid(q)
+        turned, whose = with_turns(chain, q[free], start, of[free])
+        begins, firsts = (np.searchsorted(numbers, np.arange(len(some) + 1)) for numbers in (of, whose))
+        for k, (number, task) in enumerate(some):
+            postures, rows = slice(*begins[k : k + 2]), turned[firsts[k] : firsts[k + 1]]
+            count, blocked, reason = len(q[postures]), int((~free[postures]).sum()), str
+            near = rows[0] if len(rows) else q[postures][0] if count else nearest[k]
+            if not count:
+                reason = partial(_why_not, chain, task, goals[number], near, start)
+            elif not len(rows):
+                reason = partial(_why_blocked, world, goals[number], q[postures])
+            found[number] = Reached(rows, count, blocked, "numeric", near, reason)
+    return [reached for reached in found if reached is not None]
 
 
 def _with_others(world: Checks, goal: PoseGoal, rows: Floats, start: Floats, solver: str) -> Reached:
@@ -174,21 +206,18 @@ def stages(chain: Chain, task: PoseTask, start: Floats, *, exact: bool) -> Itera
 
 def numeric(chain: Chain, task: PoseTask, start: Floats, *, limits: bool = True) -> Iterator[tuple[Floats, Floats]]:
     """Yield postures found from even starts, (n, dim), and the nearest one: more and more."""
-    starts, tips = chain.even
-    away = task.nearness(tips)
-    enough = _ENOUGH if len(chain.moving) > task.numbers else len(starts)
-    best, least = start, math.inf
+    best, least, row = start, math.inf, task.row[np.newaxis]
     # The start of the query first; then near ones and, where these fail, farther ones.
-    for first, last, every in ((0, STARTS, 1), (STARTS, 4 * STARTS, 1), (4 * STARTS, len(starts), 4)):
-        near = np.argpartition(away, last)[:last] if last < len(away) else np.arange(len(away))
-        rows = near[np.lexsort((near, away[near]))][first:last:every]
-        q = np.concatenate([start[np.newaxis], starts[rows]])
-        q[:, chain.still] = start[chain.still]
-        q, missing = chain.reached(q, task.row, limits=limits, enough=enough)
-        k = int(missing.argmin())
-        if missing[k] < least:
-            least, best = float(missing[k]), wrapped(chain, q[k : k + 1])[0]
-        yield wrapped(chain, q[missing == 0.0]), best
+    for pick in _PICKS:
+        q, _, nearest, missing = chain.reached_all(start, row, pick, limits=limits, enough=_enough(chain, task))
+        if missing[0] < least:
+            least, best = float(missing[0]), nearest[0]
+        yield q, best
+
+
+def _enough(chain: Chain, task: PoseTask) -> int:
+    """Return after how many solutions a search ends."""
+    return _ENOUGH if len(chain.moving) > task.numbers else 2**31
 
 
 def _polished(chain: Chain, task: PoseTask, q: Floats) -> Floats:
@@ -197,57 +226,6 @@ def _polished(chain: Chain, task: PoseTask, q: Floats) -> Floats:
     """
     moved, missing = chain.reached(q, task.row, limits=False, steps=_POLISHED)
     return moved[(missing < 1e-18) & (np.abs(moved - q).max(axis=1, initial=0.0) < _COARSE)]
-
-
-def wrapped(chain: Chain, q: Floats) -> Floats:
-    """Return postures in the turn nearest to the middle of the limits, moved to a limit by at most 1e-9."""
-    middle = 0.5 * chain.bounds.sum(axis=0)
-    q = np.where(chain.turns, q - TURN * np.round((q - middle) / TURN), q)
-    nearest = np.clip(q, *chain.bounds)
-    return np.where(np.abs(q - nearest) <= 1e-9, nearest, q)
-
-
-def distinct(chain: Chain, q: Floats, apart: float) -> Floats:
-    """Return postures of which no two are nearer than `apart`, modulo turns; the first of each stays."""
-    if len(q) < 2:
-        return q
-    gap = np.abs(q[:, np.newaxis] - q)
-    gap = np.where(chain.turns, np.minimum(gap, np.abs(TURN - gap)), gap)
-    near = gap.max(axis=2) < apart
-    kept: list[int] = []
-    for row in range(len(q)):
-        if not near[row, kept].any():
-            kept.append(row)
-    return q[kept]
-
-
-def _with_turns(chain: Chain, q: Floats, start: Floats) -> Floats:
-    """Return postures in all turns that are within limits, the nearest to the start first, at most `MOST`.
-
-    Of every posture the nearest is there.
-    """
-    low, high = chain.bounds
-    wide = chain.turns & (high - low >= TURN)
-    nearest = np.where(wide, q - TURN * np.round((q - start) / TURN), q)
-    # A turn back where that is beyond a limit, which rounding alone does not reach.
-    for _ in range(2):
-        nearest -= np.where(wide, TURN * (nearest > high + 1e-9), 0.0)
-        nearest += np.where(wide, TURN * (nearest < low - 1e-9), 0.0)
-    other = nearest + np.where(nearest > start, -TURN, TURN)
-    other = np.where(wide & (other >= low - 1e-9) & (other <= high + 1e-9), other, nearest)
-    two = np.flatnonzero((other != nearest).any(axis=0))[:_MOST_TURNING]
-    takes = np.zeros((2 ** len(two), len(start)), dtype=np.bool_)
-    takes[:, two] = np.arange(len(takes))[:, np.newaxis] >> np.arange(len(two)) & 1
-    every = np.where(takes, other[:, np.newaxis], nearest[:, np.newaxis])
-    # The same once more is the other choice of a joint that has none.
-    doubled = (takes & (other == nearest)[:, np.newaxis]).any(axis=2)
-    far = np.linalg.norm(every - start, axis=2) + np.where(doubled, np.inf, 0.0)
-    kept = np.argsort(far, axis=None, kind="stable")[:MOST]
-    kept = kept[np.isfinite(far.ravel()[kept])]
-    first = np.arange(len(q)) * len(takes)
-    kept = np.concatenate([kept, np.setdiff1d(first, kept)])
-    rows = np.clip(every.reshape(-1, len(start))[kept], low, high)
-    return rows[np.argsort(far.ravel()[kept], kind="stable")]
 
 
 def _why_not(chain: Chain, task: PoseTask, goal: PoseGoal, best: Floats, start: Floats) -> str:

@@ -44,19 +44,6 @@ class PoseTask:
         counts = self.placed, turn, self.position_tolerance, self.angle_tolerance
         return np.array([*self.pose.rotation, *self.pose.xyz, *axis, *direction, *counts], dtype=np.float64)
 
-    def nearness(self, tips: Floats) -> Floats:
-        """Return numbers, (n,), that are the smaller, the nearer the tip's poses, (n, 12), are to the task."""
-        rotations = tips[:, :9].reshape(-1, 3, 3)
-        away = np.zeros(len(tips))
-        if self.placed:
-            away += np.square(tips[:, 9:] - self.pose.xyz).sum(axis=1)
-        if self.turns_fully:
-            away += 0.25 * np.square(tips[:, :9] - self.pose.rotation).sum(axis=1)
-        elif self.turned and self.pointing is not None:
-            axis, direction = self.pointing
-            away += 0.5 * np.square(rotations @ axis - direction).sum(axis=1)
-        return away
-
     def misses(self, tip: Floats) -> tuple[float, float]:
         """Return the deviations of a pose of the tip, (12,), from position [m] and rotation [rad]."""
         near = math.dist(tip[9:], self.pose.xyz) if self.placed else 0.0

@@ -1,8 +1,11 @@
 // evenroad._native.robot.Chain: the joints that carry a link, where they bring it, and configurations for its poses.
+#include <nanobind/stl/array.h>
+
 #include <algorithm>
+#include <array>
 
 #include "bind/arrays.hpp"
-#include "robot/inverse_kinematics.hpp"
+#include "robot/many_poses.hpp"
 
 namespace evenroad::bind {
 
@@ -40,9 +43,7 @@ void make_chain(Chain* self, nb::handle coordinates, nb::handle slides, nb::hand
 }
 
 /// A task is its pose, an axis, a direction, whether the place counts, what counts of the turn, and the tolerances.
-robot::PoseTask task_of(nb::handle given) {
-  const Array<const double, 1> row(given, "task");
-  row.of_shape({TASK});
+robot::PoseTask task_of(std::span<const double> row) {
   const double* numbers = row.data();
   const double turn = numbers[POSE + 7];
   require(turn == 0.0 || turn == 1.0 || turn == 2.0, "the turn of a task must be 0, 1 or 2");
@@ -55,6 +56,11 @@ robot::PoseTask task_of(nb::handle given) {
   task.position_tolerance = numbers[POSE + 8];
   task.angle_tolerance = numbers[POSE + 9];
   return task;
+}
+
+robot::PoseTask task_of(nb::handle given) {
+  const Array<const double, 1> row(given, "task");
+  return task_of(row.of_shape({TASK}).span());
 }
 
 /// Limits are rows of lows and highs, (2, dim); both may be infinite.
@@ -111,6 +117,40 @@ nb::tuple reach(const Chain& chain, nb::handle q, nb::handle task, nb::handle li
   return nb::make_tuple(as_numpy(std::move(moved), {rows, dim(chain)}), as_numpy(std::move(missing), {rows}));
 }
 
+/// Return postures that reach tasks, (p, 22), whose each is, and what is nearest to each task.
+///
+/// `known` is the query's configuration, others, and their tips; `pick` says which of these solutions begin at, `turns`
+/// which coordinates turn and their bounds, `effort` how many steps a solution has and how many are enough.
+nb::tuple reach_all(const Chain& chain, nb::tuple known, std::array<std::size_t, 3> pick, nb::handle tasks,
+                    nb::handle limits, nb::tuple turns, double apart, std::array<std::size_t, 2> effort) {
+  const std::size_t d = dim(chain);
+  require(known.size() == 3 && turns.size() == 2, "known must be three arrays, and turns two");
+  const Array<const double, 1> begin(known[0], "start");
+  const Array<const double, 2> q(known[1], "known"), tips(known[2], "tips"), rows(tasks, "tasks");
+  const Array<const double, 2> ranges(limits, "limits", Entries::ANY), bounds(turns[1], "bounds", Entries::ANY);
+  const Array<const bool, 1> turning(turns[0], "turns");
+  begin.of_shape({d});
+  q.of_shape({tips.shape(0), d});
+  tips.of_shape({tips.shape(0), POSE});
+  rows.of_shape({rows.shape(0), TASK});
+  bounds.of_shape({2, d});
+  turning.of_shape({d});
+  require(pick[2] > 0, "every must be at least 1");
+  require_below(static_cast<std::int64_t>(effort[0]), std::size_t{1} << 31, "steps");
+  std::vector<robot::PoseTask> wanted;
+  for (std::size_t i = 0; i < rows.shape(0); i++) wanted.push_back(task_of(rows.matrix()[i]));
+  const robot::Beginnings from{begin.span(), q.matrix(), tips.matrix(), pick[0], pick[1], pick[2]};
+  const robot::Postures postures{turning.span(), bounds.matrix(), apart};
+  const robot::Limits within = limits_of(ranges, d);
+  const int steps = static_cast<int>(effort[0]);
+  robot::Solutions found =
+      without_gil([&] { return robot::reach_all(chain, wanted, within, from, postures, steps, effort[1]); });
+  const std::size_t count = found.task.size();
+  return nb::make_tuple(as_numpy(std::move(found.q), {count, d}), as_numpy(std::move(found.task), {count}),
+                        as_numpy(std::move(found.nearest), {wanted.size(), d}),
+                        as_numpy(std::move(found.missing), {wanted.size()}));
+}
+
 /// Return the configurations, (n, dim), with which the tip gets through poses, as far as it does.
 nb::object follow(const Chain& chain, nb::handle q, nb::handle towards, nb::handle task, nb::handle poses,
                   nb::handle limits, int steps, double longest) {
@@ -135,6 +175,7 @@ void add_chain(nb::module_& robot) {
       .def("tip_poses", &tip_poses, "q"_a)
       .def("derivatives", &derivatives, "q"_a)
       .def("reach", &reach, "q"_a, "task"_a, "limits"_a, "steps"_a, "enough"_a)
+      .def("reach_all", &reach_all, "known"_a, "pick"_a, "tasks"_a, "limits"_a, "turns"_a, "apart"_a, "effort"_a)
       .def("follow", &follow, "q"_a, "towards"_a, "task"_a, "poses"_a, "limits"_a, "steps"_a, "longest"_a);
 }
 
