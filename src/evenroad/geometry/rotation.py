@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from operator import mul
 from typing import Any
 
@@ -70,6 +71,11 @@ def _of_unit_quaternion(w: Any, x: Any, y: Any, z: Any) -> tuple[Any, ...]:
 
 def rotation_from_z(axis: Sequence[float]) -> Floats:
     """Return a rotation (3, 3) that takes the z axis to `axis`; InvalidValue if that has no direction."""
+    return _from_z(tuple(map(float, axis))).copy()
+
+
+@lru_cache(maxsize=1024)
+def _from_z(axis: tuple[float, ...]) -> Floats:
     z = np.array(axis, dtype=np.float64)
     length = float(np.linalg.norm(z))
     if not (math.isfinite(length) and length > 0.0):

@@ -130,7 +130,8 @@ def reach_quickly(world: Checks, goals: Sequence[PoseGoal], start: Floats) -> li
         begins, firsts = (np.searchsorted(numbers, np.arange(len(some) + 1)) for numbers in (of, whose))
         for k, (number, task) in enumerate(some):
             postures, rows = slice(*begins[k : k + 2]), turned[firsts[k] : firsts[k + 1]]
-            count, blocked, reason = len(q[postures]), int((~free[postures]).sum()), str
+            count, blocked = len(q[postures]), int((~free[postures]).sum())
+            reason: Callable[[], str] = str
             near = rows[0] if len(rows) else q[postures][0] if count else nearest[k]
             if not count:
                 reason = partial(_why_not, chain, task, goals[number], near, start)

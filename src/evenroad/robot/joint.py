@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 from evenroad.errors import BrokenFile, InvalidValue
@@ -49,7 +50,7 @@ class Joint:
     velocity: float = float("inf")
     mimic: Mimic | None = None
 
-    @property
+    @cached_property
     def origin(self) -> Pose:
         """The joint's frame in the parent link's."""
         return Pose(self.xyz, self.rotation)

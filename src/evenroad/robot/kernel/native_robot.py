@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,8 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, Ints
 from evenroad._native import robot as native
 from evenroad.geometry.parts import Parts, spread
+from evenroad.geometry.pose import Vector
+from evenroad.geometry.shapes import Capsule
 from evenroad.robot.kernel.hull_trees import hull_arrays
 from evenroad.robot.kernel.moving_tree import MovingTree
 from evenroad.robot.kernel.placed_capsules import PlacedCapsule, PlacedHulls, speed_bounds
@@ -138,17 +141,26 @@ def _around(placed: Sequence[_PlacedParts], number: dict[str, int]) -> dict[str,
 def _inside(robot: Robot, tree: MovingTree, number: dict[str, int]) -> dict[str, npt.NDArray[np.generic]]:
     """Return, for each body, balls within its shape: those of the capsules that are."""
     rows, counts = [np.zeros((0, 4))], [0]
-    for link in number:
+    of_link: dict[str, list[Capsule]] = {link: [] for link in number}
+    for capsule in robot.inner or ():
+        of_link.get(capsule.link, []).append(capsule)
+    for link, capsules in of_link.items():
         at = tree.links[link]
-        for capsule in robot.inner or ():
-            if capsule.link != link:
-                continue
-            a, b = np.array(capsule.a), np.array(capsule.b)
-            share = np.linspace(0.0, 1.0, 1 + min(math.ceil(np.linalg.norm(b - a) / capsule.radius), MOST_BALLS))
-            centres = (a + share[:, np.newaxis] * (b - a)) @ at.rotation.T + at.translation
-            rows.append(np.c_[centres, np.full(len(centres), capsule.radius)])
-        counts.append(sum(map(len, rows)))
+        for capsule in capsules:
+            balls = _balls(capsule.a, capsule.b, capsule.radius)
+            rows.append(np.column_stack([balls[:, :3] @ at.rotation.T + at.translation, balls[:, 3]]))
+        counts.append(counts[-1] + sum(map(len, rows[len(rows) - len(capsules) :])))
     return {"inside_first": _ints(counts), "inside": np.concatenate(rows)}
+
+
+@lru_cache(maxsize=4096)
+def _balls(start: Vector, end: Vector, radius: float) -> Floats:
+    """Return balls, (n, 4), along a capsule: their centres and radii."""
+    a, b = np.array(start), np.array(end)
+    share = np.linspace(0.0, 1.0, 1 + min(math.ceil(np.linalg.norm(b - a) / radius), MOST_BALLS))
+    balls = np.column_stack([a + share[:, np.newaxis] * (b - a), np.full(len(share), radius)])
+    balls.setflags(write=False)
+    return balls
 
 
 def _ints(values: Sequence[object]) -> Ints:

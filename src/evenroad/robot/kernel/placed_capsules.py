@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -104,7 +105,7 @@ def place_capsule(capsule: Capsule, tree: MovingTree) -> PlacedCapsule:
     if capsule.link not in tree.links:
         raise UnknownName.among("link", capsule.link, tree.links)
     a, b = np.array(capsule.a, dtype=np.float64), np.array(capsule.b, dtype=np.float64)
-    if not (np.isfinite([*a, *b, capsule.radius]).all() and capsule.radius > 0.0):
+    if not (all(map(math.isfinite, (*capsule.a, *capsule.b, capsule.radius))) and capsule.radius > 0.0):
         raise InvalidValue(f"a capsule must have finite ends and a radius > 0, got {capsule!r}")
     if max(map(abs, (*capsule.a, *capsule.b, capsule.radius))) > FARTHEST:
         raise InvalidValue(f"a capsule must be no larger than {FARTHEST:g} m, got {capsule!r}")
@@ -120,6 +121,7 @@ def place_capsule(capsule: Capsule, tree: MovingTree) -> PlacedCapsule:
     )
 
 
+@lru_cache(maxsize=4096)
 def cover_capsule(half_length: float, radius: float) -> Cover:
     """Return the fewest spheres, evenly spaced, that cover a capsule at no more than `LARGEST_EXCESS`.
 
@@ -161,19 +163,34 @@ def joint_arms(tree: MovingTree, capsules: Sequence[Placed], robot: Robot) -> np
     multiplier is included); 0 where the frame does not carry the capsule.
     """
     arms = np.zeros((len(capsules), len(tree.frames)))
+    lengths = _lengths(tree, robot)
     for row, capsule in zip(arms, capsules, strict=True):
         endpoints = capsule.endpoints
         aside = float(np.hypot(endpoints[:, 0], endpoints[:, 1]).max())
         straight = float(np.linalg.norm(endpoints, axis=1).max())
         number = capsule.frame
         while number > 0:
-            frame = tree.frames[number - 1]
+            frame, (slide, across, away) = tree.frames[number - 1], lengths[number - 1]
             row[number - 1] = abs(frame.multiplier) * (1.0 if frame.slides else aside)
-            straight += _longest_slide(frame, robot)
-            aside = straight + float(np.hypot(frame.translation[0], frame.translation[1]))
-            straight += float(np.linalg.norm(frame.translation))
+            straight += slide
+            aside = straight + across
+            straight += away
             number = frame.parent
     return arms
+
+
+def _lengths(tree: MovingTree, robot: Robot) -> list[tuple[float, float, float]]:
+    """Return of each frame how far it slides at most, and how far its origin is from the z axis before it, and from
+    the origin before it [m].
+    """
+    return [
+        (
+            _longest_slide(frame, robot),
+            float(np.hypot(frame.translation[0], frame.translation[1])),
+            float(np.linalg.norm(frame.translation)),
+        )
+        for frame in tree.frames
+    ]
 
 
 def speed_bounds(
@@ -185,7 +202,8 @@ def speed_bounds(
     """
     by_frame = joint_arms(tree, capsules, robot)
     first, second = (by_frame[[pair[end] for pair in pairs]].reshape(-1, by_frame.shape[1]) for end in (0, 1))
-    carriers = [_carriers(tree, capsule.frame) for capsule in capsules]
+    of_frame = {number: _carriers(tree, number) for number in {capsule.frame for capsule in capsules}}
+    carriers = [of_frame[capsule.frame] for capsule in capsules]
     common = np.zeros(first.shape, dtype=np.bool_)
     for row, (i, k) in zip(common, pairs, strict=True):
         row[[number - 1 for number in carriers[i] & carriers[k]]] = True
@@ -206,15 +224,15 @@ def _carriers(tree: MovingTree, number: int) -> set[int]:
 
 def farthest(tree: MovingTree, capsules: Sequence[PlacedCapsule], robot: Robot) -> float:
     """Return a distance from the root's origin beyond which no capsule ever reaches [m]."""
-    most = 0.0
+    most, lengths = 0.0, _lengths(tree, robot)
     for capsule in capsules:
         endpoints = capsule.endpoints
         straight = float(np.linalg.norm(endpoints, axis=1).max()) + 1.2 * capsule.radius
         number = capsule.frame
         while number > 0:
-            frame = tree.frames[number - 1]
-            straight += _longest_slide(frame, robot) + float(np.linalg.norm(frame.translation))
-            number = frame.parent
+            slide, _, away = lengths[number - 1]
+            straight += slide + away
+            number = tree.frames[number - 1].parent
         most = max(most, straight)
     return most
 
