@@ -59,9 +59,9 @@ def with_turns(chain: Chain, q: Floats, start: Floats, of: Ints) -> tuple[Floats
     far = (np.linalg.norm(every - start, axis=2) + np.where(doubled, np.inf, 0.0)).ravel()
     goal = np.repeat(of, len(takes))
     order = np.lexsort((far, goal))
-    place = np.arange(len(order)) - np.searchsorted(goal[order], goal[order])
+    rank = np.arange(len(order)) - np.searchsorted(goal[order], goal[order])
     kept = np.zeros(len(far), dtype=np.bool_)
-    kept[order] = (place < MOST) & np.isfinite(far[order])
+    kept[order] = (rank < MOST) & np.isfinite(far[order])
     kept[np.arange(len(q)) * len(takes)] = True
     rows = order[kept[order]]
     return np.clip(every.reshape(-1, len(start))[rows], low, high), goal[rows]
