@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
+from evenroad.planning import plan
 from evenroad.planning.connectors import CELLS
 from evenroad.world import GridMap, MapFrame
 
@@ -131,6 +132,38 @@ def test_a_shortened_path_is_free_and_not_longer(frame):
         assert motions > 0
         shorter += after < 0.99 * before
     assert shorter > 5
+
+
+@pytest.mark.parametrize("wide", [0, 25])
+def test_a_path_around_corners_is_pulled_as_taut_as_a_string(wide):
+    """The shortest path of a disk is a string around discs: two lines, an arc at each corner, and the wall between."""
+    occupied = np.zeros((200, 400), dtype=bool)
+    occupied[100:, 150 : 151 + wide] = True
+    a, b, radius = np.array([20.0, 150.0]), np.array([281.0 + wide, 150.0]), 12.0
+    result = plan(GridMap(occupied).world(radius), a, b)
+    away = np.array([130.0, 50.0])
+    length = np.sqrt(away @ away - radius**2)
+    # How far the string has turned from one tangent to level.
+    turn = np.arctan2(50.0, 130.0) + np.arcsin(radius / np.hypot(*away))
+    shortest = 2 * (length + radius * turn) + 1 + wide
+    assert shortest < result.cost < 1.004 * shortest
+    assert len(result.path) <= 7
+
+
+def test_a_disk_drives_through_a_door_just_as_wide():
+    """Motions touch both posts to the last bit, wherever on the middle line they begin and end."""
+    occupied = np.zeros((60, 80), dtype=bool)
+    occupied[30:32] = True
+    occupied[30:32, 40:46] = False
+    world = GridMap(occupied).world(3.0)
+    rows = np.random.default_rng(2).uniform(20.0, 42.0, (2000, 2))
+    a, b = (np.column_stack([np.full(2000, 43.0), row]) for row in rows.T)
+    assert world.motion_valid(a, b).all()
+    beside = [0.0, 1e-9]
+    through = (rows.min(axis=1) < 27.0) & (rows.max(axis=1) > 35.0)
+    assert not world.motion_valid((a + beside[::-1])[through], (b + beside[::-1])[through]).any()
+    result = plan(world, (10.0, 10.0), (70.0, 55.0))
+    assert result.trajectory(speed=1.0).proof == "exact"
 
 
 def test_the_nearest_free_place_is_free_and_none_is_much_nearer():

@@ -34,10 +34,6 @@ BEFORE_PROOF_OF_CELLS = 200_000
 SMOOTHING = 500
 """Number of batches of sixteen checks after which no waypoint of an arm's path slides any more."""
 
-_SPREADS = (32, 96)
-"""Numbers of points along a disk's path that straightening may join, in coarse and in fine rounds."""
-
-
 Smoothing = Literal["none", "quick", "tight", "apart"]
 """What compiled code calls the ways to smooth a path."""
 
@@ -182,7 +178,7 @@ class Cells:
     def smooth(self, world: DiskWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and the number of checks."""
         points = as_batch("path", path, 2)
-        return world.disk.straighten(points, _SPREADS) if len(points) > 1 else (points.copy(), 0)
+        return world.disk.straighten(points) if len(points) > 1 else (points.copy(), 0)
 
 
 @dataclass(frozen=True)

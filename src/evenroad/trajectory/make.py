@@ -39,6 +39,8 @@ States: TypeAlias = tuple[Floats, Floats, Floats]
 
 _HALVINGS = 6
 """Number of times that a blend in collision is halved; then the robot stops at the corner."""
+_STOPPINGS = 6
+"""Number of times that corners become stops: each moves the times at which states are checked."""
 
 
 def make_trajectory(
@@ -97,7 +99,7 @@ def make_trajectory(
         raise InvalidValue(f"names must be {waypoints.shape[1]}, one a joint, got {len(joints)}")
     window = 0.0 if limits.jerk is None else float(np.max(2.0 * np.divide(limits.acceleration, limits.jerk)))
     cuts = np.full(len(waypoints), deviation)
-    for halved in range(_HALVINGS + 1):
+    for halved in range(_HALVINGS + _STOPPINGS):
         curve = rounded(waypoints, cuts)
         law, fine, states = _on_steps(paused(fastest(curve, limits), window), limits, window, step)
         if window > 0.0:

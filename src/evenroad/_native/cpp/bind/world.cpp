@@ -121,16 +121,10 @@ nb::tuple find_path(const world::Disk& disk, nb::handle start, nb::handle goals,
   return nb::make_tuple(as_rows(found.points), found.goal, found.expanded, found.motions);
 }
 
-/// A path has no more points than this while it is straightened: motions of all pairs of them are looked at.
-constexpr std::size_t MOST_SPREAD = 10'000;
-
-nb::tuple straighten(const world::Disk& disk, nb::handle path, const nb::tuple& spreads) {
+nb::tuple straighten(const world::Disk& disk, nb::handle path) {
   const std::vector<world::Point> points = Points(path, "path").all();
   require(points.size() >= 2, "path must have two points or more");
-  std::vector<std::int64_t> offered;
-  for (const nb::handle each : spreads) offered.push_back(value_of<std::int64_t>(each, "spreads"));
-  for (const std::int64_t each : offered) require_below(each, MOST_SPREAD, "spreads");
-  const world::Straightened found = without_gil([&] { return world::straighten(disk, points, offered); });
+  const world::Straightened found = without_gil([&] { return world::straighten(disk, points); });
   return nb::make_tuple(as_rows(found.points), found.motions);
 }
 
@@ -163,7 +157,7 @@ void add_world(nb::module_& module) {
       .def("cells", &cells)
       .def("gates", &gates)
       .def("find_path", &find_path, "start"_a.none(), "goals"_a.none(), "most"_a)
-      .def("straighten", &straighten, "path"_a.none(), "spreads"_a);
+      .def("straighten", &straighten, "path"_a.none());
   nb::class_<world::Components>(part, "Components", "Which places of a disk on a map hang together.")
       .def("__init__", &make_components, "disk"_a)
       .def("at", &component_at, "column"_a, "row"_a)

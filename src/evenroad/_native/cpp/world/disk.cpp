@@ -11,6 +11,9 @@ namespace evenroad::world {
 
 namespace {
 
+/// What touches to the last bit is free, whatever the products round to: a disk in a passage just as wide.
+constexpr double TOUCHING = 1.0 - 1e-15;
+
 /// Say whether a corner at (x, y) from a segment's start is nearer than the radius to its inside.
 ///
 /// Only a foot strictly between the ends counts; its squared distance is cross^2 / length^2, compared without dividing:
@@ -98,7 +101,7 @@ bool Disk::is_segment_free(Point from, Point to) const {
 // A square in the cell's own row or column faces it with a side: where that ends, a cell of the next row or column that
 // the segment goes to sees the corner.
 bool Disk::passes_a_corner(std::int64_t row, std::int64_t column, Point from, Point by, double squared_length) const {
-  const double limit = radius_ * radius_ * squared_length;
+  const double limit = radius_ * radius_ * squared_length * TOUCHING;
   const std::int64_t near = reach(), last = std::min(row + near, rows() - 1);
   for (std::int64_t other = std::max<std::int64_t>(row - near, 0); other <= last; other++) {
     if (other == row) continue;

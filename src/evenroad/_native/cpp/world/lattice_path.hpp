@@ -31,10 +31,9 @@ struct Straightened {
   std::int64_t motions;
 };
 
-/// Return a shorter path of free motions between the same ends, of two points or more.
+/// Return a path of free motions between the same ends, of two points or more, that is not longer.
 ///
-/// First from each point on to the farthest that is found to be visible; then rounds of points spread evenly along the
-/// path, about so many, of which the shortest selection that stays free is kept.
-Straightened straighten(const Disk& disk, std::span<const Point> path, std::span<const std::int64_t> spreads);
+/// First from each point on to the farthest that is found to be visible; then it is pulled as a string is.
+Straightened straighten(const Disk& disk, std::span<const Point> path);
 
 }  // namespace evenroad::world

@@ -1,6 +1,8 @@
+// Strings are pulled corner by corner: a corner slides along one of its legs, or is cut into two.  Both make the path
+// shorter whatever the obstacles are; how far is found by halving, with exact motions.
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "world/lattice_path.hpp"
 
@@ -8,11 +10,17 @@ namespace evenroad::world {
 
 namespace {
 
-constexpr int ROUNDS = 8;
-/// Share of the length that a round has to gain, or it is the last.
-constexpr double WORTHWHILE = 1e-3;
+constexpr int ROUNDS = 12;
+/// Share of the length that a round has to gain, or it is the last; and that a new corner has to.
+constexpr double WORTHWHILE = 2e-4, WORTH_A_CORNER = 2e-4;
+/// A corner is left this far, or twice, from the farthest place that it can be pulled to, in pixels: what drives along
+/// the path, in steps of time, has room to pass it.
+constexpr double CLOSE = 1.0 / 64.0;
+constexpr int HALVINGS = 20;
 
 double distance(Point a, Point b) { return std::hypot(b.x - a.x, b.y - a.y); }
+
+Point between(Point a, Point b, double share) { return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)}; }
 
 double length_of(const std::vector<Point>& points) {
   double total = 0.0;
@@ -20,27 +28,10 @@ double length_of(const std::vector<Point>& points) {
   return total;
 }
 
-/// Return the points with evenly spread ones between them, about `most` in all.
-std::vector<Point> spread(const std::vector<Point>& points, std::int64_t most) {
-  const double total = length_of(points);
-  const auto spare = static_cast<double>(std::max<std::int64_t>(most - static_cast<std::int64_t>(points.size()), 0));
-  std::vector<Point> spread;
-  for (std::size_t i = 0; i + 1 < points.size(); i++) {
-    const double piece = distance(points[i], points[i + 1]);
-    const auto parts = 1 + static_cast<std::int64_t>(total > 0.0 && std::isfinite(total) ? spare * piece / total : 0.0);
-    for (std::int64_t k = 0; k < parts; k++) {
-      const double t = static_cast<double>(k) / static_cast<double>(parts);
-      spread.push_back({(1.0 - t) * points[i].x + t * points[i + 1].x, (1.0 - t) * points[i].y + t * points[i + 1].y});
-    }
-  }
-  spread.push_back(points.back());
-  return spread;
-}
-
-/// Selects points of a path, and counts the motions that it tests.
+/// Pulls a path, and counts the motions that it tests.
 class Smoother {
  public:
-  explicit Smoother(const Disk& disk) : disk_(disk) {}
+  explicit Smoother(const Disk& disk) : disk_(disk), close_(CLOSE * disk.frame().scale) {}
 
   std::int64_t motions() const { return motions_; }
 
@@ -66,26 +57,39 @@ class Smoother {
     return kept;
   }
 
-  /// Return the shortest selection of the points, in their order, whose motions are free.
-  std::vector<Point> best_selection(const std::vector<Point>& points) {
-    std::vector<double> length(points.size(), std::numeric_limits<double>::infinity());
-    std::vector<std::size_t> before(points.size());
-    length[0] = 0.0;
-    for (std::size_t j = 1; j < points.size(); j++) {
-      // From the first on: what skips most is found first, and what it beats needs no test.
-      for (std::size_t i = 0; i < j; i++) {
-        const double through = length[i] + distance(points[i], points[j]);
-        if (through >= length[j]) continue;
-        // Pieces of a free motion, too: their ends are rounded.
-        if (is_free(points[i], points[j])) length[j] = through, before[j] = i;
+  /// Pull all corners once, from the first to the last; those that need not be visited go.
+  void pull(std::vector<Point>& points) {
+    std::size_t kept = 1;
+    for (std::size_t next = 1; next + 1 < points.size(); next++) {
+      const Point before = points[kept - 1], after = points[next + 1];
+      Point corner = points[next];
+      if (is_free(before, after)) continue;
+      corner = slid(before, corner, after);
+      corner = slid(after, corner, before);
+      points[kept++] = corner;
+    }
+    points[kept++] = points.back();
+    points.resize(kept);
+  }
+
+  /// Return the path with two corners for each that is worth it.
+  std::vector<Point> cut(const std::vector<Point>& points, double least) {
+    std::vector<Point> cut = {points.front()};
+    for (std::size_t i = 1; i + 1 < points.size(); i++) {
+      const Point before = cut.back(), corner = points[i], after = points[i + 1];
+      const double most = 0.5 * std::min(distance(before, corner), distance(corner, after));
+      const auto at = [&](Point leg, double away) { return between(corner, leg, away / distance(corner, leg)); };
+      const double away = farthest(most, [&](double each) { return is_free(at(before, each), at(after, each)); });
+      const Point first = at(before, away), second = at(after, away);
+      if (away > 0.0 && 2.0 * away - distance(first, second) > least && is_free(before, first) &&
+          is_free(second, after)) {
+        cut.push_back(first), cut.push_back(second);
+      } else {
+        cut.push_back(corner);
       }
     }
-    if (!std::isfinite(length.back())) return points;
-    std::vector<Point> chosen;
-    for (std::size_t at = points.size() - 1; at > 0; at = before[at]) chosen.push_back(points[at]);
-    chosen.push_back(points.front());
-    std::reverse(chosen.begin(), chosen.end());
-    return chosen;
+    cut.push_back(points.back());
+    return cut;
   }
 
  private:
@@ -94,27 +98,47 @@ class Smoother {
     return disk_.is_motion_free(from, to);
   }
 
+  /// Return a bit less than the largest number up to `most` for which a test holds, as it does for 0.
+  template <class Holds>
+  double farthest(double most, const Holds& holds) {
+    if (holds(most)) return most;
+    double good = 0.0, bad = most;
+    for (int i = 0; i < HALVINGS && bad - good > close_; i++) {
+      const double middle = 0.5 * (good + bad);
+      (holds(middle) ? good : bad) = middle;
+    }
+    return std::max(good - close_, 0.0);
+  }
+
+  /// Return where a corner comes to that slides along its leg to `before` while it sees `after`.
+  Point slid(Point before, Point corner, Point after) {
+    const double leg = distance(before, corner);
+    if (leg <= close_) return corner;
+    const auto at = [&](double away) { return between(corner, before, away / leg); };
+    const Point slid = at(farthest(leg, [&](double away) { return is_free(at(away), after); }));
+    // A piece of a free motion is tested, too: its end is rounded.
+    return is_free(before, slid) ? slid : corner;
+  }
+
   const Disk& disk_;
+  double close_;
   std::int64_t motions_ = 0;
 };
 
 }  // namespace
 
-Straightened straighten(const Disk& disk, std::span<const Point> path, std::span<const std::int64_t> spreads) {
+Straightened straighten(const Disk& disk, std::span<const Point> path) {
   Smoother smoother(disk);
   std::vector<Point> points = smoother.skip_ahead(path);
-  for (const std::int64_t most : spreads) {
-    for (int round = 0; round < ROUNDS; round++) {
-      std::vector<Point> shorter = smoother.best_selection(spread(points, most));
-      const double before = length_of(points), after = length_of(shorter);
-      // Never more points for the same length: what could not be selected comes back as it was spread.
-      if (!(after < before)) break;
-      points = std::move(shorter);
-      if (before - after < WORTHWHILE * before) break;
-    }
+  double before = length_of(points);
+  for (int round = 0; round < ROUNDS; round++) {
+    smoother.pull(points);
+    points = smoother.cut(points, WORTH_A_CORNER * before);
+    const double after = length_of(points);
+    if (!(before - after > WORTHWHILE * before)) break;
+    before = after;
   }
-  // Points on the path, or nearly so, are not needed.
-  points = smoother.skip_ahead(points);
+  smoother.pull(points);
   return {std::move(points), smoother.motions()};
 }
 
