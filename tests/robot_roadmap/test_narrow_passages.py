@@ -83,12 +83,12 @@ def test_ends_see_what_straight_motions_reach_at_their_states_and_never_themselv
         made[checker := among(robot, rows)] = rows
         return checker
 
-    def noting_end(walls, inside, pool, end, rows, early):
-        asked.append((walls_of(made[walls]), end))
-        return rows_joined(walls, inside, pool, end, rows, early)
+    def noting_ends(walls, inside, pool, ends, rows, early):
+        asked.extend((walls_of(made[each]), end) for each, end in zip(walls, ends, strict=True))
+        return rows_joined(walls, inside, pool, ends, rows, early)
 
     monkeypatch.setattr(narrow_passages, "among", noting_walls)
-    monkeypatch.setattr(narrow_passages, "rows_joined", noting_end)
+    monkeypatch.setattr(narrow_passages, "rows_joined", noting_ends)
     monkeypatch.setattr(narrow_passages, "in_order", starmap)
     # Not all of the pool: some are hardly ever chosen.
     candidates = np.flatnonzero(np.arange(len(pool)) % 5 != 2)

@@ -7,6 +7,7 @@ queries of no particular task: the tip of the robot is inside random boxes of fi
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -98,17 +99,19 @@ def hard_queries(
     body, radii = body_of(robot, pool[:OWNERS])
     inside = ArmWorld(robot, cell)
     pool = inside.space.wrapped(pool)
-    own_of: list[int] = []
 
-    def queries() -> Iterator[tuple[Checker, int]]:
-        drawn = TRIES * count if tips.shape[1] else 0
-        while len(own_of) < count and drawn > 0:
+    def queries() -> Iterator[tuple[list[Checker], list[int]]]:
+        """Yield passages and rows in them, some at once; a passage of several rows comes several times."""
+        drawn, asked = TRIES * count if tips.shape[1] else 0, 0
+        while asked < count and drawn > 0:
             owns, which = rng.integers(len(tips), size=BATCH), rng.integers(tips.shape[1], size=BATCH)
             drawn -= BATCH
+            passages: list[Checker] = []
+            ends: list[int] = []
             batch = passages_around(tips[owns, which], around, rng)
             for i in np.flatnonzero(~batch.touched_by(body[owns], radii)).tolist():
-                if len(own_of) == count:
-                    return
+                if asked + len(ends) == count:
+                    break
                 own = int(owns[i])
                 # The pool is free of robot and static scene already.
                 passage = among(inside.robot, batch.walls(i))
@@ -116,17 +119,23 @@ def hard_queries(
                     continue
                 others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))
                 others = rng.permutation(others[passage.valid(pool[others])])[: IN_ONE - 1]
-                for end in np.unique(np.append(others, own))[: count - len(own_of)].tolist():
-                    own_of.append(end)
-                    yield passage, end
+                within = sorted({own, *others.tolist()})[: count - asked - len(ends)]
+                ends += within
+                passages += [passage] * len(within)
+            if ends:
+                asked += len(ends)
+                yield passages, ends
 
-    def seen(passage: Checker, end: int) -> Ints:
-        """Return which candidates a straight motion joins to a query."""
-        return rows_joined(passage, inside.checker, pool, end, candidates, EARLY)
+    def seen(passages: list[Checker], ends: list[int]) -> Iterator[tuple[int, Ints]]:
+        """Return queries, each with the candidates that straight motions join to it."""
+        counts, rows = rows_joined(passages, inside.checker, pool, np.array(ends), candidates, EARLY)
+        return zip(ends, np.split(rows, np.cumsum(counts)[:-1]), strict=True)
 
+    own_of: list[int] = []
     found: list[Ints] = []
     pairs = 0
-    for rows in in_order(seen, queries()):
+    for end, rows in chain.from_iterable(in_order(seen, queries())):
+        own_of.append(end)
         found.append(rows)
         pairs += len(rows) * len(robot.pairs)
         progress(min(max(len(found) / count, pairs / MOST_SEEN), 1.0))
@@ -134,7 +143,7 @@ def hard_queries(
             break
     if not found:
         return no_visibility()
-    return Visibility(np.array(own_of[: len(found)]), np.cumsum([0, *map(len, found)]), np.concatenate(found))
+    return Visibility(np.array(own_of), np.cumsum([0, *map(len, found)]), np.concatenate(found))
 
 
 def last_links(robot: Robot) -> list[int]:
@@ -173,13 +182,24 @@ class Passages(NamedTuple):
     def touched_by(self, body: Floats, radii: Floats) -> Bools:
         """Return which passages have a wall nearer to one of some points, (m, n, 3), than its radius, (n,): (m,).
 
-        It needs no world.
+        It needs no world.  The last points, farthest from the base, touch most often: they are asked first.
         """
-        apart = np.einsum("mni,mij->mnj", body - self.centre[:, np.newaxis], self.turn)[:, :, np.newaxis]
-        apart = np.abs(apart - self.positions[:, np.newaxis]) - self.sizes[:, np.newaxis]
-        apart = np.maximum(apart, 0.0, out=apart)
-        squared = np.einsum("mnwk,mnwk->mnw", apart, apart).min(axis=2)
-        touched: Bools = (squared < radii * radii).any(axis=1)
+        touched = np.zeros(len(body), dtype=np.bool_)
+        half = len(radii) // 2
+        for some in (slice(half, None), slice(half)):
+            rest = np.flatnonzero(~touched)
+            touched[rest] = self._touched_by(rest, body[rest, some], radii[some])
+        return touched
+
+    def _touched_by(self, which: Ints, body: Floats, radii: Floats) -> Bools:
+        """Return which of some passages have a wall nearer to a point than its radius."""
+        there = np.matmul(body - self.centre[which, np.newaxis], self.turn[which])
+        squared = np.zeros((*there.shape[:2], len(_SIDES)))
+        for along in range(3):
+            apart = np.abs(there[:, :, np.newaxis, along] - self.positions[which, np.newaxis, :, along])
+            apart -= self.sizes[which, np.newaxis, :, along]
+            squared += np.square(np.maximum(apart, 0.0, out=apart))
+        touched: Bools = np.any(squared < (radii * radii)[:, np.newaxis], axis=(1, 2))
         return touched
 
     def holds(self, i: int, positions: Floats) -> Bools:

@@ -157,8 +157,8 @@ def displacement_weights(robot: KinematicTree, q: Floats) -> Floats:
     for joint in range(len(moved)):
         there = q.copy()
         there[:, joint] += STEP
-        moves = np.linalg.norm(_body_points(robot, there) - body, axis=2)
-        moved[joint] = moves.max(axis=1).mean() / STEP
+        x, y, z = np.moveaxis(_body_points(robot, there) - body, 2, 0)
+        moved[joint] = np.sqrt((x * x + y * y + z * z).max(axis=1)).mean() / STEP
     if not moved.any():
         return np.ones(len(moved))
     weights = np.sqrt(np.maximum(moved, LEAST_WEIGHT * moved.max()))

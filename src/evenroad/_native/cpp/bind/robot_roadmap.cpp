@@ -180,24 +180,31 @@ nb::object next_check(Search& search) {
                         is_milestone ? from : row(search.to()));
 }
 
-/// Return which rows of a pool, (n, dim), a straight motion joins to row `from`, see robot/visibility.hpp.
-nb::object rows_joined(const Checker& walls, const Checker& inside, nb::handle pool, std::int64_t from, nb::handle rows,
-                       nb::handle early) {
-  require(&walls.robot() == &inside.robot(), "both checkers must be of one robot");
+/// Return how many rows of a pool, (n, dim), straight motions join to each of the rows `from`, and which, see
+/// robot_roadmap/visibility.hpp.
+nb::tuple rows_joined(nb::list walls, const Checker& inside, nb::handle pool, nb::handle from, nb::handle rows,
+                      nb::handle early) {
   const auto dim = static_cast<std::size_t>(inside.robot().dim());
   const FloatRows given(pool, "pool");
   const Matrix<const double> all = given.of_shape({given.shape(0), dim}).matrix();
-  const Array<const std::int64_t, 1> asked(rows, "rows");
+  const Array<const std::int64_t, 1> ends(from, "from"), asked(rows, "rows");
   const Floats shares(early, "early");
-  require_below(from, all.rows, "from"), require_below(asked.span(), all.rows, "rows");
+  require(ends.shape(0) == walls.size(), "from must be one row for each of walls");
+  require_below(ends.span(), all.rows, "from"), require_below(asked.span(), all.rows, "rows");
   require_within(shares.span(), 0.0, 1.0, "early");
   std::vector<double> entered(dim);
   const auto is_inside = [&](std::int64_t row) { return robot::enter(all[row], inside.robot().bounds, entered); };
-  require(is_inside(from) && std::ranges::all_of(asked.span(), is_inside), "pool must be within the joints' limits");
-  return as_row(without_gil([&] {
-    return robot_roadmap::rows_joined({walls, inside}, all, static_cast<std::size_t>(from), asked.span(),
-                                      shares.span());
-  }));
+  require(std::ranges::all_of(ends.span(), is_inside) && std::ranges::all_of(asked.span(), is_inside),
+          "pool must be within the joints' limits");
+  std::vector<robot_roadmap::HardQuery> queries;
+  for (std::size_t i = 0; i < walls.size(); i++) {
+    const Checker* each = value_of<Checker*>(walls[i], "walls");
+    require(&each->robot() == &inside.robot(), "all checkers must be of one robot");
+    queries.push_back({*each, static_cast<std::size_t>(ends.span()[i])});
+  }
+  robot_roadmap::Joined joined =
+      without_gil([&] { return robot_roadmap::rows_joined(queries, inside, all, asked.span(), shares.span()); });
+  return nb::make_tuple(as_row(std::move(joined.counts)), as_row(std::move(joined.rows)));
 }
 
 /// Return in how many of the scenes of some checkers each configuration, (n, dim), touches no obstacle.

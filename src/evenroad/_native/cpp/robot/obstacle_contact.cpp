@@ -40,6 +40,9 @@ struct Boxes {
   }
 };
 
+/// So few obstacles are looked at one by one: the box around all lanes of a capsule costs more than it saves.
+constexpr int FEW_OBSTACLES = 5;
+
 constexpr int MOST_OPEN = 64;
 
 /// A body and an obstacle of which true shapes are to decide, in some lanes.
@@ -145,7 +148,7 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
         const float radius = lengths.capsules[i];
         PlacedCapsule& capsule = places.capsules[i];
         Mask near = scene.tested(i, number) & near_body;
-        if (!many || std::popcount(near) > 2) {
+        if (std::popcount(near) > (many ? 2 : blocks == 1 ? FEW_OBSTACLES : 0)) {
           near &= near_obstacles(block, many || number == 0 ? make_around(capsule, radius) : capsule.around);
         }
         const Boxes boxes(capsule, radius);

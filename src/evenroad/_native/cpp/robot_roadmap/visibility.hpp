@@ -5,17 +5,23 @@
 
 namespace evenroad::robot_roadmap {
 
-/// A robot among the walls of a narrow passage, and among what never moves.
-struct Passage {
-  const robot::Checker &walls, &inside;
+/// A row of a pool, which is free of the walls of a narrow passage.
+struct HardQuery {
+  const robot::Checker& walls;
+  std::size_t from;
 };
 
-/// Return which rows of a pool, (n, dim), a straight motion joins to row `from`, which is free of the walls.
+/// Rows that motions join to queries: how many to each, and all of them.
+struct Joined {
+  std::vector<std::int64_t> counts, rows;
+};
+
+/// Return which rows of a pool, (n, dim), straight motions join to queries, free of the walls and of all `inside`.
 ///
 /// Nothing is proved.  Of sixteen motions at once the state at an `early` share of the way is looked at, one share
 /// after the other: most that leave a passage touch its walls at once.  Of the rest sixteen states are tested.
-std::vector<std::int64_t> rows_joined(const Passage& passage, Matrix<const double> pool, std::size_t from,
-                                      std::span<const std::int64_t> rows, std::span<const double> early);
+Joined rows_joined(std::span<const HardQuery> queries, const robot::Checker& inside, Matrix<const double> pool,
+                   std::span<const std::int64_t> rows, std::span<const double> early);
 
 /// Return in how many scenes each configuration, (n, dim), touches no obstacle.  All checkers are of one robot, whose
 /// places are found once for all.
