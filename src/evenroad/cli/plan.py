@@ -13,7 +13,7 @@ from typing import Annotated, Any, ClassVar
 import tyro
 
 from evenroad.cli.options import HELP, given_options, option_names
-from evenroad.cli.sampler import SamplerOptions
+from evenroad.cli.sampler import SamplerOptions, speaks_of_points
 from evenroad.errors import InvalidValue
 
 
@@ -73,6 +73,12 @@ class PlanOptions(SamplerOptions):
         module, _, name = self.planner.partition(":")
         code: int = getattr(import_module(module), name)(self)
         return code
+
+
+def wants_points(plan: PlanOptions) -> bool:
+    """Return whether an option names points or a connection rule."""
+    given = (plan.n, plan.k, plan.connect_radius)
+    return any(value is not None for value in given) or speaks_of_points(plan)
 
 
 @dataclass(frozen=True, kw_only=True)

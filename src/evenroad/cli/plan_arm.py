@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from evenroad.cli.plan import PlanArm
+from evenroad.cli.plan import PlanArm, wants_points
 from evenroad.cli.plan_parts import (
     chosen_budget,
     chosen_planner,
@@ -15,7 +15,6 @@ from evenroad.cli.plan_parts import (
     finish,
     made_of,
     output_files,
-    wants_points,
 )
 from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows

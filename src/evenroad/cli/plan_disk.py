@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad.cli.plan import PlanDisk
+from evenroad.cli.plan import PlanDisk, wants_points
 from evenroad.cli.plan_parts import (
     chosen_budget,
     chosen_planner,
@@ -15,7 +15,6 @@ from evenroad.cli.plan_parts import (
     finish,
     made_of,
     output_files,
-    wants_points,
 )
 from evenroad.cli.sampler import chosen_rule
 from evenroad.errors import InvalidValue

@@ -9,8 +9,8 @@ from typing import Any
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
-from evenroad.cli.plan import PlanOptions
-from evenroad.cli.sampler import chosen_rule, chosen_sampler, draw_points, require_seed, speaks_of_points
+from evenroad.cli.plan import PlanOptions, wants_points
+from evenroad.cli.sampler import chosen_rule, chosen_sampler, draw_points, require_seed
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
 from evenroad.planning.prm import PRM
@@ -34,12 +34,6 @@ def chosen_planner(plan: PlanOptions, request: Request, **of_prm: Any) -> Planne
         return default_planner(request.world, improve=plan.improve)
     points = draw_points(plan, _n(plan), request.world.space.cube_dim)
     return PRM(points, rule=chosen_rule(plan), **of_prm)
-
-
-def wants_points(plan: PlanOptions) -> bool:
-    """Return whether an option names points or a connection rule."""
-    given = (plan.n, plan.k, plan.connect_radius)
-    return any(value is not None for value in given) or speaks_of_points(plan)
 
 
 def chosen_budget(plan: PlanOptions) -> Budget:

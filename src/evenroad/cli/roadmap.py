@@ -13,8 +13,7 @@ import tyro
 from evenroad._checks import counted, require_positive
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table, progress_shown
-from evenroad.cli.plan import PlanArm, RobotOptions
-from evenroad.cli.plan_parts import wants_points
+from evenroad.cli.plan import PlanArm, RobotOptions, wants_points
 from evenroad.cli.sampler import require_seed
 from evenroad.errors import InvalidValue
 from evenroad.robot import ArmWorld, Scene, find_robot, find_scene, load_model, load_scene

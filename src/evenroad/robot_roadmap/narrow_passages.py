@@ -102,15 +102,15 @@ def hard_queries(
 
     def queries() -> Iterator[tuple[list[Checker], list[int]]]:
         """Yield passages and rows in them, some at once; a passage of several rows comes several times."""
-        drawn, asked = TRIES * count if tips.shape[1] else 0, 0
-        while asked < count and drawn > 0:
+        drawn, given = TRIES * count if tips.shape[1] else 0, 0
+        while given < count and drawn > 0:
             owns, which = rng.integers(len(tips), size=BATCH), rng.integers(tips.shape[1], size=BATCH)
             drawn -= BATCH
             passages: list[Checker] = []
-            ends: list[int] = []
+            own_rows: list[int] = []
             batch = passages_around(tips[owns, which], around, rng)
             for i in np.flatnonzero(~batch.touched_by(body[owns], radii)).tolist():
-                if asked + len(ends) == count:
+                if given + len(own_rows) == count:
                     break
                 own = int(owns[i])
                 # The pool is free of robot and static scene already.
@@ -119,17 +119,17 @@ def hard_queries(
                     continue
                 others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))
                 others = rng.permutation(others[passage.valid(pool[others])])[: IN_ONE - 1]
-                within = sorted({own, *others.tolist()})[: count - asked - len(ends)]
-                ends += within
+                within = sorted({own, *others.tolist()})[: count - given - len(own_rows)]
+                own_rows += within
                 passages += [passage] * len(within)
-            if ends:
-                asked += len(ends)
-                yield passages, ends
+            if own_rows:
+                given += len(own_rows)
+                yield passages, own_rows
 
-    def seen(passages: list[Checker], ends: list[int]) -> Iterator[tuple[int, Ints]]:
+    def seen(passages: list[Checker], own_rows: list[int]) -> Iterator[tuple[int, Ints]]:
         """Return queries, each with the candidates that straight motions join to it."""
-        counts, rows = rows_joined(passages, inside.checker, pool, np.array(ends), candidates, EARLY)
-        return zip(ends, np.split(rows, np.cumsum(counts)[:-1]), strict=True)
+        counts, rows = rows_joined(passages, inside.checker, pool, np.array(own_rows), candidates, EARLY)
+        return zip(own_rows, np.split(rows, np.cumsum(counts)[:-1]), strict=True)
 
     own_of: list[int] = []
     found: list[Ints] = []
@@ -182,7 +182,7 @@ class Passages(NamedTuple):
     def touched_by(self, body: Floats, radii: Floats) -> Bools:
         """Return which passages have a wall nearer to one of some points, (m, n, 3), than its radius, (n,): (m,).
 
-        It needs no world.  The last points, farthest from the base, touch most often: they are asked first.
+        It needs no world.  The last points, farthest from the base, touch most often: they are looked at first.
         """
         touched = np.zeros(len(body), dtype=np.bool_)
         half = len(radii) // 2
