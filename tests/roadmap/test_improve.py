@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.planning import Problem, plan
+from evenroad.planning import GrowingPRM, Problem, RRTConnect, plan
 from evenroad.planning.trees import default_planner, solve_by
 from evenroad.roadmap import Budget
 from evenroad.roadmap.attempt import NO_LIMIT
 from evenroad.roadmap.connector import Connection, Search
-from evenroad.space import BoxSpace
+from evenroad.space import SE2, SE3, BoxSpace
 from evenroad.world import FunctionWorld, GridMap
 
 HEIGHTS = (0.9, 0.7, 0.8, 0.3, 0.6)
@@ -106,3 +106,31 @@ def test_on_a_map_a_roadmap_grows_beside_the_first_path():
     assert world.motion_valid(best.path[:-1], best.path[1:]).all()
     assert best.stages[0].cost == first.cost
     assert [stage.points for stage in best.stages[1:]] == [64, 128, 256, 512]
+
+
+SPACES = [BoxSpace([0] * 2, [1] * 2), BoxSpace([0] * 5, [1] * 5), SE2([0] * 2, [1] * 2), SE3([0] * 3, [1] * 3)]
+
+
+def below_a_wall(q):
+    """Whether places are free, by their first two coordinates: a wall reaches up to 0.8."""
+    return ~((np.abs(q[:, 0] - 0.5) < 0.1) & (q[:, 1] < 0.8))
+
+
+@pytest.mark.parametrize("planner", [RRTConnect(improve=True), GrowingPRM(until="budget")], ids=repr)
+@pytest.mark.parametrize("space", SPACES, ids=lambda space: f"{space.dim} coordinates")
+def test_in_each_space_more_effort_never_hurts_and_the_result_says_how_far_the_path_is_from_the_shortest(
+    space, planner
+):
+    world = FunctionWorld(space, below_a_wall, 0.02)
+    ends = np.tile(space.from_cube(np.full((1, space.cube_dim), 0.5)), (2, 1))
+    ends[:, :2] = (0.1, 0.3), (0.9, 0.3)
+    budgets = [Budget(seconds=None, rounds=1, samples=64), Budget(seconds=None, rounds=3, samples=256)]
+    once, often = (plan(world, *ends, planner, limits=each) for each in budgets)
+    assert often.lower_bound == pytest.approx(0.8)
+    # Over both upper corners of the wall.
+    shortest = 0.2 + 2 * np.hypot(0.3, 0.5)
+    assert 0.999 * shortest <= often.cost
+    # A roadmap that grows keeps what is shortest along it, and smooths that in the end.
+    costs = [each.cost if isinstance(planner, RRTConnect) else each.milestone_cost for each in (once, often)]
+    assert costs[0] is None or costs[1] <= costs[0]
+    assert often.gap == pytest.approx(often.cost / 0.8 - 1)

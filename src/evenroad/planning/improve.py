@@ -112,7 +112,7 @@ def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage:
             best = result
             stages.append(Stage(nodes, nodes, attempt.motions_checked, best.cost, attempt.elapsed()))
     counts |= {"nodes": nodes, "edges_checked": attempt.motions_checked, "rounds": done}
-    message = f"{best.message}, the best of {done + 1}" if done else best.message
+    message = f"{best.message}, the best of {done + 1}: {_gap(best)}" if done else best.message
     return replace(best, message=message, counts=counts, stages=tuple(stages), timings=attempt.watch.seconds)
 
 
@@ -125,7 +125,8 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
     grown = GrowingPRM(until="budget").solve(rest_of(attempt, left))
     stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
     best = grown if grown.cost is not None and grown.cost < _cost(first) else first
-    return replace(best, counts=best.counts | {"rounds": len(grown.stages)}, stages=tuple(stages))
+    message = f"{best.message}: {_gap(best)}"
+    return replace(best, message=message, counts=best.counts | {"rounds": len(grown.stages)}, stages=tuple(stages))
 
 
 def _goes_on(attempt: Attempt, best: PlanResult, number: int) -> bool:

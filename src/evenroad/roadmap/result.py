@@ -16,7 +16,7 @@ from evenroad.roadmap.certificate import Certificate
 from evenroad.roadmap.result_methods import ResultMethods
 from evenroad.space import Space
 from evenroad.space.path import path_length
-from evenroad.world import MeasuresPaths, NamesNearest, World
+from evenroad.world import BoundsLengths, MeasuresPaths, NamesNearest, World
 
 NO_POINTS = Origin(family="none", method="no points")
 """Origin of a result whose planner draws no points."""
@@ -178,15 +178,29 @@ class PlanResult(ResultMethods):
         return self.world.nearest_along(self.path)
 
     @cached_property
-    def gap(self) -> float | None:
-        """By what share the path is longer than the shortest, at most: no path is shorter than the straight distance
-        from the start to the nearest goal.  None without a path, and in a plan that was read from a file.
+    def lower_bound(self) -> float | None:
+        """A length that no path from the start to a goal falls below, in the units of the space.
+
+        For a disk on a map it is that of the shortest way through all cells that are not blocked throughout, found in
+        some milliseconds on first use; else the straight distance to the nearest goal.  None in a plan that was read
+        from a file.
         """
-        if self.path is None or self.world is None:
+        if self.world is None:
             return None
-        space = self.world.space
-        least = float(space.distance(np.broadcast_to(self.start, self.goals.shape), self.goals).min())
-        length = path_length(self.path, space)
+        if isinstance(self.world, BoundsLengths):
+            return self.world.least_length(self.start, self.goals)
+        return float(self.world.space.distance(np.broadcast_to(self.start, self.goals.shape), self.goals).min())
+
+    @cached_property
+    def gap(self) -> float | None:
+        """By what share the path is longer than the shortest, at most: no path is shorter than `lower_bound`.
+
+        None without a path, and in a plan that was read from a file.
+        """
+        least = self.lower_bound
+        if self.path is None or self.world is None or least is None:
+            return None
+        length = path_length(self.path, self.world.space)
         return max(length / least - 1.0, 0.0) if least > 0.0 else 0.0 if length == 0.0 else np.inf
 
     @property

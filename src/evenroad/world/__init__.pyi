@@ -4,6 +4,7 @@ from evenroad.world.gridmap import GridMap as GridMap
 from evenroad.world.gridmap import MapFrame as MapFrame
 from evenroad.world.gridmap import load_map as load_map
 from evenroad.world.protocol import Apart as Apart
+from evenroad.world.protocol import BoundsLengths as BoundsLengths
 from evenroad.world.protocol import Explains as Explains
 from evenroad.world.protocol import ExplainsStarts as ExplainsStarts
 from evenroad.world.protocol import MeasuresPaths as MeasuresPaths

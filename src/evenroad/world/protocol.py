@@ -75,6 +75,14 @@ class NamesNearest(Protocol):
         """Return the names of the robot's body and the obstacle that come nearest along a path, (p, dim)."""
 
 
+@runtime_checkable
+class BoundsLengths(Protocol):
+    """A world that knows more of how short a path can be than the straight distance."""
+
+    def least_length(self, start: Floats, goals: Floats) -> float:
+        """Return a length that no path from the start, (dim,), to any goal, (g, dim), falls below."""
+
+
 @dataclass(frozen=True)
 class Apart:
     """A proof that no path leads from a start to its goals."""

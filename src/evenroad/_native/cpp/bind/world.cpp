@@ -3,6 +3,7 @@
 #include "world/components.hpp"
 #include "world/disk.hpp"
 #include "world/lattice_path.hpp"
+#include "world/least_length.hpp"
 #include "world/nearest_place.hpp"
 
 namespace evenroad::bind {
@@ -128,6 +129,13 @@ nb::tuple straighten(const world::Disk& disk, nb::handle path) {
   return nb::make_tuple(as_rows(found.points), found.motions);
 }
 
+double least_length(const world::Disk& disk, nb::handle start, nb::handle goal, std::int64_t most) {
+  const Floats from(start, "start"), to(goal, "goal");
+  const auto first = from.of_shape({2}).span(), last = to.of_shape({2}).span();
+  require_budget(most, "most");
+  return without_gil([&] { return world::least_length(disk, {first[0], first[1]}, {last[0], last[1]}, most); });
+}
+
 void make_components(world::Components* self, const world::Disk& disk) {
   without_gil([&] { new (self) world::Components(disk); });
 }
@@ -157,7 +165,8 @@ void add_world(nb::module_& module) {
       .def("cells", &cells)
       .def("gates", &gates)
       .def("find_path", &find_path, "start"_a.none(), "goals"_a.none(), "most"_a)
-      .def("straighten", &straighten, "path"_a.none());
+      .def("straighten", &straighten, "path"_a.none())
+      .def("least_length", &least_length, "start"_a.none(), "goal"_a.none(), "most"_a);
   nb::class_<world::Components>(part, "Components", "Which places of a disk on a map hang together.")
       .def("__init__", &make_components, "disk"_a)
       .def("at", &component_at, "column"_a, "row"_a)
