@@ -2,6 +2,9 @@ from evenroad.points.npz import load_points as load_points
 from evenroad.points.npz import save_points as save_points
 from evenroad.points.pointset import Origin as Origin
 from evenroad.points.pointset import PointSet as PointSet
+from evenroad.points.reuse import greedy_order as greedy_order
+from evenroad.points.reuse import prefix_discrepancies as prefix_discrepancies
+from evenroad.points.reuse import project as project
 from evenroad.points.samplers import SAMPLERS as SAMPLERS
 from evenroad.points.samplers import Sampler as Sampler
 from evenroad.points.samplers import draw as draw

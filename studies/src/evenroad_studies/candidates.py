@@ -3,7 +3,8 @@
 ``centroidal``: points in the centroids of their Voronoi cells, by Lloyd's steps over random samples.  ``holes``: the
 same with the cells' far samples weighted, so that the largest hole shrinks (Lloyd for the 8th moment instead of the
 second).  ``farthest``: greedy farthest points of a random pool, on the torus.  ``poisson``: what is left of five times
-as many random points when the most crowded go one by one, on the torus (Yuksel 2015).
+as many random points when the most crowded go one by one, on the torus (Yuksel 2015).  ``projected``: a trained set of
+ten dimensions on its best axes.  ``ordered``: the first points of a trained set of 1024 in greedy order.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from evenroad._arrays import Floats, Ints
-from evenroad.points import draw
+from evenroad.points import draw, greedy_order, project
 from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import Symmetry, randomise
 
@@ -111,12 +112,24 @@ def inset(share: float, make: Draw, n: int, d: int, world: int) -> Floats:
     return 0.5 + share * (make(n, d, world) - 0.5)
 
 
+def projected(n: int, d: int, seed: int) -> Floats:
+    """Return the projection of a trained set of ten dimensions, (n, d), d <= 10."""
+    return project(draw("hickernell", n, 10, rng=seed), d).points
+
+
+def ordered(n: int, d: int, seed: int) -> Floats:
+    """Return the first points of a trained set of 1024 in greedy order, (n, d)."""
+    return greedy_order(draw("hickernell", 1024, d, rng=seed)).points[:n].copy()
+
+
 _SLOW: Mapping[str, Draw] = {
     "centroidal": partial(voronoi, 2.0),
     "holes": partial(voronoi, 8.0),
     "farthest": farthest,
     "poisson": poisson,
     "lattice": partial(_drawn, "lattice"),
+    "projected": projected,
+    "ordered": ordered,
 }
 CANDIDATES: dict[str, Draw] = {
     **{name: partial(_drawn, name) for name in ("even", "korobov", "sobol", "halton", "growing", "uniform")},

@@ -146,3 +146,17 @@ def pair_sums(columns: Floats, pairs: Pairs, want_gradient: bool) -> tuple[Float
     if isinstance(pairs, MaximumPairs):
         return maximum_pair_sums(columns, *pairs, want_gradient)
     return distance_pair_sums(columns, pairs, want_gradient)
+
+
+def pair_row(columns: Floats, pairs: Pairs, i: int, others: slice = slice(None)) -> Floats:
+    """Return the pair products of point i with some of all points, by default all."""
+    row = np.ones(columns[0, others].shape)
+    for axis, x in enumerate(columns):
+        y = x[others]
+        if isinstance(pairs, MaximumPairs):
+            row *= pairs.ceiling[axis] - pairs.slope[axis] * np.maximum(y, x[i])
+        else:
+            gap, own = np.abs(y - x[i]), pairs.own[axis]
+            factor = pairs.level[axis] + own[i] + own[others]
+            row *= factor - gap * (pairs.slope[axis] - pairs.curvature[axis] * gap)
+    return row

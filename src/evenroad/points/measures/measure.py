@@ -45,6 +45,11 @@ class Measure:
         """Return the discrepancy, the square root of :meth:`squared`; same parameters and errors."""
         return math.sqrt(self.squared(points, weights))
 
+    def terms_of(self, points: object) -> tuple[Floats, l2.ProductTerms]:
+        """Return the points as columns, (d, n), and the parts of the closed form there; errors as :meth:`squared`."""
+        columns, weights = self._checked(points, None)
+        return columns, self.terms(columns, weights)
+
     def of_columns(self, columns: Floats, weights: Floats | None = None) -> tuple[float, Floats]:
         """Return the rooted measure and its gradient, (d, n), at checked points of shape (d, n): for inner loops.
 
