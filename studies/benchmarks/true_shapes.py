@@ -1,34 +1,47 @@
-"""Plans of arms in shelves, boxes, cages and on tables, with the makers' shapes and with capsules.
+"""Plans of arms in shelves, boxes and cages, on tables and under them, with the makers' shapes and with capsules.
 
     python -m studies.benchmarks.true_shapes OUT.csv ROBOT.urdf ... [--each 25]
+    python -m studies.benchmarks.true_shapes OUT.csv --table
 
 Ends are near obstacles and free by `CLEAR` in coal, on the triangles of the files.  For each robot and family: how
 many problems either solves, how many ends it refuses, how many states of its paths touch an obstacle in coal by more
 than `DEEP`, and how long a plan with shapes takes in parts of the same with capsules, where both solve it.
+
+Three more ratios say where that comes from.  ``same`` is the time that shapes take for the motions between nodes of the
+trees that they grow, in parts of what capsules take for the same motions: what a test costs.  ``back`` is the time that
+capsules take from goal to start, in parts of that from start to goal: what is luck of a search.  ``motions`` is how
+many more motions a plan with shapes looks at.  ``--table`` prints the rows as docs/robots.md has them.
 """
 
 from __future__ import annotations
 
+import csv
 import time
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from studies.benchmarks.obstacle_truth import CLEAR, DEEP, touching
+from studies.benchmarks.obstacle_truth import CLEAR, DEEP, held_joints, touching
 from studies.benchmarks.robot_truth import Truth
 from studies.benchmarks.rows import parser_of, write_rows
 
 import evenroad as er
+from evenroad.planning.arm_trees import grown_trees
 from evenroad.robot import ArmWorld, Robot, Scene, load_robot
 from evenroad.robot.scene import Obstacle
 from evenroad.space.path import resample
 
+REACH = 1.5
+"""Length of a motion of trees at most [rad]."""
 NEAR = 0.04
 """Ends are those that are blocked for capsules with this clearance [m]."""
 COLUMNS = (
     *("robot", "family", "problems", "solved", "solved_capsules", "refused", "refused_capsules"),
     *("states", "states_that_touch", "ms", "ms_capsules", "ratio_median", "ratio_95"),
+    *("same_median", "same_95", "back_median", "back_95", "motions_median", "motions_95"),
 )
+RATIOS = ("ratio", "same", "back", "motions")
 
 
 def box(name: str, size: tuple[float, ...], *xyz: float) -> Obstacle:
@@ -91,7 +104,18 @@ def table(rng: np.random.Generator) -> list[Obstacle]:
     return [box("top", (0.5, 1.0, 0.03), x, 0.0, z), *legs, *things]
 
 
-FAMILIES = {each.__name__: each for each in (shelves, box_with_lid, cage, table)}
+def under_a_table(rng: np.random.Generator) -> list[Obstacle]:
+    """Return a table top before the robot, under which it reaches, with four legs and a beam along its front."""
+    x, z = rng.uniform(0.5, 0.65), rng.uniform(0.45, 0.65)
+    legs = [
+        box(f"leg{i}", (0.05, 0.05, z), x + dx, dy, z / 2)
+        for i, (dx, dy) in enumerate((dx, dy) for dx in (-0.25, 0.25) for dy in (-0.45, 0.45))
+    ]
+    return [box("top", (0.6, 1.0, 0.03), x, 0.0, z), box("beam", (0.03, 0.9, 0.08), x - 0.25, 0.0, z - 0.06), *legs]
+
+
+FAMILIES = {each.__name__: each for each in (shelves, box_with_lid, cage, table, under_a_table)}
+"""What the problems are of; the seed of each is its number."""
 
 
 def problems(robot: Robot, truth: Truth, family: str, each: int) -> list[tuple[Scene, np.ndarray, np.ndarray]]:
@@ -110,63 +134,107 @@ def problems(robot: Robot, truth: Truth, family: str, each: int) -> list[tuple[S
 
 def planned(robot: Robot, scene: Scene, start: np.ndarray, goal: np.ndarray) -> tuple[er.PlanResult, float]:
     """Return a plan, and the least of its processor's seconds of three tries after the first."""
-    world, least = ArmWorld(robot, scene), np.inf
+    world = ArmWorld(robot, scene)
     result = er.plan(world, start, goal)
-    for _ in range(3 if result.solved else 0):
+    return result, seconds(lambda: er.plan(world, start, goal)) if result.solved else np.nan
+
+
+def seconds(call: Callable[[], object]) -> float:
+    """Return the least of the processor's seconds of three calls."""
+    took = []
+    for _ in range(3):
         began = time.process_time()
-        er.plan(world, start, goal)
-        least = min(least, time.process_time() - began)
-    return result, least
+        call()
+        took.append(time.process_time() - began)
+    return min(took)
 
 
-def measured(file: Path, each: int) -> list[dict[str, object]]:
-    """Return the rows of one robot."""
+def same_motions(shaped: ArmWorld, capsules: ArmWorld, start: np.ndarray, goal: np.ndarray) -> float:
+    """Return the time that shapes take for motions between nodes of their trees, in parts of that of capsules.
+
+    Of each node: the motion to the node before, which is free, and one to a node at random, for at most `REACH`.
+    """
+    nodes, edges = grown_trees(shaped, start, goal[np.newaxis])
+    others = nodes[np.random.default_rng(0).permutation(len(nodes))]
+    far = np.linalg.norm(others - nodes, axis=1, keepdims=True)
+    tried = nodes + (others - nodes) * np.minimum(1.0, REACH / np.maximum(far, 1e-9))
+    a, b = np.concatenate([nodes[edges[:, 0]], nodes]), np.concatenate([nodes[edges[:, 1]], tried])
+    times = max(1, 400 // len(a))
+    a, b = np.tile(a, (times, 1)), np.tile(b, (times, 1))
+    return seconds(lambda: shaped.motion_valid(a, b)) / seconds(lambda: capsules.motion_valid(a, b))
+
+
+def motions_of(result: er.PlanResult) -> int:
+    """Return how many motions a plan looked at."""
+    return result.counts["edges_checked"] + result.counts["shortcut_motions"]
+
+
+def measured(file: Path, each: int) -> Iterator[dict[str, object]]:
+    """Yield the rows of one robot."""
     robot = load_robot(file)
     arm = [name for name in robot.group if not any(word in name for word in ("finger", "robotiq", "gripper", "drive"))]
     robot = load_robot(file, group=arm)
-    held = {
-        joint.name: robot.held.get(joint.name, joint.neutral)
-        for joint in robot.joints
-        if joint.kind != "fixed" and joint.mimic is None and joint.name not in robot.group
-    }
-    truth, rows = Truth(file, robot.group, held), []
+    capsules, truth = replace(robot, shapes=()), Truth(file, robot.group, held_joints(robot))
     for family in FAMILIES:
         count = dict.fromkeys(COLUMNS[2:9], 0)
-        seconds = []
+        rows = []
         for scene, start, goal in problems(robot, truth, family, each):
+            (result, spent), (plain, spent_plain) = (planned(of, scene, start, goal) for of in (robot, capsules))
             count["problems"] += 1
-            took = []
-            for of, end in ((robot, ""), (replace(robot, shapes=()), "_capsules")):
-                result, spent = planned(of, scene, start, goal)
-                count["solved" + end] += result.solved
-                count["refused" + end] += str(result.status).endswith("invalid")
-                took.append(spent if result.solved else np.nan)
-                if result.solved and not end:
-                    states = resample(
-                        result.path, result.space if hasattr(result, "space") else ArmWorld(of).space, 0.05
-                    )[0]
-                    count["states"] += len(states)
-                    count["states_that_touch"] += int(touching(truth, scene, states, -DEEP).sum())
-            seconds.append(took)
-        both = np.array(seconds)[~np.isnan(seconds).any(axis=1)]
-        ratio = both[:, 0] / both[:, 1] if len(both) else np.array([np.nan])
-        times = dict(zip(("ms", "ms_capsules"), (1e3 * np.median(both, axis=0)).round(2), strict=True))
-        rows.append({
-            "robot": file.stem, "family": family, **count, **times,
-            "ratio_median": round(float(np.median(ratio)), 3), "ratio_95": round(float(np.quantile(ratio, 0.95)), 3),
-        })  # fmt: skip
-        print(rows[-1], flush=True)
-    return rows
+            for end, found in (("", result), ("_capsules", plain)):
+                count["solved" + end] += found.solved
+                count["refused" + end] += str(found.status).endswith("invalid")
+            if result.solved:
+                world = ArmWorld(robot, scene)
+                states = resample(result.path, world.space, 0.05)[0]
+                count["states"] += len(states)
+                count["states_that_touch"] += int(touching(truth, scene, states, -DEEP).sum())
+            if result.solved and plain.solved:
+                back = planned(capsules, scene, goal, start)[1] / spent_plain
+                same = same_motions(world, ArmWorld(capsules, scene), start, goal)
+                rows.append((spent, spent_plain, same, back, motions_of(result) / max(1, motions_of(plain))))
+        both = np.array(rows).reshape(-1, 5)
+        shares = np.c_[both[:, 0] / both[:, 1], both[:, 2:]]
+        row = {"robot": file.stem, "family": family, **count}
+        for key, column in zip(RATIOS, shares.T, strict=True):
+            middle, most = np.nanquantile(column, (0.5, 0.95)) if len(column) else (np.nan, np.nan)
+            row |= {f"{key}_median": round(float(middle), 3), f"{key}_95": round(float(most), 3)}
+        row |= dict(zip(("ms", "ms_capsules"), (1e3 * np.median(both[:, :2], axis=0)).round(2).tolist(), strict=True))
+        print(row, flush=True)
+        yield row
+
+
+def table(rows: list[dict[str, str]]) -> str:
+    """Return the rows as a table of a page."""
+    head = ("robot", "family", "problems", "solved", "by capsules", "touching", "ms", "ratio", "same", "back")
+    lines = [f"| {' | '.join(head)} |", "|" + "---|" * len(head)]
+    for row in rows:
+        cells = (
+            *(row["robot"], row["family"].replace("_", " "), row["problems"], row["solved"], row["solved_capsules"]),
+            *(f"{row['states_that_touch']} of {row['states']}", f"{float(row['ms']):.2f}"),
+            *(f"{float(row[f'{key}_median']):.2f} / {float(row[f'{key}_95']):.2f}" for key in RATIOS[:3]),
+        )
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
 
 
 def main() -> None:
-    """Write a row for each robot and family."""
+    """Write a row for each robot and family as soon as it is there, or print the table of a file's rows."""
     parser = parser_of(__doc__)
     parser.add_argument("out", type=Path)
-    parser.add_argument("robots", type=Path, nargs="+")
+    parser.add_argument("robots", type=Path, nargs="*")
     parser.add_argument("--each", type=int, default=25)
+    parser.add_argument("--table", action="store_true")
     given = parser.parse_args()
-    write_rows(given.out, COLUMNS, [row for file in given.robots for row in measured(file, given.each)])
+    if given.table:
+        with given.out.open(newline="") as stream:
+            print(table(list(csv.DictReader(stream))))
+        return
+    done: list[dict[str, object]] = []
+    for file in given.robots:
+        for row in measured(file, given.each):
+            done.append(row)
+            write_rows(given.out, COLUMNS, done)
 
 
 if __name__ == "__main__":
