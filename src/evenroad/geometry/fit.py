@@ -31,6 +31,8 @@ _SHOWN = 2000
 """Number of triangles by which parts are compared."""
 _COMPARED = 128
 """Number of directions in which corners of parts are compared."""
+_AT_ONCE = 1 << 16
+"""Number of products of points and directions that are looked at together."""
 
 
 def fit_capsules(shape: Shape) -> tuple[Capsule, ...]:
@@ -175,7 +177,15 @@ def farthest(points: Floats, count: int) -> Floats:
     turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
     around = np.sqrt(1.0 - z**2)
     directions = np.stack([around * np.cos(turn), around * np.sin(turn), z], axis=1)
-    return points[np.unique((directions @ points.T).argmax(axis=1))]
+    most, which = np.full(count, -np.inf), np.zeros(count, dtype=np.int64)
+    # Of so few at a time the products stay in the processor's cache, and no threads wait for each other.
+    some = max(1, _AT_ONCE // count)
+    for first in range(0, len(points), some):
+        along = directions @ points[first : first + some].T
+        here = along.argmax(axis=1)
+        reached = along[np.arange(count), here]
+        which, most = np.where(reached > most, here + first, which), np.maximum(reached, most)
+    return points[np.unique(which)]
 
 
 def used(points: Floats, triangles: Ints) -> Floats:
