@@ -4,12 +4,16 @@ import tracemalloc
 
 import numpy as np
 import pytest
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from evenroad.points import PointSet, draw
 from evenroad.points.measures.rank_one import generating_vector
 from evenroad.points.samplers.even import Even, contracted
 from evenroad.points.samplers.lattice import Lattice
 from evenroad.points.samplers.rank_one import rank_one_vector
+from evenroad.roadmap.rules import KNearest, default_rule
+from evenroad.space import BoxSpace
 from tests.points.samplers.sampler_contract import SamplerContract
 
 
@@ -71,3 +75,20 @@ class TestDrawnIn:
     def test_corners_stay_in_the_cube(self):
         corner = PointSet(np.full((1, 5), np.nextafter(1.0, 0.0)))
         assert contracted(corner, 1.0).points.max() < 1.0
+
+
+@pytest.mark.parametrize("d", range(2, 11))
+def test_without_obstacles_neighbours_lead_everywhere_and_in_all_directions(d):
+    default = default_rule(BoxSpace([0.0] * d, [1.0] * d)).k
+    # From five dimensions on no lattice has its four or six nearest points on all sides: see which-points.md.
+    rules = {4, 6, default} if d <= 4 else {default}
+    for n in (128, 256, 777):
+        points = draw("even", n, d, rng=n).points
+        for k in rules:
+            first, last = KNearest(k).edges(points).T
+            pieces, _ = connected_components(coo_array((np.ones(len(first)), (first, last)), shape=(n, n)))
+            assert pieces == 1, (n, k)
+            edges = points[last] - points[first]
+            edges /= np.linalg.norm(edges, axis=1, keepdims=True)
+            # Directions that are all alike have a least eigenvalue of 1, those in a plane of 0.
+            assert d * np.linalg.eigvalsh(edges.T @ edges / len(edges))[0] > (0.5 if d <= 4 else 0.15), (n, k)
