@@ -4,8 +4,9 @@ import itertools
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicHermiteSpline
 
-from evenroad._native.trajectory import distances_to
+from evenroad._native.trajectory import distances_to, largest_share
 from evenroad.trajectory import Limits
 from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.timing import fastest, paused, slowed
@@ -137,3 +138,74 @@ def test_points_are_as_far_as_the_nearest_motion_is():
     expected = [np.linalg.norm(dense - point, axis=1).min() for point in points]
     np.testing.assert_allclose(distances_to(path, points), expected, atol=1e-4)
     assert distances_to(path, path).max() < 1e-12
+
+
+def rounded_slowly(path, deviation):
+    """The columns of a rounded path, corner by corner."""
+    steps = np.diff(path, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    directions = steps / lengths[:, None]
+    before, after = directions[:-1], directions[1:]
+    half = np.arctan2(np.linalg.norm(after - before, axis=1), np.linalg.norm(after + before, axis=1))
+    turns = half > 0.5e-6
+    is_round = turns & (half < 0.5 * np.pi - 1e-3) & (deviation[1:-1] > 0.0)
+    cut = np.zeros(len(path))
+    for i in np.flatnonzero(is_round):
+        by_deviation = deviation[i + 1] * np.sin(half[i]) / (1.0 - np.cos(half[i]))
+        cut[i + 1] = min(lengths[i] / 2, lengths[i + 1] / 2, by_deviation)
+    pieces, corners, stops, total = [], [], [], 0.0
+    for i, (length, direction) in enumerate(zip(lengths, directions, strict=True)):
+        if i and is_round[i - 1]:
+            radius = cut[i] / np.tan(half[i - 1])
+            inward = after[i - 1] - before[i - 1]
+            centre = path[i] + inward / np.linalg.norm(inward) * radius / np.cos(half[i - 1])
+            out = (path[i] - cut[i] * before[i - 1] - centre) / radius
+            pieces.append((total, *centre, *out, *before[i - 1], 1.0 / radius))
+            corners.append(total + radius * half[i - 1])
+            total += radius * 2.0 * half[i - 1]
+        elif i:
+            corners.append(total)
+            stops += [total] if turns[i - 1] else []
+        if (line := length - cut[i] - cut[i + 1]) > 1e-12 * length:
+            pieces.append((total, *(path[i] + cut[i] * direction), *np.zeros(len(direction)), *direction, 0.0))
+            total += line
+    return np.array(pieces), corners, stops, total
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_corners_are_rounded_as_one_by_one(seed):
+    rng = np.random.default_rng(seed)
+    path, dim = curve(seed)[0], 4
+    path[-1] = path[-3] if seed == 3 else path[-1]  # a reversal
+    deviation = np.where(rng.random(len(path)) < 0.3, 0.0, rng.choice([0.02, 0.5], len(path)))
+    found, (pieces, corners, stops, total) = rounded(path, deviation), rounded_slowly(path, deviation)
+    columns = np.column_stack([found.starts[:-1], found.origin, found.out, found.along, found.bend])
+    np.testing.assert_allclose(columns, pieces, rtol=1e-9, atol=1e-12)
+    assert columns.shape == (len(pieces), 2 + 3 * dim)
+    np.testing.assert_allclose(found.corners, corners, rtol=1e-12)
+    np.testing.assert_allclose(found.stops, stops, rtol=1e-12)
+    assert found.length == pytest.approx(total, rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_averages_are_those_of_splines(seed):
+    window, law = 0.17, fastest(curve(seed)[1], limits_from(seed))
+    t = np.linspace(0.0, law.duration + window, 1501)
+    grid = np.linspace(-window, law.duration + window, len(t) + 1)
+    travelled = CubicHermiteSpline(grid, *states(law, grid)[:2]).antiderivative()
+    now, before = states(law, t), states(law, t - window)
+    positions = (travelled(t) - travelled(t - window)) / window
+    positions[[0, -1]] = now[0][[0, -1]]
+    found = law.averages(window, t)
+    np.testing.assert_allclose(found[0], positions, rtol=1e-9, atol=1e-11)
+    np.testing.assert_allclose(found[1], (now[0] - before[0]) / window, rtol=1e-9, atol=1e-11)
+    np.testing.assert_allclose(found[2], (now[1] - before[1]) / window, rtol=1e-9, atol=1e-10)
+
+
+@pytest.mark.parametrize("shape", [(0, 3), (1, 3), (57, 3), (40, 20), (5, 0), (0, 0)])
+def test_the_largest_share_is_that_of_all_entries_also_of_none(shape):
+    rng = np.random.default_rng(7)
+    rows, most = rng.normal(size=shape), rng.uniform(0.5, 2.0, shape[1])
+    assert largest_share(rows, most) == np.max(np.abs(rows) / most, initial=0.0)
+    steps = np.diff(rows, axis=0)
+    assert largest_share(rows, most, of_steps=True) == np.max(np.abs(steps) / most, initial=0.0)

@@ -88,6 +88,8 @@ class Limits:
         """Return the limits at a share of full speed, 0 < speed <= 1."""
         if require_positive("speed", speed) > 1.0:
             raise InvalidValue(f"speed must be at most 1, the robot's own limits, got {speed!r}")
+        if speed == 1.0:
+            return self
 
         def scaled(row: tuple[float, ...], power: int) -> tuple[float, ...]:
             return tuple(value * speed**power for value in row)

@@ -11,13 +11,13 @@ import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
 from evenroad._checks import as_batch, require_positive
-from evenroad._native.trajectory import distances_to
+from evenroad._native.trajectory import distances_to, largest_share
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.limits import Limits
 from evenroad.trajectory.timing import TimeLaw, fastest, paused, slowed
 from evenroad.trajectory.trajectory import Trajectory
-from evenroad.world import ValidatesPaths, World
+from evenroad.world import World
 
 STEP = 0.008
 """Time between two states of a trajectory [s]: the cycle of a UR controller, 125 Hz."""
@@ -103,7 +103,7 @@ def make_trajectory(
         curve = rounded(waypoints, cuts)
         law, fine, states = _on_steps(paused(fastest(curve, limits), window), limits, window, step)
         if window > 0.0:
-            states = _averaged(law, window, fine)
+            states = law.averages(window, fine)
         off = distances_to(waypoints, states[0])
         positions = states[0][::_FINER]
         free, proof = drivable(world, positions)
@@ -115,7 +115,7 @@ def make_trajectory(
         raise NotAvailable(f"the trajectory is not proved free, or not near enough to its path, at {bad[0]:.3f} s")
     highest = _shares(states, limits)
     if limits.jerk is not None:
-        highest["jerk"] = float(np.max(np.abs(np.diff(states[2], axis=0)) / fine[1] / limits.jerk))
+        highest["jerk"] = largest_share(states[2], fine[1] * np.array(limits.jerk), of_steps=True)
     return Trajectory(
         names=joints,
         times=fine[::_FINER],
@@ -135,6 +135,8 @@ def make_trajectory(
 
 def _apart(path: Floats) -> Floats:
     """Return a path without repeated waypoints, up to rounding; the first and the last stay as they are."""
+    if len(path) < 2 or np.abs(np.diff(path, axis=0)).max(axis=1).min() > _SAME:
+        return path.copy()
     kept: list[Floats] = []
     for position in path:
         if not kept or np.max(np.abs(position - kept[-1])) > _SAME:
@@ -165,32 +167,22 @@ def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> tuple
         steps += 1
 
 
-def _averaged(law: TimeLaw, window: float, t: Floats) -> States:
-    """Return positions, velocities and accelerations, (n, dim) each, averaged over the `window` before each time."""
-    # Imported late: it takes longer than all else, and few limits are of jerk.
-    from scipy.interpolate import CubicHermiteSpline
-
-    grid = np.linspace(-window, law.duration + window, len(t) + 1)
-    position, velocity, _ = law.at(grid)
-    travelled = CubicHermiteSpline(grid, position, velocity).antiderivative()
-    (position, velocity, _), (position_before, velocity_before, _) = law.at(t), law.at(t - window)
-    positions = (travelled(t) - travelled(t - window)) / window
-    positions[[0, -1]] = position[[0, -1]]
-    return positions, (position - position_before) / window, (velocity - velocity_before) / window
-
-
 def _shares(states: States, limits: Limits) -> dict[str, float]:
     """Return the largest share of velocity and of acceleration that states use."""
-    used = {"velocity": states[1], "acceleration": states[2]}
-    return {kind: float(np.max(np.abs(rows).max(axis=0) / getattr(limits, kind))) for kind, rows in used.items()}
+    _, velocity, acceleration = states
+    return {
+        "velocity": largest_share(velocity, np.array(limits.velocity)),
+        "acceleration": largest_share(acceleration, np.array(limits.acceleration)),
+    }
 
 
 def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:
     """Return which motions from state to state are free, (n - 1,), and the proof."""
     if world is None:
         return np.ones(len(positions) - 1, dtype=bool), "unchecked"
-    if isinstance(world, ValidatesPaths):
-        return world.validate(positions), world.proof
+    # `isinstance` would take as long as the fastest times.
+    if (validate := getattr(world, "validate", None)) is not None:
+        return validate(positions), str(getattr(world, "proof", "resolution"))
     return world.motion_valid(positions[:-1], positions[1:]), str(getattr(world, "proof", "resolution"))
 
 

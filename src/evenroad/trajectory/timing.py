@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
+from evenroad._native.trajectory import averages, largest_shares, states
 from evenroad._native.trajectory import fastest as native_fastest
-from evenroad._native.trajectory import largest_shares, states
 from evenroad.trajectory.blends import RoundedPath
 from evenroad.trajectory.limits import Limits
 
@@ -58,6 +58,10 @@ class TimeLaw:
     def at(self, t: Floats) -> tuple[Floats, Floats, Floats]:
         """Return positions, velocities and accelerations, (n, dim) each, at times, (n,) [s]; at rest outside."""
         return states(self.path.columns, self.columns, t)
+
+    def averages(self, window: float, t: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the same at rising times, averaged over the `window` before each, > 0 [s]."""
+        return averages(self.path.columns, self.columns, window, t)
 
     def largest_shares(self, limits: Limits, samples: int) -> tuple[float, float]:
         """Return the largest shares of velocity and acceleration at `samples` times in each interval."""

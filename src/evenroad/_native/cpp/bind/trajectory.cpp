@@ -3,6 +3,8 @@
 #include <functional>
 
 #include "bind/arrays.hpp"
+#include "trajectory/averages.hpp"
+#include "trajectory/blends.hpp"
 #include "trajectory/time_law.hpp"
 
 namespace evenroad::bind {
@@ -10,6 +12,9 @@ namespace evenroad::bind {
 namespace {
 
 constexpr std::size_t MOST_SAMPLES = 1 << 20;
+
+/// No motion takes longer [s].
+constexpr double LONGEST = 1e9;
 
 using trajectory::RoundedPath;
 using trajectory::TimeLaw;
@@ -100,6 +105,50 @@ nb::tuple largest_shares(nb::tuple path, nb::tuple law, nb::handle velocity, nb:
   return nb::make_tuple(shares.velocity, shares.acceleration);
 }
 
+nb::tuple rounded(nb::handle waypoints, nb::handle deviation) {
+  const FloatRows points(waypoints, "waypoints");
+  const Floats within(deviation, "deviation");
+  require(points.shape(0) >= 2, "waypoints must be 2 or more");
+  within.of_shape({points.shape(0)});
+  const auto rows = points.matrix();
+  for (std::size_t i = 1; i < rows.rows; i++) {
+    require(!std::ranges::equal(rows[i - 1], rows[i]), "no two waypoints in a row may be equal");
+  }
+  trajectory::Blends path = without_gil([&] { return trajectory::rounded(rows, within.span()); });
+  const std::size_t dim = points.shape(1);
+  return nb::make_tuple(as_row(std::move(path.starts)), as_rows(std::move(path.origin), dim),
+                        as_rows(std::move(path.out), dim), as_rows(std::move(path.along), dim),
+                        as_row(std::move(path.bend)), as_row(std::move(path.corners)), as_row(std::move(path.stops)));
+}
+
+nb::tuple averages(nb::tuple path, nb::tuple law, double window, nb::handle times) {
+  const PathArrays arrays(path);
+  const LawArrays when(law);
+  const Floats t(times, "t");
+  const double duration = when.law().times.back();
+  require(window > 0.0 && window <= LONGEST, "window must be > 0 and at most 1e9");
+  require(duration >= 0.0 && duration <= LONGEST, "times must end from 0 to 1e9");
+  const std::size_t dim = arrays.path().dim();
+  OwnMatrix<double> positions(t.size(), dim), velocities(t.size(), dim), accelerations(t.size(), dim);
+  without_gil([&] {
+    trajectory::write_averages(arrays.path(), when.law(), window, t.span(), positions, velocities, accelerations);
+    return 0;
+  });
+  return nb::make_tuple(as_rows(std::move(positions)), as_rows(std::move(velocities)),
+                        as_rows(std::move(accelerations)));
+}
+
+/// Return the largest share of rows, or of the differences of rows that follow each other.
+double largest_share(nb::handle rows, nb::handle most, bool of_steps) {
+  const FloatRows table(rows, "rows");
+  const Floats limits(most, "most");
+  limits.of_shape({table.shape(1)});
+  return without_gil([&] {
+    return of_steps ? trajectory::largest_step_share(table.matrix(), limits.span())
+                    : trajectory::largest_share(table.matrix(), limits.span());
+  });
+}
+
 nb::object distances_to(nb::handle waypoints, nb::handle points) {
   const FloatRows path(waypoints, "waypoints"), rows(points, "points");
   rows.of_shape({rows.shape(0), path.shape(1)});
@@ -114,6 +163,9 @@ void add_trajectory(nb::module_& module) {
   part.def("states", &states);
   part.def("largest_shares", &largest_shares);
   part.def("distances_to", &distances_to);
+  part.def("rounded", &rounded);
+  part.def("averages", &averages);
+  part.def("largest_share", &largest_share, nb::arg("rows"), nb::arg("most"), nb::arg("of_steps") = false);
 }
 
 }  // namespace evenroad::bind

@@ -27,7 +27,7 @@ bool motion_free_coarsely(Workspace& workspace, std::span<const double> a, std::
 /// Return whether the motion from `a` to `b`, within bounds, is proved free: throughout, not at states alone.
 bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits);
 
-/// Return which of the first sixteen motions from rows of `a` to those of `b` are proved free by one batch.
+/// Return which of the first sixteen motions from rows of `a` to those of `b` are proved free together.
 ///
 /// Bodies are enlarged by what the longest of them moves, so others may be free, too.  None is where one is long.
 Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const double> b, double tolerance);

@@ -2,7 +2,7 @@
 //
 // The method is that of evenroad.robot.certified, for sixteen stretches of a motion at once: every stretch is tested in
 // its middle with bodies enlarged by what half of the stretch can move them, and halved where that fails.  Of many
-// short motions, as of a trajectory, sixteen are tried at once, each as one stretch.
+// short motions, as of a trajectory, sixteen are tried at once, each as one stretch, and what fails is halved.
 #include "robot/motion_check.hpp"
 
 namespace evenroad::robot {
@@ -18,6 +18,9 @@ constexpr double COARSE = 0.005;
 
 /// Motions that move nothing by more than twice that are tried sixteen at once [m].
 constexpr double SHORT = 0.02;
+
+/// Each of these is halved so often at most, before it is looked at by itself.
+constexpr int HALVED = 3;
 
 /// What sums of single precision are multiplied by to be no less than the true ones.
 constexpr float UP = 1.0F + 3e-7F;
@@ -70,6 +73,12 @@ void enlarge(Workspace& workspace, double half) {
   }
 }
 
+/// A piece of one of many motions, and where its middle is, as a share of it.
+struct Piece {
+  std::size_t row;
+  double centre;
+};
+
 }  // namespace
 
 bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits) {
@@ -117,26 +126,46 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
 Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const double> b, double tolerance) {
   const Robot& robot = workspace.checker.robot();
   const std::size_t count = std::min<std::size_t>(a.rows, LANES), dim = a.columns;
-  std::vector<double> start(dim), end(dim), way(dim), longest(dim);
+  OwnMatrix<double> starts(count, dim), ways(count, dim);
+  std::vector<double> end(dim), longest(dim);
   Mask proved = 0;
-  for (std::size_t lane = 0; lane < LANES; lane++) {
-    const std::size_t row = std::min(lane, count - 1);
-    const bool is_inside = enter(a[row], robot.bounds, start) && enter(b[row], robot.bounds, end);
-    if (is_inside && lane < count) proved |= 1U << lane;
-    way_between(start, end, robot.bounds, way);
-    for (std::size_t k = 0; k < dim; k++) {
-      start[k] += 0.5 * way[k];
-      longest[k] = std::max(longest[k], std::abs(way[k]));
-    }
-    workspace.set(static_cast<int>(lane), start);
+  for (std::size_t row = 0; row < count; row++) {
+    if (enter(a[row], robot.bounds, starts[row]) && enter(b[row], robot.bounds, end)) proved |= 1U << row;
+    way_between(starts[row], end, robot.bounds, ways[row]);
+    for (std::size_t k = 0; k < dim; k++) longest[k] = std::max(longest[k], std::abs(ways(row, k)));
   }
-  const double half = 0.5 * std::max({write_speeds(robot.arms, longest, workspace.speeds),
-                                      write_speeds(robot.pair_arms, longest, workspace.pair_speeds),
-                                      write_speeds(robot.shape_arms, longest, workspace.shape_speeds)});
-  if (half > SHORT) return 0;
-  enlarge(workspace, 0.5);
-  workspace.enlarged.shapes_decide = half < std::max(COARSE, 2.0 * tolerance);
-  return proved & ~blocked(workspace, workspace.enlarged, Wanted::ALL);
+  const double whole = std::max({write_speeds(robot.arms, longest, workspace.speeds),
+                                 write_speeds(robot.pair_arms, longest, workspace.pair_speeds),
+                                 write_speeds(robot.shape_arms, longest, workspace.shape_speeds)});
+  if (0.5 * whole > SHORT) return 0;
+  std::vector<Piece> pieces, halves;
+  for (std::size_t row = 0; row < count; row++) pieces.push_back({row, 0.5});
+  for (int level = 0; level <= HALVED && !pieces.empty(); level++) {
+    const double half = 0.5 / (1 << level);
+    enlarge(workspace, half);
+    workspace.enlarged.shapes_decide = half * whole < std::max(COARSE, 2.0 * tolerance);
+    halves.clear();
+    for (std::size_t first = 0; first < pieces.size(); first += LANES) {
+      const std::size_t some = std::min<std::size_t>(LANES, pieces.size() - first);
+      for (std::size_t lane = 0; lane < LANES; lane++) {
+        // Lanes to spare repeat the last piece.
+        const auto [row, centre] = pieces[first + std::min(lane, some - 1)];
+        for (std::size_t k = 0; k < dim; k++) {
+          workspace.states[k][static_cast<int>(lane)] = starts(row, k) + centre * ways(row, k);
+        }
+      }
+      const Mask near = blocked(workspace, workspace.enlarged, Wanted::ALL);
+      for (std::size_t lane = 0; lane < some; lane++) {
+        const auto [row, centre] = pieces[first + lane];
+        // Of one that is given up, the other pieces do not matter.
+        if ((near >> lane & 1) == 0 || (proved >> row & 1) == 0) continue;
+        if (level == HALVED) proved &= ~(1U << row);
+        for (const double side : {-0.5, 0.5}) halves.push_back({row, centre + side * half});
+      }
+    }
+    std::swap(pieces, halves);
+  }
+  return proved;
 }
 
 }  // namespace evenroad::robot

@@ -1,7 +1,6 @@
 #include "trajectory/fastest_speeds.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace evenroad::trajectory {
@@ -10,6 +9,11 @@ namespace {
 
 constexpr double FLAT = 1e-12;
 
+/// A square of a speed that nothing reaches.
+constexpr double NO_LIMIT = 1e300;
+
+constexpr std::size_t NO_ROW = static_cast<std::size_t>(-1);
+
 /// A speed is lowered so often at most, and by this share at least.
 constexpr int MOST_TRIED = 64;
 constexpr double ROUNDING = 1e-12;
@@ -17,32 +21,44 @@ constexpr double ROUNDING = 1e-12;
 /// The least and the most acceleration along an interval; there is none where the first is larger.
 struct Push {
   double least, most;
-
-  bool possible() const { return least <= most; }
 };
 
+/// What changes with the squared speed: value + rise * square.
+struct Line {
+  double value, rise;
+
+  double at(double square) const { return value + rise * square; }
+};
+
+/// The limits of acceleration along the intervals of a path, from which both passes read.
 class Limits {
  public:
-  Limits(const Curve& curve, std::span<const double> acceleration) : curve_(curve), acceleration_(acceleration) {}
+  Limits(const Curve& curve, std::span<const double> acceleration) : curve_(curve) {
+    std::size_t row = NO_ROW;
+    for (std::size_t i = 0; i < curve.row.size(); i++) {
+      if (curve.row[i] == row) continue;
+      row = curve.row[i];
+      rows_.push_back({sides_.size(), sides_.size(), NO_LIMIT});
+      for (std::size_t j = 0; j < acceleration.size(); j++) {
+        const double bend = curve.behind_bend(row, j);
+        add(curve.ahead(row, j), curve.ahead_bend(row, j), acceleration[j]);
+        // At the far end the square is larger by twice the step times the push.
+        if (!curve.is_line[row]) add(curve.behind(row, j) + bend * (2.0 * curve.steps[i]), bend, acceleration[j]);
+      }
+      if (curve.is_line[row] && rows_.back().end > rows_.back().begin) keep_least();
+    }
+  }
 
   /// Return which accelerations along interval i, from this squared speed to one of at most `next`, keep all limits.
   Push push(std::size_t i, double square, double next) const {
     const double twice = 2.0 * curve_.steps[i];
+    const Row& row = rows_[curve_.row[i]];
+    if (square > row.flat) return {1.0, 0.0};
     Push push{-square / twice, (next - square) / twice};
-    for (std::size_t j = 0; j < acceleration_.size(); j++) {
-      const std::array<Acceleration, 2> ends = {
-          Acceleration{curve_.ahead(i, j), curve_.ahead_bend(i, j) * square},
-          // At the far end the square is larger by twice the step times the push.
-          Acceleration{curve_.behind(i, j) + curve_.behind_bend(i, j) * twice, curve_.behind_bend(i, j) * square}};
-      for (const auto [slope, rest] : ends) {
-        if (std::abs(slope) < FLAT) {
-          if (std::abs(rest) > acceleration_[j]) return {1.0, 0.0};
-          continue;
-        }
-        const double one = (-acceleration_[j] - rest) / slope, other = (acceleration_[j] - rest) / slope;
-        push.least = std::max(push.least, std::min(one, other));
-        push.most = std::min(push.most, std::max(one, other));
-      }
+    for (std::size_t side = row.begin; side < row.end; side++) {
+      const auto [value, rise] = sides_[side];
+      push.least = std::max(push.least, rise * square - value);
+      push.most = std::min(push.most, rise * square + value);
     }
     return push;
   }
@@ -63,44 +79,53 @@ class Limits {
   }
 
  private:
-  /// A limit of the acceleration along the path that changes with the squared speed: value + rise * square.
-  struct Line {
-    double value, rise;
-
-    double at(double square) const { return value + rise * square; }
+  /// The limits of a row: some of the sides, and the squared speed from which on a joint's bend alone is too much.
+  struct Row {
+    std::size_t begin, end;
+    double flat;
   };
+
+  /// Add that |slope * push + rise * square| is at most an acceleration.
+  void add(double slope, double rise, double most) {
+    Row& row = rows_.back();
+    if (std::abs(slope) < FLAT) {
+      if (rise != 0.0) row.flat = std::min(row.flat, most / std::abs(rise));
+      return;
+    }
+    const double inverse = 1.0 / slope;
+    sides_.push_back({most * std::abs(inverse), -rise * inverse});
+    row.end++;
+  }
+
+  /// Keep the least limit alone: along a line none of them changes with the speed.
+  void keep_least() {
+    Row& row = rows_.back();
+    const auto first = sides_.begin() + static_cast<std::ptrdiff_t>(row.begin);
+    *first = *std::ranges::min_element(first, sides_.end(), {}, &Line::value);
+    row.end = row.begin + 1;
+    sides_.resize(row.end);
+  }
 
   /// Return a smaller squared speed from which on two limits exclude each other; the same one if none do.
   double lower_where_excluded(std::size_t i, double square, double next) const {
     const double twice = 2.0 * curve_.steps[i];
+    const Row& row = rows_[curve_.row[i]];
     Line least{0.0, -1.0 / twice}, most{next / twice, -1.0 / twice};
-    double flat = square;
-    for (std::size_t j = 0; j < acceleration_.size(); j++) {
-      const double bend = curve_.behind_bend(i, j);
-      const std::array<Acceleration, 2> sides = {Acceleration{curve_.ahead(i, j), curve_.ahead_bend(i, j)},
-                                                 Acceleration{curve_.behind(i, j) + bend * twice, bend}};
-      for (const auto [slope, rise] : sides) {
-        if (std::abs(slope) < FLAT) {
-          if (std::abs(rise) * square > acceleration_[j]) flat = std::min(flat, acceleration_[j] / std::abs(rise));
-          continue;
-        }
-        const double inverse = 1.0 / slope, value = acceleration_[j] * std::abs(inverse);
-        const Line low{-value, -rise * inverse}, high{value, -rise * inverse};
-        if (low.at(square) > least.at(square)) least = low;
-        if (high.at(square) < most.at(square)) most = high;
-      }
+    for (std::size_t side = row.begin; side < row.end; side++) {
+      const auto [value, rise] = sides_[side];
+      const Line low{-value, rise}, high{value, rise};
+      if (low.at(square) > least.at(square)) least = low;
+      if (high.at(square) < most.at(square)) most = high;
     }
+    const double flat = std::min(square, row.flat);
     if (least.at(square) <= most.at(square)) return flat;
     return std::min(flat, (most.value - least.value) / (least.rise - most.rise));
   }
 
-  /// A joint's acceleration: slope * push + rest.
-  struct Acceleration {
-    double slope, rest;
-  };
-
   const Curve& curve_;
-  std::span<const double> acceleration_;
+  std::vector<Row> rows_;
+  /// The largest accelerations along the path that each joint allows; the least are the same with the value negative.
+  std::vector<Line> sides_;
 };
 
 }  // namespace

@@ -8,12 +8,14 @@
 
 namespace evenroad::trajectory {
 
-/// A path cut into intervals of these lengths: at both ends of each its direction and bend, by joint.
+/// A path cut into intervals of these lengths, and of each a row: at both ends its direction and bend, by joint.
 ///
 /// Joint j accelerates by `direction * push + bend * square` where one drives with the square of the speed along the
-/// path and the acceleration `push` along it.
+/// path and the acceleration `push` along it.  The intervals of a line share a row, which has no bend.
 struct Curve {
   Matrix<const double> ahead, ahead_bend, behind, behind_bend;
+  std::span<const std::size_t> row;
+  std::span<const bool> is_line;
   std::span<const double> steps;
 };
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
+#include "common/lanes.hpp"
 #include "trajectory/fastest_speeds.hpp"
 
 namespace evenroad::trajectory {
@@ -16,6 +18,13 @@ constexpr double INTERVALS = 600.0, PER_ARC = 8.0, PER_LINE = 4.0;
 
 /// The end of the last sample in an interval, as a share of it: the next one begins there.
 constexpr double NEARLY_ONE = 1.0 - 1e-9;
+
+/// So many intervals are looked at before one searches.
+constexpr int FEW = 4;
+
+constexpr std::size_t LANES = 16;
+
+using Doubles16 = Lanes<double, 16>;
 
 /// One state: cosine and sine of the angle since the beginning of an arc, and how far along its axis; of a line the
 /// cosine is 1 and the sine 0.
@@ -74,6 +83,22 @@ double square_within(const RoundedPath& path, const Turn& turn, std::span<const 
   return most * most;
 }
 
+/// Directions and bends at both ends of intervals.
+struct Sides {
+  OwnMatrix<double> own_ahead, own_ahead_bend, own_behind, own_behind_bend;
+  Matrix<double> ahead = own_ahead, ahead_bend = own_ahead_bend, behind = own_behind, behind_bend = own_behind_bend;
+
+  Sides(std::size_t rows, std::size_t dim)
+      : own_ahead(rows, dim), own_ahead_bend(rows, dim), own_behind(rows, dim), own_behind_bend(rows, dim) {}
+
+  void write(const RoundedPath& path, std::size_t row, const Turn& begin, const Turn& end) {
+    for (std::size_t k = 0; k < path.dim(); k++) {
+      ahead(row, k) = begin.direction(path, k), ahead_bend(row, k) = begin.curve(path, k);
+      behind(row, k) = end.direction(path, k), behind_bend(row, k) = end.curve(path, k);
+    }
+  }
+};
+
 }  // namespace
 
 Grid grid_of(const RoundedPath& path) {
@@ -94,30 +119,36 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
   OwnTimeLaw law;
   law.lengths = std::move(grid.lengths);
   const std::vector<std::size_t>& pieces = grid.pieces;
-  const std::size_t intervals = pieces.size(), dim = path.dim();
-  OwnMatrix<double> ahead(intervals, dim), ahead_bend(intervals, dim), behind(intervals, dim),
-      behind_bend(intervals, dim);
+  const std::size_t intervals = pieces.size();
+  // The intervals of a line share a row: they are most of all.
+  std::vector<std::size_t> row(intervals);
+  std::size_t rows = 0;
+  for (std::size_t i = 0; i < intervals; i++) {
+    const bool shares = i > 0 && pieces[i] == pieces[i - 1] && path.bend[pieces[i]] <= 0.0;
+    row[i] = shares ? rows - 1 : rows++;
+  }
+  const auto is_line = std::make_unique<bool[]>(rows);
+  Sides sides(rows, path.dim());
   std::vector<double> steps(intervals), ceiling(highest.begin(), highest.end());
   ceiling.resize(intervals + 1, highest[0]);
+  double before = 0.0, after = 0.0;
   for (std::size_t i = 0; i < intervals; i++) {
-    const Turn begin(path, pieces[i], law.lengths[i]), end(path, pieces[i], law.lengths[i + 1]);
     steps[i] = law.lengths[i + 1] - law.lengths[i];
-    ceiling[i] = std::min(ceiling[i], square_within(path, begin, most.velocity));
-    ceiling[i + 1] = std::min(ceiling[i + 1], square_within(path, end, most.velocity));
-    for (std::size_t k = 0; k < dim; k++) {
-      ahead(i, k) = begin.direction(path, k), ahead_bend(i, k) = begin.curve(path, k);
-      behind(i, k) = end.direction(path, k), behind_bend(i, k) = end.curve(path, k);
+    if (i == 0 || row[i] != row[i - 1]) {
+      const Turn begin(path, pieces[i], law.lengths[i]), end(path, pieces[i], law.lengths[i + 1]);
+      before = square_within(path, begin, most.velocity), after = square_within(path, end, most.velocity);
+      is_line[row[i]] = path.bend[pieces[i]] <= 0.0;
+      sides.write(path, row[i], begin, end);
     }
+    ceiling[i] = std::min(ceiling[i], before);
+    ceiling[i + 1] = std::min(ceiling[i + 1], after);
   }
   ceiling.front() = ceiling.back() = 0.0;
   for (const double stop : stops) {
     const auto at = std::ranges::lower_bound(law.lengths, stop);
     if (at != law.lengths.end() && *at == stop) ceiling[static_cast<std::size_t>(at - law.lengths.begin())] = 0.0;
   }
-  const auto rows = [](const OwnMatrix<double>& matrix) -> Matrix<const double> {
-    return {matrix.values.data(), matrix.rows, matrix.columns};
-  };
-  const Curve curve{rows(ahead), rows(ahead_bend), rows(behind), rows(behind_bend), steps};
+  const Curve curve{sides.ahead, sides.ahead_bend, sides.behind, sides.behind_bend, row, {is_line.get(), rows}, steps};
   const std::vector<double> squares = squared_speeds(curve, ceiling, most.acceleration);
   law.times.push_back(0.0);
   for (const double square : squares) law.speeds.push_back(std::sqrt(square));
@@ -132,11 +163,17 @@ void write_states(const RoundedPath& path, const TimeLaw& law, std::span<const d
                   Matrix<double> velocities, Matrix<double> accelerations) {
   const std::vector<std::size_t> pieces = pieces_of(path, law);
   const double duration = law.times.back();
+  std::size_t i = 0;
   for (std::size_t row = 0; row < t.size(); row++) {
     const double now = std::min(std::max(t[row], 0.0), duration);
     const bool is_inside = now == t[row];
-    const auto after = std::ranges::upper_bound(law.times.begin() + 1, law.times.end() - 1, now);
-    const std::size_t i = static_cast<std::size_t>(after - law.times.begin()) - 1;
+    // Times mostly rise, by a few intervals or less.
+    for (int steps = 0; steps < FEW && i + 1 < law.intervals() && law.times[i + 1] <= now; steps++) i++;
+    const bool is_found = law.times[i] <= now && (i + 1 == law.intervals() || now < law.times[i + 1]);
+    if (!is_found) {
+      const auto after = std::ranges::upper_bound(law.times.begin() + 1, law.times.end() - 1, now);
+      i = static_cast<std::size_t>(after - law.times.begin()) - 1;
+    }
     const Place place(law, i, now - law.times[i]);
     const Turn turn(path, pieces[i], place.length);
     const double speed = is_inside ? place.speed : 0.0, push = is_inside ? law.accelerations[i] : 0.0;
@@ -149,13 +186,32 @@ void write_states(const RoundedPath& path, const TimeLaw& law, std::span<const d
   }
 }
 
+/// Return the shares that speed 1 and acceleration 1 along a line use.
+Shares along_line(const RoundedPath& path, std::size_t piece, const Most& most) {
+  Shares shares;
+  for (std::size_t k = 0; k < path.dim(); k++) {
+    const double direction = std::abs(path.along(piece, k));
+    shares.velocity = std::max(shares.velocity, direction / most.velocity[k]);
+    shares.acceleration = std::max(shares.acceleration, direction / most.acceleration[k]);
+  }
+  return shares;
+}
+
 Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const Most& most, std::size_t samples) {
   const std::vector<std::size_t> pieces = pieces_of(path, law);
-  Shares shares;
+  Shares shares, along;
   for (std::size_t i = 0; i < law.intervals(); i++) {
-    // Along a line nothing is largest but at an end.
-    const std::size_t stride = path.bend[pieces[i]] > 0.0 ? 1 : samples - 1;
-    for (std::size_t sample = 0; sample < samples; sample += stride) {
+    if (path.bend[pieces[i]] <= 0.0) {
+      // Along a line nothing is largest but at an end.
+      if (i == 0 || pieces[i] != pieces[i - 1]) along = along_line(path, pieces[i], most);
+      for (const double share : {0.0, NEARLY_ONE}) {
+        const Place place(law, i, (law.times[i + 1] - law.times[i]) * share);
+        shares.velocity = std::max(shares.velocity, along.velocity * place.speed);
+      }
+      shares.acceleration = std::max(shares.acceleration, along.acceleration * std::abs(law.accelerations[i]));
+      continue;
+    }
+    for (std::size_t sample = 0; sample < samples; sample++) {
       const double share = NEARLY_ONE * static_cast<double>(sample) / static_cast<double>(samples - 1);
       const Place place(law, i, (law.times[i + 1] - law.times[i]) * share);
       const Turn turn(path, pieces[i], place.length);
@@ -174,22 +230,30 @@ std::vector<double> distances_to(Matrix<const double> waypoints, Matrix<const do
   std::vector<double> nearest(points.rows, std::numeric_limits<double>::infinity());
   const std::size_t dim = points.columns;
   std::vector<double> along(dim);
-  for (std::size_t i = 0; i + 1 < waypoints.rows; i++) {
-    double squared = 0.0;
-    for (std::size_t k = 0; k < dim; k++) {
-      along[k] = waypoints(i + 1, k) - waypoints(i, k);
-      squared += along[k] * along[k];
+  // Sixteen points at once, one after the other in each coordinate.
+  std::vector<Doubles16> some(dim);
+  for (std::size_t first = 0; first < points.rows; first += LANES) {
+    const std::size_t count = std::min(LANES, points.rows - first);
+    for (std::size_t lane = 0; lane < LANES; lane++) {
+      for (std::size_t k = 0; k < dim; k++) some[k][lane] = points(first + std::min(lane, count - 1), k);
     }
-    for (std::size_t row = 0; row < points.rows; row++) {
-      double share = 0.0, distance = 0.0;
-      for (std::size_t k = 0; k < dim; k++) share += (points(row, k) - waypoints(i, k)) * along[k];
-      share = std::min(std::max(share / squared, 0.0), 1.0);
+    Doubles16 least = Doubles16{} + std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 1 < waypoints.rows; i++) {
+      double squared = 0.0;
       for (std::size_t k = 0; k < dim; k++) {
-        const double off = points(row, k) - waypoints(i, k) - share * along[k];
+        along[k] = waypoints(i + 1, k) - waypoints(i, k);
+        squared += along[k] * along[k];
+      }
+      Doubles16 share{}, distance{};
+      for (std::size_t k = 0; k < dim; k++) share += (some[k] - waypoints(i, k)) * along[k];
+      share = min(max(share / squared, Doubles16{}), Doubles16{} + 1.0);
+      for (std::size_t k = 0; k < dim; k++) {
+        const Doubles16 off = some[k] - waypoints(i, k) - share * along[k];
         distance += off * off;
       }
-      nearest[row] = std::min(nearest[row], distance);
+      least = min(least, distance);
     }
+    for (std::size_t lane = 0; lane < count; lane++) nearest[first + lane] = least[lane];
   }
   for (double& each : nearest) each = std::sqrt(each);
   return nearest;

@@ -1,0 +1,20 @@
+// Corners of a path, rounded by arcs of circles (Kunz and Stilman 2012, section IV).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/matrix.hpp"
+
+namespace evenroad::trajectory {
+
+/// Lines and arcs in columns, as `RoundedPath` reads them, and the lengths at inner waypoints and at stops.
+struct Blends {
+  std::vector<double> starts, origin, out, along, bend, corners, stops;
+};
+
+/// Round the corners of a path of two waypoints or more, no two in a row equal: the arc at waypoint i passes it within
+/// deviation[i], and replaces at most half of both motions.  Where that is 0 the path stops at its corner.
+Blends rounded(Matrix<const double> waypoints, std::span<const double> deviation);
+
+}  // namespace evenroad::trajectory
