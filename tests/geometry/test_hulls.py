@@ -7,7 +7,8 @@ from scipy.spatial import ConvexHull
 
 from evenroad.errors import InvalidValue
 from evenroad.geometry import Box, Capsule, Cylinder, Mesh, PointCloud, Pose, Sphere, TriangleMesh
-from evenroad.geometry.hulls import Hull, halves, piece_of
+from evenroad.geometry.fit import farthest
+from evenroad.geometry.hulls import Hull, halves, piece_of, products
 from evenroad.geometry.mesh import convex_hull
 from tests.refused import refused
 from tests.robot.mesh_arms import fork
@@ -117,3 +118,16 @@ def test_the_hull_of_a_flat_mesh_is_a_micrometre_thick_and_of_one_place_refused(
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 0]], dtype=float)
     assert np.ptp(convex_hull(square).vertices, axis=0) == pytest.approx((1.0, 1.0, 1e-6), abs=1.1e-6)
     refused(InvalidValue, "the mesh nothing has no convex hull: 0 points", convex_hull, np.zeros((0, 3)), "nothing")
+    refused(InvalidValue, "points must", convex_hull, [(0, 0), (1, 1)])
+
+
+def test_products_made_in_blocks_are_those_made_at_once_and_no_farther_point_is_missed():
+    rng = np.random.default_rng(0)
+    for count, ways in ((30_001, 120), (5003, 250), (7, 3), (0, 4)):
+        points, directions = rng.normal(size=(count, 3)), rng.normal(size=(ways, 3))
+        np.testing.assert_allclose(products(points, directions), points @ directions.T, rtol=0.0, atol=1e-14)
+    points = rng.normal(size=(30_001, 3))
+    few = farthest(points, 128)
+    assert {tuple(each) for each in farthest(few, 128)} == {tuple(each) for each in few}
+    for way in np.eye(3):
+        assert (few @ way).max() > 0.97 * (points @ way).max()

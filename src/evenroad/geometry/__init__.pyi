@@ -3,6 +3,7 @@ from evenroad.geometry.distance import segment_distance as segment_distance
 from evenroad.geometry.fit import fit_capsules as fit_capsules
 from evenroad.geometry.fit import union_volume as union_volume
 from evenroad.geometry.mesh import TriangleMesh as TriangleMesh
+from evenroad.geometry.mesh import convex_hull as convex_hull
 from evenroad.geometry.mesh import height_map as height_map
 from evenroad.geometry.mesh_file import load_mesh as load_mesh
 from evenroad.geometry.pose import IDENTITY as IDENTITY

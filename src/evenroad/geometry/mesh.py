@@ -150,13 +150,25 @@ def volume_of(mesh: TriangleMesh) -> float:
         return 0.0
 
 
-def convex_hull(points: Floats, name: str = "", grown: float = 0.0) -> TriangleMesh:
-    """Return the surface of the convex hull of points, (n, 3), each grown to a cube of half size `grown` [m].
+def convex_hull(points: npt.ArrayLike, name: str = "hull", grown: float = 0.0) -> TriangleMesh:
+    """Return the surface of the convex hull of points: a solid obstacle, as ``Mesh(convex_hull(points))``.
 
-    Triangles face outward.  Coplanar points are grown by half a micrometre.  InvalidValue if there is no hull.
+    Triangles face outward.  Coplanar points are grown by half a micrometre.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+        Points [m], n >= 1.
+    name : str
+        What errors call it.
+    grown : float
+        Half size of a cube to which each point is grown, >= 0 [m].
+
+    Raises InvalidValue if they are not such numbers, or there is no hull.
     """
     from scipy.spatial import ConvexHull, QhullError
 
+    points = as_batch("points", points, 3)
     corners = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
     for reach in (grown, max(grown, _FLAT)):
         every = (points[:, np.newaxis] + reach * corners[: 8 if reach else 1]).reshape(-1, 3)
