@@ -59,8 +59,8 @@ def test_the_name_that_the_sampler_once_had_is_still_taken(run, tmp_path):
     (("-n", 8, "-d", 2, "--sampler", "sukharev", "-o", "a.npy"), r"are 4 and 9 \(or allow_fewer\)"),
     (("-n", 8, "-d", 2, "--seed", -1, "-o", "a.npy"), "--seed must be an integer >= 0, got -1"),
     (
-        ("-n", 11, "-d", 2, "--sampler", "mpmc", "-o", "a.npy"),
-        "it has n = 32, 64.*evenroad train -n 11 -d 2 --method mpmc",
+        ("-n", 9000, "-d", 2, "--sampler", "mpmc", "-o", "a.npy"),
+        "it has n = 32, 64.*evenroad train -n 9000 -d 2 --method mpmc",
     ),
 ])  # fmt: skip
 def test_bad_requests_for_points_get_one_line(refuse, arguments, says):
