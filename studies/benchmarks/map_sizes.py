@@ -4,10 +4,10 @@
 
 Cities of n by n pixels: houses of 30 to 120 pixels, streets of 6 to 24, a disk of radius 3.  The short way is 45 pixels
 long, around a wall on a square in the middle; the long one as far as 2000 pixels, or across the map where that is
-nearer.  Every row is a process of its own.  Times are of its processor: the world with the first plan, and the median
-of plans of the same query after it.  Memory is what the process holds more after all of them, the map's array left out
-(Linux alone).  `--peer` puts `pyastar2d` beside it: random queries in the city of 2000 pixels, with the cells that are
-surely free as its map.
+nearer; the last one across the map.  Every row is a process of its own.  Times are of its processor: the world with the
+first plan, and the median of plans of the same query after it.  Memory is what the process holds more after all of
+them, the map's array left out (Linux alone).  `--peer` puts `pyastar2d` beside it: random queries in the city of 2000
+pixels, with the cells that are surely free as its map.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from evenroad.world import GridMap
 Floats = npt.NDArray[np.float64]
 SIZES = (500, 1000, 2000, 4000, 8000, 16_000)
 RADIUS = 3.0
-WAYS = {"short": 45.0, "long": 2000.0}
+WAYS = {"short": 45.0, "long": 2000.0, "across": np.inf}
 COLUMNS = ("way", "size", "straight [px]", "path [px]", "world and first plan [ms]", "plan [ms]", "memory [MB]")
 Row = tuple[str, int, float, float, float, float, float]
 
@@ -56,7 +56,7 @@ def city(size: int, seed: int) -> npt.NDArray[np.bool_]:
 def ends(occupied: npt.NDArray[np.bool_], apart: float) -> tuple[Floats, Floats]:
     """Return two free places about so far apart, along a diagonal around the middle of the map."""
     middle, by = len(occupied) / 2, min(apart, 1.2 * len(occupied)) / np.sqrt(8)
-    if apart < 60:
+    if apart < 60.0:
         return np.array([middle - apart / 2, middle + 0.2]), np.array([middle + apart / 2, middle + 0.4])
     found = []
     for at in (middle - by, middle + by):

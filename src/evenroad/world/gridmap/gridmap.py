@@ -201,8 +201,11 @@ class DiskWorld(OneOrMany):
     def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
         """Return the proof that no path leads from a start, (2,), to any goal, (g, 2); None says nothing.
 
-        The components of the whole map are made for it once, which is not quick.
+        Tiles of the map decide first; then the components of the whole map are made once, which is not quick.
         """
+        first, last = as_batch("start", np.reshape(start, (1, -1)), 2)[0], as_batch("goals", goals, 2)
+        if not self.disk.may_reach(first, last):
+            return Apart(PROVED, proved=True)
         if quickly or any(self.may_connect(start, goal) for goal in goals):
             return None
         return Apart(PROVED, proved=True)

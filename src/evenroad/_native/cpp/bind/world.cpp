@@ -122,6 +122,13 @@ nb::tuple find_path(const world::Disk& disk, nb::handle start, nb::handle goals,
   return nb::make_tuple(as_rows(found.points), found.goal, found.expanded, found.motions);
 }
 
+bool may_reach(const world::Disk& disk, nb::handle start, nb::handle goals) {
+  const Floats from(start, "start");
+  from.of_shape({2});
+  const std::vector<world::Point> to = Points(goals, "goals").all();
+  return without_gil([&] { return world::may_reach(disk, {from.data()[0], from.data()[1]}, to); });
+}
+
 nb::tuple straighten(const world::Disk& disk, nb::handle path) {
   const std::vector<world::Point> points = Points(path, "path").all();
   require(points.size() >= 2, "path must have two points or more");
@@ -165,6 +172,7 @@ void add_world(nb::module_& module) {
       .def("cells", &cells)
       .def("gates", &gates)
       .def("find_path", &find_path, "start"_a.none(), "goals"_a.none(), "most"_a)
+      .def("may_reach", &may_reach, "start"_a.none(), "goals"_a.none())
       .def("straighten", &straighten, "path"_a.none())
       .def("least_length", &least_length, "start"_a.none(), "goal"_a.none(), "most"_a);
   nb::class_<world::Components>(part, "Components", "Which places of a disk on a map hang together.")

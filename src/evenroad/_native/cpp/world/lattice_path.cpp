@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "world/corridor.hpp"
 #include "world/node_memory.hpp"
 
 namespace evenroad::world {
@@ -81,8 +82,12 @@ class Buckets {
 
 class Search {
  public:
-  Search(const Disk& disk, std::span<const Point> goals, std::int64_t most)
-      : disk_(disk), most_(most), nodes_(2 * disk.rows() + 1, 2 * disk.columns() + 1), goals_(goals) {
+  Search(const Disk& disk, std::span<const Point> goals, std::int64_t most, const Corridor* corridor)
+      : disk_(disk),
+        most_(most),
+        corridor_(corridor),
+        nodes_(2 * disk.rows() + 1, 2 * disk.columns() + 1),
+        goals_(goals) {
     for (std::size_t goal = 0; goal < goals.size(); goal++) {
       const Point at = disk.frame().to_padded(goals[goal]);
       targets_.push_back({2.0 * at.x, 2.0 * at.y});
@@ -211,6 +216,7 @@ class Search {
       const std::int32_t cost = spent + STEPS[step].cost;
       const NodeState* const known = nodes_.find(there);
       if (known != nullptr && (known->is_closed || known->cost <= cost)) continue;
+      if (corridor_ != nullptr && !corridor_->has(there)) continue;
       if (!is_step_free(step, here, there)) continue;
       nodes_.reach(there, cost, static_cast<std::uint8_t>(step));
       queue.put(there, std::max(cost + bound(there), queue.key()));
@@ -237,6 +243,7 @@ class Search {
 
   const Disk& disk_;
   std::int64_t most_, motions_ = 0;
+  const Corridor* corridor_;
   NodeMemory nodes_;
   std::span<const Point> goals_;
   /// The goals on the lattice, in half pixels; which nodes lead to them, by node.
@@ -246,8 +253,9 @@ class Search {
 
 }  // namespace
 
-LatticePath find_path(const Disk& disk, Point start, std::span<const Point> goals, std::int64_t most) {
-  return Search(disk, goals, most).run(start);
+LatticePath search_cells(const Disk& disk, Point start, std::span<const Point> goals, std::int64_t most,
+                         const Corridor* corridor) {
+  return Search(disk, goals, most, corridor).run(start);
 }
 
 }  // namespace evenroad::world

@@ -1,0 +1,137 @@
+// Far goals: the way over the coarse level is followed in legs, each a search of cells between two portals.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "world/corridor.hpp"
+#include "world/lattice_path.hpp"
+
+namespace evenroad::world {
+
+namespace {
+
+/// Pixels from which on a goal is far: to search all cells takes longer.
+constexpr double FAR = 1000.0;
+/// Least number of portals of a leg.
+constexpr std::size_t LEG = 8;
+/// A way through cells that are not surely free is tried where it has at most this share of the surely free one's
+/// length.
+constexpr double SHORTER = 0.97;
+
+Cell cell_of(const Disk& disk, Point map) {
+  const Point at = disk.frame().to_padded(map);
+  return {static_cast<std::int32_t>(at.y), static_cast<std::int32_t>(at.x)};
+}
+
+bool is_far(const Disk& disk, Point start, std::span<const Point> goals) {
+  const Point from = disk.frame().to_padded(start);
+  return disk.is_inside(from) && std::all_of(goals.begin(), goals.end(), [&](Point goal) {
+           const Point to = disk.frame().to_padded(goal);
+           return disk.is_inside(to) && std::hypot(to.x - from.x, to.y - from.y) > FAR;
+         });
+}
+
+/// Follows ways, and adds up what that costs.
+class Follower {
+ public:
+  Follower(const Disk& disk, Point start, std::span<const Point> goals, std::int64_t most)
+      : disk_(disk), start_(start), goals_(goals), most_(most), corridor_(disk) {}
+
+  /// Return the path along a way; without points where it leads through a gap that is too narrow.
+  LatticePath follow(const CoarseWay& way) {
+    const Point goal = goals_[way.goal];
+    found_.points = {start_};
+    Cell last = cell_of(disk_, start_);
+    for (std::size_t begin = 0; begin <= way.portals.size();) {
+      const std::size_t end = end_of_leg(way, begin);
+      const bool is_last = end == way.portals.size();
+      corridor_.clear();
+      corridor_.add(last);
+      for (std::size_t i = begin; i < std::min(end + 1, way.portals.size()); i++) {
+        const Cell at = way.portals[i];
+        corridor_.add(at), corridor_.add({at.row + 1, at.column}), corridor_.add({at.row, at.column + 1});
+      }
+      if (is_last) corridor_.add(cell_of(disk_, goal));
+      if (!reach(is_last ? goal : centre(way.portals[end]))) return none();
+      last = way.portals[std::min(end, way.portals.size() - 1)];
+      begin = end + 1;
+    }
+    LatticePath found = none();
+    found.goal = static_cast<std::int64_t>(way.goal), found.points = std::move(found_.points);
+    return found;
+  }
+
+  /// No path, and what it cost to look for one.
+  LatticePath none() const { return {{}, -1, found_.expanded, found_.motions}; }
+  std::int64_t left() const { return most_ - found_.motions; }
+
+ private:
+  Point centre(Cell at) const {
+    return disk_.frame().to_map({static_cast<double>(at.column) + 0.5, static_cast<double>(at.row) + 0.5});
+  }
+
+  /// Return the portal at which a leg ends, one that surely is free; the number of portals at the goal.
+  std::size_t end_of_leg(const CoarseWay& way, std::size_t begin) const {
+    std::size_t end = begin + LEG - 1;
+    while (end < way.portals.size() && disk_.cell(way.portals[end].row, way.portals[end].column) < FREE) end++;
+    return end + LEG / 2 < way.portals.size() ? end : way.portals.size();
+  }
+
+  /// Go on to a place in the corridor; say whether there is a path.
+  bool reach(Point to) {
+    const std::array<Point, 1> goal = {to};
+    const LatticePath leg = search_cells(disk_, found_.points.back(), goal, left(), &corridor_);
+    found_.expanded += leg.expanded, found_.motions += leg.motions;
+    for (const Point& each : leg.points) {
+      const Point& before = found_.points.back();
+      if (each.x != before.x || each.y != before.y) found_.points.push_back(each);
+    }
+    return leg.goal == 0;
+  }
+
+  const Disk& disk_;
+  Point start_;
+  std::span<const Point> goals_;
+  std::int64_t most_;
+  Corridor corridor_;
+  LatticePath found_;
+};
+
+std::vector<Cell> cells_of(const Disk& disk, std::span<const Point> places) {
+  std::vector<Cell> cells;
+  for (const Point place : places) cells.push_back(cell_of(disk, place));
+  return cells;
+}
+
+LatticePath find_far(const Disk& disk, Point start, std::span<const Point> goals, std::int64_t most) {
+  Follower follower(disk, start, goals, most);
+  const Cell from = cell_of(disk, start);
+  const std::vector<Cell> to = cells_of(disk, goals);
+  const std::optional<CoarseWay> any = find_coarse_way(disk, Open::NOT_BLOCKED, from, to);
+  if (!any) return {{}, -1, 0, 0, true};
+  const std::optional<CoarseWay> sure = find_coarse_way(disk, Open::SURELY_FREE, from, to);
+  if (!sure || any->length < SHORTER * sure->length) {
+    if (LatticePath found = follower.follow(*any); found.goal >= 0) return found;
+  }
+  return sure ? follower.follow(*sure) : follower.none();
+}
+
+}  // namespace
+
+bool may_reach(const Disk& disk, Point start, std::span<const Point> goals) {
+  const auto is_inside = [&](Point at) { return disk.is_inside(disk.frame().to_padded(at)); };
+  if (!has_coarse_level(disk) || !is_inside(start) || !std::all_of(goals.begin(), goals.end(), is_inside)) return true;
+  return find_coarse_way(disk, Open::NOT_BLOCKED, cell_of(disk, start), cells_of(disk, goals)).has_value();
+}
+
+LatticePath find_path(const Disk& disk, Point start, std::span<const Point> goals, std::int64_t most) {
+  LatticePath far;
+  if (has_coarse_level(disk) && is_far(disk, start, goals)) far = find_far(disk, start, goals, most);
+  if (far.goal >= 0 || far.is_apart || far.motions >= most) return far;
+  LatticePath found = search_cells(disk, start, goals, most - far.motions, nullptr);
+  found.expanded += far.expanded, found.motions += far.motions;
+  return found;
+}
+
+}  // namespace evenroad::world
