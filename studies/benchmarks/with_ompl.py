@@ -1,74 +1,140 @@
-"""OMPL's RRT-Connect with its path simplifier beside `er.plan`, on arms among shelves, boxes, cages and tables.
+"""OMPL's and RoboPlan's RRT-Connect beside `er.plan`, on arms among shelves, boxes, cages and tables, in one process.
 
-    python -m studies.benchmarks.with_ompl --count 10       # needs the extra [ompl]
+    python -m studies.benchmarks.with_ompl --count 10              # needs the extra [ompl]
+    python -m studies.benchmarks.with_ompl --count 10 --roboplan   # and the wheels roboplan-core and roboplan-rrt
+    python -m studies.benchmarks.with_ompl --picture FILE          # and a picture of times and lengths
 
-Both ask the same world, evenroad's, so that every motion of either path is proved; OMPL asks it through Python, one
-motion at a time, as it does for anybody who uses OMPL from Python.  Each query is planned once by each, with a limit
-of `SECONDS`.  Times are processor time of one thread, from a robot and a scene to the smoothed path, median / mean;
-lengths are of the problems that both solve.
+OMPL asks evenroad's `CertifiedWorld`, so that every motion of its path is proved, too.  It asks through Python, one
+motion at a time, as it does for anybody who uses OMPL from Python.  RoboPlan asks coal, at states at most 0.02 rad
+apart, about the same bodies: a cylinder with a ball at each end for a capsule.  Each query is planned once by each,
+with a limit of `SECONDS`.  Times are processor time of one thread, from a robot and a scene to the smoothed path, as
+median / mean / 95 %.  Lengths are shares of those of `er.plan`, of the problems that both solve.  A path touches
+if `ArmWorld` says that one of its states, 0.001 rad apart, is not free.
 """
 
 from __future__ import annotations
 
+import os
 import time
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 from ompl import geometric as og
 from ompl import util as ou
-from studies.benchmarks.arm_problems import REPORTING, Pool, Problem, arm_named, problems
+from studies.benchmarks.arm_problems import REPORTING, Pool, Problem, Vector, arm_named, problems
 from studies.benchmarks.rows import parser_of
 
 import evenroad as er
 from evenroad.adapters.ompl import ompl_path, path_of, solve, space_information
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.space.path import path_length
+from evenroad.robot.certified import CertifiedWorld
 
 SECONDS = 2.0
-Row = tuple[float, float | None]
-"""Time [ms] and length of a plan, None where there is none."""
+APART = 1e-3
+DATA = Path(er.__file__).parent / "robot" / "data"
+Row = tuple[float, Vector | None]
+"""Time [ms] and path of a plan, None where there is none."""
 
 
 def ours(problem: Problem) -> Row:
     """Plan with `er.plan`."""
     begin = time.thread_time()
     result = er.plan(ArmWorld(problem.robot, problem.scene), problem.start, problem.goal, seconds=SECONDS)
-    return 1e3 * (time.thread_time() - begin), result.length
+    return 1e3 * (time.thread_time() - begin), result.path
 
 
 def theirs(problem: Problem) -> Row:
     """Plan with OMPL's RRT-Connect, and simplify its path."""
     begin = time.thread_time()
-    world = ArmWorld(problem.robot, problem.scene)
-    information = space_information(world)
+    information = space_information(CertifiedWorld(ArmWorld(problem.robot, problem.scene)))
     path = solve(og.RRTConnect(information), problem.start, problem.goal, seconds=SECONDS)
     if path is not None:
         states = ompl_path(information, path)
         og.PathSimplifier(information).simplifyMax(states)
         path = path_of(information, states)
-    return 1e3 * (time.thread_time() - begin), None if path is None else path_length(path, world.space)
+    return 1e3 * (time.thread_time() - begin), path
+
+
+def by_roboplan(problem: Problem) -> Row:
+    """Plan with RoboPlan's RRT-Connect, and its shortcuts."""
+    from studies.benchmarks.roboplan_arm import plan
+
+    name = "ur5" if problem.robot.name.startswith("ur5") else problem.robot.name
+    begin = time.thread_time()
+    path = plan(problem, DATA / f"{name}.urdf", SECONDS)
+    return 1e3 * (time.thread_time() - begin), path
+
+
+def touches(problem: Problem, path: Vector) -> bool:
+    """Return whether a state of a path is not free."""
+    world = ArmWorld(problem.robot, problem.scene)
+    for a, b in pairwise(path):
+        shares = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(b - a) / APART))[:, np.newaxis]
+        if not world.valid(a + shares * (b - a)).all():
+            return True
+    return False
 
 
 def main() -> None:
     parser = parser_of(__doc__)
     parser.add_argument("--count", type=int, default=10, help="problems of each kind, at most 100")
     parser.add_argument("--arms", nargs="*", default=["ur5", "arm7"])
+    parser.add_argument("--roboplan", action="store_true", help="RoboPlan, too")
+    parser.add_argument("--picture", type=Path, help="file of a picture of times and lengths")
     options = parser.parse_args()
     ou.setLogLevel(ou.LogLevel.LOG_NONE)
     ou.RNG.setSeed(1)
+    planners: dict[str, Callable[[Problem], Row]] = {"er.plan": ours, "OMPL's RRT-Connect, simplified": theirs}
+    if options.roboplan:
+        planners["RoboPlan's RRT-Connect, shortcuts"] = by_roboplan
+    print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
+    drawn = []
     for name in options.arms:
         every = list(problems(Pool(arm_named(name)), REPORTING[: options.count]))
         # The first plan of a process loads what all others use.
-        ours(every[0]), theirs(every[0])
-        rows = [(ours(problem), theirs(problem)) for problem in every]
-        both = [row for row in rows if row[0][1] is not None and row[1][1] is not None]
-        for i, who in enumerate(("er.plan", "OMPL's RRT-Connect, simplified")):
-            times = [row[i][0] for row in rows if row[i][1] is not None]
-            lengths = [row[i][1] for row in both]
+        for planner in planners.values():
+            planner(every[0])
+        rows = [[planner(problem) for planner in planners.values()] for problem in every]
+        for i, who in enumerate(planners):
+            solved = [(problem, row) for problem, row in zip(every, rows, strict=True) if row[i][1] is not None]
+            times = [row[i][0] for _, row in solved]
+            shares = [length(row[i][1]) / length(row[0][1]) for _, row in solved if row[0][1] is not None]
+            touching = sum(touches(problem, row[i][1]) for problem, row in solved)
+            spread = f"{np.median(times):.2f} / {np.mean(times):.2f} / {np.quantile(times, 0.95):.2f} ms"
+            lengths = f"length {np.mean(shares):.3f}, median {np.median(shares):.3f}"
             print(
-                f"{name}, {who}: {len(times)} of {len(rows)} solved; {np.median(times):.2f} / {np.mean(times):.2f} ms;"
-                f" length {np.mean(lengths):.2f}",
-                flush=True,
+                f"{name}, {who}: {len(times)} of {len(rows)} solved, {touching} touch; {spread}; {lengths}", flush=True
             )
+            drawn.append((name, who, times, shares))
+    print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
+    if options.picture:
+        draw(drawn, options.picture)
+
+
+def length(path: Vector) -> float:
+    """Return the length of a path of joints that do not wrap."""
+    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+
+
+def draw(rows: list[tuple[str, str, list[float], list[float]]], file: Path) -> None:
+    """Draw how many problems are solved by when, and how long the paths are beside ours."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4), constrained_layout=True)
+    arms = list(dict.fromkeys(name for name, *_ in rows))
+    who = list(dict.fromkeys(planner for _, planner, *_ in rows))
+    for name, planner, times, shares in rows:
+        look = dict(color=f"C{who.index(planner)}", linestyle=("-", "--", ":")[arms.index(name) % 3])
+        axes[0].step(np.sort(times), np.arange(1, len(times) + 1), label=f"{planner}, {name}", **look)
+        axes[1].step(np.sort(shares), np.arange(1, len(shares) + 1), **look)
+    axes[0].set(xscale="log", xlabel="processor time to the smoothed path [ms]", ylabel="problems solved")
+    axes[1].set(xscale="log", xlabel="length of the path, as a share of er.plan's", ylabel="problems that both solve")
+    axes[0].legend(fontsize=7)
+    for axis in axes:
+        axis.grid(alpha=0.3)
+    figure.savefig(file)
 
 
 if __name__ == "__main__":

@@ -34,8 +34,9 @@ og = require_extra("ompl.geometric", "ompl", "evenroad.adapters.ompl")
 def space_information(world: World) -> Any:
     """Return OMPL's SpaceInformation of our world, set up: the world checks its states and motions.
 
-    So motions of OMPL's planners have the world's proof, for maps and arms without gaps between states.  OMPL checks
-    one state at a time; :func:`plan_on_points` and :func:`give_points` check points in one batch.
+    Motions are free as its `motion_valid` says: on maps exactly, of an arm at states close together.  Those of
+    ``CertifiedWorld(world)`` are proved, without gaps.  OMPL checks one state at a time; :func:`plan_on_points` and
+    :func:`give_points` check points in one batch.
     """
     return _Information(world)
 
