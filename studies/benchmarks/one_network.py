@@ -1,0 +1,161 @@
+"""One network for every number of points and dimension, trained on what plans: is it ahead of Adam in the same time?
+
+    python -m studies.benchmarks.one_network --seconds 14
+
+Points lie on the torus.  In each of 16 steps every point hears all others.  A message is a push along the line between
+two points, by a learned function of their distance in radii of a ball that holds one point, and the pull of the
+discrepancy, whose weight is learned, too; both know the step, n and d.  So 384 weights fit any n and d.  What falls is
+the score that chose `even`: log(E) / (2 d) + 2 log(W), with E the periodic Riesz energy, s = 2 d, and W the wrap-around
+discrepancy.  Training is by evolution strategies in d = 5, 6 and 8, n = 48 to 200; the table has n and d not seen.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+from numba import njit
+from studies.benchmarks.rows import parser_of
+
+from evenroad._arrays import Floats
+from evenroad.points import draw
+from evenroad.points.anneal import anneal
+from evenroad.points.measures import MEASURES
+from evenroad.points.measures.separation import log_riesz_of_columns
+from evenroad_studies.training.objective import parse_objective
+
+OBJECTIVE = parse_objective("riesz+2*wrap_around")
+STEPS, BINS, REACH, WIDTH, INPUTS = 16, 48, 3.0, 16, 6
+SHAPES = ((INPUTS, WIDTH), (WIDTH, WIDTH), (WIDTH, 2))
+SIZES = [rows * columns for rows, columns in SHAPES]
+FRESH = ((5, 100), (7, 100), (7, 250), (10, 100))
+"""Dimensions and numbers of points of the table."""
+RATES = (0.003, 0.01, 0.02, 0.03)
+"""Learning rates of Adam, of which the best counts."""
+
+
+def score(points: Floats) -> float:
+    """Return log(E) / (2 d) + 2 log(W) of points, (n, d)."""
+    d = points.shape[1]
+    energy = log_riesz_of_columns(np.ascontiguousarray(points.T), 2 * d, True, False)[0] / (2 * d)
+    return energy + 2.0 * math.log(MEASURES["wrap_around"].rooted(points))
+
+
+def functions(weights: Floats, n: int, d: int) -> Floats:
+    """Return the push of each step by distance, and its pull, (STEPS, BINS + 1)."""
+    parts = np.split(weights, np.cumsum(SIZES)[:-1])
+    first, second, last = (part.reshape(shape) for part, shape in zip(parts, SHAPES, strict=True))
+    s = (np.arange(BINS) + 0.5) * REACH / BINS
+    inputs = np.ones((STEPS, BINS, INPUTS))
+    inputs[..., 0], inputs[..., 1] = np.log(s), s - 1.5
+    inputs[..., 2] = 2.0 * np.arange(STEPS)[:, np.newaxis] / STEPS - 1.0
+    inputs[..., 3], inputs[..., 4] = 4.0 / d - 0.6, math.log(n) / 3.0 - 1.7
+    out = np.tanh(np.tanh(inputs @ first) @ second) @ last
+    push = 0.15 * np.exp(out[..., 0] - 2.0 * s) * (1.0 - s / REACH)
+    return np.hstack([push, 0.3 * np.exp(out[..., 1].mean(axis=1, keepdims=True))])
+
+
+@njit(cache=True, fastmath=True)
+def moved(points, table, radius):  # type: ignore[no-untyped-def]
+    """Return where the steps of a table move points, (n, d), on the torus."""
+    n, d = points.shape
+    x, bins = points.copy(), table.shape[1] - 1
+    gaps, slopes = np.empty(d), np.empty(d)
+    for step in range(table.shape[0]):
+        push, pull = np.zeros((n, d)), np.zeros((n, d))
+        for i in range(n):
+            for j in range(i):
+                squared, kernel = 0.0, 1.0
+                for k in range(d):
+                    gap = x[i, k] - x[j, k]
+                    gap -= np.rint(gap)
+                    gaps[k] = gap
+                    squared += gap * gap
+                    size = abs(gap)
+                    factor = 1.5 - size * (1.0 - size)
+                    kernel *= factor
+                    slopes[k] = (1.0 - 2.0 * size) * (1.0 if gap > 0.0 else -1.0) / factor
+                length = math.sqrt(squared) + 1e-12
+                at = int(length / radius * (bins / REACH))
+                force = table[step, at] / length if at < bins else 0.0
+                for k in range(d):
+                    one, other = force * gaps[k], kernel * slopes[k]
+                    push[i, k] += one
+                    push[j, k] -= one
+                    pull[i, k] += other
+                    pull[j, k] -= other
+        total = 0.0
+        for i in range(n):
+            for k in range(d):
+                total += pull[i, k] ** 2
+        scale = table[step, bins] * radius * 0.1 / (math.sqrt(total / (n * d)) + 1e-12)
+        for i in range(n):
+            for k in range(d):
+                new = x[i, k] + radius * push[i, k] + scale * pull[i, k]
+                x[i, k] = new - math.floor(new)
+    return x
+
+
+def passed(weights: Floats, starts: Floats) -> Floats:
+    """Return where the network moves points, (n, d)."""
+    n, d = starts.shape
+    radius = math.exp((math.lgamma(0.5 * d + 1.0) - 0.5 * d * math.log(math.pi) - math.log(n)) / d)
+    return np.clip(moved(starts, functions(weights, n, d), radius), 0.0, np.nextafter(1.0, 0.0))
+
+
+def trained(seconds: float) -> Floats:
+    """Return the weights after so many seconds of processor time."""
+    rng = np.random.default_rng(0)
+    parts = [rng.standard_normal(s) * g / math.sqrt(s[0]) for s, g in zip(SHAPES, (1.0, 1.0, 0.1), strict=True)]
+    weights = np.concatenate([part.ravel() for part in parts])
+    first, second = np.zeros_like(weights), np.zeros_like(weights)
+    began, rounds = time.process_time(), 0
+    while (spent := time.process_time() - began) < seconds:
+        rounds += 1
+        slope = np.zeros_like(weights)
+        for _ in range(4):
+            d = int(rng.choice((5, 6, 8)))
+            n = int(math.exp(rng.uniform(math.log(48), math.log(200))))
+            starts = draw("sobol", n, d, rng=rng).points
+            for noise in rng.standard_normal((4, len(weights))):
+                up, down = (score(passed(weights + side * noise, starts)) for side in (0.05, -0.05))
+                slope += (up - down) * noise
+        rate = 0.01 * (1.0 + math.cos(math.pi * spent / seconds))
+        first, second = 0.9 * first + 0.1 * slope, 0.99 * second + 0.01 * slope * slope
+        weights = weights - rate * (first / (1.0 - 0.9**rounds)) / (np.sqrt(second / (1.0 - 0.99**rounds)) + 1e-12)
+    print(f"{rounds} rounds of training")
+    return weights
+
+
+def compared(weights: Floats, d: int, n: int) -> None:
+    """Print the scores of four starts after the network, and after what takes as long."""
+    rows = []
+    for seed in range(100, 104):
+        starts = draw("sobol", n, d, rng=seed).points
+        times = []
+        for _ in range(3):
+            began = time.process_time()
+            made = passed(weights, starts)
+            times.append(time.process_time() - began)
+        began = time.process_time()
+        anneal(n, d, OBJECTIVE, steps=30, start=starts)
+        steps = max(1, round(30 * min(times) / (time.process_time() - began)))
+        adam = [score(anneal(n, d, OBJECTIVE, steps=steps, start=starts, rates=(rate, 0.0)).points) for rate in RATES]
+        short, long = (score(anneal(n, d, OBJECTIVE, steps=some, start=starts).points) for some in (steps, 600))
+        even = score(draw("even", n, d, rng=seed).points)
+        rows.append([score(starts), score(made), 1e3 * min(times), min(adam), short, long, even, steps])
+    names = ["start", "network", "ms", "adam", "annealed-as-long", "annealed-600", "even", "steps"]
+    print(f"d={d} n={n}", *(f"{name} {value:.3f}" for name, value in zip(names, np.mean(rows, axis=0), strict=True)))
+
+
+def main() -> None:
+    parser = parser_of(__doc__)
+    parser.add_argument("--seconds", type=float, default=14.0)
+    weights = trained(parser.parse_args().seconds)
+    for d, n in FRESH:
+        compared(weights, d, n)
+
+
+if __name__ == "__main__":
+    main()
