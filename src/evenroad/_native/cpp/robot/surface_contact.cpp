@@ -20,18 +20,23 @@ struct Asked {
   float half, covering, slack;  // spheres are larger than the capsule by the slack
 };
 
-/// Ask a grid about a long capsule as a whole first, then about the spheres that cover it.
-NearAndSure ask(const Surface& surface, const Asked& of) {
+/// What is asked of a grid: lanes in which a capsule is near, or also those in which it touches for sure.
+enum class Wish : std::uint8_t { NEAR, SURE };
+
+/// Ask a grid about a long capsule as a whole first, then about the spheres that cover it, until all open lanes are
+/// known.
+NearAndSure ask(const Surface& surface, const Asked& of, Wish wish, Mask open) {
   const float wide = of.covering + surface.radius, reach = wide - of.slack;
   const Vec3x16 centre = of.capsule.centre, along = of.capsule.half;
-  if (static_cast<int>(of.samples.size()) > FEW_SPHERES &&
-      ask(surface.grid, centre, of.half + reach, reach).near == 0) {
-    return {};
+  if (static_cast<int>(of.samples.size()) > FEW_SPHERES) {
+    open &= ask(surface.grid, centre, of.half + reach, reach).near;
+    if (open == 0) return {};
   }
   NearAndSure all;
   for (const float share : of.samples) {
     const NearAndSure here = ask(surface.grid, plus(centre, along, spread(share)), wide, reach);
     all.near |= here.near, all.sure |= here.sure;
+    if ((open & ~(wish == Wish::NEAR ? all.near : all.sure)) == 0) break;
   }
   return all;
 }
@@ -169,9 +174,9 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
     const bool shaped = lengths.shapes_decide && body.shape >= 0;
     const Asked of{places.capsules[i], samples.subspan(capsule.samples.first, capsule.samples.size()),
                    capsule.half_length, lengths.capsules[i], capsule.slack};
-    Mask open = ALL_LANES;
+    Mask open = ~(blocked | meeting) & ALL_LANES;
     if (scene.around != nullptr && scene.surfaces_tested[i] > 1) {
-      open = ask(*scene.around, of).near & ~(blocked | meeting);
+      open &= ask(*scene.around, of, Wish::NEAR, open).near;
       if (open == 0) continue;
     }
     for (const SurfaceObstacle& each : scene.surfaces) {
@@ -179,7 +184,7 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
       const Surface& surface = *each.surface;
       const float reach = of.covering - of.slack + surface.radius;
       if (many && (beside(surface.grid, of.capsule.centre, of.half + reach) & open) == 0) continue;
-      const NearAndSure told = ask(surface, of);
+      const NearAndSure told = ask(surface, of, Wish::SURE, open & ~meeting);
       Mask here = told.sure & ~blocked;
       if ((meeting | here) == 0 || wanted != Wanted::FIRST || shaped) {
         const Mask near = told.near & open & ~(blocked | meeting | told.sure);
