@@ -10,6 +10,7 @@ from evenroad.constraints.kept_world import kept_world
 from evenroad.errors import EvenroadError
 from evenroad.robot import with_group
 from evenroad.robot.inverse_kinematics import reach
+from tests.constraints.residuals import residuals
 from tests.robot import oracle
 
 ROBOTS = {"ur5": er.load_robot("ur5"), "arm7": er.load_robot("arm7")}
@@ -39,24 +40,23 @@ def kept(name, keep):
     return kept_world(er.ArmWorld(robot), (keep,), np.array(BENT[name]), TIPS[name])
 
 
-def by(world, q):
-    """The tips' poses and derivatives."""
-    return [
-        [getattr(world.chains[tip], what)(q) for tip in world.keeps[0].tips] for what in ("tip_poses", "derivatives")
-    ]
-
-
 @pytest.mark.parametrize("keep", KEEPS, ids=lambda keep: keep if isinstance(keep, str) else type(keep).__name__)
 @pytest.mark.parametrize("name", ["ur5", "arm7"])
 class TestEachConstraint:
+    def test_its_residual_is_as_defined_and_its_length_a_share_of_the_limit(self, name, keep):
+        world, rng = kept(name, keep), np.random.default_rng(0)
+        q = BENT[name] + rng.uniform(-0.5, 0.5, (30, len(BENT[name])))
+        defined = residuals(ROBOTS[name], world.keeps[0], q)
+        np.testing.assert_allclose(world.native.residuals(q), defined, atol=1e-12)
+        shares = np.linalg.norm(defined, axis=1) / world.keeps[0].limit
+        np.testing.assert_allclose(world.shares(q)[:, 0], shares, rtol=1e-9, atol=1e-9 / world.keeps[0].limit)
+
     def test_its_derivative_is_that_of_its_residual(self, name, keep):
         world, rng = kept(name, keep), np.random.default_rng(0)
-        q = BENT[name] + rng.uniform(-0.3, 0.3, (20, len(BENT[name])))
-        tips, of_tips = by(world, q)
-        got = world.keeps[0].derivative(q, tips, of_tips)
-        for k, step in enumerate(1e-6 * np.eye(q.shape[1])):
-            ahead, behind = (world.keeps[0].residual(q + s * step, by(world, q + s * step)[0]) for s in (1.0, -1.0))
-            np.testing.assert_allclose(got[:, :, k], (ahead - behind) / 2e-6, atol=1e-7)
+        for q in BENT[name] + rng.uniform(-0.3, 0.3, (20, len(BENT[name]))):
+            steps = 1e-6 * np.eye(len(q))
+            ahead, behind = world.native.residuals(q + steps), world.native.residuals(q - steps)
+            np.testing.assert_allclose(world.native.derivative(q), (ahead - behind).T / 2e-6, atol=1e-7)
 
     def test_configurations_are_projected_to_well_within_it(self, name, keep):
         world, rng = kept(name, keep), np.random.default_rng(1)

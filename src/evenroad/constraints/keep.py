@@ -8,14 +8,30 @@ for a second derivative, which `bend` bounds by how the tips move.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import IntEnum
 from typing import ClassVar
 
-import numpy as np
-
 from evenroad._arrays import Floats
+from evenroad.geometry.pose import Pose
 from evenroad.robot import Robot
 from evenroad.robot.cartesian_path import Moves
 from evenroad.robot.constraint import Constraint
+
+
+class Kind(IntEnum):
+    """What a residual is, and which numbers it is made of, as in ``robot/keeps.hpp``."""
+
+    LINEAR = 0
+    """Rows, each of twelve coefficients of the tip's pose, and what is taken off."""
+    BOX = 1
+    """The way of the tip's origin out of a box: the box's low and high corner."""
+    CIRCLE = 2
+    """Distance from the circle and its plane, and a tenth of how far the tip is from turning with it."""
+    TOGETHER = 3
+    """Shift of the second tip from where the first one holds it, and a tenth of its turn: the pose that it holds."""
+    JOINTS = 4
+    """How far joints are outside of their ranges: lows and highs of all."""
+
 
 WITHIN = 1e-4
 """Default for how far a tip may be off [m]."""
@@ -43,12 +59,9 @@ class Keep(Constraint):
         """Largest length of the residual."""
         return self.within
 
-    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
-        """Return the residuals, (n, m), at configurations, (n, dim), with poses of the tips, (n, 12) each."""
-        raise NotImplementedError
-
-    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
-        """Return the residual's derivatives by the joints, (n, m, dim), from those of the tips, (n, 6, dim) each."""
+    @property
+    def residual(self) -> tuple[Kind, Floats]:
+        """Its residual for compiled code: of which kind it is, and the numbers, (k,), that it is made of."""
         raise NotImplementedError
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
@@ -69,14 +82,6 @@ def turns_of(tips: Floats) -> Floats:
     return tips[:, :9].reshape(-1, 3, 3)
 
 
-def cross_matrix(v: Floats) -> Floats:
-    """Return the matrices of the cross products with vectors, (n, 3): (n, 3, 3)."""
-    zero = np.zeros(len(v))
-    x, y, z = v.T
-    return np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=1).reshape(-1, 3, 3)
-
-
-def turned_derivative(turns: Floats, by: Floats) -> Floats:
-    """Return the derivatives of rotations' nine entries, (n, 9, dim), where they turn by (n, 3, dim)."""
-    columns = [-cross_matrix(turns[:, :, k]) @ by for k in range(3)]
-    return np.stack(columns, axis=2).reshape(len(turns), 9, -1)
+def pose_row(pose: Pose) -> list[float]:
+    """Return a pose as compiled code takes it: its rotation row by row, and its origin."""
+    return [*pose.rotation, *pose.xyz]

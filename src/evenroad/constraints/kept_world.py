@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._fingerprint import fingerprint_of
+from evenroad._native import robot as kernel
 from evenroad.constraints.keep import Keep
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.cartesian_path import Followed, moves_of
@@ -96,6 +98,7 @@ class KeptWorld:
     keeps: tuple[Keep, ...]
     space: ProjectedSpace = field(init=False, repr=False)
     chains: dict[str, Chain] = field(init=False, repr=False)
+    native: kernel.Keeps = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         plain = self.world.space
@@ -103,6 +106,15 @@ class KeptWorld:
         tips = dict.fromkeys(tip for keep in self.keeps for tip in keep.tips)
         object.__setattr__(self, "chains", {tip: chain_of(self.world.robot, tip) for tip in tips})
         object.__setattr__(self, "space", space.projected_by(self))
+        number = {tip: i for i, tip in enumerate(self.chains)}
+        rows = [
+            (int(kind), number[keep.tips[0]] if keep.tips else 0, number[keep.tips[-1]] if keep.tips else 0, *rest)
+            for keep in self.keeps
+            for kind, numbers in (keep.residual,)
+            for rest in ((keep.limit, np.ascontiguousarray(numbers, dtype=np.float64)),)
+        ]
+        chains = [chain.native for chain in self.chains.values()]
+        object.__setattr__(self, "native", kernel.Keeps(chains, rows, self.limits))
 
     @property
     def proof(self) -> str:
@@ -115,54 +127,21 @@ class KeptWorld:
         ranges = np.array([self.world.space.low, self.world.space.high])
         return np.where(self.world.space.flat.wrapping, [[-np.inf], [np.inf]], ranges)
 
-    @property
+    @cached_property
     def step(self) -> float:
         """Longest step along a motion: between two states residuals grow with its square."""
         return min(_STEP, *(math.sqrt(2.0 * keep.limit) for keep in self.keeps if keep.tips), _STEP)
 
     def shares(self, q: Floats) -> Floats:
         """Return the lengths of the residuals as shares of their limits, (n, c), at configurations, (n, dim)."""
-        tips = {tip: chain.tip_poses(q) for tip, chain in self.chains.items()}
-        lengths = [_length(keep.residual(q, [tips[tip] for tip in keep.tips])) / keep.limit for keep in self.keeps]
-        return np.stack(lengths, axis=1)
+        return self.native.shares(np.ascontiguousarray(q))
 
     def projected(self, q: Floats, *, steps: int = _STEPS) -> tuple[Floats, Bools]:
         """Return the configurations, (n, dim), moved to where all residuals are within a share of their limits, and
         which succeeded (damped Gauss-Newton, Nakamura and Hanafusa 1986).
         """
-        q, left = q.copy(), np.arange(len(q))
-        for count in range(steps + 1):
-            if not len(left):
-                break
-            here = q[left]
-            tips = {tip: chain.tip_poses(here) for tip, chain in self.chains.items()}
-            residuals = [keep.residual(here, [tips[tip] for tip in keep.tips]) for keep in self.keeps]
-            lengths = np.stack([_length(each) / keep.limit for each, keep in zip(residuals, self.keeps, strict=True)])
-            off = (lengths > _ENOUGH).any(axis=0)
-            left, here = left[off], here[off]
-            if count == steps or not len(left):
-                break
-            of_tips = {tip: chain.derivatives(here) for tip, chain in self.chains.items()}
-            scale = np.maximum(0.0, 1.0 - _AIM / np.maximum(lengths[:, off], 1e-12))
-            error = np.hstack([each[off] * by[:, np.newaxis] for each, by in zip(residuals, scale, strict=True)])
-            rows = [
-                keep.derivative(here, [tips[tip][off] for tip in keep.tips], [of_tips[tip] for tip in keep.tips])
-                * (by > 0.0)[:, np.newaxis, np.newaxis]
-                for keep, by in zip(self.keeps, scale, strict=True)
-            ]
-            q[left] = self._stepped(here, error, np.concatenate(rows, axis=1))
-        good = np.ones(len(q), dtype=np.bool_)
-        good[left] = False
-        return q, good
-
-    def _stepped(self, q: Floats, error: Floats, derivative: Floats) -> Floats:
-        """Return configurations, (n, dim), after a step that takes errors, (n, m), away."""
-        back = derivative.transpose(0, 2, 1)
-        damping = 1e-3 * np.square(error).sum(axis=1) + 1e-12
-        square = back @ derivative + damping[:, np.newaxis, np.newaxis] * np.eye(q.shape[1])
-        step = np.linalg.solve(square, back @ error[:, :, np.newaxis])[:, :, 0]
-        most = np.abs(step).max(axis=1, keepdims=True)
-        return np.clip(q - step * np.minimum(1.0, _LONGEST / np.maximum(most, 1e-12)), *self.limits)
+        moved, good = self.native.project(np.ascontiguousarray(q), _AIM, _ENOUGH, steps, _LONGEST)
+        return moved, good.view(np.bool_)
 
     def bounds(self, path: Floats) -> Floats:
         """Return bounds on the residuals along each motion of a path, (n, dim), as shares of limits: (n - 1, c).
@@ -313,7 +292,3 @@ def kept_line(world: KeptWorld, line: Followed) -> Followed:
         return line
     largest = world.largest(line.path)
     return line if (largest <= 1.0).all() else Followed(line.path[:1], f"along it {world.exceeded(largest)}")
-
-
-def _length(residual: Floats) -> Floats:
-    return np.sqrt(np.square(residual).sum(axis=1))

@@ -4,7 +4,6 @@
 # ruff: noqa: D102
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
@@ -13,7 +12,7 @@ import numpy as np
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_row, require_known, require_positive
-from evenroad.constraints.keep import WITHIN, Keep, cross_matrix, turned_derivative, turns_of
+from evenroad.constraints.keep import WITHIN, Keep, Kind, pose_row
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
 from evenroad.robot import Robot
@@ -88,38 +87,10 @@ class KeepOnCircle(Keep):
         assert self.pose is not None, "only of a bound constraint"
         return float(np.subtract(self.pose.xyz, self.centre) @ self.frame[2])
 
-    def _angles(self, tips: Floats) -> tuple[Floats, Floats]:
-        """Return the angle of the door at the tip's place, and its distance from the hinge, (n,) each."""
-        centre, _, out, across = self.frame
-        x, y = (tips[:, 9:] - centre) @ out, (tips[:, 9:] - centre) @ across
-        return np.arctan2(y, x), np.maximum(np.hypot(x, y), 1e-9)
-
-    def _door(self, angle: Floats) -> Floats:
-        """Return the rotations of the tip at the door's angles, (n, 3, 3)."""
+    @property
+    def residual(self) -> tuple[Kind, Floats]:
         assert self.pose is not None, "only of a bound constraint"
-        skew = cross_matrix(np.array(self.axis, dtype=np.float64)[np.newaxis])[0]
-        sine, cosine = np.sin(angle)[:, np.newaxis, np.newaxis], np.cos(angle)[:, np.newaxis, np.newaxis]
-        return (np.eye(3) + sine * skew + (1.0 - cosine) * (skew @ skew)) @ self.pose.rotation_matrix
-
-    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
-        along = self.frame[1]
-        assert self.pose is not None, "only of a bound constraint"
-        angle, far = self._angles(tips[0])
-        height = (tips[0][:, 9:] - np.array(self.pose.xyz)) @ along
-        turned = 0.1 / math.sqrt(2.0) * (tips[0][:, :9] - self._door(angle).reshape(-1, 9))
-        return np.column_stack([far - self.radius, height, turned])
-
-    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
-        _, along, out, across = self.frame
-        angle, far = self._angles(tips[0])
-        radial = np.cos(angle)[:, np.newaxis] * out + np.sin(angle)[:, np.newaxis] * across
-        tangent = np.cross(along, radial)
-        moved, turned = of_tips[0][:, :3], of_tips[0][:, 3:]
-        swing = (tangent[:, np.newaxis] @ moved) / far[:, np.newaxis, np.newaxis]
-        of_door = along[np.newaxis, :, np.newaxis] * swing
-        rows = turned_derivative(turns_of(tips[0]), turned) - turned_derivative(self._door(angle), of_door)
-        height = along[np.newaxis, np.newaxis] @ moved
-        return np.concatenate([radial[:, np.newaxis] @ moved, height, 0.1 / math.sqrt(2.0) * rows], axis=1)
+        return Kind.CIRCLE, np.concatenate([*self.frame, [self.radius], pose_row(self.pose)])
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         # Of the distance from the hinge it is at most that of the tip and its speed squared by that distance, of the
@@ -181,19 +152,10 @@ class KeepTogether(Keep):
         first, second = (Pose(tuple(row[9:]), tuple(row[:9])) for row in rows)
         return replace(self, pose=self.pose or first.inverse() @ second)
 
-    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
+    @property
+    def residual(self) -> tuple[Kind, Floats]:
         assert self.pose is not None, "only of a bound constraint"
-        a, b = turns_of(tips[0]), turns_of(tips[1])
-        gap = np.einsum("nji,nj->ni", a, tips[1][:, 9:] - tips[0][:, 9:]) - np.array(self.pose.xyz)
-        turned = np.einsum("nji,njk->nik", a, b).reshape(-1, 9) - np.array(self.pose.rotation)
-        return np.hstack([gap, 0.1 / math.sqrt(2.0) * turned])
-
-    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
-        back = turns_of(tips[0]).transpose(0, 2, 1)
-        apart = cross_matrix(tips[1][:, 9:] - tips[0][:, 9:])
-        gap = back @ (of_tips[1][:, :3] - of_tips[0][:, :3] + apart @ of_tips[0][:, 3:])
-        turned = turned_derivative(back @ turns_of(tips[1]), back @ (of_tips[1][:, 3:] - of_tips[0][:, 3:]))
-        return np.concatenate([gap, 0.1 / math.sqrt(2.0) * turned], axis=1)
+        return Kind.TOGETHER, np.array(pose_row(self.pose))
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         assert self.pose is not None, "only of a bound constraint"
@@ -256,11 +218,9 @@ class KeepJoints(Keep):
         """Lows and highs of all joints, (2, dim)."""
         return np.array([self.ranges.get(name, (-np.inf, np.inf)) for name in self.joints]).T
 
-    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
-        return q - np.clip(q, *self.bounds)
-
-    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
-        return np.where((self.residual(q, tips) != 0.0)[:, :, np.newaxis], np.eye(q.shape[1]), 0.0)
+    @property
+    def residual(self) -> tuple[Kind, Floats]:
+        return Kind.JOINTS, self.bounds.ravel()
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return np.zeros(1)

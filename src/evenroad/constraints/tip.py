@@ -13,7 +13,7 @@ import numpy as np
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_row, require_positive
-from evenroad.constraints.keep import WITHIN, Keep, cross_matrix, turned_derivative, turns_of
+from evenroad.constraints.keep import WITHIN, Keep, Kind, turns_of
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
 from evenroad.robot import Robot
@@ -77,11 +77,13 @@ class KeepUpright(Keep):
     def limit(self) -> float:
         return _chord(self.within)
 
-    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
-        return turns_of(tips[0]) @ np.array(self.axis) - np.array(UP)
-
-    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
-        return -cross_matrix(turns_of(tips[0]) @ np.array(self.axis)) @ of_tips[0][:, 3:]
+    @property
+    def residual(self) -> tuple[Kind, Floats]:
+        rows = np.zeros((3, 13))
+        for k in range(3):
+            rows[k, 3 * k : 3 * k + 3] = self.axis
+        rows[:, 12] = UP
+        return Kind.LINEAR, rows.ravel()
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return moves[0].swing
@@ -141,11 +143,11 @@ class KeepOrientation(Keep):
     def limit(self) -> float:
         return math.sqrt(2.0) * _chord(self.within)
 
-    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
-        return tips[0][:, :9] - np.array(self.rotation)
-
-    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
-        return turned_derivative(turns_of(tips[0]), of_tips[0][:, 3:])
+    @property
+    def residual(self) -> tuple[Kind, Floats]:
+        rows = np.eye(9, 13)
+        rows[:, 12] = self.rotation
+        return Kind.LINEAR, rows.ravel()
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return math.sqrt(2.0) * moves[0].swing
@@ -204,11 +206,12 @@ class KeepInPlane(Keep):
         """Directions in which it may not leave, (m, 3)."""
         return np.array(self.normal, dtype=np.float64)[np.newaxis]
 
-    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
-        return (tips[0][:, 9:] - np.array(self.through)) @ self.across.T
-
-    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
-        return self.across @ of_tips[0][:, :3]
+    @property
+    def residual(self) -> tuple[Kind, Floats]:
+        across = self.across
+        rows = np.zeros((len(across), 13))
+        rows[:, 9:12], rows[:, 12] = across, across @ np.array(self.through)
+        return Kind.LINEAR, rows.ravel()
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return moves[0].push
@@ -291,11 +294,9 @@ class KeepInBox(Keep):
     def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
         return replace(self, tip=self.tip or tip)
 
-    def residual(self, q: Floats, tips: Sequence[Floats]) -> Floats:
-        return tips[0][:, 9:] - np.clip(tips[0][:, 9:], self.low, self.high)
-
-    def derivative(self, q: Floats, tips: Sequence[Floats], of_tips: Sequence[Floats]) -> Floats:
-        return np.where((self.residual(q, tips) != 0.0)[:, :, np.newaxis], of_tips[0][:, :3], 0.0)
+    @property
+    def residual(self) -> tuple[Kind, Floats]:
+        return Kind.BOX, np.array([*self.low, *self.high])
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return moves[0].push

@@ -24,6 +24,8 @@ FIRST, MOST_SAMPLES = 1 << 10, 1 << 18
 """Numbers of samples that are drawn first and at most; they double when used up, after the last one the trees stop."""
 MOST_STEPS = 64
 """Largest number of steps of a tree towards a new node of the other one."""
+NEAR = 8
+"""Number of goals, the nearest ones, that are walked to under constraints before trees grow."""
 
 
 class _Tree:
@@ -64,7 +66,7 @@ def grow_trees(
         if first >= len(samples):
             samples = _samples(world, max(FIRST, 2 * len(samples)), variant)
             if first == 0:
-                step = STEP * float(np.median(world.space.distance(samples[:128], samples[128:256])))
+                step = _step(world, samples)
         targets = ahead if first < 0 else samples[first : first + BATCH]
         near = own.nearest(world, targets)
         new = _towards(world, own.nodes[near], targets, np.inf if first < 0 else step)
@@ -72,13 +74,21 @@ def grow_trees(
         motions += len(new)
         begin = len(own.nodes)
         own.add(new[free], near[free])
-        for node in range(begin, len(own.nodes)):
-            reached, checked = _reach(world, other, own.nodes[node], step, most_motions - motions)
+        fresh = np.arange(begin, len(own.nodes))
+        walks = [(turn, fresh, other.nearest(world, own.nodes[fresh]))] if len(fresh) else []
+        if first < 0 and not len(fresh) and isinstance(world, KeptWorld):
+            # A straight motion may leave a constraint where a walk along it leads on, from one end or the other.
+            step = _step(world, _samples(world, FIRST, variant))
+            away = world.space.distance(np.broadcast_to(start, ahead.shape), ahead)
+            near = np.argsort(away, kind="stable")[:NEAR]
+            walks = [(1, near, np.zeros_like(near)), (0, np.zeros_like(near), near)]
+        for of, nodes, begins in walks:
+            row, reached, checked = _reach(world, trees[1 - of], trees[of].nodes[nodes], begins, step, most_motions)
             motions += checked
-            if reached >= 0:
-                branches = own.branch(node)[::-1], other.branch(reached)
-                path = np.concatenate([own.nodes[branches[0]], other.nodes[branches[1]]])
-                path = path if turn == 0 else path[::-1]
+            if row >= 0:
+                branches = trees[of].branch(int(nodes[row]))[::-1], trees[1 - of].branch(reached)
+                path = np.concatenate([trees[of].nodes[branches[0]], trees[1 - of].nodes[branches[1]]])
+                path = path if of == 0 else path[::-1]
                 path = path[np.append(True, (path[1:] != path[:-1]).any(axis=1))]
                 goal = int(np.flatnonzero((goals == path[-1]).all(axis=1))[0])
                 return Connection(path, goal, sum(len(tree.nodes) for tree in trees), 0, motions)
@@ -97,19 +107,33 @@ def _samples(world: World, n: int, variant: int) -> Floats:
     return space.from_cube(make_sampler("sobol").draw(n, space.cube_dim, rng=variant).points)
 
 
-def _reach(world: World, tree: _Tree, target: Floats, step: float, most: int) -> tuple[int, int]:
-    """Grow a tree towards a configuration, (dim,); return its node there, or -1, and the number of checks."""
-    node = int(tree.nearest(world, target[np.newaxis])[0])
-    for checked in range(min(MOST_STEPS, max(most, 0))):
-        here = tree.nodes[node : node + 1]
-        if (here[0] == target).all():
-            return node, checked
-        new = _towards(world, here, target[np.newaxis], step)
-        if not world.motion_valid(here, new)[0]:
-            return -1, checked + 1
-        tree.add(new, np.array([node]))
-        node = len(tree.nodes) - 1
-    return (node if (tree.nodes[node] == target).all() else -1), MOST_STEPS
+def _step(world: World, samples: Floats) -> float:
+    """Return the longest motion of a tree."""
+    return STEP * float(np.median(world.space.distance(samples[:128], samples[128:256])))
+
+
+def _reach(world: World, tree: _Tree, targets: Floats, nodes: Ints, step: float, most: int) -> tuple[int, int, int]:
+    """Grow a tree from nodes, (k,), towards configurations, (k, dim), all by a step in turn, until one is reached.
+
+    Return the row of that configuration, and its node, or -1 twice; and the number of checks.  Those that a step does
+    not bring nearer are given up.
+    """
+    node, rows, checked = nodes.copy(), np.arange(len(targets)), 0
+    for _ in range(MOST_STEPS):
+        here, there = tree.nodes[node[rows]], targets[rows]
+        if (at := np.flatnonzero((here == there).all(axis=1))).size:
+            return int(rows[at[0]]), int(node[rows[at[0]]]), checked
+        if not len(rows) or checked >= most:
+            break
+        new = _towards(world, here, there, step)
+        nearer = np.flatnonzero(world.space.distance(new, there) < world.space.distance(here, there))
+        free = nearer[world.motion_valid(here[nearer], new[nearer])]
+        checked += len(nearer)
+        first = len(tree.nodes)
+        tree.add(new[free], node[rows[free]])
+        rows = rows[free]
+        node[rows] = first + np.arange(len(rows))
+    return -1, -1, checked
 
 
 def _towards(world: World, a: Floats, b: Floats, step: float) -> Floats:

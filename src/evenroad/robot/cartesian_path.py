@@ -189,21 +189,11 @@ class Moves:
 def moves_of(chain: Chain, moved: Floats) -> Moves:
     """Return bounds on how the tip moves along straight motions of the joints, (n, dim)."""
     joints = np.abs(moved[:, chain.coordinates] * chain.rows[:-1, 12])
-    turning, arms = np.where(chain.slides, 0.0, joints), _arms(chain)
+    turning, arms = np.where(chain.slides, 0.0, joints), chain.arms
     # A joint turns what later ones move: of two the later one's arm counts.
     later = np.cumsum(turning, axis=1)
     pushes = (joints * arms * (2.0 * later - turning)).sum(axis=1)
     return Moves((joints * arms).sum(axis=1), turning.sum(axis=1), pushes)
-
-
-def _arms(chain: Chain) -> Floats:
-    """Return bounds on the distance of the tip from each joint that turns, (k,); 1 for one that slides."""
-    offsets = np.linalg.norm(chain.rows[1:, 9:12], axis=1)
-    frames = chain.frames
-    extremes = [np.abs(chain.bounds[:, each.coordinate] * each.multiplier + each.offset).max() for each in frames]
-    slides = np.where(chain.slides, extremes, 0.0)
-    beyond = np.cumsum((offsets + np.append(slides[1:], 0.0))[::-1])[::-1]
-    return np.where(chain.slides, 1.0, beyond)
 
 
 def _rotations(poses: Floats) -> Any:

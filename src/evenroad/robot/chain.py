@@ -76,6 +76,15 @@ class Chain:
         return q, self.tip_poses(q)
 
     @cached_property
+    def arms(self) -> Floats:
+        """Bounds on the distance of the tip from each joint that turns, (k,) [m]; 1 for one that slides."""
+        offsets = np.linalg.norm(self.rows[1:, 9:12], axis=1)
+        extremes = [np.abs(self.bounds[:, f.coordinate] * f.multiplier + f.offset).max() for f in self.frames]
+        slides = np.where(self.slides, extremes, 0.0)
+        beyond = np.cumsum((offsets + np.append(slides[1:], 0.0))[::-1])[::-1]
+        return np.where(self.slides, 1.0, beyond)
+
+    @cached_property
     def native(self) -> kernel.Chain:
         """The chain for compiled code."""
         return kernel.Chain(self.coordinates, self.slides, self.rows, len(self.group))

@@ -13,6 +13,7 @@ struct InvalidValue : std::invalid_argument {
 };
 
 void add_chain(nanobind::module_& robot);
+void add_keeps(nanobind::module_& robot);
 void add_picture(nanobind::module_& module);
 void add_planning(nanobind::module_& module);
 void add_points(nanobind::module_& module);

@@ -344,6 +344,7 @@ void add_robot(nb::module_& module) {
       .def("find_contact", &find_contact)
       .def_prop_ro("fixed_contact", [](const Checker& checker) { return in_words(checker.fixed_contact()); });
   add_chain(part);
+  add_keeps(part);
 }
 
 }  // namespace evenroad::bind

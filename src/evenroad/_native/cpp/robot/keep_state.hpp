@@ -1,0 +1,38 @@
+// One configuration under constraints: where the tips are, how far each constraint is off, and how that changes.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "robot/keeps.hpp"
+
+namespace evenroad::robot {
+
+class KeepState {
+ public:
+  explicit KeepState(const Keeps& keeps);
+
+  /// Place the tips at a configuration, (dim,), which is kept alive.
+  void place(std::span<const double> q);
+
+  /// Say how the tips move with each joint; after `place`.
+  void derive();
+
+  void write_residual(const Keep& keep, std::span<double> to) const;
+
+  /// Write a column of the residual's derivative, that of one joint; after `derive`.
+  void write_column(const Keep& keep, std::size_t joint, std::span<double> to) const;
+
+ private:
+  /// How a tip moves and turns with a joint.
+  std::pair<Point, Point> twist(std::size_t tip, std::size_t joint) const;
+
+  const Keeps& keeps_;
+  std::span<const double> q_;
+  std::vector<std::vector<Axis>> axes_;
+  std::vector<Pose> tips_;
+  std::vector<std::vector<double>> moves_;  // (6, dim) of each tip
+};
+
+}  // namespace evenroad::robot
