@@ -35,8 +35,9 @@ _JUMP = 2.5
 """Number of steps beyond which neighbouring projected states are of two branches."""
 _PARTS = 4
 """Number of parts of a motion at whose ends residuals are measured; between them they are bounded."""
-_SHORTCUTS, _LONGER = 16, 0.1
-"""Number of motions that are tried to shorten a path, and by what share it must be longer than the straight one."""
+_SHORTCUTS, _ROUNDS, _LONGER = 24, 3, 0.1
+"""Number of motions that are tried to shorten a path, in so many rounds, and by what share it must be longer than the
+straight one."""
 _TOGETHER = 64
 """Number of motions that are projected at once."""
 
@@ -177,11 +178,11 @@ class KeptWorld:
         """Return the states of the motion between two configurations, (n, dim), with both; None where it
         is not free.
         """
-        free, states = self._followed(a[np.newaxis], b[np.newaxis])
+        free, _, states = self._followed(a[np.newaxis], b[np.newaxis])
         return states if free[0] else None
 
-    def _followed(self, a: Floats, b: Floats) -> tuple[Bools, Floats]:
-        """Return which motions are free, and the states of those, one after the other.
+    def _followed(self, a: Floats, b: Floats) -> tuple[Bools, Ints, Floats]:
+        """Return which motions are free, and the states of those, one after the other, and of which motion each is.
 
         Some states are projected first, and then others between these, which are near by then.
         """
@@ -209,7 +210,8 @@ class KeptWorld:
             steps = steps[good[motion[steps]]]
         if len(steps):
             good[motion[steps[~world.motion_certified(states[steps], states[steps + 1], 1e-6)]]] = False
-        return good, states[good[motion]]
+        rows = good[motion]
+        return good, motion[rows], states[rows]
 
     def _states(self, a: Floats, b: Floats, parts: Ints, step: float) -> tuple[Bools, Ints, Floats]:
         """Return which motions have projected states, free and near each other, and their motions and states."""
@@ -253,16 +255,24 @@ class KeptWorld:
         """
         space = self.world.space
         least = (1.0 + _LONGER) * float(space.distance(path[:1], path[-1:])[0])
-        for low, high in [(0.0, 1.0), *np.sort(share_pairs(_SHORTCUTS), axis=1)]:
+        for pairs in np.split(np.sort(share_pairs(_SHORTCUTS), axis=1), _ROUNDS):
             travelled = np.concatenate([[0.0], np.cumsum(space.distance(path[:-1], path[1:]))])
             if travelled[-1] <= least:
                 break
-            i, j = np.searchsorted(travelled, [low * travelled[-1], high * travelled[-1]])
-            if j - i < 2:
-                continue
-            followed = self.along(path[i], path[j])
-            if followed is not None and path_length(followed, space) < travelled[j] - travelled[i] - 1e-9:
-                path = np.concatenate([path[:i], followed, path[j + 1 :]])
+            i, j = np.searchsorted(travelled, pairs.T * travelled[-1])
+            # What is hardly longer than the straight way cannot become much shorter.
+            some = j - i > 1
+            some[some] = travelled[j[some]] - travelled[i[some]] > 1.01 * space.distance(path[i[some]], path[j[some]])
+            i, j = i[some], j[some]
+            good, motion, states = self._followed(path[i], path[j])
+            found = {k: states[motion == k] for k in np.flatnonzero(good).tolist()}
+            saved = {k: travelled[j[k]] - travelled[i[k]] - path_length(way, space) for k, way in found.items()}
+            taken: list[int] = []
+            for k in sorted(found, key=lambda k: -saved[k]):
+                if saved[k] > 1e-9 and all(j[k] <= i[other] or j[other] <= i[k] for other in taken):
+                    taken.append(k)
+            for k in sorted(taken, key=lambda k: -int(i[k])):
+                path = np.concatenate([path[: i[k]], found[k], path[j[k] + 1 :]])
         return path
 
     def fingerprint(self) -> str:
