@@ -266,7 +266,7 @@ class KeptWorld:
             i, j = i[some], j[some]
             good, motion, states = self._followed(path[i], path[j])
             found = {k: states[motion == k] for k in np.flatnonzero(good).tolist()}
-            saved = {k: travelled[j[k]] - travelled[i[k]] - path_length(way, space) for k, way in found.items()}
+            saved = {k: travelled[j[k]] - travelled[i[k]] - path_length(each, space) for k, each in found.items()}
             taken: list[int] = []
             for k in sorted(found, key=lambda k: -saved[k]):
                 if saved[k] > 1e-9 and all(j[k] <= i[other] or j[other] <= i[k] for other in taken):
