@@ -52,10 +52,7 @@ class Stage:
         held, scene, robot = {each.name: each for each in self.world.scene.attached}, self.world.scene, self.world.robot
         deep = {**self.depths, **(depths or {})}
         for name in sorted({link for link, _ in contacts} & held.keys() & deep.keys()):
-            less = held[name]
-            core = core_of(less.body, deep[name], as_capsule=not robot.shapes)
-            if core is not None:
-                robot = robot.holding(HeldObject(_smaller(name, deep[name]), core, less.link, less.touches))
+            robot = _holding_core(robot, held[name], deep[name])
         bodies = contacts - {each for each in contacts if each[1] in held}
         cores: list[Obstacle] = []
         allowed = set(scene.allowed)
@@ -99,7 +96,8 @@ class Stage:
         attached = replace(scene.without(step.object), attached=(*scene.attached, held))
         depths = {**self.depths, step.object: step.depth}
         clearances = {**self.clearances, step.object: found[0].clearance}
-        stage = replace(self, world=_world(self, attached), depths=depths, clearances=clearances)
+        stage = replace(self, depths=depths, clearances=clearances)
+        stage = replace(stage, world=_world(stage, attached))
         # What it stood on, it may touch until it is lifted.
         stood = frozenset((step.object, each) for each in stage.touched(step.object))
         return replace(stage, near_start=self.near_start | stood)
@@ -161,10 +159,24 @@ def pose_of(robot: Robot, q: Floats, link: str) -> Pose:
     return Pose.from_matrix(link_poses(robot, q[np.newaxis])[0, robot.links.index(link)])
 
 
+def _holding_core(robot: Robot, held: HeldObject, depth: float) -> Robot:
+    """Return the robot holding what it holds once more, smaller by a depth, if it does not yet."""
+    name, core = _smaller(held.name, depth), core_of(held.body, depth, as_capsule=not robot.shapes)
+    if core is None or name in robot.holds:
+        return robot
+    return robot.holding(HeldObject(name, core, held.link, held.touches))
+
+
 def _world(stage: Stage, scene: Scene) -> ArmWorld:
-    """Return the stage's world with another scene, and the robot holding what is attached there."""
+    """Return the stage's world with another scene, and the robot holding what is attached there.
+
+    The smaller body that may not touch either is there at once: one robot is made, which is most of the work.
+    """
     robot = stage.empty
     for held in scene.attached:
         if held.name not in robot.holds:
+            # First, so that where both touch, messages name the object.
+            if held.name in stage.depths:
+                robot = _holding_core(robot, held, stage.depths[held.name])
             robot = robot.holding(held)
     return replace(stage.world, robot=robot, scene=scene)
