@@ -36,8 +36,8 @@ _JUMP = 2.5
 _PARTS = 4
 """Number of parts of a motion at whose ends residuals are measured; between them they are bounded."""
 _SHORTCUTS, _ROUNDS, _LONGER = 24, 3, 0.1
-"""Number of motions that are tried to shorten a path, in so many rounds, and by what share it must be longer than the
-straight one."""
+"""Numbers of motions that are tried to shorten a path and of the rounds in which they are, and by what share it must be
+longer than the straight one."""
 _TOGETHER = 64
 """Number of motions that are projected at once."""
 
