@@ -4,8 +4,9 @@ import pytest
 import evenroad as er
 from evenroad.geometry.distance import point_distance
 from evenroad.geometry.shapes import Capsule, Cylinder, Mesh, PointCloud, Sphere
+from evenroad.robot import Obstacle
 from evenroad.robot.kinematics import link_poses
-from evenroad.task.contact import core_of, distance_of
+from evenroad.task.contact import core_of, depth_in, distance_of
 from evenroad.viz.surfaces import surface_of
 
 AT = er.Pose((0.3, -0.2, 0.5), rpy=(0.4, -0.3, 1.1))
@@ -45,3 +46,23 @@ def test_the_distance_of_a_gripper_is_that_of_its_capsules_and_frames():
         assert distance_of(body, robot, q, ["tool0"]) == pytest.approx(0.2)
         assert distance_of(body, robot, q, ["tool0", "wrist_3_link"]) <= 0.2
     assert distance_of(Sphere(0.1, xyz=tip), robot, q, ["tool0"]) == 0.0
+
+
+@pytest.mark.parametrize("body", [*SHAPES, Mesh(surface_of(er.Box((0.1, 0.2, 0.3))), pose=AT)], ids=lambda b: b.kind)
+def test_a_contact_is_as_deep_as_the_obstacle_had_to_move_along_the_axis_that_needs_least(body):
+    robot = er.load_robot("ur5")
+    q = np.array([0.3, -1.2, 1.4, -0.8, 0.9, 0.2])
+    elbow = link_poses(robot, q[np.newaxis])[0, robot.links.index("forearm_link")]
+    placed = er.Pose(tuple((elbow[:3, 3] - AT.xyz + 0.02).tolist())) @ body.pose
+    scene = er.Scene([Obstacle("body", body), Obstacle("far", er.Box((0.1, 0.1, 0.1), xyz=(3.0, 0.0, 0.0)))])
+    scene = scene.moved({"body": placed})
+    deep = depth_in(er.ArmWorld(robot, scene), q)
+    assert 0.01 < deep < 0.5
+
+    def frees(share):
+        shifts = [er.Pose(tuple((share * deep * sign * axis).tolist())) for axis in np.eye(3) for sign in (1.0, -1.0)]
+        return [bool(er.ArmWorld(robot, scene.moved({"body": each @ placed})).valid(q)) for each in shifts]
+
+    assert any(frees(1.001))
+    assert not any(frees(0.99))
+    assert depth_in(er.ArmWorld(robot), q) is None

@@ -26,7 +26,7 @@ class PlanOptions(SamplerOptions):
             *("help", "world", "robot_radius", "robot", "roadmap", "start", "goal", "goal_pose"),
             *("tip", "frame", "free_axis", "tolerance", "deg", "clearance", "unknown_is_free"),
         ),
-        "on the way": ("straight", "away", "upright", "upright_axis"),
+        "on the way": ("via", "straight", "away", "upright", "upright_axis", "constraint"),
         "search": ("time", "improve", "certified", "resolution", "seed", "raw"),
         "points, in place of trees or cells": (
             *("n", "sampler", "k", "connect_radius", "guarantees", "plain", "skip", "allow_fewer"),
@@ -204,7 +204,8 @@ class PlanArm(PlanOptions, RobotOptions):
     with points or --improve at the cheapest."""
     goal_pose: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
     """The pose of a link: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z" with any
-    rotation.  All configurations found that reach it are goals; you can give several."""
+    rotation.  All configurations found that reach it are goals; you can give several.  "LINK: x y z ... & LINK: ..."
+    is one goal of several links, which reach their poses together."""
     tip: str = ""
     """The link of goal poses, --straight and --upright (default: the last one)."""
     frame: str = ""
@@ -213,6 +214,9 @@ class PlanArm(PlanOptions, RobotOptions):
     """Axis of the tip about which its rotation is free: x, y, z or "x y z"."""
     tolerance: str | None = None
     """Largest error at goal poses: "0.002" (metres) or "0.002 0.01" (metres and radians)."""
+    via: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    """Where to pass on the way, as start, or "LINK: x y z roll pitch yaw".  You can give several: they are passed in
+    this order, and the arm stops there."""
     straight: str | None = None
     """Length of the straight lines in which the tip approaches its goal and leaves its start: "0.1" (metres) or
     "0.1 0.05", goal first."""
@@ -223,6 +227,10 @@ class PlanArm(PlanOptions, RobotOptions):
     """Largest tilt of an axis of the tip along the whole path, in radians."""
     upright_axis: str | None = None
     """That axis, in the tip's frame (default: the one that is most upright at the start)."""
+    constraint: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    """What holds along the whole path: "orientation 0.001", "plane z", "line y", "box 0,-0.5,0.2 0.6,0.5,0.8", "circle
+    0.8,0.3,0 z" (a point and the direction of a hinge), "together LINK LINK", "joints elbow_joint=0,2.5"; then
+    within=0.001 (metres) and tip=LINK.  You can give several."""
     deg: bool = False
     """Read angles in degrees: of start, goal, "roll pitch yaw" and --upright."""
     resolution: float = 0.05

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
+from dataclasses import asdict, replace
+from functools import reduce
+from operator import and_
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +20,8 @@ from evenroad.cli.plan_parts import (
 )
 from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
+from evenroad.constraints.kept_world import keeps_of
+from evenroad.constraints.text import constraints_of
 from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
@@ -28,7 +32,7 @@ from evenroad.roadmap import PlanResult
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.constraint import Constraint
-from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
+from evenroad.robot.pose_goal import as_axis, as_numbers, pose_goal_of
 
 
 def plan_arm(plan: PlanArm) -> int:
@@ -49,6 +53,8 @@ def plan_arm(plan: PlanArm) -> int:
         scene = joined_scenes(kept.scene, scene)
     robot = kept.robot if kept is not None and plan.robot is None else plan.robot
     assert robot is not None
+    if plan.via and (plan.roadmap is not None or plan.improve or wants_points(plan)):
+        raise InvalidValue("--via goes without --roadmap, --improve and points")
     request = arm_request(
         robot,
         scene,
@@ -64,9 +70,16 @@ def plan_arm(plan: PlanArm) -> int:
 
     options = Options(budget, not plan.raw, plan.seed, plan.certified, constraints)
     # An orientation constraint has a world of its own kind, with its own planner.
-    by = None if not wants_points(plan) and kept is None and plan.upright is not None else planner
-    result, meshes = finished(request, solve(request, by, options), certified=plan.certified)
-    more_rows, trajectory = trajectory_rows(plan, request, result, constraints)
+    by = None if not wants_points(plan) and kept is None and keeps_of(constraints) else planner
+    make = None
+    if plan.via:
+        from evenroad.cli.plan_via import plan_through
+
+        found, make = plan_through(plan, request, goals, constraints, options)
+    else:
+        found = solve(request, by, options)
+    result, meshes = finished(request, found, certified=plan.certified)
+    more_rows, trajectory = trajectory_rows(plan, request, result, constraints, make)
     record = plan_record(result, _options(plan, request, result) | common_query(plan)) | {
         "no_body": [] if request.model is None else list(request.model.bodiless),
         "drawn_only": [] if request.model is None else list(request.model.drawn_only),
@@ -127,24 +140,26 @@ def _goals(plan: PlanArm) -> list[Goal]:
     for option in ("frame", "free_axis", "tolerance"):
         if getattr(plan, option) and not plan.goal_pose:
             raise InvalidValue(f"--{option.replace('_', '-')} goes with --goal-pose")
-    if plan.tip and not (plan.goal_pose or plan.straight or plan.upright):
-        raise InvalidValue("--tip goes with --goal-pose, --straight or --upright")
+    if plan.tip and not (plan.goal_pose or plan.straight or plan.upright or plan.constraint or plan.via):
+        raise InvalidValue("--tip goes with --goal-pose, --via, --straight, --upright or --constraint")
     near, tilt = 0.0, 0.0
     if plan.tolerance is not None:
         near, tilt, *_ = (*as_numbers("--tolerance", plan.tolerance, (1, 2)), 0.0)
     axis = None if plan.free_axis is None else as_axis("--free-axis", plan.free_axis)
     goals: list[Goal] = [" ".join(words) for words in plan.goal]
     for words in plan.goal_pose:
-        pose, turned = pose_of(" ".join(words), degrees=plan.deg)
-        if axis is not None and not turned:
-            raise InvalidValue(f"--free-axis needs a rotation, got the goal pose {' '.join(words)!r} without one")
-        goals.append(PoseGoal(pose, plan.tip, plan.frame, axis, not turned, near, tilt))
+        text = " ".join(words)
+        parts = [pose_goal_of(part, plan.tip, plan.frame, degrees=plan.deg) for part in text.split("&")]
+        if axis is not None and any(part.position_only for part in parts):
+            raise InvalidValue(f"--free-axis needs a rotation, got the goal pose {text!r} without one")
+        made: dict[str, Any] = dict(free_axis=axis, position_tolerance=near, angle_tolerance=tilt)
+        goals.append(reduce(and_, (replace(part, **made) for part in parts)))
     return goals
 
 
 def _constraints(plan: PlanArm) -> Constraint | None:
     """Return the constraints of the tip."""
-    straight, upright = None, None
+    straight, keeps = None, constraints_of([" ".join(words) for words in plan.constraint], degrees=plan.deg)
     if plan.straight is not None:
         approach, retreat, *_ = (*as_numbers("--straight", plan.straight, (1, 2)), 0.0)
         straight = CartesianLine(approach, retreat, plan.away or "-z", plan.tip)
@@ -153,7 +168,11 @@ def _constraints(plan: PlanArm) -> Constraint | None:
     if plan.upright is not None:
         if plan.roadmap is not None:
             raise InvalidValue("--upright goes without --roadmap: the roadmap's motions are not upright")
-        upright = KeepUpright(math.radians(plan.upright) if plan.deg else plan.upright, plan.upright_axis, plan.tip)
+        within = math.radians(plan.upright) if plan.deg else plan.upright
+        keeps.append(KeepUpright(within, plan.upright_axis, plan.tip))
     elif plan.upright_axis is not None:
         raise InvalidValue("--upright-axis goes with --upright")
-    return straight & upright if straight and upright else straight or upright
+    if keeps and plan.roadmap is not None:
+        raise InvalidValue("--constraint goes without --roadmap: the roadmap's motions do not keep it")
+    every: list[Constraint] = [*([straight] if straight else []), *keeps]
+    return reduce(and_, every) if every else None

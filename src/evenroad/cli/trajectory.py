@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from evenroad.planning.read_request import mesh_check
 from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult
 from evenroad.robot.constraint import Constraint, with_tip
+
+if TYPE_CHECKING:
+    from evenroad.trajectory import Trajectory
 
 _MOVEJ = ".movej.script"
 
@@ -37,6 +40,8 @@ def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path], outputs: I
     results = {output.resolve() for output in outputs}
     for file in plan.trajectory:
         format_of(file)
+        if plan.via and file.name.lower().endswith(_MOVEJ):
+            raise InvalidValue(f"--via goes without {file}: a controller would round the path where it is to pass")
         if file.resolve() in taken:
             raise InvalidValue(f"--trajectory {file} would overwrite an input")
         if file.resolve() in results:
@@ -56,8 +61,12 @@ def trajectory_rows(
     request: Request,
     result: PlanResult,
     constraints: Constraint | None,
+    make: Callable[..., Trajectory] | None = None,
 ) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:
-    """Write the trajectory of a solved plan; return rows for the table, and its record."""
+    """Write the trajectory of a solved plan; return rows for the table, and its record.
+
+    `make` makes it in place of :func:`evenroad.trajectory.arm_trajectory`, from the options.
+    """
     if not (plan.trajectory or plan.timed):
         return [], None
     stays = result.path is not None and bool(np.all(result.path == result.path[0]))
@@ -72,16 +81,20 @@ def trajectory_rows(
     order = None if joints is None else [*map(str.strip, joints.split(","))]
     limits = limits_of(world.robot, plan.limits)
     try:
-        trajectory = arm_trajectory(
-            world,
-            result.path,
-            limits,
-            speed=plan.speed,
-            deviation=plan.deviation,
-            step=plan.step,
-            rounded_by_controller=any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory),
-            constraints=with_tip(constraints, request.tip),
-        )
+        options: dict[str, Any] = {
+            "limits": limits,
+            "speed": plan.speed,
+            "deviation": plan.deviation,
+            "step": plan.step,
+        }
+        by_controller = any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory)
+        if make is not None:
+            trajectory = make(**options)
+        else:
+            kept = with_tip(constraints, request.tip)
+            trajectory = arm_trajectory(
+                world, result.path, rounded_by_controller=by_controller, constraints=kept, **options
+            )
         meshes = mesh_check(request, trajectory.positions)
         if meshes is not None and meshes.verdict == "in collision":
             raise NotAvailable(

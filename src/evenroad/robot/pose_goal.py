@@ -143,6 +143,13 @@ def pose_of(text: str, *, degrees: bool = False) -> tuple[Pose, bool]:
     return Pose((row[0], row[1], row[2])), False
 
 
+def pose_goal_of(text: str, tip: str = "", frame: str = "", *, degrees: bool = False) -> PoseGoal:
+    """Return the goal of a text, ``LINK: `` and a pose as :func:`pose_of` takes it, or without a link, of `tip`."""
+    link, colon, numbers = text.rpartition(":")
+    pose, turned = pose_of(numbers, degrees=degrees)
+    return PoseGoal(pose, link.strip() if colon else tip, frame, position_only=not turned)
+
+
 def as_pose_goal(goal: Pose | PoseGoal, tip: str = "", frame: str = "") -> PoseGoal:
     """Return a goal of a pose, with this tip and frame by default."""
     goal = PoseGoal(goal) if isinstance(goal, Pose) else goal

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from dataclasses import replace
 
@@ -12,12 +13,16 @@ from evenroad._arrays import Floats
 from evenroad.geometry.distance import point_distance
 from evenroad.geometry.inner import capsules_inside
 from evenroad.geometry.mesh import TriangleMesh
+from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, PointCloud, Shape, Sphere
-from evenroad.robot import Robot
+from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.kinematics import link_poses
 
 _LEAST = 0.2
 """Share of its size that is left of an object however deep its contacts may be."""
+_NEAREST, _FARTHEST, _HALVINGS = 1e-4, 1.0, 12
+"""Shifts of an obstacle that are tried to free a configuration: the least and the largest one [m], and the number of
+times that the range between the last two is halved."""
 _SAMPLES = 9
 """Number of points on each capsule from which an object is looked for."""
 
@@ -76,6 +81,43 @@ def distance_of(body: Shape, robot: Robot, q: Floats, links: Collection[str]) ->
     else:
         away = point_distance(body, sampled)
     return max(0.0, float((away - np.concatenate(radii)).min()))
+
+
+def depth_in(world: ArmWorld, q: Floats) -> float | None:
+    """Return how far the obstacles that the robot touches at a configuration, (dim,), had to be moved along the axis of
+    the root that needs least, so that it is free of each [m]; None where a metre does not free it, or it touches
+    itself.
+    """
+    deep, scene = 0.0, world.scene
+    for each in scene.obstacles:
+        alone = replace(scene, obstacles=(each,), allowed=frozenset(a for a in scene.allowed if a[1] == each.name))
+        if replace(world, scene=alone).valid(q):
+            continue
+        needs = [_free_from(world, alone, q, sign * axis) for axis in np.eye(3) for sign in (-1.0, 1.0)]
+        if min(needs) > _FARTHEST:
+            return None
+        deep = max(deep, min(needs))
+    return deep or None
+
+
+def _free_from(world: ArmWorld, alone: Scene, q: Floats, direction: Floats) -> float:
+    """Return how far the obstacle of a scene is to be moved in a direction until a configuration is free [m]."""
+    (obstacle,) = alone.obstacles
+
+    def frees(metres: float) -> bool:
+        pose = Pose(tuple((metres * direction).tolist())) @ obstacle.body.pose
+        return bool(replace(world, scene=alone.moved({obstacle.name: pose})).valid(q))
+
+    high = _NEAREST
+    while not frees(high):
+        high *= 2.0
+        if high > _FARTHEST:
+            return math.inf
+    low = 0.5 * high
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if frees(middle) else (middle, high)
+    return high
 
 
 def _less(length: float, by: float) -> float:

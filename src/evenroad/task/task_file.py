@@ -5,20 +5,24 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import reduce
+from operator import and_
 from pathlib import Path
 from typing import Any
 
 from evenroad._call import explains_calls
 from evenroad._yaml import numbers, read_mapping, require_keys
+from evenroad.constraints.text import constraint_of
 from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import EvenroadError, InvalidValue, shown
+from evenroad.robot.constraint import Constraint
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.task.steps import Attach, Detach, MoveAlong, MoveCircular, MoveLinear, MoveTo, Step, Wait
 from evenroad.task.task import Task
 
 _TO_POSES = ("tip", "frame", "free_axis", "tolerance")
 _OF_A_CURVE = ("tip", "frame", "speed")
-_OF_A_MOTION = ("goals", "poses", "approach", "retreat", "away", "upright", *_TO_POSES)
+_OF_A_MOTION = ("goals", "poses", "approach", "retreat", "away", "upright", "constraints", *_TO_POSES)
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,8 @@ def load_task(path: str | os.PathLike[str]) -> TaskFile:
           - move_circular: {via: "0.6 -0.1 0.3 0 0 0", to: "0.5 0 0.3 0 0 0", speed: 0.1}
           - move_to: home                 # a goal, or {goals: [home, "0 -1.57 0 -1.57 0 0"], retreat: 0.1}
 
-    Poses are texts as ``--goal-pose`` takes them [m, rad]; with ``upright: 0.1`` the tip tilts by that at most.
+    Poses are texts as ``--goal-pose`` takes them [m, rad]; with ``upright: 0.1`` the tip tilts by that at most, and
+    ``constraints: [line y, orientation 0.001]`` are texts as ``--constraint`` takes them.
 
     Parameters
     ----------
@@ -117,8 +122,10 @@ def _move_to(what: Any) -> MoveTo:
     if not goals:
         raise InvalidValue("move_to needs goals or poses")
     lines = {name: said[name] for name in ("approach", "retreat", "away") if name in said}
-    upright = KeepUpright(numbers([said["upright"]], 1, "upright")[0]) if "upright" in said else None
-    return MoveTo(goals[0] if len(goals) == 1 else goals, constraints=upright, **lines)
+    keeps: list[Constraint] = [constraint_of(str(text)) for text in _texts("constraints", said)]
+    if "upright" in said:
+        keeps.append(KeepUpright(numbers([said["upright"]], 1, "upright")[0]))
+    return MoveTo(goals[0] if len(goals) == 1 else goals, constraints=reduce(and_, keeps) if keeps else None, **lines)
 
 
 def _move_linear(what: Any) -> MoveLinear:
