@@ -171,7 +171,8 @@ def main() -> None:
             scene, task = problem(robot, seed)
             world = er.ArmWorld(robot, scene)
             began = time.process_time()
-            done = task.plan(world, list(HOMES["panda" if "panda" in robot.name else "ur5"]))
+            # Processor time is measured: a busy machine may take its time.
+            done = task.plan(world, list(HOMES["panda" if "panda" in robot.name else "ur5"]), seconds=60.0)
             times.append(1e3 * (time.process_time() - began))
             if not done.solved:
                 reasons.append(done.message)

@@ -194,6 +194,8 @@ def plan_task(
     message = f"step {search.deepest} of the task cannot be done: {why}"
     if search.tried > 1:
         message += f"; {search.tried} choices were tried in all"
+    if search.why is not None and now() >= deadline:
+        message += ", then the time was spent"
     return TaskResult(steps, status, message, (), max(search.deepest, 0), timings, search.tried)
 
 

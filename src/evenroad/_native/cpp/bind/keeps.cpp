@@ -14,6 +14,7 @@ namespace {
 using robot::KeepKind;
 using robot::Keeps;
 
+constexpr int MOST_STEPS = 1000;
 constexpr std::size_t POSE = 12, LINEAR = POSE + 1, CIRCLE = 13 + POSE;
 
 /// Return how long a residual is that is made of so many numbers; refuse numbers that make none.
@@ -102,6 +103,7 @@ nb::tuple project(const Keeps& keeps, nb::handle q, double aim, double enough, i
   const Array<const double, 2> given(q, "q");
   const std::size_t rows = given.shape(0);
   given.of_shape({rows, keeps.dim()});
+  require(steps >= 0 && steps <= MOST_STEPS, "steps must be from 0 to 1000");
   const robot::Projecting how{aim, enough, steps, longest};
   std::vector<double> moved(given.span().begin(), given.span().end());
   std::vector<std::uint8_t> good = without_gil([&] { return keeps.project({moved.data(), rows, keeps.dim()}, how); });

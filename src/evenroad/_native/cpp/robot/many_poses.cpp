@@ -47,7 +47,8 @@ void choose(const Beginnings& from, const PoseTask& task, std::vector<double>& a
   std::sort(rows.begin(), last, nearer);
   const auto end = static_cast<std::size_t>(last - rows.begin());
   std::size_t kept = 0;
-  for (std::size_t i = from.first; i < end; i += from.every) rows[kept++] = rows[i];
+  const std::size_t every = std::min(from.every, end + 1);
+  for (std::size_t i = from.first; i < end; i += every) rows[kept++] = rows[i];
   rows.resize(kept);
 }
 
