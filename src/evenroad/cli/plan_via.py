@@ -65,7 +65,7 @@ def plan_through(
     path = done.path
     assert path is not None, "a solved task has a path"
     rows = np.flatnonzero((request.goals == path[-1]).all(axis=1))
-    ends, row = (request.goals, int(rows[0])) if len(rows) else (path[-1:], 0)
+    known, row = (request.goals, int(rows[0])) if len(rows) else (path[-1:], 0)
     order = ("resolution", "certified", "exact")
     proof = min((part.proof or "resolution" for part in done.parts), key=order.index)
     points = f"{len(plan.via)} point{'s' if len(plan.via) > 1 else ''} on the way"
@@ -75,7 +75,7 @@ def plan_through(
         deviation |= {name: max(off, deviation.get(name, 0.0)) for name, off in part.deviation.items()}
     found: dict[str, Any] = dict(path=path, milestone_path=path, proof=proof, goal_index=row, deviation=deviation)
     result = make_result(
-        world, request.start, ends, done.status, message, planner="task", cost=done.cost, milestone_cost=done.cost,
+        world, request.start, known, done.status, message, planner="task", cost=done.cost, milestone_cost=done.cost,
         timings=dict(done.timings), **found
     )  # fmt: skip
     return result, done.trajectory
