@@ -87,6 +87,33 @@ def test_what_a_task_does_not_have_is_refused_in_one_line(folder, old, new, says
     assert "\n" not in str(caught.value)
 
 
+def test_constraints_of_a_file_are_texts_as_the_command_takes_them(folder):
+    said = "free_axis: z, upright: 0.2, constraints: [line y within=0.001, 'joints elbow_joint=0,2.5'], retreat: 0.05"
+    (folder / "task.yaml").write_text(STEPS.replace("free_axis: z, retreat: 0.05", said))
+    (_, _, place, *_) = load_task(folder / "task.yaml").task.steps
+    line, joints, upright = place.constraints.parts
+    assert line == er.constraints.KeepOnLine("y", within=0.001)
+    assert joints == er.constraints.KeepJoints({"elbow_joint": (0.0, 2.5)})
+    assert upright == er.constraints.KeepUpright(0.2)
+    (folder / "task.yaml").write_text(STEPS.replace("free_axis: z", "free_axis: z, constraints: bend 3"))
+    with pytest.raises(EvenroadError, match="step 2 in .*unknown constraint 'bend'"):
+        load_task(folder / "task.yaml")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("detach: {object: can, onto: table}", "detach: cup", "step 3 of the task lets go of 'cup', which it cannot"),
+        ("attach: can", "attach: cup", "unknown obstacle 'cup'; known: can, table"),
+    ],
+)
+def test_a_step_of_what_is_not_held_or_not_there_ends_the_command_with_one_line(folder, capsys, old, new, says):
+    (folder / "task.yaml").write_text(STEPS.replace(old, new))
+    assert main(["run", "../task.yaml"]) == 2
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert says in line
+
+
 def test_a_file_that_is_not_there_is_named(folder, capsys):
     with pytest.raises(BrokenFile, match="cannot read the task"):
         load_task("nothing.yaml")
