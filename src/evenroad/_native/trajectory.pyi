@@ -17,6 +17,14 @@ def largest_shares(
     acceleration: Floats,
     samples: int,
 ) -> tuple[float, float]: ...
+def drive(
+    path: tuple[Floats, Floats, Floats, Floats, Floats],
+    law: tuple[Floats, Floats, Floats, Floats],
+    waypoints: Floats,
+    most: tuple[Floats, Floats],
+    t: Floats,
+    stride: int,
+) -> tuple[Floats, Floats, Floats, Floats, float, float]: ...
 def rounded(waypoints: Floats, deviation: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats]: ...
 def averages(
     path: tuple[Floats, Floats, Floats, Floats, Floats],

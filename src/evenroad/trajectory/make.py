@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
 from evenroad._checks import as_batch, require_positive
-from evenroad._native.trajectory import distances_to, largest_share
+from evenroad._native.trajectory import distances_to, drive, largest_share
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.limits import Limits
@@ -34,13 +34,29 @@ _SAME = 1e-9
 MOST_STATES = 1_000_000
 """Largest number of states, more than two hours at 125 Hz."""
 
-States: TypeAlias = tuple[Floats, Floats, Floats]
-"""Positions, velocities and accelerations, (n, dim) each."""
-
 _HALVINGS = 6
 """Number of times that a blend in collision is halved; then the robot stops at the corner."""
 _STOPPINGS = 6
 """Number of times that corners become stops: each moves the times at which states are checked."""
+
+
+class Driven(NamedTuple):
+    """What a robot does at its steps, (n, dim) each; at fine times how far it is from its path, (m,), and the largest
+    shares of its limits.
+    """
+
+    positions: Floats
+    velocities: Floats
+    accelerations: Floats
+    off: Floats
+    highest: dict[str, float]
+
+    @classmethod
+    def along(cls, law: TimeLaw, waypoints: Floats, limits: Limits, fine: Floats) -> Driven:
+        """Return what a law does, at some fine times a step."""
+        most = np.array(limits.velocity), np.array(limits.acceleration)
+        at, velocities, accelerations, off, *used = drive(law.path.columns, law.columns, waypoints, most, fine, _FINER)
+        return cls(at, velocities, accelerations, off, dict(zip(("velocity", "acceleration"), used, strict=True)))
 
 
 def make_trajectory(
@@ -101,32 +117,27 @@ def make_trajectory(
     cuts = np.full(len(waypoints), deviation)
     for halved in range(_HALVINGS + _STOPPINGS):
         curve = rounded(waypoints, cuts)
-        law, fine, states = _on_steps(paused(fastest(curve, limits), window), limits, window, step)
+        law, fine, driven = _on_steps(paused(fastest(curve, limits), window), waypoints, limits, window, step)
         if window > 0.0:
-            states = law.averages(window, fine)
-        off = distances_to(waypoints, states[0])
-        positions = states[0][::_FINER]
-        free, proof = drivable(world, positions)
-        bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[off > deviation + 1e-6]])
+            driven = _averaged(law, waypoints, limits, window, fine)
+        free, proof = drivable(world, driven.positions)
+        bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[driven.off > deviation + 1e-6]])
         if len(bad) == 0:
             break
         cuts = _less(cuts, curve.corners, law.length_at(bad - 0.5 * window), stop=halved >= _HALVINGS - 1)
     else:
         raise NotAvailable(f"the trajectory is not proved free, or not near enough to its path, at {bad[0]:.3f} s")
-    highest = _shares(states, limits)
-    if limits.jerk is not None:
-        highest["jerk"] = largest_share(states[2], fine[1] * np.array(limits.jerk), of_steps=True)
     return Trajectory(
         names=joints,
         times=fine[::_FINER],
-        positions=positions,
-        velocities=states[1][::_FINER],
-        accelerations=states[2][::_FINER],
+        positions=driven.positions,
+        velocities=driven.velocities,
+        accelerations=driven.accelerations,
         waypoints=waypoints,
         limits=limits,
-        deviation=float(np.max(off)),
+        deviation=float(np.max(driven.off)),
         stops=len(curve.stops),
-        highest=highest,
+        highest=driven.highest,
         held=dict(held or {}),
         controller=tuple(controller),
         proof=proof,
@@ -146,10 +157,12 @@ def _apart(path: Floats) -> Floats:
     return np.array(kept).reshape(-1, path.shape[1])
 
 
-def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> tuple[TimeLaw, Floats, States]:
+def _on_steps(
+    law: TimeLaw, waypoints: Floats, limits: Limits, window: float, step: float
+) -> tuple[TimeLaw, Floats, Driven]:
     """Return a law that keeps its limits between grid points, too, and ends on a whole step, after the `window`.
 
-    With it come fine times, and its states then.
+    With it come fine times, and what the robot does then.
     """
     velocity, acceleration = law.largest_shares(limits, _FINER)
     law = slowed(law, max(1.0, velocity, math.sqrt(acceleration)))
@@ -162,18 +175,27 @@ def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> tuple
     while True:
         law = slowed(law, (steps * step - window) / law.duration)
         fine = np.linspace(0.0, law.duration + window, _FINER * steps + 1)
-        if max(_shares(states := law.at(fine), limits).values()) <= 1.0:
-            return law, fine, states
+        driven = Driven.along(law, waypoints, limits, fine)
+        if max(driven.highest.values()) <= 1.0:
+            return law, fine, driven
         steps += 1
 
 
-def _shares(states: States, limits: Limits) -> dict[str, float]:
-    """Return the largest share of velocity and of acceleration that states use."""
-    _, velocity, acceleration = states
-    return {
-        "velocity": largest_share(velocity, np.array(limits.velocity)),
-        "acceleration": largest_share(acceleration, np.array(limits.acceleration)),
+def _averaged(law: TimeLaw, waypoints: Floats, limits: Limits, window: float, fine: Floats) -> Driven:
+    """Return what the robot does at fine times where its motion is averaged over the `window` before each."""
+    positions, velocities, accelerations = law.averages(window, fine)
+    highest = {
+        "velocity": largest_share(velocities, np.array(limits.velocity)),
+        "acceleration": largest_share(accelerations, np.array(limits.acceleration)),
+        "jerk": largest_share(accelerations, fine[1] * np.array(limits.jerk), of_steps=True),
     }
+    return Driven(
+        np.ascontiguousarray(positions[::_FINER]),
+        np.ascontiguousarray(velocities[::_FINER]),
+        np.ascontiguousarray(accelerations[::_FINER]),
+        distances_to(waypoints, positions),
+        highest,
+    )
 
 
 def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:

@@ -84,7 +84,7 @@ nb::tuple states(nb::tuple path, nb::tuple law, nb::handle times) {
   const std::size_t dim = arrays.path().dim();
   OwnMatrix<double> positions(t.size(), dim), velocities(t.size(), dim), accelerations(t.size(), dim);
   without_gil([&] {
-    trajectory::write_states(arrays.path(), when.law(), t.span(), positions, velocities, accelerations);
+    trajectory::StatesAt(arrays.path(), when.law()).write(t.span(), positions, velocities, accelerations);
     return 0;
   });
   return nb::make_tuple(as_rows(std::move(positions)), as_rows(std::move(velocities)),
@@ -152,7 +152,31 @@ double largest_share(nb::handle rows, nb::handle most, bool of_steps) {
 nb::object distances_to(nb::handle waypoints, nb::handle points) {
   const FloatRows path(waypoints, "waypoints"), rows(points, "points");
   rows.of_shape({rows.shape(0), path.shape(1)});
-  return as_row(without_gil([&] { return trajectory::distances_to(path.matrix(), rows.matrix()); }));
+  return as_row(without_gil([&] {
+    std::vector<double> distances(rows.shape(0));
+    trajectory::write_distances(path.matrix(), rows.matrix(), distances);
+    return distances;
+  }));
+}
+
+/// Return positions, velocities and accelerations at each `stride`-th time, how far each time's state is off the way
+/// between waypoints, and the largest shares of velocity and acceleration.
+nb::tuple drive(nb::tuple path, nb::tuple law, nb::handle waypoints, nb::tuple most, nb::handle times,
+                std::int64_t stride) {
+  const PathArrays arrays(path);
+  const LawArrays when(law);
+  const FloatRows way(waypoints, "waypoints");
+  const Floats t(times, "t"), speeds(PathArrays::column(most, 0, 2), "velocity"), pushes(most[1], "acceleration");
+  const std::size_t dim = arrays.path().dim();
+  way.of_shape({way.shape(0), dim}), speeds.of_shape({dim}), pushes.of_shape({dim});
+  require(stride >= 1, "stride must be 1 or more");
+  trajectory::Driven driven = without_gil([&] {
+    return trajectory::drive(arrays.path(), when.law(), way.matrix(), {speeds.span(), pushes.span()}, t.span(),
+                             static_cast<std::size_t>(stride));
+  });
+  return nb::make_tuple(as_rows(std::move(driven.positions)), as_rows(std::move(driven.velocities)),
+                        as_rows(std::move(driven.accelerations)), as_row(std::move(driven.off)),
+                        driven.highest.velocity, driven.highest.acceleration);
 }
 
 }  // namespace
@@ -163,6 +187,7 @@ void add_trajectory(nb::module_& module) {
   part.def("states", &states);
   part.def("largest_shares", &largest_shares);
   part.def("distances_to", &distances_to);
+  part.def("drive", &drive);
   part.def("rounded", &rounded);
   part.def("averages", &averages);
   part.def("largest_share", &largest_share, nb::arg("rows"), nb::arg("most"), nb::arg("of_steps") = false);

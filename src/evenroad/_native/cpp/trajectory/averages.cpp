@@ -11,6 +11,9 @@ namespace {
 /// So many rows are looked at beside each other.
 constexpr std::size_t ROWS = 16;
 
+/// So many states are kept at once.
+constexpr std::size_t SOME = 128;
+
 /// Positions and velocities at equal steps of time, cubics between them, and the integrals of these.
 class Travelled {
  public:
@@ -23,7 +26,7 @@ class Travelled {
     std::vector<double> grid(steps + 1);
     for (std::size_t i = 0; i <= steps; i++) grid[i] = first + static_cast<double>(i) * step_;
     OwnMatrix<double> accelerations(steps + 1, path.dim());
-    write_states(path, law, grid, positions_, velocities_, accelerations);
+    StatesAt(path, law).write(grid, positions_, velocities_, accelerations);
     for (std::size_t i = 0; i < steps; i++) {
       for (std::size_t k = 0; k < path.dim(); k++) integrals_(i + 1, k) = integral(i, k, step_);
     }
@@ -76,8 +79,9 @@ void write_averages(const RoundedPath& path, const TimeLaw& law, double window, 
   for (std::size_t row = 0; row < count; row++) before[row] = t[row] - window;
   OwnMatrix<double> old_positions(count, dim), old_velocities(count, dim);
   // What was accelerations is not used.
-  write_states(path, law, before, old_positions, old_velocities, accelerations);
-  write_states(path, law, t, positions, velocities, accelerations);
+  const StatesAt states(path, law);
+  states.write(before, old_positions, old_velocities, accelerations);
+  states.write(t, positions, velocities, accelerations);
   for (std::size_t row = 0; row < count; row++) {
     const bool is_end = row == 0 || row + 1 == count;
     travelled.write(t[row], here), travelled.write(before[row], there);
@@ -87,6 +91,30 @@ void write_averages(const RoundedPath& path, const TimeLaw& law, double window, 
       if (!is_end) positions(row, k) = (here[k] - there[k]) / window;
     }
   }
+}
+
+Driven drive(const RoundedPath& path, const TimeLaw& law, Matrix<const double> waypoints, const Most& most,
+             std::span<const double> t, std::size_t stride) {
+  const std::size_t dim = path.dim(), kept = t.empty() ? 0 : (t.size() - 1) / stride + 1;
+  Driven driven{{kept, dim}, {kept, dim}, {kept, dim}, std::vector<double>(t.size()), {}};
+  OwnMatrix<double> positions(SOME, dim), velocities(SOME, dim), accelerations(SOME, dim);
+  const StatesAt states(path, law);
+  for (std::size_t first = 0; first < t.size(); first += SOME) {
+    const std::size_t count = std::min(SOME, t.size() - first);
+    const auto some = [&](OwnMatrix<double>& all) { return Matrix<double>{all.values.data(), count, dim}; };
+    states.write(t.subspan(first, count), some(positions), some(velocities), some(accelerations));
+    write_distances(waypoints, some(positions), {driven.off.data() + first, count});
+    driven.highest.velocity = std::max(driven.highest.velocity, largest_share(some(velocities), most.velocity));
+    driven.highest.acceleration =
+        std::max(driven.highest.acceleration, largest_share(some(accelerations), most.acceleration));
+    for (std::size_t row = (stride - first % stride) % stride; row < count; row += stride) {
+      const std::size_t at = (first + row) / stride;
+      std::ranges::copy(positions[row], driven.positions[at].begin());
+      std::ranges::copy(velocities[row], driven.velocities[at].begin());
+      std::ranges::copy(accelerations[row], driven.accelerations[at].begin());
+    }
+  }
+  return driven;
 }
 
 double largest_share(Matrix<const double> rows, std::span<const double> most) {

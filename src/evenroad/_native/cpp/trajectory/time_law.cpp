@@ -159,9 +159,13 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
   return law;
 }
 
-void write_states(const RoundedPath& path, const TimeLaw& law, std::span<const double> t, Matrix<double> positions,
-                  Matrix<double> velocities, Matrix<double> accelerations) {
-  const std::vector<std::size_t> pieces = pieces_of(path, law);
+StatesAt::StatesAt(const RoundedPath& path, const TimeLaw& law)
+    : path_(path), law_(law), pieces_(pieces_of(path, law)) {}
+
+void StatesAt::write(std::span<const double> t, Matrix<double> positions, Matrix<double> velocities,
+                     Matrix<double> accelerations) const {
+  const RoundedPath& path = path_;
+  const TimeLaw& law = law_;
   const double duration = law.times.back();
   std::size_t i = 0;
   for (std::size_t row = 0; row < t.size(); row++) {
@@ -175,7 +179,7 @@ void write_states(const RoundedPath& path, const TimeLaw& law, std::span<const d
       i = static_cast<std::size_t>(after - law.times.begin()) - 1;
     }
     const Place place(law, i, now - law.times[i]);
-    const Turn turn(path, pieces[i], place.length);
+    const Turn turn(path, pieces_[i], place.length);
     const double speed = is_inside ? place.speed : 0.0, push = is_inside ? law.accelerations[i] : 0.0;
     for (std::size_t k = 0; k < path.dim(); k++) {
       const double direction = turn.direction(path, k);
@@ -226,8 +230,7 @@ Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const Most& m
   return shares;
 }
 
-std::vector<double> distances_to(Matrix<const double> waypoints, Matrix<const double> points) {
-  std::vector<double> nearest(points.rows, std::numeric_limits<double>::infinity());
+void write_distances(Matrix<const double> waypoints, Matrix<const double> points, std::span<double> distances) {
   const std::size_t dim = points.columns;
   std::vector<double> along(dim);
   // Sixteen points at once, one after the other in each coordinate.
@@ -253,10 +256,8 @@ std::vector<double> distances_to(Matrix<const double> waypoints, Matrix<const do
       }
       least = min(least, distance);
     }
-    for (std::size_t lane = 0; lane < count; lane++) nearest[first + lane] = least[lane];
+    for (std::size_t lane = 0; lane < count; lane++) distances[first + lane] = std::sqrt(least[lane]);
   }
-  for (double& each : nearest) each = std::sqrt(each);
-  return nearest;
 }
 
 }  // namespace evenroad::trajectory

@@ -48,9 +48,20 @@ Grid grid_of(const RoundedPath& path);
 OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> stops, const Most& most,
                    std::span<const double> ceiling);
 
-/// Write positions, velocities and accelerations at times; before and after the path one is at rest.
-void write_states(const RoundedPath& path, const TimeLaw& law, std::span<const double> t, Matrix<double> positions,
-                  Matrix<double> velocities, Matrix<double> accelerations);
+/// Positions, velocities and accelerations at times; before and after the path one is at rest.
+class StatesAt {
+ public:
+  StatesAt(const RoundedPath& path, const TimeLaw& law);
+
+  void write(std::span<const double> t, Matrix<double> positions, Matrix<double> velocities,
+             Matrix<double> accelerations) const;
+
+ private:
+  RoundedPath path_;
+  TimeLaw law_;
+  /// The piece of each interval.
+  std::vector<std::size_t> pieces_;
+};
 
 /// Largest shares of what is allowed.
 struct Shares {
@@ -60,7 +71,7 @@ struct Shares {
 /// Return the largest shares at so many times, from 2 on, in each interval.
 Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const Most& most, std::size_t samples);
 
-/// Return how far each point is from straight motions between waypoints.
-std::vector<double> distances_to(Matrix<const double> waypoints, Matrix<const double> points);
+/// Write how far each point is from straight motions between waypoints.
+void write_distances(Matrix<const double> waypoints, Matrix<const double> points, std::span<double> distances);
 
 }  // namespace evenroad::trajectory
