@@ -94,10 +94,8 @@ def hard_queries(
     """
     if not count:
         return no_visibility()
-    around = Surroundings.of(robot, pool)
-    tips = tips_of(robot, pool[:OWNERS])
+    around, tips, inside = Surroundings.of(robot, pool), tips_of(robot, pool[:OWNERS]), ArmWorld(robot, cell)
     body, radii = body_of(robot, pool[:OWNERS])
-    inside = ArmWorld(robot, cell)
     pool = inside.space.wrapped(pool)
 
     def queries() -> Iterator[tuple[list[Checker], list[int]]]:
@@ -106,22 +104,20 @@ def hard_queries(
         while given < count and drawn > 0:
             owns, which = rng.integers(len(tips), size=BATCH), rng.integers(tips.shape[1], size=BATCH)
             drawn -= BATCH
-            passages: list[Checker] = []
-            own_rows: list[int] = []
+            passages, own_rows = list[Checker](), list[int]()
             batch = passages_around(tips[owns, which], around, rng)
             for i in np.flatnonzero(~batch.touched_by(body[owns], radii)).tolist():
                 if given + len(own_rows) == count:
                     break
-                own = int(owns[i])
                 # The pool is free of robot and static scene already.
                 passage = among(inside.robot, batch.walls(i))
-                if not passage.valid(pool[own]):
-                    continue
-                others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))
-                others = rng.permutation(others[passage.valid(pool[others])])[: IN_ONE - 1]
-                within = sorted({own, *others.tolist()})[: count - given - len(own_rows)]
-                own_rows += within
-                passages += [passage] * len(within)
+                own = int(owns[i])
+                if passage.valid(pool[own]):
+                    others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))
+                    others = rng.permutation(others[passage.valid(pool[others])])[: IN_ONE - 1]
+                    within = sorted({own, *others.tolist()})[: count - given - len(own_rows)]
+                    own_rows += within
+                    passages += [passage] * len(within)
             if own_rows:
                 given += len(own_rows)
                 yield passages, own_rows
@@ -131,9 +127,7 @@ def hard_queries(
         counts, rows = rows_joined(passages, inside.checker, pool, np.array(own_rows), candidates, EARLY)
         return zip(own_rows, np.split(rows, np.cumsum(counts)[:-1]), strict=True)
 
-    own_of: list[int] = []
-    found: list[Ints] = []
-    pairs = 0
+    own_of, found, pairs = list[int](), list[Ints](), 0
     for end, rows in chain.from_iterable(in_order(seen, queries())):
         own_of.append(end)
         found.append(rows)
