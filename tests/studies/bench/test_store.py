@@ -11,6 +11,7 @@ import pytest
 from evenroad.errors import BrokenFile
 from evenroad_studies.bench import rows as rows_module
 from evenroad_studies.bench import store as store_module
+from evenroad_studies.bench import store_file as file_module
 from evenroad_studies.bench import task as task_module
 from evenroad_studies.bench.store import joined, open_store, read_rows, read_sessions
 from evenroad_studies.bench.store_file import SCHEMA
@@ -80,7 +81,7 @@ def test_a_later_row_of_the_same_task_takes_the_place_of_the_first(path):
 
 
 def test_rows_of_another_protocol_are_kept_but_not_read(path, monkeypatch):
-    for module in (store_module, rows_module, task_module):
+    for module in (file_module, rows_module, task_module):
         monkeypatch.setattr(module, "PROTOCOL", PROTOCOL - 1)
     write(path, [(TASK, SOLVED)])
     assert len(read_rows(path)) == 1

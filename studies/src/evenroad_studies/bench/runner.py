@@ -14,6 +14,7 @@ from evenroad.errors import WorkerLost
 from evenroad_studies.bench.execute import DEFAULT_LIMIT, require_limit, run_task
 from evenroad_studies.bench.rows import FAILURES
 from evenroad_studies.bench.store import Store
+from evenroad_studies.bench.store_parts import PartsStore
 from evenroad_studies.bench.task import Outcome, Task
 from evenroad_studies.workers import Workers
 
@@ -43,7 +44,7 @@ class Report(NamedTuple):
 def run_tasks(
     suite: str,
     tasks: Iterable[Task],
-    store: Store,
+    store: Store | PartsStore,
     workers: Workers,
     *,
     callback: Callback | None = None,
@@ -82,7 +83,9 @@ def run_tasks(
 class _Run:
     """The state of one run: what waits, what is in flight, and who is under suspicion of killing workers."""
 
-    def __init__(self, suite: str, tasks: list[Task], store: Store, workers: Workers, limit: float | None) -> None:
+    def __init__(
+        self, suite: str, tasks: list[Task], store: Store | PartsStore, workers: Workers, limit: float | None
+    ) -> None:
         self.suite, self.store, self.workers, self.limit = suite, store, workers, limit
         self.finished = self.failures = 0
         self._chunker = Chunker(tasks)

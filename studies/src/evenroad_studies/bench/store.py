@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import platform
 import sqlite3
@@ -11,32 +10,33 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
-from datetime import UTC, datetime
 from pathlib import Path
 
 from evenroad import __version__
 from evenroad._files import atomic_write, require_writable_folder
 from evenroad.errors import BrokenFile
-from evenroad_studies.bench.rows import FAILURES
+from evenroad_studies.bench import rows as of_file
+from evenroad_studies.bench import store_parts
+from evenroad_studies.bench.rows import FAILURES, Rows
 from evenroad_studies.bench.rows import Session as Session
 from evenroad_studies.bench.rows import joined as joined
-from evenroad_studies.bench.rows import read_rows as read_rows
-from evenroad_studies.bench.rows import read_sessions as read_sessions
 from evenroad_studies.bench.store_file import (
     COLUMNS,
     NAMED,
+    Row,
     checked_rows,
     checksum_of,
     connect,
     create,
+    now,
     only_writer,
     read_names,
+    row_of,
     sqlite_errors,
 )
-from evenroad_studies.bench.task import PROTOCOL, Outcome, Task, key_of
+from evenroad_studies.bench.store_parts import PartsStore, is_parts
+from evenroad_studies.bench.task import Outcome, Task, key_of
 
-Row = tuple[str | int | float | None, ...]
-"""The values of COLUMNS, texts as texts."""
 COMMIT_SECONDS = 0.5
 """Rows are committed together, this often: what a kill can lose at most."""
 _STATUS = COLUMNS.index("status")
@@ -67,14 +67,7 @@ class Store:
 
     def add(self, suite: str, task: Task, outcome: Outcome, worker: str) -> None:
         """Take the row of a finished task, in place of an earlier one, for the next commit; this cannot fail."""
-        of_task = [field if isinstance(field, str) else int(field) for field in vars(task).values()]
-        at = outcome.valid_at_solution
-        counts = (int(outcome.valid), None if at is None else int(at), int(outcome.edges_checked))
-        floats = (_or_null(outcome.length), _or_null(outcome.seconds))
-        # SQLite takes no lone surrogates, as names of files can have them.
-        error = outcome.error.encode(errors="backslashreplace").decode()
-        of_outcome = (outcome.status, *counts, *floats, outcome.set_id, error)
-        self._waiting.append((task.key, PROTOCOL, suite, *of_task, *of_outcome, worker, _now()))
+        self._waiting.append(row_of(suite, task, outcome, worker))
 
     def commit_if_due(self) -> None:
         """Commit, if the last time was long enough ago."""
@@ -153,14 +146,20 @@ class Store:
 
 
 @contextmanager
-def open_store(path: str | os.PathLike[str]) -> Iterator[Store]:
+def open_store(path: str | os.PathLike[str]) -> Iterator[Store | PartsStore]:
     """Open a store for writing, or make one; what was added is committed when the block ends, however it does.
 
     Between the commits, and after the block, it is one file that can be copied.  While it is open there is a lock
     beside it, STORE.lock.  Rows that cannot be committed are left in STORE.rescue, which the next opening takes in;
     the text of the BrokenFile says so.
+
+    A path that ends with ``.parts`` is a folder that many may write at once: see `store_parts`.
     """
     target = Path(path)
+    if is_parts(target):
+        with closing(PartsStore(target, Session(*map(str, _session()[:-1])))) as parts:
+            yield parts
+        return
     require_writable_folder(target)
     with only_writer(target):
         if not target.exists() or target.stat().st_size == 0:
@@ -173,20 +172,23 @@ def open_store(path: str | os.PathLike[str]) -> Iterator[Store]:
                 yield store
 
 
+def read_rows(path: str | os.PathLike[str], *, problems: Sequence[str] | None = None) -> Rows:
+    """Read the rows of a store, one file or parts: see :func:`evenroad_studies.bench.rows.read_rows`."""
+    read = store_parts.read_parts if is_parts(path) else of_file.read_rows
+    return read(path, problems=problems)
+
+
+def read_sessions(path: str | os.PathLike[str]) -> tuple[Session, ...]:
+    """Return the sessions that wrote a store, the first one first; errors as :func:`read_rows`."""
+    return store_parts.sessions_of_parts(path) if is_parts(path) else of_file.read_sessions(path)
+
+
 def _session() -> tuple[object, ...]:
     from importlib.metadata import version
 
     versions = tuple(version(name) for name in ("numpy", "scipy", "numba"))
-    session = (_now(), __version__, platform.python_version(), *versions, platform.platform())
+    session = (now(), __version__, platform.python_version(), *versions, platform.platform())
     return (*session, checksum_of(session))
-
-
-def _now() -> str:
-    return datetime.now(UTC).isoformat(timespec="seconds")
-
-
-def _or_null(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
 
 
 def rescue_file(store: Path) -> Path:

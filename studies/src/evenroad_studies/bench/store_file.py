@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import os
 import sqlite3
 import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
+from datetime import UTC, datetime
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
 from evenroad._files import not_a
 from evenroad.errors import BrokenFile
-from evenroad_studies.bench.task import key_of
+from evenroad_studies.bench.task import PROTOCOL, Outcome, Task, key_of
 
 SCHEMA = 2
 """Version of the tables below."""
@@ -25,6 +27,8 @@ TABLES = (Path(__file__).parent / "store.sql").read_text(encoding="utf-8")
 
 
 Values = tuple[Any, ...]
+Row = tuple[str | int | float | None, ...]
+"""The values of COLUMNS, texts as texts."""
 
 COLUMNS = (
     "key", "protocol", "suite", "problem", "instance", "sampler", "n", "rule", "search", "run", "seed", "status",
@@ -37,6 +41,27 @@ NAMED = ("suite", "problem", "sampler", "rule", "search", "status", "set_id", "e
 _names_in = itemgetter(*map(COLUMNS.index, NAMED))
 _READ_ROLLBACK = ("SQLITE_READONLY_ROLLBACK", "SQLITE_READONLY_RECOVERY", "SQLITE_CANTOPEN")
 """Errors of SQLite where a commit that was cut off must be undone first, and the file or folder is read-only."""
+
+
+def row_of(suite: str, task: Task, outcome: Outcome, worker: str) -> Row:
+    """Return the row of a task that was finished now."""
+    of_task = [field if isinstance(field, str) else int(field) for field in vars(task).values()]
+    at = outcome.valid_at_solution
+    counts = (int(outcome.valid), None if at is None else int(at), int(outcome.edges_checked))
+    floats = (_or_null(outcome.length), _or_null(outcome.seconds))
+    # SQLite takes no lone surrogates, as names of files can have them.
+    error = outcome.error.encode(errors="backslashreplace").decode()
+    of_outcome = (outcome.status, *counts, *floats, outcome.set_id, error)
+    return (task.key, PROTOCOL, suite, *of_task, *of_outcome, worker, now())
+
+
+def now() -> str:
+    """Return the time as a store keeps it."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def _or_null(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
 
 
 @contextmanager

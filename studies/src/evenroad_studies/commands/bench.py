@@ -63,7 +63,10 @@ class Bench:
     samplers: str = ""
     """Of arms: names of samplers, with commas; empty: all, and trees."""
     store: Path = Path("results.db")
-    """The SQLite file for the rows, made where there is none; rows that it cannot take are left in STORE.rescue."""
+    """The SQLite file for the rows, made where there is none; rows that it cannot take are left in STORE.rescue.
+
+    A name that ends with .parts is a folder of Parquet files, which several benchmarks may write at once.
+    """
     jobs: int | None = None
     """Processes; by default one a processor."""
     scheduler: str | None = None

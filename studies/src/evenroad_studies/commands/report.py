@@ -18,6 +18,7 @@ from evenroad_studies.report.comparisons import REFERENCES
 from evenroad_studies.report.fair import is_fair, pooled_rules
 from evenroad_studies.report.runs import Setting
 from evenroad_studies.report.sections import verdict_counts
+from evenroad_studies.report.streamed import write_cells
 from evenroad_studies.report.tables import difference
 
 
@@ -31,9 +32,16 @@ class Report:
     """The folder to write into; made where there is none."""
     only: str = ""
     """Names of problems, with commas between them; default: all in the store."""
+    cells: bool = False
+    """Write cells.csv alone: runs, success and interval of each cell, a problem at a time, for stores of any size."""
 
     def run(self) -> int:
         """Write the report and print its gist."""
+        if self.cells:
+            table = self.out / "cells.csv"
+            self.out.mkdir(parents=True, exist_ok=True)
+            print(f"{table}: {write_cells(self.store, table)} runs")
+            return 0
         problems = [name.strip() for name in self.only.split(",") if name.strip()]
         words = ["evenroad", "report", str(self.store), "-o", str(self.out)]
         command = shlex.join(words + (["--only", self.only] if self.only else []))
