@@ -204,8 +204,8 @@ class PlanArm(PlanOptions, RobotOptions):
     with points or --improve at the cheapest."""
     goal_pose: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
     """The pose of a link: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z" with any
-    rotation.  All configurations found that reach it are goals; you can give several.  "LINK: x y z ... & LINK: ..."
-    is one goal of several links, which reach their poses together."""
+    rotation.  All configurations found that reach it are goals; you can give several; "LINK: x y z ... & LINK: ..." is
+    one goal of both."""
     tip: str = ""
     """The link of goal poses, --straight and --upright (default: the last one)."""
     frame: str = ""
@@ -215,8 +215,7 @@ class PlanArm(PlanOptions, RobotOptions):
     tolerance: str | None = None
     """Largest error at goal poses: "0.002" (metres) or "0.002 0.01" (metres and radians)."""
     via: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
-    """Where to pass on the way, as start, or "LINK: x y z roll pitch yaw".  You can give several: they are passed in
-    this order, and the arm stops there."""
+    """Where to stop on the way, as start, or "LINK: x y z roll pitch yaw"; several in this order."""
     straight: str | None = None
     """Length of the straight lines in which the tip approaches its goal and leaves its start: "0.1" (metres) or
     "0.1 0.05", goal first."""
@@ -228,9 +227,8 @@ class PlanArm(PlanOptions, RobotOptions):
     upright_axis: str | None = None
     """That axis, in the tip's frame (default: the one that is most upright at the start)."""
     constraint: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
-    """What holds along the whole path: "orientation 0.001", "plane z", "line y", "box 0,-0.5,0.2 0.6,0.5,0.8", "circle
-    0.8,0.3,0 z" (a point and the direction of a hinge), "together LINK LINK", "joints elbow_joint=0,2.5"; then
-    within=0.001 (metres) and tip=LINK.  You can give several."""
+    """Kept on the whole path: "orientation 0.01", "plane z", "line y", "box 0,0,0 1,1,1", "circle 0.8,0.3,0 z",
+    "together LINK LINK" or "joints NAME=0,2"; then within=0.001, tip=LINK."""
     deg: bool = False
     """Read angles in degrees: of start, goal, "roll pitch yaw" and --upright."""
     resolution: float = 0.05
