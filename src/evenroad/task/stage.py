@@ -52,7 +52,7 @@ class Stage:
         held, scene, robot = {each.name: each for each in self.world.scene.attached}, self.world.scene, self.world.robot
         deep = {**self.depths, **(depths or {})}
         for name in sorted({link for link, _ in contacts} & held.keys() & deep.keys()):
-            robot = _holding_core(robot, held[name], deep[name])
+            robot = _holding_core(robot, held[name], deep[name], as_capsule=not robot.shapes)
         bodies = contacts - {each for each in contacts if each[1] in held}
         cores: list[Obstacle] = []
         allowed = set(scene.allowed)
@@ -159,9 +159,9 @@ def pose_of(robot: Robot, q: Floats, link: str) -> Pose:
     return Pose.from_matrix(link_poses(robot, q[np.newaxis])[0, robot.links.index(link)])
 
 
-def _holding_core(robot: Robot, held: HeldObject, depth: float) -> Robot:
+def _holding_core(robot: Robot, held: HeldObject, depth: float, *, as_capsule: bool) -> Robot:
     """Return the robot holding what it holds once more, smaller by a depth, if it does not yet."""
-    name, core = _smaller(held.name, depth), core_of(held.body, depth, as_capsule=not robot.shapes)
+    name, core = _smaller(held.name, depth), core_of(held.body, depth, as_capsule=as_capsule)
     if core is None or name in robot.holds:
         return robot
     return robot.holding(HeldObject(name, core, held.link, held.touches))
@@ -175,8 +175,9 @@ def _world(stage: Stage, scene: Scene) -> ArmWorld:
     robot = stage.empty
     for held in scene.attached:
         if held.name not in robot.holds:
-            # First, so that where both touch, messages name the object.
+            # First, so that where both touch, messages name the object, whose own shape decides of both.
             if held.name in stage.depths:
-                robot = _holding_core(robot, held, stage.depths[held.name])
+                as_capsule = not robot.holding(held).shapes
+                robot = _holding_core(robot, held, stage.depths[held.name], as_capsule=as_capsule)
             robot = robot.holding(held)
     return replace(stage.world, robot=robot, scene=scene)
