@@ -31,6 +31,7 @@ class Surface:
 
 class Scene:
     added: float
+    changes: int
     too_far: int
     surfaces: int
     def __init__(
@@ -42,6 +43,9 @@ class Scene:
         around: Surface | None,
         clearance: float,
     ) -> None: ...
+    def changed(
+        self, robot: Robot, gone: Ints, obstacles: Floats, numbers: Ints, tested: Bools, clearance: float
+    ) -> Scene | None: ...
 
 class Checker:
     fixed_contact: tuple[str, int, int]

@@ -150,7 +150,7 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy is made of: it makes checks of its own."""
-        made = ("native_scene", "checker", "_measuring", "roomier")
+        made = ("native_scene", "checker", "_measuring", "roomier", "_numbered", "_numbers", "_last", "_since")
         return {name: value for name, value in self.__dict__.items() if name not in made}
 
     def valid(self, q: Any) -> Any:
@@ -183,7 +183,8 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
     @once_property
     def roomier(self) -> ArmWorld:
         """The same world with 5 mm more clearance, which paths keep where they can."""
-        return replace(self, clearance=min(self.clearance + 0.005, MOST_CLEARANCE))
+        changed = self._after_changes(lambda since: since.roomier)
+        return changed or replace(self, clearance=min(self.clearance + 0.005, MOST_CLEARANCE))
 
     @property
     def bodies(self) -> str:
@@ -294,12 +295,12 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
         kind, capsule, other = self.checker.find_contact(q)
         return None if kind == "nothing" else self._names(kind, capsule, other)
 
-    def _names(self, kind: str, capsule: int, other: int) -> tuple[str, str]:
-        """Return the names of two bodies that touch, as native checks number them."""
-        capsules, names = self.robot_tables.capsules, self.scene.names
+    def _names(self, kind: str, capsule: int, other: int, *, anew: bool = False) -> tuple[str, str]:
+        """Return the names of two bodies that touch, as native checks number them; or those of a scene made anew."""
+        capsules = self.robot_tables.capsules
         if kind == "itself":
             first, second = self.robot_tables.capsule_pairs[other]
             return capsules[first].link, capsules[second].link
-        if kind == "obstacle" and self.scene.surfaces:
-            names = tuple(obstacle.name for obstacle in self.scene.obstacles if obstacle.row)
-        return capsules[capsule].link, names[other]
+        if kind == "surface":
+            return capsules[capsule].link, self.scene.names[other]
+        return capsules[capsule].link, self.scene.solid_names[other] if anew else self.number_name(other)

@@ -104,7 +104,9 @@ class ArmDistances:
     def _distances(self, q: Floats, *, to_itself: bool = True) -> Distance:
         """Return the distances of configurations, (n, dim); without `to_itself` those from obstacles alone."""
         metres, nearest = self._measuring.distances(q, MOST, to_itself)
-        return Distance(metres, [self._names(WITH[kind], *of) if kind else None for kind, *of in nearest.tolist()])
+        return Distance(
+            metres, [self._names(WITH[kind], *of, anew=True) if kind else None for kind, *of in nearest.tolist()]
+        )
 
     def nearest_along(self, path: Floats) -> tuple[str, str] | None:
         """Return the link and the obstacle that come nearest to each other along a path, (p, dim); None beyond 1 m."""

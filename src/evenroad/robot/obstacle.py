@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
 from struct import Struct
@@ -159,8 +159,8 @@ class Obstacle:
 Bodies: TypeAlias = "Sequence[Obstacle | Shape]"
 
 
-def as_obstacles(bodies: object, others: Sequence[Obstacle], scene: str) -> tuple[Obstacle, ...]:
-    """Return shapes and obstacles as obstacles; a shape without a name gets one that neither they nor `others` have."""
+def as_obstacles(bodies: object, taken: Collection[str], scene: str) -> tuple[Obstacle, ...]:
+    """Return shapes and obstacles as obstacles; a shape without a name gets one that neither they nor `taken` has."""
     if isinstance(bodies, Shape | Obstacle):
         bodies = [bodies]
     if isinstance(bodies, str) or not isinstance(bodies, Iterable):
@@ -174,12 +174,14 @@ def as_obstacles(bodies: object, others: Sequence[Obstacle], scene: str) -> tupl
             )
     if all(isinstance(each, Obstacle) for each in listed):
         return listed
-    taken = {each.name for each in (*listed, *others)}
+    own = {each.name for each in listed}
     obstacles = []
     for each in listed:
         if isinstance(each, Shape):
-            name = each.name or next(text for k in count() if (text := f"{each.kind} {k}") not in taken)
-            taken.add(name)
+            name = each.name or next(
+                text for k in count() if (text := f"{each.kind} {k}") not in own and text not in taken
+            )
+            own.add(name)
             each = Obstacle(name, each)
         obstacles.append(each)
     return tuple(obstacles)

@@ -187,6 +187,11 @@ class Scene(SceneChanges):
             return ()
         return tuple((number, each) for number, each in enumerate(self.obstacles) if not each.row)
 
+    @property
+    def solid_names(self) -> tuple[str, ...]:
+        """Names of the obstacles but clouds and meshes: those of `rows`."""
+        return tuple(each.name for each in self.obstacles if each.row) if self.surfaces else self.names
+
     def __repr__(self) -> str:
         names = self.names
         listed = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
+
+from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Shape
+from evenroad.robot.held import HeldObject
 from evenroad.robot.obstacle import Bodies, Obstacle, as_obstacles
 
 _DERIVED = ("obstacles", "moved_from", "rows", "names", "numbers", "surfaces")
@@ -27,6 +32,10 @@ class SceneChanges:
         obstacles: tuple[Obstacle, ...]
         allowed: frozenset[tuple[str, str]]
         near_ends: frozenset[tuple[str, str, float]]
+        attached: tuple[HeldObject, ...]
+        moved_from: tuple[Any, dict[int, Pose]]
+
+        def _require_names(self) -> None: ...
 
         @property
         def names(self) -> tuple[str, ...]: ...  # noqa: D102
@@ -73,7 +82,9 @@ class SceneChanges:
             changed[number] = pose
         base, before = self.__dict__.get("moved_from", (self, {}))
         # Obstacles are made when they are first used.
-        return self._changed(moved_from=(base, {**before, **changed}), names=self.names, numbers=numbers)
+        return self._changed(
+            moved_from=(base, {**before, **changed}), names=self.names, numbers=numbers, **_solid(base)
+        )
 
     def _changed(self, **parts: Any) -> Self:
         """Return a scene with other parts that fit each other."""
@@ -110,9 +121,17 @@ class SceneChanges:
         more: list[object] = []
         for each in obstacles:
             more += each if isinstance(each, list | tuple) else [each]
-        added = as_obstacles(more, self.obstacles, self.name)
-        changed: Any = self
-        return replace(changed, obstacles=(*self.obstacles, *added), allowed=self.allowed.union(allowed))
+        added = as_obstacles(more, self.numbers, self.name)
+        names = [each.name for each in added]
+        scene = self._changed(
+            obstacles=(*self.obstacles, *added),
+            names=(*self.names, *names),
+            allowed=self.allowed.union(allowed),
+            **(_solid(self) if all(each.row for each in added) else {}),
+        )
+        if len(set(names)) < len(names) or not self.numbers.keys().isdisjoint(names) or self.attached:
+            scene._require_names()
+        return scene
 
     def with_clearance(self, clearance: Mapping[str, float]) -> Self:
         """Return the scene with obstacles from which robots keep more away.
@@ -172,11 +191,35 @@ class SceneChanges:
         Scene('scene', 1 obstacle: ball)
         """
         for name in names:
-            require_known(f"obstacle of scene {self.name!r}:", name, self.names)
-        scene: Any = self
-        return replace(
-            scene,
-            obstacles=tuple(obstacle for obstacle in self.obstacles if obstacle.name not in names),
+            if name not in self.numbers:
+                require_known(f"obstacle of scene {self.name!r}:", name, self.names)
+        left = sorted(self.numbers[name] for name in set(names))
+        obstacles: list[Obstacle] = []
+        others: list[str] = []
+        for first, end in pairwise([-1, *left, len(self.names)]):
+            obstacles += self.obstacles[first + 1 : end]
+            others += self.names[first + 1 : end]
+        return self._changed(
+            obstacles=tuple(obstacles),
+            names=tuple(others),
             allowed=frozenset((link, name) for link, name in self.allowed if name not in names),
             near_ends=frozenset(each for each in self.near_ends if each[1] not in names),
+            **_solid(self),
         )
+
+    def rows_of(self, names: Collection[str]) -> Floats:
+        """Return the rows, see `Scene.rows`, of some obstacles, neither clouds nor meshes: (n, 17)."""
+        numbers = [self.numbers[name] for name in names] if len(names) else []
+        if "moved_from" not in self.__dict__:
+            return np.frombuffer(b"".join([self.obstacles[number].row for number in numbers])).reshape(-1, 17)
+        base, poses = self.moved_from
+        rows = base.rows[numbers]
+        for row, number in zip(rows, numbers, strict=True):
+            if (pose := poses.get(number)) is not None:
+                row[4:16] = (*pose.rotation, *pose.xyz)
+        return rows
+
+
+def _solid(scene: Any) -> dict[str, Any]:
+    """Return, as a part of other scenes, that a scene has neither clouds nor meshes, where that is so."""
+    return {} if scene.surfaces else {"surfaces": ()}

@@ -23,7 +23,6 @@ constexpr double MOST_STATES = 1e9;
 using robot::Checker;
 using robot::Robot;
 using robot::Scene;
-using robot::Surface;
 
 /// Arrays by their names, kept as long as this is: `of["centre"]`.
 class Named {
@@ -142,50 +141,6 @@ nb::object hull_contacts(const HullTrees& trees, int first, int second, nb::hand
   return as_numpy(std::move(found), {rows.rows, 2});
 }
 
-void make_surface(Surface* self, nb::handle corners, double radius, nb::handle solid, bool turned, double reach) {
-  const Array<const double, 3> of(corners, "corners"), closed(solid, "solid");
-  require(of.shape(2) == 3 && (of.shape(1) == 1 || of.shape(1) == 3), "corners must be (n, 1, 3) or (n, 3, 3)");
-  require_within(of.span(), -FARTHEST, FARTHEST, "corners"),
-      require_within(closed.span(), -FARTHEST, FARTHEST, "solid");
-  require_within({&radius, 1}, 0.0, FARTHEST, "radius"), require_within({&reach, 1}, 0.0, FARTHEST, "reach");
-  closed.of_shape({closed.shape(0), 3, 3});
-  new (self) Surface(robot::make_surface({of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach}));
-}
-
-/// Return the grid around surfaces, without leaves.
-std::unique_ptr<Surface> surface_around(nb::list surfaces) {
-  std::vector<std::shared_ptr<const Surface>> all;
-  for (nb::handle each : surfaces) all.push_back(value_of<std::shared_ptr<Surface>>(each, "surfaces"));
-  require(!all.empty(), "surfaces must be one or more");
-  return std::make_unique<Surface>(robot::make_surface_around(all));
-}
-
-/// A scene is given its obstacles, (n, 17), its surfaces, each with its number and the capsules tested against it, and
-/// the grid around these, or None.
-void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle tested, nb::list surfaces,
-                nb::object around, double clearance) {
-  require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");
-  const FloatRows rows(obstacles, "obstacles");
-  require(rows.shape(1) == sizeof(robot::GivenObstacle) / sizeof(double), "obstacles must have 17 numbers each");
-  std::vector<robot::GivenObstacle> given(rows.shape(0));
-  if (!given.empty()) __builtin_memcpy(given.data(), rows.data(), given.size() * sizeof(robot::GivenObstacle));
-  const Array<const bool, 2> flags(tested, "tested");
-  Scene scene = robot::make_scene(of, given, flags.matrix(), clearance);
-  if (!around.is_none()) scene.around = value_of<std::shared_ptr<Surface>>(around, "around");
-  for (nb::handle each : surfaces) {
-    const auto part = value_of<nb::tuple>(each, "surfaces");
-    require(part.size() == 3, "surfaces must be (surface, number, tested) each");
-    const Array<const bool, 1> capsules(part[2], "tested");
-    capsules.of_shape({of.capsules.size()});
-    auto surface = value_of<std::shared_ptr<Surface>>(part[0], "surface");
-    require(!surface->tree.levels.empty(), "a grid around surfaces is no surface");
-    scene.surfaces.push_back(
-        {std::move(surface), value_of<int>(part[1], "number"), {capsules.span().begin(), capsules.span().end()}});
-    for (std::size_t i = 0; i < of.capsules.size(); i++) scene.surfaces_tested[i] += capsules.span()[i];
-  }
-  new (self) Scene(std::move(scene));
-}
-
 void make_checker(Checker* self, std::shared_ptr<Robot> of, std::shared_ptr<Scene> scene, double resolution,
                   double clearance, bool touches_itself) {
   require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");
@@ -193,7 +148,7 @@ void make_checker(Checker* self, std::shared_ptr<Robot> of, std::shared_ptr<Scen
   for (std::size_t k = 0; k < of->bounds.low.size(); k++) longest += of->bounds.high[k] - of->bounds.low[k];
   require(resolution > 0 && longest / resolution < MOST_STATES,
           "resolution must be > 0, and motions have fewer states");
-  require(scene->tested.rows == of->capsules.size(), "the scene must be one of this robot");
+  require(scene->obstacles.tested.rows == of->capsules.size(), "the scene must be one of this robot");
   new (self) Checker(std::move(of), std::move(scene), resolution, clearance, touches_itself);
 }
 
@@ -326,16 +281,7 @@ void add_robot(nb::module_& module) {
            nb::arg("widths"))
       .def("ball", &ball_of, nb::arg("body"))
       .def("contacts", &hull_contacts, nb::arg("first"), nb::arg("second"), nb::arg("poses"));
-  nb::class_<Surface>(part, "Surface")
-      .def("__init__", &make_surface, nb::arg("corners"), nb::arg("radius"), nb::arg("solid"), nb::arg("turned"),
-           nb::arg("reach"))
-      .def_static("around", &surface_around);
-  nb::class_<Scene>(part, "Scene")
-      .def("__init__", &make_scene, nb::arg("robot"), nb::arg("obstacles"), nb::arg("tested"), nb::arg("surfaces"),
-           nb::arg("around").none(), nb::arg("clearance"))
-      .def_ro("added", &Scene::added)
-      .def_ro("too_far", &Scene::too_far)
-      .def_prop_ro("surfaces", [](const Scene& scene) { return scene.surfaces.size(); });
+  add_scene(part);
   nb::class_<Checker>(part, "Checker")
       .def("__init__", &make_checker)
       .def("valid", &valid, nb::arg("q").none())

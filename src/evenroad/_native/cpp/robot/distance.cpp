@@ -56,15 +56,15 @@ Floats16 distance_of(const PlacedCapsule& capsule, std::span<const float> sample
   return sqrt(squared_distance(obstacle, capsule, samples)) - (radius + obstacle.rounding);
 }
 
-void offer_obstacles(const Robot& robot, const Scene& scene, const Places& places, Nearest& nearest) {
+void offer_obstacles(const Robot& robot, const Layer& layer, const Places& places, Nearest& nearest) {
   const std::span<const float> samples = robot.samples;
   for (int b = static_cast<int>(robot.bodies.size()) - 1; b >= robot.fixed_bodies; b--) {
     const Body& body = robot.bodies[b];
-    for (int k = 0; k < static_cast<int>(scene.obstacles->rows.size()); k++) {
-      const Obstacle& obstacle = scene.obstacles->rows[k];
+    for (int k = 0; k < static_cast<int>(layer.obstacles->rows.size()); k++) {
+      const Obstacle& obstacle = layer.obstacles->rows[k];
       Floats16 distance = nearest.least;
       for (int i = body.capsules.first; i < body.capsules.end; i++) {
-        if ((scene.tested(i, k / LANES) >> (k % LANES) & 1) == 0) continue;
+        if ((layer.tested(i, k / LANES) >> (k % LANES) & 1) == 0) continue;
         const Range of = robot.capsules[i].samples;
         distance = min(distance, distance_of(places.capsules[i], samples.subspan(of.first, of.size()),
                                              robot.lengths.capsules[i], obstacle));
@@ -76,7 +76,7 @@ void offer_obstacles(const Robot& robot, const Scene& scene, const Places& place
       }
       nearest.bisect(nearest.nearer(distance), distance, [&](float near, Mask lane) {
         near += robot.lengths.shapes[b];
-        const Mask meeting = shape_meeting(robot, places, body, scene, k, near, lane, Wanted::ALL);
+        const Mask meeting = shape_meeting(robot, places, body, *layer.obstacles, k, near, lane, Wanted::ALL);
         return meeting != 0 ? contact : Contact{};
       });
     }
@@ -128,7 +128,8 @@ void write_distances(const Checker& checker, Matrix<const double> rows, double m
     const Mask outside = take_rows(*workspace, rows, first, count);
     workspace->places.place(robot, robot.lengths, workspace->states);
     Nearest found{spread(static_cast<float>(most)), {}};
-    offer_obstacles(robot, scene, workspace->places, found);
+    offer_obstacles(robot, scene.obstacles, workspace->places, found);
+    if (scene.changed.obstacles != nullptr) offer_obstacles(robot, scene.changed, workspace->places, found);
     if (to_itself) offer_itself(robot, workspace->places, found);
     offer_surfaces(robot, scene, workspace->places, found);
     for (std::size_t lane = 0; lane < count; lane++) {

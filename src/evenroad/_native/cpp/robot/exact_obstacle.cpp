@@ -38,6 +38,21 @@ void add_leaf(Obstacles& all, const Exact& o, double width) {
   all.hulls.nodes.push_back(leaf);
 }
 
+/// Add a row, and the box of these half extents around its obstacle.
+void add_row(Obstacles& all, const Obstacle& obstacle, Vec3 half) {
+  const int lane = static_cast<int>(all.rows.size()) % LANES;
+  if (lane == 0) {
+    const Floats16 never = spread(NEVER_HIT);
+    all.blocks.push_back({{Floats16{}, Floats16{}, Floats16{}}, {never, never, never}});
+  }
+  put(all.blocks.back().centre, lane, obstacle.centre.x, obstacle.centre.y, obstacle.centre.z);
+  put(all.blocks.back().half, lane, half.x, half.y, half.z);
+  const auto number = static_cast<std::size_t>(obstacle.number);
+  if (number >= all.row_of.size()) all.row_of.resize(number + 1, -1);
+  all.row_of[number] = static_cast<int>(all.rows.size());
+  all.rows.push_back(obstacle);
+}
+
 }  // namespace
 
 /// A box along the axes loses what lies far beyond `reach`, where the robot never comes: a floor of a hundred metres
@@ -128,18 +143,18 @@ double add(Obstacles& all, const Exact& o, int number) {
   const double rounding = o.rounding + padding;
   Obstacle obstacle{o.form, number, single(o.centre), single(o.half), {}, static_cast<float>(rounding)};
   for (int entry = 0; entry < 9; entry++) obstacle.rotation[entry] = static_cast<float>(o.rotation[entry]);
-  const int lane = static_cast<int>(all.rows.size()) % LANES;
-  if (lane == 0) {
-    const Floats16 never = spread(NEVER_HIT);
-    all.blocks.push_back({{Floats16{}, Floats16{}, Floats16{}}, {never, never, never}});
-  }
   for (double& extent : extents) extent += padding;
-  const Vec3 half = single(extents);
-  put(all.blocks.back().centre, lane, obstacle.centre.x, obstacle.centre.y, obstacle.centre.z);
-  put(all.blocks.back().half, lane, half.x, half.y, half.z);
-  all.rows.push_back(obstacle);
+  add_row(all, obstacle, single(extents));
   add_leaf(all, o, rounding);
   return rounding - o.rounding;
+}
+
+void add_again(Obstacles& all, const Obstacles& others, int row) {
+  const Block& block = others.blocks[row / LANES];
+  const int lane = row % LANES;
+  add_row(all, others.rows[row], {block.half.x[lane], block.half.y[lane], block.half.z[lane]});
+  if (all.hulls.points.empty()) all.hulls.points.push_back({});
+  all.hulls.nodes.push_back(others.hulls.nodes[row]);
 }
 
 }  // namespace evenroad::robot

@@ -29,4 +29,7 @@ bool is_too_far(const GivenObstacle& given);
 /// Add an obstacle, larger by what single precision loses, and return by how much.
 double add(Obstacles& all, const Exact& o, int number);
 
+/// Add one of other obstacles as it is there.
+void add_again(Obstacles& all, const Obstacles& others, int row);
+
 }  // namespace evenroad::robot

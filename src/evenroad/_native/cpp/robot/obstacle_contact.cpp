@@ -87,12 +87,12 @@ Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body,
   return inside;
 }
 
-Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Scene& scene, int number,
+Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacles& obstacles, int number,
                    float near, Mask asked, Wanted wanted, KeptOfPairs* kept) {
-  const Obstacle& obstacle = scene.obstacles->rows[number];
+  const Obstacle& obstacle = obstacles.rows[number];
   const PlacedFrame there = placed(obstacle);
   const Mask meeting = hulls_meeting({robot.shapes, body.shape, places.frames[body.frame]},
-                                     {scene.obstacles->hulls, number, there}, near, asked, wanted, kept);
+                                     {obstacles.hulls, number, there}, near, asked, wanted, kept);
   if (meeting != 0 && wanted == Wanted::FIRST) return meeting;
   // Only what is smaller than the body can be inside.
   const HullNode<float>& root = robot.shapes.nodes[body.shape];
@@ -100,23 +100,26 @@ Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, c
   return meeting | shape_enclosing(robot, places, body, there.origin, asked & ~meeting);
 }
 
-Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
-                       Wanted wanted, Contact* found) {
-  const Obstacles& all = *scene.obstacles;
-  if (all.tree != nullptr) return meeting_in_tree(robot, lengths, scene, places, blocked, wanted, found);
+namespace {
+
+/// Return the same for the obstacles of one layer.
+Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& layer, Places& places, Mask blocked,
+                   Wanted wanted, Contact* found) {
+  const Obstacles& all = *layer.obstacles;
+  if (all.tree != nullptr) return meeting_in_tree(robot, lengths, layer, places, blocked, wanted, found);
   const int blocks = static_cast<int>(all.blocks.size());
   const std::span<const float> samples = robot.samples;
   Open waiting[MOST_OPEN];
   int count = 0;
-  const auto decide = [&](std::span<const Open> all, Mask blocked) {
+  const auto decide = [&](std::span<const Open> open, Mask blocked) {
     Mask touching = 0;
-    for (const auto& [b, obstacle, capsule, lanes] : all) {
+    for (const auto& [b, obstacle, capsule, lanes] : open) {
       const Mask asked = lanes & ~(blocked | touching);
       if (asked == 0) continue;
-      const Mask meeting = shape_meeting(robot, places, robot.bodies[b], scene, obstacle, lengths.shapes[b], asked,
-                                         wanted, &places.kept);
+      const Mask meeting =
+          shape_meeting(robot, places, robot.bodies[b], all, obstacle, lengths.shapes[b], asked, wanted, &places.kept);
       if (found != nullptr && (blocked | touching) == 0 && meeting != 0) {
-        *found = {Contact::With::OBSTACLE, capsule, scene.obstacles->rows[obstacle].number};
+        *found = {Contact::With::OBSTACLE, capsule, layer.obstacles->rows[obstacle].number};
       }
       touching |= with_others(meeting, wanted);
       if (is_enough(blocked | touching, wanted)) break;
@@ -147,8 +150,9 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
       for (int i = capsules.end - 1; i >= capsules.first; i--) {
         const float radius = lengths.capsules[i];
         PlacedCapsule& capsule = places.capsules[i];
-        Mask near = scene.tested(i, number) & near_body;
-        if (std::popcount(near) > (many ? 2 : blocks == 1 ? FEW_OBSTACLES : 0)) {
+        Mask near = layer.tested(i, number) & near_body;
+        // Of several blocks the first makes what the others look at, also where it has nothing for this capsule.
+        if (many ? std::popcount(near) > 2 : blocks > 1 || std::popcount(near) > FEW_OBSTACLES) {
           near &= near_obstacles(block, many || number == 0 ? make_around(capsule, radius) : capsule.around);
         }
         const Boxes boxes(capsule, radius);
@@ -156,7 +160,7 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
           const int k = std::countr_zero(near);
           const bool again = (opened >> k & 1) != 0;
           if ((boxes.near(block, k) & ~(again ? blocked | open[k] : blocked)) == 0) continue;
-          const Obstacle& obstacle = scene.obstacles->rows[number * LANES + k];
+          const Obstacle& obstacle = layer.obstacles->rows[number * LANES + k];
           const Range of = robot.capsules[i].samples;
           const Mask meeting = meeting_one(capsule, samples.subspan(of.first, of.size()), radius, obstacle);
           if (shaped) {
@@ -176,18 +180,18 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
         if (asked == 0) continue;
         const Told told = told_by(places.kept.of(robot.bodies[b].shape, obstacle),
                                   {robot.shapes, robot.bodies[b].shape, places.frames[robot.bodies[b].frame]},
-                                  {scene.obstacles->hulls, obstacle, placed(scene.obstacles->rows[obstacle])},
+                                  {layer.obstacles->hulls, obstacle, placed(layer.obstacles->rows[obstacle])},
                                   lengths.shapes[b], asked);
         asked &= ~told.apart;
         if (asked == 0) continue;
         const Mask open = asked & ~with_others(told.near, wanted);
         Mask surely = told.near;
         if (open != 0 && !is_enough(surely, wanted)) {
-          surely |= inside_meeting(robot, places, robot.bodies[b], scene.obstacles->rows[obstacle], lengths.shapes[b],
+          surely |= inside_meeting(robot, places, robot.bodies[b], layer.obstacles->rows[obstacle], lengths.shapes[b],
                                    open, wanted);
         }
         if (found != nullptr && blocked == 0 && surely != 0) {
-          *found = {Contact::With::OBSTACLE, first[k], scene.obstacles->rows[obstacle].number};
+          *found = {Contact::With::OBSTACLE, first[k], layer.obstacles->rows[obstacle].number};
         }
         blocked |= with_others(surely, wanted);
         if (is_enough(blocked, wanted)) return blocked;
@@ -203,6 +207,15 @@ Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& 
     }
   }
   return blocked | decide({waiting, static_cast<std::size_t>(count)}, blocked);
+}
+
+}  // namespace
+
+Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
+                       Wanted wanted, Contact* found) {
+  const Mask mask = meeting_layer(robot, lengths, scene.obstacles, places, blocked, wanted, found);
+  if (scene.changed.obstacles == nullptr || is_enough(mask, wanted)) return mask;
+  return meeting_layer(robot, lengths, scene.changed, places, mask, wanted, found);
 }
 
 }  // namespace evenroad::robot

@@ -34,7 +34,7 @@ Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, 
                     Mask asked, Wanted wanted);
 
 /// Return the mask of those lanes asked for in which the true shape of a body comes within `near` of an obstacle.
-Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Scene& scene, int number,
+Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacles& obstacles, int number,
                    float near, Mask asked, Wanted wanted, KeptOfPairs* kept = nullptr);
 
 /// Return the mask of those lanes asked for in which a surface of a body's true shape goes around a place of the scene.

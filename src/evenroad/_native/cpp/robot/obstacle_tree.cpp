@@ -75,7 +75,7 @@ struct Part {
 struct Check {
   const Robot& robot;
   const Lengths& lengths;
-  const Scene& scene;
+  const Layer& layer;
   Places& places;
   Wanted wanted;
   Contact* found;
@@ -84,7 +84,7 @@ struct Check {
 
   /// Return the lanes in which a capsule may meet something.
   Mask near_lanes(const Part& of) const {
-    const DistanceGrid& grid = scene.obstacles->tree->grid;
+    const DistanceGrid& grid = layer.obstacles->tree->grid;
     const auto& [centre, along, around] = of.placed;
     const float near = of.radius + WIDER;
     if (of.samples.size() > 2 && (ask(grid, centre, of.half + near, 0).near & ~blocked) == 0) return 0;
@@ -96,14 +96,14 @@ struct Check {
   /// Return in which lanes a body's true shape touches an obstacle, of those in which a capsule of it does.
   Mask decide(int b, int obstacle, Mask asked) {
     const Body& body = robot.bodies[b];
-    const Obstacle& there = scene.obstacles->rows[obstacle];
+    const Obstacle& there = layer.obstacles->rows[obstacle];
     Mask& done = decided.of(b, obstacle);
     asked &= ~(done | blocked);
     if (asked == 0) return 0;
     done |= asked;
     const Told told =
         told_by(places.kept.of(body.shape, obstacle), {robot.shapes, body.shape, places.frames[body.frame]},
-                {scene.obstacles->hulls, obstacle, placed(there)}, lengths.shapes[b], asked);
+                {layer.obstacles->hulls, obstacle, placed(there)}, lengths.shapes[b], asked);
     Mask surely = told.near;
     asked &= ~told.apart;
     const Mask open = asked & ~with_others(told.near, wanted);
@@ -112,13 +112,14 @@ struct Check {
     }
     asked &= ~with_others(surely, wanted);
     if (asked == 0 || is_enough(blocked | surely, wanted)) return surely;
-    return surely | shape_meeting(robot, places, body, scene, obstacle, lengths.shapes[b], asked, wanted, &places.kept);
+    return surely | shape_meeting(robot, places, body, *layer.obstacles, obstacle, lengths.shapes[b], asked, wanted,
+                                  &places.kept);
   }
 
   /// Test the obstacles of a block that may be near a capsule; return whether that is enough.
   bool meet_block(const Part& of, int number, Mask near) {
-    const Obstacles& all = *scene.obstacles;
-    for (near &= scene.tested(of.capsule, number); near != 0; near &= near - 1) {
+    const Obstacles& all = *layer.obstacles;
+    for (near &= layer.tested(of.capsule, number); near != 0; near &= near - 1) {
       const int obstacle = number * LANES + std::countr_zero(near);
       Mask& done = tested.of(of.capsule, obstacle);
       if (done != 0) continue;
@@ -135,7 +136,7 @@ struct Check {
 
   /// Test what is near a capsule in some lanes, where it lies within one at `at`; return whether that is enough.
   bool meet_near(const Part& of, const CapsuleAt& at, Mask lanes) {
-    const Obstacles& all = *scene.obstacles;
+    const Obstacles& all = *layer.obstacles;
     Walk walk(all.tree->boxes);
     for (int number = 0; (number = walk.next([&](const BoxNode& node) { return near_nodes(node, at); })) >= 0;) {
       if (meet_block(of, number, near_of_block(all.blocks[number], at))) return true;
@@ -170,16 +171,15 @@ struct Check {
 
 }  // namespace
 
-void sort_neighbours(std::vector<Exact>& obstacles, std::vector<int>& numbers) {
+void sort_neighbours(std::vector<std::pair<Exact, int>>& obstacles) {
   std::vector<Place> places;
-  for (const Exact& each : obstacles) {
+  for (const auto& [each, _] : obstacles) {
     places.push_back(
         {{static_cast<float>(each.centre[0]), static_cast<float>(each.centre[1]), static_cast<float>(each.centre[2])}});
   }
-  std::vector<Exact> sorted;
-  std::vector<int> of;
-  for (const int k : order_of(std::move(places))) sorted.push_back(obstacles[k]), of.push_back(numbers[k]);
-  obstacles = std::move(sorted), numbers = std::move(of);
+  std::vector<std::pair<Exact, int>> sorted;
+  for (const int k : order_of(std::move(places))) sorted.push_back(obstacles[k]);
+  obstacles = std::move(sorted);
 }
 
 std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacles, double reach) {
@@ -209,16 +209,16 @@ std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacle
   return tree;
 }
 
-Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
+Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Layer& layer, Places& places, Mask blocked,
                      Wanted wanted, Contact* found) {
-  Check check{robot, lengths, scene, places, wanted, found, blocked, {}, {}};
+  Check check{robot, lengths, layer, places, wanted, found, blocked, {}, {}};
   // From the outermost bodies inwards: those meet obstacles most often.
   for (int b = static_cast<int>(robot.bodies.size()) - 1; b >= robot.fixed_bodies; b--) {
     const Range capsules = robot.bodies[b].capsules;
     if (capsules.size() > FEW) {
       const auto [x, y, z] = lengths.bodies[b].half;
       const float near = std::sqrt(x * x + y * y + z * z) + WIDER;
-      if ((ask(scene.obstacles->tree->grid, places.bodies[b].centre, near, 0).near & ~check.blocked) == 0) continue;
+      if ((ask(layer.obstacles->tree->grid, places.bodies[b].centre, near, 0).near & ~check.blocked) == 0) continue;
     }
     const bool shaped = lengths.shapes_decide && robot.bodies[b].shape >= 0;
     for (int i = capsules.end - 1; i >= capsules.first; i--) {

@@ -11,15 +11,15 @@ namespace evenroad::robot {
 /// From so many obstacles on a tree is faster than all blocks in a row.
 constexpr int MANY_OBSTACLES = 320;
 
-/// Bring obstacles, and their numbers, into an order in which sixteen neighbours are near each other.
-void sort_neighbours(std::vector<Exact>& obstacles, std::vector<int>& numbers);
+/// Bring obstacles, with what belongs to them, into an order in which sixteen neighbours are near each other.
+void sort_neighbours(std::vector<std::pair<Exact, int>>& obstacles);
 
 /// Return the grid and the tree over obstacles in that order; nothing of the robot is farther from the origin than
 /// `reach` [m].
 std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacles, double reach);
 
 /// Return the same as `meeting_obstacles`.
-Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
+Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Layer& layer, Places& places, Mask blocked,
                      Wanted wanted, Contact* found);
 
 }  // namespace evenroad::robot

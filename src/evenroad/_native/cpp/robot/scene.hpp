@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "robot/hull_contact.hpp"
@@ -43,6 +44,7 @@ struct Obstacles {
   std::vector<Obstacle> rows;
   HullTree<float> hulls;  // of each a leaf, in its own frame
   std::vector<Block> blocks;
+  std::vector<int> row_of;                   // by number in the scene, -1 for none
   std::unique_ptr<const ObstacleTree> tree;  // where they are many
 };
 
@@ -62,9 +64,15 @@ struct SurfaceObstacle {
   std::vector<bool> tested;  // capsules that are tested against it
 };
 
+/// Obstacles, and which of them capsules are tested against: (capsules, blocks), a bit for each obstacle.
+struct Layer {
+  std::shared_ptr<const Obstacles> obstacles;
+  OwnMatrix<std::uint16_t> tested{0, 0};
+};
+
 struct Scene {
-  std::shared_ptr<const Obstacles> obstacles;  // those that the robot can reach
-  OwnMatrix<std::uint16_t> tested{0, 0};       // (capsules, blocks): bits of obstacles that a capsule is tested against
+  Layer obstacles;  // those that the robot can reach
+  Layer changed;    // those that came later: no capsule is tested against what they replace
   std::vector<SurfaceObstacle> surfaces;
   std::vector<int> surfaces_tested;           // by capsule: how many surfaces
   std::shared_ptr<const Surface> around;      // a grid around all surfaces, or none
@@ -72,6 +80,20 @@ struct Scene {
   int too_far = -1;                           // the first obstacle that is too far or too large for single precision
   std::pair<int, int> fixed_contact{-1, -1};  // a capsule that does not move, and an obstacle that it touches
 };
+
+/// Obstacles with their numbers, and which capsules are tested against them: (capsules, obstacles).
+struct GivenObstacles {
+  std::span<const GivenObstacle> rows;
+  std::span<const std::int64_t> numbers;
+  Matrix<const bool> tested;
+
+  int number(int row) const { return static_cast<int>(numbers[row]); }
+};
+
+/// Return a scene in which obstacles of some numbers are gone and others have come; nothing where all of it has to be
+/// made anew.  What stays is shared.
+std::optional<Scene> change_scene(const Robot& robot, const Scene& before, std::span<const std::int64_t> gone,
+                                  const GivenObstacles& come, double clearance);
 
 /// Return the scene of a robot whose bodies are larger by `clearance`; `tested` is (capsules, obstacles).
 Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, Matrix<const bool> tested,

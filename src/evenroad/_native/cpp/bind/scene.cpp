@@ -1,0 +1,109 @@
+// evenroad._native.robot: what is around a robot: surfaces, and scenes that share what stays when they change.
+#include "robot/scene.hpp"
+
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/unique_ptr.h>
+
+#include <algorithm>
+
+#include "bind/arrays.hpp"
+#include "bind/parts.hpp"
+
+namespace evenroad::bind {
+
+namespace {
+
+/// No length is larger [m].
+constexpr double FARTHEST = 1e9;
+
+/// No obstacle has a larger number.
+constexpr std::size_t MOST_OBSTACLES = 1 << 24;
+
+using robot::Robot;
+using robot::Scene;
+using robot::Surface;
+
+void make_surface(Surface* self, nb::handle corners, double radius, nb::handle solid, bool turned, double reach) {
+  const Array<const double, 3> of(corners, "corners"), closed(solid, "solid");
+  require(of.shape(2) == 3 && (of.shape(1) == 1 || of.shape(1) == 3), "corners must be (n, 1, 3) or (n, 3, 3)");
+  require_within(of.span(), -FARTHEST, FARTHEST, "corners"),
+      require_within(closed.span(), -FARTHEST, FARTHEST, "solid");
+  require_within({&radius, 1}, 0.0, FARTHEST, "radius"), require_within({&reach, 1}, 0.0, FARTHEST, "reach");
+  closed.of_shape({closed.shape(0), 3, 3});
+  new (self) Surface(robot::make_surface({of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach}));
+}
+
+/// Return the grid around surfaces, without leaves.
+std::unique_ptr<Surface> surface_around(nb::list surfaces) {
+  std::vector<std::shared_ptr<const Surface>> all;
+  for (nb::handle each : surfaces) all.push_back(value_of<std::shared_ptr<Surface>>(each, "surfaces"));
+  require(!all.empty(), "surfaces must be one or more");
+  return std::make_unique<Surface>(robot::make_surface_around(all));
+}
+
+std::vector<robot::GivenObstacle> obstacles_from(nb::handle obstacles) {
+  const FloatRows rows(obstacles, "obstacles");
+  require(rows.shape(1) == sizeof(robot::GivenObstacle) / sizeof(double), "obstacles must have 17 numbers each");
+  std::vector<robot::GivenObstacle> given(rows.shape(0));
+  if (!given.empty()) __builtin_memcpy(given.data(), rows.data(), given.size() * sizeof(robot::GivenObstacle));
+  return given;
+}
+
+/// A scene is given its obstacles, (n, 17), its surfaces, each with its number and the capsules tested against it, and
+/// the grid around these, or None.
+void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle tested, nb::list surfaces,
+                nb::object around, double clearance) {
+  require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");
+  const std::vector<robot::GivenObstacle> given = obstacles_from(obstacles);
+  const Array<const bool, 2> flags(tested, "tested");
+  Scene scene = robot::make_scene(of, given, flags.matrix(), clearance);
+  if (!around.is_none()) scene.around = value_of<std::shared_ptr<Surface>>(around, "around");
+  for (nb::handle each : surfaces) {
+    const auto part = value_of<nb::tuple>(each, "surfaces");
+    require(part.size() == 3, "surfaces must be (surface, number, tested) each");
+    const Array<const bool, 1> capsules(part[2], "tested");
+    capsules.of_shape({of.capsules.size()});
+    auto surface = value_of<std::shared_ptr<Surface>>(part[0], "surface");
+    require(!surface->tree.levels.empty(), "a grid around surfaces is no surface");
+    scene.surfaces.push_back(
+        {std::move(surface), value_of<int>(part[1], "number"), {capsules.span().begin(), capsules.span().end()}});
+    for (std::size_t i = 0; i < of.capsules.size(); i++) scene.surfaces_tested[i] += capsules.span()[i];
+  }
+  new (self) Scene(std::move(scene));
+}
+
+/// Return a scene in which obstacles of some numbers are gone and others, (n, 17), with numbers, have come; None where
+/// it has to be made anew.
+nb::object changed_scene(const Scene& before, const Robot& of, nb::handle gone, nb::handle obstacles,
+                         nb::handle numbers, nb::handle tested, double clearance) {
+  require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");
+  const Array<const std::int64_t, 1> left(gone, "gone"), come(numbers, "numbers");
+  require_below(left.span(), MOST_OBSTACLES, "gone"), require_below(come.span(), MOST_OBSTACLES, "numbers");
+  const std::vector<robot::GivenObstacle> given = obstacles_from(obstacles);
+  const Array<const bool, 2> flags(tested, "tested");
+  require(before.obstacles.tested.rows == of.capsules.size(), "the scene must be one of this robot");
+  auto scene = robot::change_scene(of, before, left.span(), {given, come.span(), flags.matrix()}, clearance);
+  return scene ? nb::cast(std::make_shared<Scene>(std::move(*scene))) : nb::none();
+}
+
+}  // namespace
+
+void add_scene(nb::module_& part) {
+  nb::class_<Surface>(part, "Surface")
+      .def("__init__", &make_surface, nb::arg("corners"), nb::arg("radius"), nb::arg("solid"), nb::arg("turned"),
+           nb::arg("reach"))
+      .def_static("around", &surface_around);
+  nb::class_<Scene>(part, "Scene")
+      .def("__init__", &make_scene, nb::arg("robot"), nb::arg("obstacles"), nb::arg("tested"), nb::arg("surfaces"),
+           nb::arg("around").none(), nb::arg("clearance"))
+      .def("changed", &changed_scene)
+      .def_prop_ro("changes",
+                   [](const Scene& scene) {
+                     return scene.changed.obstacles != nullptr ? scene.changed.obstacles->rows.size() : 0;
+                   })
+      .def_ro("added", &Scene::added)
+      .def_ro("too_far", &Scene::too_far)
+      .def_prop_ro("surfaces", [](const Scene& scene) { return scene.surfaces.size(); });
+}
+
+}  // namespace evenroad::bind
