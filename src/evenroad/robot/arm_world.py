@@ -303,4 +303,4 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
             return capsules[first].link, capsules[second].link
         if kind == "surface":
             return capsules[capsule].link, self.scene.names[other]
-        return capsules[capsule].link, self.scene.solid_names[other] if anew else self.number_name(other)
+        return capsules[capsule].link, self.scene.solid_names[other] if anew else self._number_name(other)

@@ -22,7 +22,7 @@ from evenroad.robot.scene import Scene
 _STAYS = ("robot", "resolution", "clearance", "_space", "bounds", "robot_tables")
 
 FEW, MOST = 128, 128
-"""Scenes of fewer obstacles are made anew, and others after so many changes: what was changed is found one by one."""
+"""Scenes of fewer obstacles are made anew, and others after so many changes: checks look at each changed obstacle."""
 
 
 @explains_calls
@@ -149,7 +149,7 @@ class WorldChanges:
         _ = world.native_scene  # at once: it refuses obstacles that are too far
         return world
 
-    def number_name(self, number: int) -> str:
+    def _number_name(self, number: int) -> str:
         """Return the name of an obstacle, no cloud and no mesh, by its number for native checks."""
         names, later = self._numbered
         return names[number] if number < len(names) else next(name for name, at in later.items() if at == number)
