@@ -207,7 +207,7 @@ class SceneChanges:
             **_solid(self),
         )
 
-    def rows_of(self, names: Collection[str]) -> Floats:
+    def _rows_of(self, names: Collection[str]) -> Floats:
         """Return the rows, see `Scene.rows`, of some obstacles, neither clouds nor meshes: (n, 17)."""
         numbers = [self.numbers[name] for name in names] if len(names) else []
         if "moved_from" not in self.__dict__:

@@ -22,7 +22,7 @@ from evenroad.robot.scene import Scene
 _STAYS = ("robot", "resolution", "clearance", "_space", "bounds", "robot_tables")
 
 FEW, MOST = 128, 128
-"""Scenes of fewer obstacles are made anew, and others after so many changes: checks look at each changed obstacle."""
+"""Scenes of fewer obstacles are made anew, and others after this number of changes: checks look at each changed obstacle."""
 
 
 @explains_calls
@@ -184,7 +184,7 @@ class WorldChanges:
             if name in come:
                 bodies = [capsule.link == link for capsule in self.robot_tables.capsules]
                 tested[bodies, list(come).index(name)] = False
-        rows = scene.rows_of(come) if rows is None else rows
+        rows = scene._rows_of(come) if rows is None else rows
         native = before.changed(
             prepared(self.robot).native, np.array(left, np.int64), rows, np.array(at, np.int64), tested, self.clearance
         )
