@@ -22,7 +22,7 @@ from evenroad.robot.scene import Scene
 _STAYS = ("robot", "resolution", "clearance", "_space", "bounds", "robot_tables")
 
 FEW, MOST = 128, 128
-"""Scenes of fewer obstacles are made anew, and others after this number of changes: checks look at each changed obstacle."""
+"""Scenes of fewer obstacles are made anew, and others after this number of changes: checks look at each changed one."""
 
 
 @explains_calls
