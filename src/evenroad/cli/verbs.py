@@ -35,6 +35,7 @@ VERBS = {
 OF_STUDIES = {
     "train": "train point sets for any objective",
     "bench": "run benchmarks into a store",
+    "generate": "data sets of problems with timed paths, for learning",
     "report": "page, figures and tables of a store",
     "export": "a store for OMPL's Planner Arena",
 }

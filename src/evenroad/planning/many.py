@@ -101,7 +101,7 @@ def plan_many(
         return plan(different[of[row]], first[row], last[row], limits=budget, smooth=smooth, rng=variant)
 
     terminals = np.stack([first, last], axis=1)
-    solved = _by_compiled_code(different, of, terminals, budget, smooth, variant, min(workers, 1024), report)
+    solved = by_compiled_code(different, of, terminals, budget, smooth, variant, min(workers, 1024), report)
     rest, others = np.setdiff1d(np.arange(count), solved.rows), []
     for result in in_order(query, ((row,) for row in rest.tolist()), workers):
         others.append(result)
@@ -138,7 +138,7 @@ def _read_worlds(worlds: Any) -> tuple[list[Any], Ints | None]:
     return different, of
 
 
-def _by_compiled_code(
+def by_compiled_code(
     different: list[Any],
     of: Ints,
     terminals: Floats,

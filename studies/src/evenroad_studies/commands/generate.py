@@ -1,0 +1,100 @@
+"""``evenroad generate``: a data set of problems with timed, proved paths, for learning; the same line resumes."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from evenroad._checks import counted, require_count, require_extra
+from evenroad._files import require_writable_folder
+from evenroad._terminal import progress_shown
+from evenroad.errors import BrokenFile, InvalidValue, shown
+from evenroad.robot import load_robot
+from evenroad_studies.bench.schedulers import dask_workers
+from evenroad_studies.datasets.folder import make_parts, merge, write_card
+from evenroad_studies.datasets.part import Format, Request
+from evenroad_studies.datasets.queries import sources_of
+from evenroad_studies.workers import interrupt_between_steps, processes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Generate:
+    """Make a data set of problems of an arm, with paths that are proved free and timed."""
+
+    scenes: Annotated[tuple[str, ...], tyro.conf.Positional]
+    """Generators (shelf, clutter, tight, boxes, cage), files of scenes, or folders of these; with --merge the folders
+    of shards."""
+    robot: str = "ur5"
+    """The arm: a name or a file."""
+    count: float = 10_000
+    """How many problems, such as 1e6."""
+    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
+    """The folder of the set; made if its parent exists."""
+    seed: int = 0
+    """Part i of the set depends on this seed and i alone."""
+    rows: int = 1000
+    """How many problems a file has."""
+    per_scene: int = 16
+    """How many problems a scene has."""
+    format: Format = "parquet"
+    """parquet (extra [parquet]) or hdf5 (extra [hdf5])."""
+    shard: str = "0/1"
+    """i/n: of all files number i, i + n, i + 2 n ...: n machines make a set, each with a number from 0 to n - 1."""
+    merge: bool = False
+    """Gather the files of shards, and write the card."""
+    jobs: int | None = None
+    """Processes (default: one a processor)."""
+    scheduler: str | None = None
+    """Address of a Dask scheduler whose workers make the files, tcp://host:port (extra [dask])."""
+
+    def run(self) -> int:
+        """Make what is missing, and say what there is."""
+        self._make_folder()
+        if self.merge:
+            request = merge([Path(each) for each in self.scenes], self.out)
+            made = 0
+        else:
+            request, shard = self._request(), self._shard()
+            if self.jobs is not None and self.scheduler is not None:
+                raise InvalidValue("--jobs does not go with --scheduler, whose workers are counted there")
+            workers = processes(self.jobs) if self.scheduler is None else dask_workers(self.scheduler)
+            with interrupt_between_steps() as check, progress_shown(f"{request.count} problems") as shown_as:
+
+                def report(done: int, parts: int) -> None:
+                    check()
+                    shown_as(done, parts)
+
+                made = make_parts(request, self.out, shard, workers, report)
+        whole = write_card(request, self.out)
+        there = sum((self.out / request.name(part)).exists() for part in range(request.parts))
+        state = "complete, card.json says what it is" if whole else f"{request.parts - there} are missing"
+        print(f"{self.out}: {counted(made, 'file')} made, {there} of {counted(request.parts, 'file')} there; {state}")
+        return 0 if whole or self.shard != "0/1" else 1
+
+    def _request(self) -> Request:
+        count = int(self.count) if self.count == int(self.count) else self.count
+        require_count("count", count)
+        for name in ("rows", "per_scene"):
+            require_count(name, getattr(self, name))
+        require_count("seed", self.seed, 0)
+        require_extra(*(("pyarrow", "parquet") if self.format == "parquet" else ("h5py", "hdf5")), "generate")
+        load_robot(self.robot)
+        sources = sources_of(self.scenes)
+        return Request(self.robot, sources, int(count), self.seed, self.rows, self.per_scene, self.format)
+
+    def _shard(self) -> tuple[int, int]:
+        found = re.fullmatch(r"(\d+)/(\d+)", self.shard)
+        if found is None or not int(found[1]) < int(found[2]):
+            raise InvalidValue(f"--shard must be i/n with i from 0 to n - 1, got {shown(self.shard)}")
+        return int(found[1]), int(found[2])
+
+    def _make_folder(self) -> None:
+        if self.out.exists() and not self.out.is_dir():
+            raise BrokenFile(f"cannot write a set into {self.out}: it is not a folder")
+        if not self.out.exists():
+            require_writable_folder(self.out)
+            self.out.mkdir()

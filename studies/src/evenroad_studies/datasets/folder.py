@@ -1,0 +1,113 @@
+"""The folder of a data set: parts that are there are done; a card says what the set is, and how it was made."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from pathlib import Path
+from typing import Any
+
+from evenroad._files import atomic_write
+from evenroad.errors import BrokenFile, InvalidValue
+from evenroad_studies.datasets.part import Request, make_part
+from evenroad_studies.training.folder import claim_folder
+from evenroad_studies.workers import Workers
+
+REQUEST, CARD = "request.json", "card.json"
+
+
+def make_parts(
+    request: Request, folder: Path, shard: tuple[int, int], workers: Workers, report: Callable[[int, int], None]
+) -> int:
+    """Make the parts of a shard, i of n, that a folder has not; return how many those are.
+
+    What a killed run has left is whole parts: nothing is lost, and nothing made twice.
+    """
+    claim_folder(folder, request.values(), REQUEST)
+    mine = range(shard[0], request.parts, shard[1])
+    missing = deque(part for part in mine if not (folder / request.name(part)).exists())
+    count, made = len(mine), len(mine) - len(missing)
+    todo, begun = len(missing), deque[tuple[int, Future[bytes]]]()
+    executor = workers.make()
+    try:
+        while missing or begun:
+            while missing and len(begun) < 2 * workers.count(executor):
+                part = missing.popleft()
+                begun.append((part, executor.submit(make_part, request, part)))
+            part, future = begun.popleft()
+            write(folder / request.name(part), future.result())
+            made += 1
+            report(made, count)
+    except BaseException:
+        executor.shutdown(wait=False, cancel_futures=True)
+        raise
+    executor.shutdown()
+    return todo
+
+
+def merge(shards: Sequence[Path], folder: Path) -> Request:
+    """Copy the parts of shards into a folder; return their request.
+
+    Raises InvalidValue where shards are of different requests; BrokenFile where a folder is none of a set.
+    """
+    requests = [request_of(shard) for shard in shards]
+    for shard, request in zip(shards, requests, strict=True):
+        if request != requests[0]:
+            raise InvalidValue(f"{shard} is of another request than {shards[0]}: compare their {REQUEST}")
+    claim_folder(folder, requests[0].values(), REQUEST)
+    for shard in shards:
+        for part in range(requests[0].parts):
+            file = shard / requests[0].name(part)
+            if file.exists() and not (folder / file.name).exists():
+                with file.open("rb") as source, atomic_write(folder / file.name) as target:
+                    shutil.copyfileobj(source, target)
+    return requests[0]
+
+
+def request_of(folder: Path) -> Request:
+    """Return the request of a folder; BrokenFile where it has none."""
+    try:
+        values: dict[str, Any] = json.loads((folder / REQUEST).read_bytes())
+        fields = {name: values[name] for name in Request.__dataclass_fields__}
+    except (OSError, ValueError, KeyError) as error:
+        raise BrokenFile(f"{folder} is no folder of a data set: {error}") from None
+    return Request(**{**fields, "sources": tuple(fields["sources"])})
+
+
+def write_card(request: Request, folder: Path) -> bool:
+    """Write what the set is and the hashes of its parts, where all are there; return whether they are."""
+    files = [folder / request.name(part) for part in range(request.parts)]
+    if not all(file.exists() for file in files):
+        return False
+    hashes = {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+    card = {
+        "about": f"{request.count} problems of {request.robot}, with paths proved free and timed",
+        "made by": "evenroad generate; the same request has the same bytes with the same versions",
+        "request": request.values(),
+        "columns": COLUMNS,
+        "sha256": hashes,
+    }
+    write(folder / CARD, json.dumps(card, indent=1).encode())
+    return True
+
+
+def write(path: Path, content: bytes) -> None:
+    """Write a file at once, or not at all."""
+    with atomic_write(path) as file:
+        file.write(content)
+
+
+COLUMNS = {
+    "solved": "whether there is a path; else trees found none within the request's motions",
+    "cost": "length of the path in joint space [rad, m]; NaN without one",
+    "duration": "of the trajectory within the robot's limits [s]; NaN without one",
+    "start, goal": "configurations, in the order of the robot's joints [rad, m]",
+    "states": "64 states of the trajectory, evenly in time; zeros without one",
+    "path": "waypoints; straight motions between them are proved free (HDF5: waypoints, offsets)",
+    "scene": "obstacles in the robot's base frame as JSON, or the scene's file (HDF5: scenes, scene_of)",
+}
+"""What the columns hold."""
