@@ -163,6 +163,27 @@ def test_what_is_put_onto_a_table_may_be_in_it_by_the_stated_depth_alone(bodies,
         assert "'can less 5 mm' touches 'table'" in result.message
 
 
+@pytest.mark.parametrize(("depth", "solved"), [(0.005, False), (0.02, True)])
+def test_an_edge_of_what_a_robot_of_capsules_holds_may_be_no_deeper_in_a_table_than_stated(depth, solved):
+    tilt = 0.5
+    edge = 0.08 * math.cos(tilt) + 0.03 * math.sin(tilt)
+    above = er.PoseGoal(er.Pose((0.6, 0.2, 0.205), rpy=(math.pi, 0.0, 0.0)), free_axis="z")
+    # The edge is 11 mm deep, where a capsule inside of the can is 5 mm above the table.
+    place = er.PoseGoal(er.Pose((0.6, -0.2, 0.04 + edge - 0.011), rpy=(tilt, 0.0, 0.0)), tip="can")
+    steps = [
+        MoveTo(above, approach=0.1),
+        Attach("can", depth=depth),
+        MoveTo(place, retreat=0.1, approach=0.1, away="up"),
+        Detach("can", onto="table"),
+    ]
+    world = er.ArmWorld(er.load_robot("ur5", bodies="capsules"), er.Scene([TABLE, STANDING]))
+    result = Task(steps).plan(world, HOME)
+    assert result.solved == solved
+    if not solved:
+        assert (result.status, result.step) == (er.Status.GOAL_INVALID, 2)
+        assert "'can less 5 mm' touches 'table'" in result.message
+
+
 def test_what_is_lifted_is_not_pushed_through_what_it_stands_on():
     above = er.PoseGoal(er.Pose((0.6, 0.2, 0.205), rpy=(math.pi, 0.0, 0.0)), free_axis="z")
     steps = [MoveTo(above, approach=0.1), Attach("can"), MoveTo(HOME, retreat=0.1, away="up")]
