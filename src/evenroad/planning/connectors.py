@@ -171,7 +171,7 @@ class Cells:
         checked.  The size of the map bounds the time: `seconds` is not used, and there are no variants.
 
         Goals more than 1000 pixels away are sought over tiles of the map first, and cells are searched around that way
-        alone: paths may be longer than over all cells, in cities by half a percent on average and 3 % at most.
+        alone: a path may be longer than over all cells, by 3 % at most in 59 far queries of four kinds of maps.
         """
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)
