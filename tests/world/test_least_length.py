@@ -116,3 +116,11 @@ def test_an_effort_that_is_spent_leaves_a_smaller_bound():
     assert bounds == sorted(bounds)
     assert bounds[0] == pytest.approx(np.hypot(*(goal - start)), rel=1e-6)
     assert bounds[-1] > bounds[0]
+
+
+def test_no_way_leads_to_a_place_outside_however_far_out_it_is():
+    disk, inside = er.GridMap(np.zeros((8, 8), dtype=bool)).world(0.5).disk, np.array([4.0, 4.0])
+    for outside in ([-3.0, 4.0], [1e300, 4.0], [4.0, -1e300], [np.nan, 4.0], [np.inf, np.inf]):
+        for ends in ((inside, np.array(outside)), (np.array(outside), inside)):
+            assert disk.least_length(*ends, 1000) == np.inf
+    assert disk.least_length(inside, inside + 1.0, 1000) < np.inf

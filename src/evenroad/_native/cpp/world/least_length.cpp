@@ -38,6 +38,13 @@ struct Interval {
   bool operator<(const Interval& other) const { return estimate > other.estimate; }
 };
 
+/// Say whether padded coordinates are on the map or its border.  No way leads outside, and far outside rows have no
+/// number.
+bool is_on(const Disk& disk, Point at) {
+  return 0.0 <= at.x && at.x <= static_cast<double>(disk.columns()) && 0.0 <= at.y &&
+         at.y <= static_cast<double>(disk.rows());
+}
+
 double distance(Point a, Point b) { return std::hypot(b.x - a.x, b.y - a.y); }
 
 class Search {
@@ -208,6 +215,7 @@ class Search {
 double least_length(const Disk& disk, Point start, Point goal, std::int64_t most) {
   const Frame& frame = disk.frame();
   const Point from = frame.to_padded(start), to = frame.to_padded(goal);
+  if (!is_on(disk, from) || !is_on(disk, to)) return NEVER;
   const double least = Search(disk, to).run(from, most) * frame.scale * (1.0 - ROUNDING);
   return std::max(least, distance(start, goal));
 }
