@@ -42,11 +42,11 @@ $(VENV)/.core: pyproject.toml studies/pyproject.toml constraints.txt | $(VENV)/.
 	@touch $@
 
 $(VENV)/.dev: $(VENV)/.core
-	$(PIP) --no-build-isolation -e '.[dev]' -e './studies[dask]'
+	$(PIP) --no-build-isolation -e '.[dev,parquet,hdf5]' -e './studies[dask]'
 	@touch $@
 
 $(VENV)/.peers: $(VENV)/.dev
-	$(PIP) --no-build-isolation -e '.[dev,peers]' -e './studies[dask]'
+	$(PIP) --no-build-isolation -e '.[dev,parquet,hdf5,peers]' -e './studies[dask]'
 	@touch $@
 
 native: $(VENV)/.native

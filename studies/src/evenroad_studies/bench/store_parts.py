@@ -18,8 +18,9 @@ from typing import Any
 
 import numpy as np
 
+from evenroad._checks import require_extra
 from evenroad._files import atomic_write
-from evenroad.errors import BrokenFile, NotAvailable
+from evenroad.errors import BrokenFile
 from evenroad_studies.bench.rows import Labels, Rows, Session, joined
 from evenroad_studies.bench.store_file import COLUMNS, NAMED, damaged, row_of
 from evenroad_studies.bench.task import PROTOCOL, Outcome, Task, key_of
@@ -240,9 +241,5 @@ def _empty() -> Any:
 
 
 def _arrow() -> tuple[Any, Any]:
-    try:
-        import pyarrow  # type: ignore[import-untyped, unused-ignore]
-        import pyarrow.parquet  # type: ignore[import-untyped, unused-ignore]
-    except ImportError as error:
-        raise NotAvailable("a store of parts needs pyarrow: pip install 'evenroad[parquet]'") from error
-    return pyarrow, pyarrow.parquet
+    what = "a store of parts"
+    return require_extra("pyarrow", "parquet", what), require_extra("pyarrow.parquet", "parquet", what)
