@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._files import atomic_write, not_a
+from evenroad._shared import OwnLock
 from evenroad.errors import BrokenFile, shown
 
 Path = str | os.PathLike[str]
@@ -84,12 +85,17 @@ def read_array(file: IO[bytes], size: int) -> npt.NDArray[Any]:
     version = np.lib.format.read_magic(file)
     if version not in _HEADERS:
         raise ValueError(f"a .npy file of version {version}")
-    shape, _, dtype = _HEADERS[version](file)
-    announced, there = math.prod(shape) * dtype.itemsize, size - file.tell()
-    if not dtype.hasobject and announced != there:
-        raise ValueError(f"it is damaged or cut off: {announced} bytes were announced, {there} are there")
-    file.seek(0)
-    return np.lib.format.read_array(file, allow_pickle=False)
+    with _LOCK:
+        shape, _, dtype = _HEADERS[version](file)
+        announced, there = math.prod(shape) * dtype.itemsize, size - file.tell()
+        if not dtype.hasobject and announced != there:
+            raise ValueError(f"it is damaged or cut off: {announced} bytes were announced, {there} are there")
+        file.seek(0)
+        return np.lib.format.read_array(file, allow_pickle=False)
+
+
+_LOCK = OwnLock()
+"""Headers are parsed one after the other: CPython 3.11 counts how deep a syntax tree is for all threads at once."""
 
 
 _HEADERS = {

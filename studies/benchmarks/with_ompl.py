@@ -122,7 +122,7 @@ def draw(rows: list[tuple[str, str, list[float], list[float]]], file: Path) -> N
     """Draw how many problems are solved by when, and how long the paths are beside ours."""
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(1, 2, figsize=(11, 4), constrained_layout=True)
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4.8), constrained_layout=True)
     arms = list(dict.fromkeys(name for name, *_ in rows))
     who = list(dict.fromkeys(planner for _, planner, *_ in rows))
     for name, planner, times, shares in rows:
@@ -131,7 +131,7 @@ def draw(rows: list[tuple[str, str, list[float], list[float]]], file: Path) -> N
         axes[1].step(np.sort(shares), np.arange(1, len(shares) + 1), **look)
     axes[0].set(xscale="log", xlabel="processor time to the smoothed path [ms]", ylabel="problems solved")
     axes[1].set(xscale="log", xlabel="length of the path, as a share of er.plan's", ylabel="problems that both solve")
-    axes[0].legend(fontsize=7)
+    figure.legend(loc="outside lower center", ncols=2, fontsize=8)
     for axis in axes:
         axis.grid(alpha=0.3)
     figure.savefig(file)

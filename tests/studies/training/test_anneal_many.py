@@ -88,7 +88,9 @@ def test_a_killed_process_leaves_the_finished_sets(tmp_path):
     assert isinstance(caught.value, EvenroadError)
     assert isinstance(caught.value.__cause__, BrokenProcessPool)
     assert load_points(tmp_path / "set-0000.npz") == first[0]
-    assert not list(tmp_path.glob(".*"))
+    # It may have been killed while it wrote: what it wrote has no name of a set then.
+    for file in tmp_path.glob("set-*.npz"):
+        load_points(file)
     assert len(anneal_many(**SMALL, sets=3, workers=1, folder=tmp_path)) == 3
 
 

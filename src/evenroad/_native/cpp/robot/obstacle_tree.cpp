@@ -173,6 +173,7 @@ struct Check {
 
 void sort_neighbours(std::vector<std::pair<Exact, int>>& obstacles) {
   std::vector<Place> places;
+  places.reserve(obstacles.size());
   for (const auto& [each, _] : obstacles) {
     places.push_back(
         {{static_cast<float>(each.centre[0]), static_cast<float>(each.centre[1]), static_cast<float>(each.centre[2])}});
@@ -204,6 +205,7 @@ std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacle
   auto tree = std::make_unique<ObstacleTree>();
   tree->grid = make_grid(place, 0, distances_to(place, marked));
   std::vector<Around> leaves;
+  leaves.reserve(obstacles.blocks.size());
   for (const Block& block : obstacles.blocks) leaves.push_back(around_block(block));
   tree->boxes = make_box_tree(std::move(leaves), WIDER);
   return tree;

@@ -83,12 +83,13 @@ void find_fixed_contact(const Robot& robot, const Reached& reached, const GivenO
       // Without a clearance: what does not move cannot keep away.
       const double near = sphere.radius + obstacle.rounding;
       if (!given.tested(sphere.capsule, k) || squared_distance(obstacle, sphere.centre) >= near * near) continue;
-      if (!places && body.shape >= 0) places.emplace(robot);
-      const int b = robot.capsules[sphere.capsule].body;
-      if (body.shape < 0 || base_touches(robot, *places, body, obstacle, robot.lengths.shapes[b] - robot.padding)) {
-        scene.fixed_contact = {sphere.capsule, given.number(k)};
-        return;
+      if (body.shape >= 0) {
+        if (!places) places.emplace(robot);
+        const int b = robot.capsules[sphere.capsule].body;
+        if (!base_touches(robot, *places, body, obstacle, robot.lengths.shapes[b] - robot.padding)) continue;
       }
+      scene.fixed_contact = {sphere.capsule, given.number(k)};
+      return;
     }
   }
 }

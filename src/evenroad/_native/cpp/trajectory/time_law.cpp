@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -107,7 +108,8 @@ Grid grid_of(const RoundedPath& path) {
     const double begin = path.starts[piece], end = path.starts[piece + 1];
     const double share = (end - begin) / path.starts.back();
     const double count = std::max(std::ceil(INTERVALS * share), path.bend[piece] > 0.0 ? PER_ARC : PER_LINE);
-    for (double i = 1.0; i < count; i++) grid.lengths.push_back(begin + i * ((end - begin) / count));
+    for (std::int64_t i = 1; static_cast<double>(i) < count; i++)
+      grid.lengths.push_back(begin + static_cast<double>(i) * ((end - begin) / count));
     grid.lengths.push_back(end);
     grid.pieces.resize(grid.lengths.size() - 1, piece);
   }

@@ -19,7 +19,7 @@ constexpr std::int64_t MOST_REACH = 60;
 /// The cells of a tile, a word a row, its lowest bit the first column.
 using Bits = std::array<std::uint64_t, SIDE>;
 
-enum Border { TOP, LEFT, BOTTOM, RIGHT, BORDERS };
+enum Border : std::uint8_t { TOP, LEFT, BOTTOM, RIGHT, BORDERS };
 
 /// Cells of a border, from `first` to `last`, which are open on both sides, and what they hang together with inside.
 struct Run {

@@ -17,7 +17,7 @@ namespace evenroad::world {
 constexpr int COARSE_SHIFT = 6;
 
 /// Which cells of a disk count as open: those that are surely free, or all that are not surely blocked.
-enum class Open { SURELY_FREE, NOT_BLOCKED };
+enum class Open : std::uint8_t { SURELY_FREE, NOT_BLOCKED };
 
 /// A cell of the padded grid.
 struct Cell {

@@ -132,7 +132,7 @@ class Search {
   void expand(const Interval& at, const Run& run) {
     const auto y = static_cast<double>(at.line);
     const double across = y - at.root.y;
-    double left = at.left, right = at.right;
+    double left, right;
     if (across != 0.0) {
       const double times = (y + static_cast<double>(at.onward) - at.root.y) / across;
       left = at.root.x + times * (at.left - at.root.x), right = at.root.x + times * (at.right - at.root.x);
