@@ -166,6 +166,52 @@ def test_a_flat_link_passes_a_slot_that_its_capsules_do_not(tmp_path, gap):
     assert "proved: " not in result.message
 
 
+SHAPES = {
+    "boxes": '<box size=".5 .4 .02"/>',
+    "cylinders": '<cylinder radius=".2" length=".02"/>',
+    "hulls": '<mesh filename="plate.stl"/>',
+    "meshes": '<mesh filename="cross.stl"/>',
+}
+"""A link 20 mm thick as files have it, by what its answers speak of."""
+
+
+def shaped_link(folder, of):
+    trimesh = pytest.importorskip("trimesh")
+    bars = [trimesh.creation.box(size) for size in ((0.5, 0.1, 0.02), (0.1, 0.4, 0.02))]
+    trimesh.util.concatenate(bars).export(folder / "cross.stl")
+    trimesh.creation.box((0.5, 0.4, 0.02)).export(folder / "plate.stl")
+    return flat_link(folder, SHAPES[of], bodies="shapes")
+
+
+@pytest.mark.parametrize("of", SHAPES)
+def test_the_flat_link_passes_a_slot_of_44_mm_with_12_mm_to_spare_on_both_sides(tmp_path, of):
+    result = er.plan(slot(0.044), A, B, robot=shaped_link(tmp_path, of), seconds=2.0)
+    assert result.solved
+    assert result.proof == "certified"
+    assert result.bodies == of
+    assert result.nearest[0] == "plate"
+    assert 0.0119 < result.clearance <= 0.012
+
+
+@pytest.mark.parametrize("gap", [0.021, 0.02005])
+def test_the_flat_link_passes_a_slot_with_hardly_anything_to_spare(tmp_path, gap):
+    result = er.plan(slot(gap), A, B, robot=shaped_link(tmp_path, "boxes"), seconds=2.0)
+    assert result.solved
+    assert result.proof == "certified"
+
+
+@pytest.mark.parametrize("of", SHAPES)
+def test_no_way_through_a_slot_too_narrow_for_the_flat_link_is_proved_of_the_robot(tmp_path, of):
+    """What proves it lies inside of the link: nothing thinner is closed off."""
+    robot = shaped_link(tmp_path, of)
+    result = er.plan(slot(0.018), A, B, robot=robot, seconds=0.3)
+    assert result.status == "not_connected"
+    assert result.bodies == of
+    assert result.message.startswith("proved: there is no path: joint slide alone cannot get there")
+    assert result.message.endswith("(shown for bodies inside of the robot's shapes)")
+    assert may_connect(ArmWorld(robot, slot(0.0201)), A, B)
+
+
 def test_a_slot_narrower_than_the_link_itself_is_proved(tmp_path):
     robot = flat_link(tmp_path)
     result = er.plan(slot(0.01), A, B, robot=robot, seconds=2.0)
