@@ -302,6 +302,8 @@ def test_boxes_given_as_arrays_are_the_boxes_that_objects_make():
         assert each.name == f"b{i}"
         assert each.size == tuple(size[i])
         np.testing.assert_allclose(each.rotation, Pose(xyzw=xyzw[i]).rotation, atol=1e-15)
+    for listed in (xyzw.tolist(), xyzw * 1e150):  # what compiled code leaves to NumPy
+        np.testing.assert_allclose(Scene.of_boxes(size, xyz, xyzw=listed).rows, turned.rows, atol=1e-15)
     again = Scene(turned.obstacles, allowed=turned.allowed)
     assert turned.fingerprint() == again.fingerprint()
     robot = load_robot("ur5")
@@ -319,6 +321,8 @@ def test_boxes_given_as_arrays_are_the_boxes_that_objects_make():
         ("xyz must be finite", ([(1, 1, 1)], [(0, np.nan, 0)]), {}),
         ("xyz must lie between", ([(1, 1, 1)], [(0, -1e12, 0)]), {}),
         ("one quaternion a box", ([(1, 1, 1)], [(0, 0, 0)]), {"xyzw": [(0, 0, 0, 0)]}),
+        ("one quaternion a box", (np.ones((2, 3)), np.ones((2, 3))), {"xyzw": np.ones((1, 4))}),
+        ("size must be > 0", (-np.ones((2, 3)), np.ones((2, 3))), {}),
         ("names must be 1", ([(1, 1, 1)], [(0, 0, 0)]), {"names": ["a", "b"]}),
         ("twice: .'a'", ([(1, 1, 1)] * 2, [(0, 0, 0)] * 2), {"names": ["a", "a"]}),
     ],

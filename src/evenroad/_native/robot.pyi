@@ -29,6 +29,8 @@ class Surface:
     @staticmethod
     def around(surfaces: Sequence[Surface | None]) -> Surface: ...
 
+def box_rows(size: object, xyz: object, xyzw: object) -> Floats | None: ...
+
 class Scene:
     added: float
     changes: int

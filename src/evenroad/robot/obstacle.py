@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import FARTHEST, as_batch, require_positive
+from evenroad._native import robot as native
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
 from evenroad.geometry.rotation import NO_ROTATION, rotations_from_quaternions
@@ -192,6 +193,9 @@ def box_rows(size: npt.ArrayLike, xyz: npt.ArrayLike, xyzw: npt.ArrayLike | None
 
     Raises InvalidValue for arrays of other shapes, or with entries that are not allowed.
     """
+    if (made := native.box_rows(size, xyz, xyzw)) is not None:
+        return made
+    # Arrays of another kind, or boxes that are none: which, is said here.
     extents, centres = as_batch("size", size, 3), as_batch("xyz", xyz, 3)
     if len(extents) != len(centres):
         raise InvalidValue(f"size and xyz must have one row a box, got {len(extents)} and {len(centres)}")

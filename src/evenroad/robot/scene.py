@@ -84,8 +84,6 @@ class Scene(SceneChanges):
         attached: tuple[HeldObject, ...] = (),
         near_ends: frozenset[tuple[str, str, float]] = frozenset(),
     ) -> None:
-        if not isinstance(name, str):
-            raise InvalidValue(f"the name of a scene must be a text, got {shown(name)}")
         values: dict[str, Any] = dict(allowed=allowed, attached=attached, near_ends=near_ends)
         values |= {"states": {} if states is None else states, "limits": {} if limits is None else limits}
         if isinstance(obstacles, Mapping):
@@ -93,10 +91,10 @@ class Scene(SceneChanges):
                 raise InvalidValue(
                     f"a scene of a mapping has what the mapping says: put {', '.join(more)} into it, too"
                 )
-            scene = above("Scene")(obstacles, name)
+            scene = above("Scene")(obstacles, _named(name))
             set_fields(self, **{each.name: getattr(scene, each.name) for each in fields(scene)})
             return
-        set_fields(self, name=name, obstacles=as_obstacles(obstacles, (), name), **values)
+        set_fields(self, name=_named(name), obstacles=as_obstacles(obstacles, (), name), **values)
         self._require_names()
 
     @classmethod
@@ -138,13 +136,11 @@ class Scene(SceneChanges):
         >>> er.Scene.of_boxes([(0.1, 0.1, 0.3), (0.8, 1.2, 0.04)], [(0.5, 0, 0.15), (0.5, 0, -0.02)])
         Scene('scene', 2 obstacles: box 0, box 1)
         """
-        scene = cls(name=name)
         rows = box_rows(size, xyz, xyzw)
-        texts = tuple(names) if len(names) else tuple(f"box {i}" for i in range(len(rows)))
+        texts = tuple(names) if len(names) else tuple([f"box {i}" for i in range(len(rows))])
         if len(texts) != len(rows):
             raise InvalidValue(f"names must be {len(rows)}, one a box, got {len(texts)}")
-        del scene.__dict__["obstacles"]
-        set_fields(scene, allowed=allowed, rows=rows, names=texts)
+        scene = _of_rows(rows, texts, _named(name), allowed)
         if len(set(texts)) < len(texts):
             scene._require_names()
         return scene
@@ -228,10 +224,24 @@ def smaller_scene(scene: Scene, by: float) -> Scene:
     rows, left = smaller_rows(scene.rows, by)
     solid = [name for number, name in enumerate(scene.names) if number not in dict(scene.surfaces)]
     names = tuple(name for name, is_left in zip(solid, left.tolist(), strict=True) if is_left)
-    made = Scene(name=scene.name)
-    del made.__dict__["obstacles"]
-    set_fields(made, allowed=frozenset(each for each in scene.allowed if each[1] in names), rows=rows, names=names)
-    return made
+    allowed = frozenset(each for each in scene.allowed if each[1] in names)
+    return _of_rows(rows, names, scene.name, allowed)
+
+
+def _of_rows(rows: Floats, names: tuple[str, ...], name: str, allowed: frozenset[tuple[str, str]]) -> Scene:
+    """Return a scene of obstacles by their rows and names, which are not looked at again."""
+    scene = object.__new__(Scene)
+    rows.setflags(write=False)
+    scene.__dict__.update(name=name, allowed=allowed, states={}, limits={}, attached=(), near_ends=frozenset())
+    scene.__dict__.update(rows=rows, names=names, surfaces=())
+    return scene
+
+
+def _named(name: object) -> str:
+    """Return the name of a scene, or raise InvalidValue."""
+    if not isinstance(name, str):
+        raise InvalidValue(f"the name of a scene must be a text, got {shown(name)}")
+    return name
 
 
 def limits_in_words(scene: Scene | None, joint: str, lower: float, upper: float) -> str:

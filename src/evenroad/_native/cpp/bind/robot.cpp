@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bind/arrays.hpp"
-#include "common/lanes.hpp"
+#include "bind/doubles.hpp"
 #include "robot/distance.hpp"
 #include "robot/motion_check.hpp"
 
@@ -152,54 +152,13 @@ void make_checker(Checker* self, std::shared_ptr<Robot> of, std::shared_ptr<Scen
   new (self) Checker(std::move(of), std::move(scene), resolution, clearance, touches_itself);
 }
 
-/// Doubles of an array as a caller gives it, seen without a copy: nothing where it is another kind of thing.
-class Doubles {
- public:
-  explicit Doubles(nb::handle given) {
-    if (PyObject_GetBuffer(given.ptr(), &view_, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT) != 0) {
-      PyErr_Clear();
-      view_.obj = nullptr;
-    }
-  }
-  Doubles(const Doubles&) = delete;
-  Doubles& operator=(const Doubles&) = delete;
-  ~Doubles() {
-    if (view_.obj != nullptr) PyBuffer_Release(&view_);
-  }
-
-  int axes() const { return view_.ndim; }
-  std::size_t shape(int axis) const { return view_.shape[axis]; }
-  const double* data() const { return static_cast<const double*>(view_.buf); }
-
-  /// Return whether these are rows of `columns` finite numbers, or one such row.
-  bool are_rows_of(std::size_t columns) const {
-    if (view_.obj == nullptr || view_.format[0] != 'd' || view_.format[1] != 0 || view_.ndim < 1 || view_.ndim > 2 ||
-        shape(view_.ndim - 1) != columns) {
-      return false;
-    }
-    const auto count = static_cast<std::size_t>(view_.len) / sizeof(double);
-    using Doubles8 = Lanes<double, 8>;
-    // Zero times a number is zero; several sums at once, since each waits for the one before.
-    Doubles8 sums{};
-    std::size_t i = 0;
-    for (; i + 8 <= count; i += 8) sums += load<Doubles8>(data() + i) * 0.0;
-    for (; i < count; i++) sums[0] += data()[i] * 0.0;
-    return sum<double, 8>(sums) == 0.0;
-  }
-
- private:
-  Py_buffer view_{};
-};
-
 std::size_t dim(const Checker& checker) { return static_cast<std::size_t>(checker.robot().dim()); }
 
 /// Return a NumPy array of flags, and let `write` fill them while other threads of Python run.
 template <class Write>
 nb::object flags(std::size_t count, Write&& write) {
-  // Kept for good: at the end of a process there is no Python any more that could take them back.
-  static const auto* empty = new nb::object(nb::module_::import_("numpy").attr("empty"));
-  static const auto* kind = new nb::object(nb::module_::import_("numpy").attr("bool_"));
-  const nb::object made = (*empty)(count, *kind);
+  static const nb::handle kind = numpy("bool_");
+  const nb::object made = empty_array(nb::int_(count), kind);
   Py_buffer view;
   if (PyObject_GetBuffer(made.ptr(), &view, PyBUF_WRITABLE) != 0) throw nb::python_error();
   const std::span<bool> all(static_cast<bool*>(view.buf), count);

@@ -7,7 +7,9 @@
 #include <algorithm>
 
 #include "bind/arrays.hpp"
+#include "bind/doubles.hpp"
 #include "bind/parts.hpp"
+#include "robot/given_boxes.hpp"
 
 namespace evenroad::bind {
 
@@ -47,6 +49,27 @@ std::vector<robot::GivenObstacle> obstacles_from(nb::handle obstacles) {
   std::vector<robot::GivenObstacle> given(rows.shape(0));
   if (!given.empty()) __builtin_memcpy(given.data(), rows.data(), given.size() * sizeof(robot::GivenObstacle));
   return given;
+}
+
+/// Return boxes of full extents, centres and quaternions (or None) as obstacles, (n, 17); None where an array is not
+/// one of finite float64, C-contiguous, of its shape, or something is no box.
+nb::object box_rows(nb::handle size, nb::handle xyz, nb::handle xyzw) {
+  const Doubles sizes(size), centres(xyz), turns(xyzw);
+  const bool are_turned = !xyzw.is_none();
+  if (!sizes.are_rows_of(3) || !centres.are_rows_of(3) || (are_turned && !turns.are_rows_of(4))) return nb::none();
+  if (sizes.axes() != 2 || centres.axes() != 2 || (are_turned && turns.axes() != 2)) return nb::none();
+  const std::size_t count = sizes.shape(0);
+  if (centres.shape(0) != count || (are_turned && turns.shape(0) != count)) return nb::none();
+  constexpr std::size_t COLUMNS = sizeof(robot::GivenObstacle) / sizeof(double);
+  nb::object rows = empty_array(nb::make_tuple(count, COLUMNS));
+  Py_buffer view;
+  if (PyObject_GetBuffer(rows.ptr(), &view, PyBUF_WRITABLE) != 0) throw nb::python_error();
+  const std::span<robot::GivenObstacle> boxes(static_cast<robot::GivenObstacle*>(view.buf), count);
+  const Matrix<const double> quaternions{are_turned ? turns.data() : nullptr, are_turned ? count : 0, 4};
+  const bool are_boxes =
+      robot::write_boxes({sizes.data(), count, 3}, {centres.data(), count, 3}, quaternions, FARTHEST, boxes);
+  PyBuffer_Release(&view);
+  return are_boxes ? rows : nb::none();
 }
 
 /// A scene is given its obstacles, (n, 17), its surfaces, each with its number and the capsules tested against it, and
@@ -93,6 +116,7 @@ void add_scene(nb::module_& part) {
       .def("__init__", &make_surface, nb::arg("corners"), nb::arg("radius"), nb::arg("solid"), nb::arg("turned"),
            nb::arg("reach"))
       .def_static("around", &surface_around);
+  part.def("box_rows", &box_rows, nb::arg("size"), nb::arg("xyz"), nb::arg("xyzw").none());
   nb::class_<Scene>(part, "Scene")
       .def("__init__", &make_scene, nb::arg("robot"), nb::arg("obstacles"), nb::arg("tested"), nb::arg("surfaces"),
            nb::arg("around").none(), nb::arg("clearance"))
