@@ -43,6 +43,13 @@ def heap():
     return Scene([*boxes, floor, Obstacle.of("wall", "cylinder", (3.0, 0.2), (0.0, 3.7, 0.5))])
 
 
+def two_heaps():
+    """Small balls in two heaps, and nothing between them: cells are so small that links are wider than many."""
+    rng = np.random.default_rng(9)
+    aside = rng.uniform(-0.05, 0.05, (400, 3)) + np.repeat([(0.5, -0.15, 0.4), (0.5, 0.15, 0.4)], 200, axis=0)
+    return Scene([Obstacle.of(f"ball {i}", "sphere", (0.004,), tuple(place)) for i, place in enumerate(aside)])
+
+
 def loosely_allowed(robot, scene, seed=1):
     """The scene, with a third of all contacts of links and obstacles allowed."""
     rng = np.random.default_rng(seed)
@@ -60,14 +67,16 @@ def parts_of(world):
         yield replace(world, scene=replace(scene, obstacles=few, allowed=allowed))
 
 
-@pytest.fixture(scope="module", params=["small ones", "a third allowed", "a heap", "true shapes", "a clearance"])
+@pytest.fixture(
+    scope="module", params=["small ones", "a third allowed", "a heap", "two heaps", "true shapes", "a clearance"]
+)
 def world(request, tmp_path_factory):
     robot, name = ur5(), request.param
     if name == "true shapes":
         robot = load_robot(write_fork_arm(tmp_path_factory.mktemp("fork")))
         return ArmWorld(robot, small_ones(4, low=(0.3, 0.2)))
-    if name == "a heap":
-        return ArmWorld(robot, heap())
+    if name in ("a heap", "two heaps"):
+        return ArmWorld(robot, heap() if name == "a heap" else two_heaps())
     scene = small_ones(3)
     if name == "a clearance":
         return ArmWorld(robot, small_ones(6, count=400), clearance=0.01)
@@ -148,3 +157,15 @@ def test_a_link_that_may_touch_the_first_sixteen_obstacles_does_not_pass_through
     alone = ArmWorld(robot, Scene((wall[0],))).valid(q)
     assert 0 < alone.sum() < len(q)
     np.testing.assert_array_equal(ArmWorld(robot, Scene((*reach, *wall), allowed=allowed)).valid(q), alone)
+
+
+def test_what_is_removed_of_many_is_met_no_more():
+    scene = small_ones(3, size=(0.02, 0.06))
+    world = ArmWorld(ur5(), scene)
+    q = world.space.from_cube(np.random.default_rng(6).random((3_000, 6)))
+    left = [each for each in scene.obstacles if int(each.name.split()[1]) % 4]
+    anew = ArmWorld(ur5(), Scene(left))
+    expected = anew.valid(q)
+    assert (expected & ~world.valid(q)).sum() > 20
+    changed = world.without(*(each.name for each in scene.obstacles if not int(each.name.split()[1]) % 4))
+    np.testing.assert_array_equal(changed.valid(q), expected)

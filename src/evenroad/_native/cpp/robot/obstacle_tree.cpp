@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "robot/grid_contact.hpp"
+#include "robot/obstacle_grid.hpp"
 
 namespace evenroad::robot {
 
@@ -19,6 +19,9 @@ constexpr double CELLS_EACH = 64, MOST_CELLS = 400'000;
 
 /// By how much tests that may be left out are wider than those that decide, more than all roundings [m].
 constexpr float WIDER = 4e-6F;
+
+/// By how much what the grid says is met has to be deeper, more than all roundings [m].
+constexpr float DEEPER = 2e-5F;
 
 /// Lanes in which a capsule is no farther from where it is in one are looked at together, in parts of its radius.
 constexpr float MOST_ASIDE = 0.5F;
@@ -82,15 +85,20 @@ struct Check {
   Mask blocked;
   Done tested, decided;
 
-  /// Return the lanes in which a capsule may meet something.
-  Mask near_lanes(const Part& of) const {
-    const DistanceGrid& grid = layer.obstacles->tree->grid;
+  /// Return the lanes in which a capsule may meet something, and of all lanes those in which it surely does.
+  NearAndSure near_lanes(const Part& of) const {
+    const ObstacleGrid& grid = layer.obstacles->tree->grid;
     const auto& [centre, along, around] = of.placed;
     const float near = of.radius + WIDER;
-    if (of.samples.size() > 2 && (ask(grid, centre, of.half + near, 0).near & ~blocked) == 0) return 0;
-    Mask lanes = 0;
-    for (const float share : of.samples) lanes |= ask(grid, plus(centre, along, spread(share)), near, 0).near;
-    return lanes & ~blocked;
+    // Where a true shape decides, or what is met is to be named, a grid of distances does not tell.
+    const float touching = of.shaped || found != nullptr || !layer.all[of.capsule] ? 0 : of.radius - DEEPER;
+    if (of.samples.size() > 2 && (ask(grid, centre, of.half + near, 0).near & ~blocked) == 0) return {};
+    NearAndSure told;
+    for (const float share : of.samples) {
+      const auto [may, does] = ask(grid, plus(centre, along, spread(share)), near, touching);
+      told.near |= may, told.sure |= does;
+    }
+    return told;
   }
 
   /// Return in which lanes a body's true shape touches an obstacle, of those in which a capsule of it does.
@@ -183,7 +191,7 @@ void sort_neighbours(std::vector<std::pair<Exact, int>>& obstacles) {
   obstacles = std::move(sorted);
 }
 
-std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacles, double reach) {
+std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacles, double reach, double widest) {
   double low[3], high[3];
   std::fill_n(low, 3, std::numeric_limits<double>::infinity()), std::fill_n(high, 3, -low[0]);
   std::vector<std::array<double, 6>> boxes;
@@ -200,10 +208,8 @@ std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacle
     }
   }
   const GridPlace place = place_grid(low, high, std::min(CELLS_EACH * static_cast<double>(boxes.size()), MOST_CELLS));
-  std::vector<std::uint8_t> marked(place.count());
-  mark_boxes(place, boxes, marked);
   auto tree = std::make_unique<ObstacleTree>();
-  tree->grid = make_grid(place, 0, distances_to(place, marked));
+  tree->grid = make_obstacle_grid(obstacles, place, boxes, static_cast<float>(widest + place.cell));
   std::vector<Around> leaves;
   leaves.reserve(obstacles.blocks.size());
   for (const Block& block : obstacles.blocks) leaves.push_back(around_block(block));
@@ -227,8 +233,9 @@ Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Layer& la
       const Capsule& capsule = robot.capsules[i];
       const auto samples = std::span(robot.samples).subspan(capsule.samples.first, capsule.samples.size());
       const Part of{b, i, places.capsules[i], samples, capsule.half_length, lengths.capsules[i], shaped};
-      const Mask lanes = check.near_lanes(of);
-      if (lanes != 0 && check.meet(of, lanes)) return check.blocked;
+      const auto [near, sure] = check.near_lanes(of);
+      check.blocked |= with_others(sure, wanted);
+      if (is_enough(check.blocked, wanted) || check.meet(of, near)) return check.blocked;
     }
   }
   return check.blocked;

@@ -15,8 +15,8 @@ constexpr int MANY_OBSTACLES = 320;
 void sort_neighbours(std::vector<std::pair<Exact, int>>& obstacles);
 
 /// Return the grid and the tree over obstacles in that order; nothing of the robot is farther from the origin than
-/// `reach` [m].
-std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacles, double reach);
+/// `reach`, and no capsule is wider than `widest` [m].
+std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacles, double reach, double widest);
 
 /// Return the same as `meeting_obstacles`.
 Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Layer& layer, Places& places, Mask blocked,

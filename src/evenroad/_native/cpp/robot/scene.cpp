@@ -56,22 +56,26 @@ Reached in_reach(const Robot& robot, const GivenObstacles& given, double clearan
   return reached;
 }
 
-/// Return the layer of obstacles, with a tree where they are many; they are brought into its order.
-Layer layer_of(Reached reached, const GivenObstacles& given, double reach, Scene& scene) {
+/// Return the layer of obstacles, with a tree where they are many, for capsules that are `widest` at most; they are
+/// brought into its order.
+Layer layer_of(Reached reached, const GivenObstacles& given, double reach, double widest, Scene& scene) {
   const bool many = static_cast<int>(reached.size()) >= MANY_OBSTACLES;
   if (many) sort_neighbours(reached);
   auto all = std::make_shared<Obstacles>();
   for (const auto& [obstacle, k] : reached) scene.added = std::max(scene.added, add(*all, obstacle, given.number(k)));
-  if (many) all->tree = make_obstacle_tree(*all, reach);
+  if (many) all->tree = make_obstacle_tree(*all, reach, widest);
   OwnMatrix<std::uint16_t> tested(given.tested.rows, all->blocks.size());
+  std::vector<bool> tests_all(tested.rows, true);
   for (std::size_t i = 0; i < tested.rows; i++) {
     for (std::size_t row = 0; row < reached.size(); row++) {
       if (given.tested(i, reached[row].second)) {
         tested(i, row / LANES) |= static_cast<std::uint16_t>(1U << (row % LANES));
+      } else {
+        tests_all[i] = false;
       }
     }
   }
-  return {std::move(all), std::move(tested)};
+  return {std::move(all), std::move(tested), std::move(tests_all)};
 }
 
 /// Find a capsule that does not move and an obstacle that it touches.
@@ -115,7 +119,9 @@ Scene make_scene(const Robot& robot, std::span<const GivenObstacle> obstacles, M
   const GivenObstacles given{obstacles, numbers, tested};
   Scene scene;
   const Reached reached = in_reach(robot, given, clearance, scene);
-  scene.obstacles = layer_of(reached, given, robot.reach + clearance, scene);
+  const std::vector<float>& radii = robot.lengths.capsules;
+  const double widest = radii.empty() ? 0 : *std::ranges::max_element(radii) + clearance;
+  scene.obstacles = layer_of(reached, given, robot.reach + clearance, widest, scene);
   find_fixed_contact(robot, reached, given, scene);
   scene.surfaces_tested.assign(robot.capsules.size(), 0);
   return scene;
@@ -130,6 +136,7 @@ std::optional<Scene> change_scene(const Robot& robot, const Scene& before, std::
     if (const int row = row_of(before.obstacles, number); row >= 0) {
       for (std::size_t i = 0; i < robot.capsules.size(); i++) {
         scene.obstacles.tested(i, row / LANES) &= static_cast<std::uint16_t>(~(1U << (row % LANES)));
+        scene.obstacles.all[i] = false;
       }
     }
     if (const int row = row_of(before.changed, number); row >= 0) left[row] = false;
@@ -151,7 +158,7 @@ std::optional<Scene> change_scene(const Robot& robot, const Scene& before, std::
     for (const int old : kept) set((before.changed.tested(i, old / LANES) >> (old % LANES) & 1) != 0);
     for (const auto& [obstacle, k] : reached) set(come.tested(i, k));
   }
-  scene.changed = {std::move(all), std::move(tested)};
+  scene.changed = {std::move(all), std::move(tested), {}};
   if (scene.fixed_contact.first < 0) find_fixed_contact(robot, reached, come, scene);
   return scene;
 }

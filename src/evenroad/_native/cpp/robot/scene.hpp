@@ -33,9 +33,18 @@ struct Block {
   Vec3x16 centre, half;
 };
 
+/// A byte for each cell: how far the middle of it is from the nearest obstacle, rounded, counted in `step`.
+struct ObstacleGrid {
+  int cells[3] = {0, 0, 0};
+  Vec3 low, size;  // lower corner, and extents
+  float one_by_cell = 0, cell = 0, step = 0;
+  float exact = 0;  // of distances that are not below this only lower bounds are known
+  std::vector<std::uint8_t> distances;
+};
+
 /// What finds the few of many obstacles that are near: a grid of distances, and a tree whose leaves are the blocks.
 struct ObstacleTree {
-  DistanceGrid grid;
+  ObstacleGrid grid;
   BoxTree boxes;
 };
 
@@ -68,6 +77,7 @@ struct SurfaceObstacle {
 struct Layer {
   std::shared_ptr<const Obstacles> obstacles;
   OwnMatrix<std::uint16_t> tested{0, 0};
+  std::vector<bool> all;  // by capsule: whether it is tested against every one
 };
 
 struct Scene {

@@ -1,0 +1,38 @@
+// A grid over obstacles: of the middle of each cell how far it is from the nearest one.
+//
+// Of a place both bounds are known: it is nearer, or farther, than the middle of its cell by the way between them at
+// most.  So it tells what is far, and near enough what is met.
+#pragma once
+
+#include "robot/grid_contact.hpp"
+#include "robot/scene.hpp"
+
+namespace evenroad::robot {
+
+/// Return the grid over obstacles within a box that are known to `exact` [m]; nothing of the robot leaves the box.
+ObstacleGrid make_obstacle_grid(const Obstacles& obstacles, const GridPlace& place,
+                                std::span<const std::array<double, 6>> boxes, float exact);
+
+/// Return the masks of lanes in which an obstacle may be within `near` of a place, and is within `touching` for sure.
+EVENROAD_INLINE NearAndSure ask(const ObstacleGrid& grid, Vec3x16 place, float near, float touching) {
+  const Floats16 zero{};
+  const Vec3x16 from = place - spread(grid.low);
+  const Vec3x16 inside = {clamp(from.x, zero, spread(grid.size.x)), clamp(from.y, zero, spread(grid.size.y)),
+                          clamp(from.z, zero, spread(grid.size.z))};
+  const Vec3x16 beyond = from - inside, cells = inside * spread(grid.one_by_cell);
+  const Ints16 x = __builtin_convertvector(cells.x, Ints16), y = __builtin_convertvector(cells.y, Ints16),
+               z = __builtin_convertvector(cells.z, Ints16);
+  const Ints16 number = (x * grid.cells[1] + y) * grid.cells[2] + z;
+  Ints16 bytes{};
+  for (int lane = 0; lane < LANES; lane++) bytes[lane] = grid.distances[number[lane]];
+  const Vec3x16 whole = {__builtin_convertvector(x, Floats16), __builtin_convertvector(y, Floats16),
+                         __builtin_convertvector(z, Floats16)};
+  const Vec3x16 aside = cells - whole - spread(Vec3{0.5F, 0.5F, 0.5F});
+  const Floats16 away = __builtin_convertvector(bytes, Floats16) * grid.step;
+  const Floats16 off = fma(sqrt(dot(aside, aside)), spread(grid.cell), spread(0.5F * grid.step));
+  const Floats16 outside = dot(beyond, beyond), least = max(away - off, zero);
+  const Mask sure = below_zero(max(max(away + off - touching, away - grid.exact), outside - 1e-30F));
+  return {below_zero(fma(least, least, outside) - near * near), sure};
+}
+
+}  // namespace evenroad::robot
