@@ -15,6 +15,7 @@ from evenroad.robot import ArmWorld, CartesianLine, Scene, link_poses, load_robo
 from evenroad.robot.inverse_kinematics import reach
 from evenroad.robot.pose_goal import PoseGoal
 from tests.refused import refused
+from tests.robot import oracle
 from tests.robot.kernel_arms import random_scene
 
 ARM7 = load_robot("arm7")
@@ -140,3 +141,26 @@ def test_a_tolerance_that_is_none_is_refused():
     refused(InvalidValue, "tolerance of upright must be a finite number > 0, got 0", KeepUpright, 0.0)
     refused(InvalidValue, "at most", KeepUpright, 4.0)
     refused(InvalidValue, "axis of upright must be", KeepUpright, 0.1, axis="up")
+
+
+def test_a_motion_walks_along_a_line_where_projected_straight_ones_jump():
+    world, ends = ArmWorld("ur5"), []
+    for y in (-0.5, 0.5):
+        goal = PoseGoal(Pose.from_rpy((0.3036, y, 0.475), (math.pi / 2, 0.0, math.pi / 2)))
+        ends.append(reach(world, goal, np.zeros(6)).configurations[:12])
+    keeps = er.constraints.KeepOnLine("y"), er.constraints.KeepOrientation(1e-3)
+    jumped = 0
+    for first in ends[0]:
+        line = kept_world(world, keeps, first, "tool0")
+        for last in ends[1]:
+            way = line.along(first, last)
+            if way is None:
+                continue
+            assert (way == line.along(last, first)[::-1]).all()
+            assert (way[[0, -1]] == [first, last]).all()
+            assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() < 0.04
+            at = oracle.link_poses(world.robot, np.linspace(way[:-1], way[1:], 10).reshape(-1, 6))["tool0"][1]
+            assert np.abs(at[:, [0, 2]] - [0.3036, 0.475]).max() <= 1e-4
+            states, kept = line.projected(np.linspace(first, last, 300), steps=8)
+            jumped += not kept.all() or np.linalg.norm(np.diff(states, axis=0), axis=1).max() > 0.1
+    assert jumped > 0

@@ -69,6 +69,17 @@ class Keeps:
     def project(
         self, q: Floats, aim: float, enough: float, steps: int, longest: float
     ) -> tuple[Floats, npt.NDArray[np.uint8]]: ...
+    def walk(
+        self, begins: Floats, ways: Floats, scale: Floats, how: tuple[float, float, float, float, int, float]
+    ) -> tuple[Floats, Ints]: ...
+    def refine(
+        self,
+        paths: Floats,
+        counts: Ints,
+        pieces: int,
+        scale: Floats,
+        how: tuple[float, float, float, float, int, float],
+    ) -> tuple[Floats, Ints]: ...
 
 class Chain:
     def __init__(self, coordinates: Ints, slides: Bools, rows: Floats, dim: int) -> None: ...

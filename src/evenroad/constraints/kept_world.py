@@ -150,7 +150,7 @@ class KeptWorld:
         They are measured at some states.  Between two of these they exceed both by an eighth of the largest second
         derivative times their distance squared at most (de Boor 1978, II).
         """
-        moved = np.diff(path, axis=0)
+        moved = self.space.flat.difference(path[:-1], path[1:])
         states = [path[:-1] + share * moved for share in np.arange(_PARTS) / _PARTS]
         measured = self.shares(np.concatenate([*states, path[-1:]]))
         most = np.maximum(measured[: len(moved)], np.vstack([measured[1 : len(moved)], measured[-1:]]))
@@ -178,58 +178,52 @@ class KeptWorld:
         """Return the states of the motion between two configurations, (n, dim), with both; None where it
         is not free.
         """
-        free, _, states = self._followed(a[np.newaxis], b[np.newaxis])
-        return states if free[0] else None
+        row, states = self.first_along(a[np.newaxis], b[np.newaxis])
+        return states if row == 0 else None
+
+    def first_along(self, a: Floats, b: Floats) -> tuple[int, Floats]:
+        """Return the number of the first free one of some motions, (m, dim) each, -1 for none, and its states."""
+        good, motion, states = self._followed(a, b)
+        row = int(good.argmax()) if good.any() else -1
+        return row, states[motion == row]
 
     def _followed(self, a: Floats, b: Floats) -> tuple[Bools, Ints, Floats]:
         """Return which motions are free, and the states of those, one after the other, and of which motion each is.
 
-        Some states are projected first, and then others between these, which are near by then.
+        Each walks to its end along the constraints; then others between these states are projected, which are near.
+        A motion and the one back are the same.
         """
-        world, finer = self.world, max(1, int(_STEP / self.step))
-        parts = np.maximum(1, np.ceil(world.space.distance(a, b) / (finer * self.step))).astype(np.int64)
-        good, motion, states = self._states(a, b, parts, finer * self.step)
-        steps = _steps(motion, good)
-        if finer > 1 and len(steps):
-            numbers = np.full(len(steps), finer)
-            kept, of_step, states = self._states(states[steps], states[steps + 1], numbers, self.step)
-            good[motion[steps[~kept]]] = False
-            of_motion = motion[steps]
-            begins = np.append(True, of_motion[1:] != of_motion[:-1])
-            # Each piece but the first of a motion begins with the last state of the one before.
-            rows = (np.arange(len(states)) % (finer + 1) > 0) | begins[of_step]
-            motion, states = of_motion[of_step][rows], states[rows]
-            steps = _steps(motion, good)
-        if len(steps):
-            # States first, which costs less than proofs.
-            good[motion[steps[~world.motion_valid(states[steps], states[steps + 1])]]] = False
-            steps = steps[good[motion[steps]]]
-        if len(steps):
-            off = np.asarray((self.bounds(states) > 1.0).any(axis=1))
-            good[motion[steps[off[steps]]]] = False
-            steps = steps[good[motion[steps]]]
-        if len(steps):
-            good[motion[steps[~world.motion_certified(states[steps], states[steps + 1], 1e-6)]]] = False
-        rows = good[motion]
-        return good, motion[rows], states[rows]
+        world, flat, finer = self.world, self.space.flat, max(1, int(_STEP / self.step))
+        back, given = _is_backwards(a, b), (a, b)
+        a, b = np.where(back[:, np.newaxis], given[::-1], given)
+        states, counts = self.native.walk(a, flat.difference(a, b), flat.scale, self._walking(finer * self.step))
+        states, counts = _without(states, counts, ~world.valid(self.space.wrapped(states)))
+        if finer > 1:
+            states, counts = self.native.refine(states, counts, finer, flat.scale, self._walking(self.step))
+        free = np.flatnonzero(counts)
+        motion, states = np.repeat(np.arange(len(a)), counts), self.space.wrapped(states).copy()
+        # Sums round: the ends are as they were given.
+        states[np.cumsum(counts[free]) - 1] = b[free]
+        good = counts > 0
+        steps = np.flatnonzero(motion[1:] == motion[:-1])
+        for is_free in (
+            lambda rows: world.motion_valid(states[rows], states[rows + 1]),
+            lambda rows: (self.bounds(states)[rows] <= 1.0).all(axis=1),
+            lambda rows: world.motion_certified(states[rows], states[rows + 1], 1e-6),
+        ):
+            if len(steps):
+                good[motion[steps[~is_free(steps)]]] = False
+                steps = steps[good[motion[steps]]]
+        rows = np.flatnonzero(good[motion])
+        motion, states = motion[rows], states[rows]
+        # Of what was walked backwards the last state is the first.
+        number, ends = np.arange(len(motion)), np.searchsorted(motion, motion, "right")
+        begins = np.searchsorted(motion, motion, "left")
+        return good, motion, states[np.where(back[motion], begins + ends - 1 - number, number)]
 
-    def _states(self, a: Floats, b: Floats, parts: Ints, step: float) -> tuple[Bools, Ints, Floats]:
-        """Return which motions have projected states, free and near each other, and their motions and states."""
-        space = self.world.space
-        motion = np.repeat(np.arange(len(a)), parts + 1)
-        number = np.arange(len(motion)) - np.repeat(np.cumsum(parts + 1) - parts - 1, parts + 1)
-        states = space.interpolate(a[motion], b[motion], number / parts[motion])
-        inner = (number > 0) & (number < parts[motion])
-        states[inner], kept = self.projected(states[inner], steps=_FEW)
-        good = np.ones(len(a), dtype=np.bool_)
-        good[motion[inner][~kept]] = False
-        steps = _steps(motion, good)
-        far = space.distance(states[steps], states[steps + 1]) > _JUMP * step
-        good[motion[steps[far]]] = False
-        some = np.flatnonzero(good[motion] & inner)
-        if len(some):
-            good[motion[some[~self.world.valid(states[some])]]] = False
-        return good, motion, states
+    def _walking(self, step: float) -> tuple[float, float, float, float, int, float]:
+        """Return how compiled code walks by such steps."""
+        return step, _JUMP, _AIM, _ENOUGH, _FEW, _LONGEST
 
     def path_through(self, waypoints: Floats) -> Floats:
         """Return the path through waypoints between which motions are free, (p, dim)."""
@@ -291,9 +285,19 @@ class KeptWorld:
         return keep.words(float(keep.off(np.array([shares[k] * keep.limit]))[0]))
 
 
-def _steps(motion: Ints, good: Bools) -> Ints:
-    """Return the rows of states that the next one follows in the same, good motion."""
-    return np.flatnonzero((motion[1:] == motion[:-1]) & good[motion[1:]])
+def _is_backwards(a: Floats, b: Floats) -> Bools:
+    """Return which rows of `a` come after those of `b`, (m, dim) each, in the order of a dictionary."""
+    moved = b - a
+    number = (moved != 0.0).argmax(axis=1)
+    return np.asarray(moved[np.arange(len(a)), number] < 0.0)
+
+
+def _without(states: Floats, counts: Ints, off: Bools) -> tuple[Floats, Ints]:
+    """Return the states of motions, and how many each has, without motions that have a state which is off."""
+    motion = np.repeat(np.arange(len(counts)), counts)
+    good = np.ones(len(counts), dtype=np.bool_)
+    good[motion[off]] = False
+    return states[good[motion]], np.where(good, counts, 0)
 
 
 def kept_line(world: KeptWorld, line: Followed) -> Followed:

@@ -14,6 +14,7 @@ import numpy as np
 from evenroad._arrays import Floats, Ints
 from evenroad.constraints.kept_world import KeptWorld
 from evenroad.roadmap.connector import Connection
+from evenroad.robot.tree_sequences import cube_points, shifted_cube_points
 from evenroad.world import World
 
 BATCH = 16
@@ -24,6 +25,8 @@ FIRST, MOST_SAMPLES = 1 << 10, 1 << 18
 """Numbers of samples that are drawn first and at most; they double when used up, after the last one the trees stop."""
 MOST_STEPS = 64
 """Largest number of steps of a tree towards a new node of the other one."""
+MOST_SHIFTS = 128
+"""Number of shifts of an even sequence in one variant: those of `MOST_SAMPLES`."""
 NEAR = 8
 """Number of goals, the nearest ones, that are walked to under constraints before trees grow."""
 
@@ -100,11 +103,15 @@ def grow_trees(
 
 def _samples(world: World, n: int, variant: int) -> Floats:
     """Return n configurations, (n, dim); fewer of them are the first of more."""
+    if isinstance(world, KeptWorld):
+        # Nodes are projected, not what they grow towards.  Such plans are short: a sampler's import takes longer.
+        space = world.world.space
+        blocks = range(MOST_SHIFTS * variant, MOST_SHIFTS * variant - (-n // len(cube_points(space.cube_dim))))
+        shifted = [shifted_cube_points(space.cube_dim, block) for block in blocks]
+        return space.from_cube(np.concatenate(shifted)[:n])
     from evenroad.points.samplers import make_sampler
 
-    # Under constraints nodes are projected, not what they grow towards.
-    space = world.world.space if isinstance(world, KeptWorld) else world.space
-    return space.from_cube(make_sampler("sobol").draw(n, space.cube_dim, rng=variant).points)
+    return world.space.from_cube(make_sampler("sobol").draw(n, world.space.cube_dim, rng=variant).points)
 
 
 def _step(world: World, samples: Floats) -> float:

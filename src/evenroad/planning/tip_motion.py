@@ -82,8 +82,8 @@ class TipMotion:
             return refusal
 
         def plan_kept(_: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
-            found = _straight(kept, start, goals)
-            return _through(kept, plan_once(kept, start, goals, False) if found is None else found, smooth)
+            found = _walked(kept, start, goals)
+            return _through(kept, plan_once(kept, start, goals, False), smooth) if found is None else found
 
         return _between_lines(request, self.line, plan_kept, kept, smooth)
 
@@ -100,8 +100,8 @@ def _off(request: Request, world: KeptWorld) -> PlanResult | None:
     return None
 
 
-def _straight(world: KeptWorld, start: Floats, goals: Floats) -> PlanResult | None:
-    """Return the plan along one projected motion to one of the nearest goals; None where there is none."""
+def _walked(world: KeptWorld, start: Floats, goals: Floats) -> PlanResult | None:
+    """Return the plan along one motion to one of the nearest goals; None where there is none."""
     if not world.valid(start[np.newaxis])[0]:
         return None
     away = world.space.distance(np.broadcast_to(start, goals.shape), goals)
@@ -109,12 +109,13 @@ def _straight(world: KeptWorld, start: Floats, goals: Floats) -> PlanResult | No
     rows = rows[np.argsort(away[rows], kind="stable")]
     for begin, end in pairwise(_TRIED):
         some = rows[begin:end]
-        free = np.flatnonzero(world.motion_valid(np.repeat(start[np.newaxis], len(some), axis=0), goals[some]))
-        if len(free):
-            row = int(some[free[0]])
-            path, cost = np.stack([start, goals[row]]), float(away[row])
-            found = dict(goal_index=row, path=path, milestone_path=path, proof=world.proof, planner="trees")
-            return make_result(world, start, goals, Status.SOLVED, "", cost=cost, milestone_cost=cost, **found)
+        row, path = world.first_along(np.repeat(start[np.newaxis], len(some), axis=0), goals[some])
+        if row >= 0:
+            # One motion is as short as can be.
+            goal, cost = int(some[row]), path_length(path, world.space)
+            found = dict(goal_index=goal, path=path, milestone_path=path, proof=world.proof, planner="trees")
+            result = make_result(world, start, goals, Status.SOLVED, "", cost=cost, milestone_cost=cost, **found)
+            return _with_path(world, result, path, path, world.deviation(world.largest(path)))
     return None
 
 
@@ -123,8 +124,7 @@ def _through(world: KeptWorld, result: PlanResult, shorten: Smooth) -> PlanResul
     if result.path is None:
         return result
     raw = world.path_through(result.path)
-    # One motion is as short as can be.
-    path = world.shortened(raw) if shorten and len(result.path) > 2 else raw
+    path = world.shortened(raw) if shorten else raw
     return _with_path(world, result, path, raw, world.deviation(world.largest(path)))
 
 

@@ -2,8 +2,10 @@
 #include "robot/keeps.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "bind/arrays.hpp"
+#include "robot/keep_walk.hpp"
 
 namespace evenroad::bind {
 
@@ -14,7 +16,9 @@ namespace {
 using robot::KeepKind;
 using robot::Keeps;
 
-constexpr int MOST_STEPS = 1000;
+constexpr int MOST_STEPS = 1000, MOST_PIECES = 1000;
+/// A walk may be so long in each coordinate [rad or m].
+constexpr double FARTHEST = 1e4;
 constexpr std::size_t POSE = 12, LINEAR = POSE + 1, CIRCLE = 13 + POSE;
 
 /// Return how long a residual is that is made of so many numbers; refuse numbers that make none.
@@ -110,6 +114,85 @@ nb::tuple project(const Keeps& keeps, nb::handle q, double aim, double enough, i
   return nb::make_tuple(as_numpy(std::move(moved), {rows, keeps.dim()}), as_numpy(std::move(good), {rows}));
 }
 
+/// The states of motions, one motion after the other, and how many each has: none where it fails.
+struct States {
+  std::vector<double> rows;
+  std::vector<std::int64_t> counts;
+
+  /// Let a function append the states of one more motion, and take them back where it returns false.
+  template <class Append>
+  void add(std::size_t dim, const Append& append) {
+    const std::size_t before = rows.size();
+    if (!append(rows)) rows.resize(before);
+    counts.push_back(static_cast<std::int64_t>((rows.size() - before) / dim));
+  }
+
+  nb::tuple handed_out(std::size_t dim) {
+    const std::size_t motions = counts.size();
+    return nb::make_tuple(as_rows(std::move(rows), dim), as_numpy(std::move(counts), {motions}));
+  }
+};
+
+/// A way of walking as Python gives it: step, jump, aim, enough, steps, longest; and the scale.
+robot::Walking walking(const Keeps& keeps, const Array<const double, 1>& scale, nb::tuple numbers) {
+  require(scale.shape(0) == keeps.dim(), "scale must have the coordinates of the limits");
+  require(numbers.size() == 6, "how must be a step, jump, aim, enough, steps and longest");
+  const robot::Walking how{scale.span(),
+                           value_of<double>(numbers[0], "step"),
+                           value_of<double>(numbers[1], "jump"),
+                           {value_of<double>(numbers[2], "aim"), value_of<double>(numbers[3], "enough"),
+                            value_of<int>(numbers[4], "steps"), value_of<double>(numbers[5], "longest")}};
+  require(how.step > 1e-9, "step must be > 1e-9");
+  require(how.projecting.steps >= 0 && how.projecting.steps <= MOST_STEPS, "steps must be from 0 to 1000");
+  return how;
+}
+
+/// Return the states of walks from configurations by ways, (n, dim) each, and how many each has.
+nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle ways, nb::handle scale, nb::tuple numbers) {
+  const Array<const double, 2> begins(from, "from"), moved(ways, "ways");
+  begins.of_shape({begins.shape(0), keeps.dim()});
+  moved.of_shape({begins.shape(0), keeps.dim()});
+  const Array<const double, 1> scales(scale, "scale");
+  const robot::Walking how = walking(keeps, scales, numbers);
+  for (const double each : moved.span()) require(std::abs(each) < FARTHEST, "ways must be shorter");
+  States states;
+  without_gil([&] {
+    for (std::size_t i = 0; i < begins.shape(0); i++) {
+      states.add(keeps.dim(), [&](std::vector<double>& rows) {
+        return robot::walk(keeps, begins.matrix()[i], moved.matrix()[i], how, rows);
+      });
+    }
+  });
+  return states.handed_out(keeps.dim());
+}
+
+/// Return the states of paths with so many pieces for one of each motion, and how many each path has.
+nb::tuple refine(const Keeps& keeps, nb::handle paths, nb::handle counts, int pieces, nb::handle scale,
+                 nb::tuple numbers) {
+  const Array<const double, 2> given(paths, "paths");
+  given.of_shape({given.shape(0), keeps.dim()});
+  const Array<const std::int64_t, 1> sizes(counts, "counts");
+  std::size_t total = 0;
+  for (const std::int64_t each : sizes.span()) {
+    require(each >= 0 && static_cast<std::size_t>(each) <= given.shape(0), "counts must be those of paths");
+    total += static_cast<std::size_t>(each);
+  }
+  require(total == given.shape(0), "counts must be those of paths");
+  require(pieces >= 1 && pieces <= MOST_PIECES, "pieces must be from 1 to 1000");
+  const Array<const double, 1> scales(scale, "scale");
+  const robot::Walking how = walking(keeps, scales, numbers);
+  States states;
+  without_gil([&] {
+    const double* first = given.data();
+    for (const std::int64_t each : sizes.span()) {
+      const Matrix<const double> path{first, static_cast<std::size_t>(each), keeps.dim()};
+      states.add(keeps.dim(), [&](std::vector<double>& rows) { return robot::refine(keeps, path, pieces, how, rows); });
+      first += path.rows * path.columns;
+    }
+  });
+  return states.handed_out(keeps.dim());
+}
+
 }  // namespace
 
 void add_keeps(nb::module_& robot) {
@@ -118,7 +201,9 @@ void add_keeps(nb::module_& robot) {
       .def("shares", &shares, "q"_a)
       .def("residuals", &residuals, "q"_a)
       .def("derivative", &derivative, "q"_a)
-      .def("project", &project, "q"_a, "aim"_a, "enough"_a, "steps"_a, "longest"_a);
+      .def("project", &project, "q"_a, "aim"_a, "enough"_a, "steps"_a, "longest"_a)
+      .def("walk", &walk, "begins"_a, "ways"_a, "scale"_a, "how"_a)
+      .def("refine", &refine, "paths"_a, "counts"_a, "pieces"_a, "scale"_a, "how"_a);
 }
 
 }  // namespace evenroad::bind

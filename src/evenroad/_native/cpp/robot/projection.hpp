@@ -1,0 +1,38 @@
+// Steps of one configuration onto the constraints of a path, and along them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "robot/keep_state.hpp"
+
+namespace evenroad::robot {
+
+double length_of(std::span<const double> residual);
+
+class Projection {
+ public:
+  Projection(const Keeps& keeps, const Projecting& how);
+
+  /// Move a configuration, (dim,), by at most so many steps until all residuals are short enough; return whether.
+  bool move(std::span<double> q, int steps);
+
+  /// Take off a short way, (dim,), from a configuration what leaves the constraints, as far as a first derivative says.
+  void bend(std::span<const double> q, std::span<double> way);
+
+ private:
+  /// Keep of all residuals what is to be taken off; return whether all are short enough.
+  bool measure();
+  void write_columns();
+  /// Write the step that takes the error off, by Cholesky's factor of J' J + damping.
+  void solve(double damping);
+
+  const Keeps& keeps_;
+  const Projecting& how_;
+  KeepState state_;
+  std::vector<double> error_;
+  OwnMatrix<double> columns_, square_;
+  std::vector<double> step_;
+};
+
+}  // namespace evenroad::robot
