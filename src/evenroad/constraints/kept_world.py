@@ -217,9 +217,9 @@ class KeptWorld:
         rows = np.flatnonzero(good[motion])
         motion, states = motion[rows], states[rows]
         # Of what was walked backwards the last state is the first.
-        number, ends = np.arange(len(motion)), np.searchsorted(motion, motion, "right")
+        number, until = np.arange(len(motion)), np.searchsorted(motion, motion, "right")
         begins = np.searchsorted(motion, motion, "left")
-        return good, motion, states[np.where(back[motion], begins + ends - 1 - number, number)]
+        return good, motion, states[np.where(back[motion], begins + until - 1 - number, number)]
 
     def _walking(self, step: float) -> tuple[float, float, float, float, int, float]:
         """Return how compiled code walks by such steps."""
