@@ -15,7 +15,7 @@ namespace {
 
 using robot::Chain;
 
-constexpr std::size_t POSE = 12, JOINT = POSE + 2, TASK = POSE + 3 + 3 + 4, MOST_COORDINATES = 65536;
+constexpr std::size_t JOINT = POSE + 2, TASK = POSE + 3 + 3 + 4, MOST_COORDINATES = 65536;
 
 robot::Pose pose_of(const double* numbers) {
   robot::Pose pose;

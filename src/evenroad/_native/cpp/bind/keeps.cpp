@@ -18,8 +18,8 @@ using robot::Keeps;
 
 constexpr int MOST_STEPS = 1000, MOST_PIECES = 1000;
 /// A walk may be so long in each coordinate [rad or m].
-constexpr double FARTHEST = 1e4;
-constexpr std::size_t POSE = 12, LINEAR = POSE + 1, CIRCLE = 13 + POSE;
+constexpr double LONGEST_WAY = 1e4;
+constexpr std::size_t LINEAR = POSE + 1, CIRCLE = 13 + POSE;
 
 /// Return how long a residual is that is made of so many numbers; refuse numbers that make none.
 std::size_t rows_of(KeepKind kind, std::size_t count, std::size_t dim) {
@@ -154,7 +154,7 @@ nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle ways, nb::handle 
   moved.of_shape({begins.shape(0), keeps.dim()});
   const Array<const double, 1> scales(scale, "scale");
   const robot::Walking how = walking(keeps, scales, numbers);
-  for (const double each : moved.span()) require(std::abs(each) < FARTHEST, "ways must be shorter");
+  for (const double each : moved.span()) require(std::abs(each) < LONGEST_WAY, "ways must be shorter");
   States states;
   without_gil([&] {
     for (std::size_t i = 0; i < begins.shape(0); i++) {

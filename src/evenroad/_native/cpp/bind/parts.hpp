@@ -3,9 +3,16 @@
 
 #include <nanobind/nanobind.h>
 
+#include <cstddef>
 #include <stdexcept>
 
 namespace evenroad::bind {
+
+/// No length is larger [m].
+constexpr double FARTHEST = 1e9;
+
+/// The numbers of a pose: its rotation, row by row, and its origin.
+constexpr std::size_t POSE = 12;
 
 /// An argument of a wrong type, shape or value; Python sees evenroad.errors.InvalidValue.
 struct InvalidValue : std::invalid_argument {

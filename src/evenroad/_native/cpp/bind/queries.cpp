@@ -49,11 +49,9 @@ struct Answer {
   nb::object rows(const std::vector<double>& points) const { return as_rows(std::vector<double>(points), dim); }
 };
 
-std::size_t dim(const Checker& checker) { return static_cast<std::size_t>(checker.robot().dim()); }
-
 Answer answer(std::shared_ptr<Checker> checker, nb::handle start, nb::handle goal, const Drivers& drivers,
               std::int64_t motions, double seconds, std::string_view smoothing) {
-  const std::size_t size = dim(*checker);
+  const std::size_t size = checker->dim();
   const Floats first(start, "start"), last(goal, "goal");
   const auto from = first.of_shape({size}).span(), to = last.of_shape({size}).span();
   require_budget(motions, "motions");
@@ -67,7 +65,7 @@ Answer answer(std::shared_ptr<Checker> checker, nb::handle start, nb::handle goa
 }
 
 void keep_apart(Answer& answer, std::shared_ptr<Checker> roomier, const Drivers& drivers) {
-  require(dim(*roomier) == answer.dim, "roomier must have the joints of the answer");
+  require(roomier->dim() == answer.dim, "roomier must have the joints of the answer");
   require(!answer.found.raw.empty(), "the answer must have a path");
   const planning::Drivers by = drivers.of(answer.dim);
   without_gil([&] { planning::keep_apart(answer.found, std::move(roomier), by); });
@@ -87,7 +85,7 @@ std::vector<std::shared_ptr<Checker>> checkers_from(nb::sequence given, std::siz
   std::vector<std::shared_ptr<Checker>> checkers;
   for (const nb::handle each : given) {
     checkers.push_back(each.is_none() && may_be_none ? nullptr : value_of<std::shared_ptr<Checker>>(each, "checkers"));
-    require(!checkers.back() || dim(*checkers.back()) == joints, "checkers must have the joints of the ends");
+    require(!checkers.back() || checkers.back()->dim() == joints, "checkers must have the joints of the ends");
   }
   return checkers;
 }

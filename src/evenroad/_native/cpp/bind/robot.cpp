@@ -14,9 +14,6 @@ namespace evenroad::bind {
 
 namespace {
 
-/// No length is larger [m].
-constexpr double FARTHEST = 1e9;
-
 /// No motion has more states.
 constexpr double MOST_STATES = 1e9;
 
@@ -152,8 +149,6 @@ void make_checker(Checker* self, std::shared_ptr<Robot> of, std::shared_ptr<Scen
   new (self) Checker(std::move(of), std::move(scene), resolution, clearance, touches_itself);
 }
 
-std::size_t dim(const Checker& checker) { return static_cast<std::size_t>(checker.robot().dim()); }
-
 /// Return a NumPy array of flags, and let `write` fill them while other threads of Python run.
 template <class Write>
 nb::object flags(std::size_t count, Write&& write) {
@@ -171,30 +166,30 @@ nb::object flags(std::size_t count, Write&& write) {
 /// or (dim,), C-contiguous.
 nb::object valid(const Checker& checker, nb::handle q) {
   const Doubles given(q);
-  if (!given.are_rows_of(dim(checker))) return nb::none();
+  if (!given.are_rows_of(checker.dim())) return nb::none();
   if (given.axes() == 1) {
     bool free = false;
-    robot::configurations_free(checker, {given.data(), 1, dim(checker)}, {&free, 1});
+    robot::configurations_free(checker, {given.data(), 1, checker.dim()}, {&free, 1});
     return nb::bool_(free);
   }
-  const Matrix<const double> rows{given.data(), given.shape(0), dim(checker)};
+  const Matrix<const double> rows{given.data(), given.shape(0), checker.dim()};
   return flags(rows.rows, [&](std::span<bool> free) { robot::configurations_free(checker, rows, free); });
 }
 
 /// Return the same of motions; where the tolerance is > 0 they must be proved free, too.
 nb::object motion_valid(const Checker& checker, nb::handle a, nb::handle b, double tolerance) {
   const Doubles starts(a), ends(b);
-  if (!starts.are_rows_of(dim(checker)) || !ends.are_rows_of(dim(checker)) || starts.axes() != ends.axes()) {
+  if (!starts.are_rows_of(checker.dim()) || !ends.are_rows_of(checker.dim()) || starts.axes() != ends.axes()) {
     return nb::none();
   }
   if (starts.axes() == 1) {
     bool free = false;
-    const Matrix<const double> from{starts.data(), 1, dim(checker)}, to{ends.data(), 1, dim(checker)};
+    const Matrix<const double> from{starts.data(), 1, checker.dim()}, to{ends.data(), 1, checker.dim()};
     robot::motions_free(checker, from, to, tolerance, {&free, 1});
     return nb::bool_(free);
   }
-  const Matrix<const double> from{starts.data(), starts.shape(0), dim(checker)};
-  const Matrix<const double> to{ends.data(), ends.shape(0), dim(checker)};
+  const Matrix<const double> from{starts.data(), starts.shape(0), checker.dim()};
+  const Matrix<const double> to{ends.data(), ends.shape(0), checker.dim()};
   if (from.rows != to.rows) return nb::none();
   return flags(from.rows, [&](std::span<bool> free) { robot::motions_free(checker, from, to, tolerance, free); });
 }
@@ -208,7 +203,7 @@ nb::tuple in_words(const robot::Contact& contact) {
 /// number of an obstacle or of a pair.
 nb::tuple distances(const Checker& checker, nb::handle q, double most, bool to_itself) {
   const FloatRows given(q, "q");
-  const Matrix<const double> rows = given.of_shape({given.shape(0), dim(checker)}).matrix();
+  const Matrix<const double> rows = given.of_shape({given.shape(0), checker.dim()}).matrix();
   require_within({&most, 1}, 0.0, FARTHEST, "most");
   std::vector<double> metres(rows.rows);
   std::vector<robot::Contact> nearest(rows.rows);
@@ -222,8 +217,8 @@ nb::tuple distances(const Checker& checker, nb::handle q, double most, bool to_i
 
 nb::tuple find_contact(const Checker& checker, nb::handle q) {
   const Floats given(q, "q");
-  given.of_shape({dim(checker)});
-  std::vector<double> inside(dim(checker));
+  given.of_shape({checker.dim()});
+  std::vector<double> inside(checker.dim());
   require(robot::enter(given.span(), checker.robot().bounds, inside), "q must be within the limits of the joints");
   return in_words(robot::find_contact(checker, given.span()));
 }

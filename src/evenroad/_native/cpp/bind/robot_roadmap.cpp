@@ -158,7 +158,7 @@ void require_unchanged(const Search& search) {
   require(search.size() == search.graph().size(), "milestones were inserted since the search began");
 }
 
-nb::object path_of(const Search& search) {
+nb::object path_found_by(const Search& search) {
   return as_rows(search.has_found() ? search.path() : std::vector<double>(), search.graph().joints.size());
 }
 
@@ -249,7 +249,7 @@ void add_robot_roadmap(nb::module_& module) {
              require(search.is_asking(), "nothing is to be evaluated");
              search.record(is_free ? Verdict::PROVED : Verdict::BLOCKED);
            })
-      .def_prop_ro("path", &path_of)
+      .def_prop_ro("path", &path_found_by)
       .def_prop_ro("goal", &goal_of)
       .def_prop_ro("counts",
                    [](const Search& search) { return nb::make_tuple(search.configurations, search.motions); });
@@ -271,7 +271,7 @@ void add_robot_roadmap(nb::module_& module) {
              constexpr const char* WORDS[] = {"found", "no path", "not free", "spent", "paused"};
              return WORDS[static_cast<int>(without_gil([&] { return search.go_on(most_motions, batches); }))];
            })
-      .def_prop_ro("path", [](const ProvedSearch& search) { return path_of(search.search()); })
+      .def_prop_ro("path", [](const ProvedSearch& search) { return path_found_by(search.search()); })
       .def_prop_ro("goal", [](const ProvedSearch& search) { return goal_of(search.search()); })
       .def_prop_ro("counts", [](const ProvedSearch& search) {
         const Search& own = search.search();

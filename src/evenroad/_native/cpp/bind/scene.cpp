@@ -15,9 +15,6 @@ namespace evenroad::bind {
 
 namespace {
 
-/// No length is larger [m].
-constexpr double FARTHEST = 1e9;
-
 /// No obstacle has a larger number.
 constexpr std::size_t MOST_OBSTACLES = 1 << 24;
 

@@ -7,6 +7,8 @@ namespace evenroad {
 
 constexpr int LANES = 16;
 constexpr std::uint32_t ALL_LANES = (1U << LANES) - 1;
+/// What a squared length is taken for at least where one divides by it.
+constexpr float LEAST_SQUARE = 1e-30F;
 
 EVENROAD_INLINE Floats16 spread(float number) { return all<Floats16>(number); }
 
@@ -47,7 +49,9 @@ struct Vec3x16 {
   Floats16 x, y, z;
 };
 
+EVENROAD_INLINE Vec3 lane_of(const Vec3x16& v, int lane) { return {v.x[lane], v.y[lane], v.z[lane]}; }
 EVENROAD_INLINE Vec3x16 spread(Vec3 v) { return {spread(v.x), spread(v.y), spread(v.z)}; }
+EVENROAD_INLINE Vec3x16 spread3(const float* v) { return spread(Vec3{v[0], v[1], v[2]}); }
 EVENROAD_INLINE Vec3x16 operator+(Vec3x16 a, Vec3x16 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 EVENROAD_INLINE Vec3x16 operator-(Vec3x16 a, Vec3x16 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 EVENROAD_INLINE Vec3x16 operator-(Vec3x16 a) { return {-a.x, -a.y, -a.z}; }

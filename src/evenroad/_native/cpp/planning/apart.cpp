@@ -8,7 +8,7 @@ namespace evenroad::planning {
 namespace {
 
 /// After so many batches no waypoint slides any more.
-constexpr std::int64_t SLIDING = 200;
+constexpr std::int64_t SLIDING_APART = 200;
 
 /// By this share a path may be longer that keeps away from obstacles.
 constexpr double LONGER = 0.02;
@@ -36,7 +36,7 @@ double length_of(const std::vector<double>& points, const Joints& joints) {
 }
 
 bool draw_apart(Path& path, double shortest, const Guides& guides, MotionChecks& checks) {
-  return are_ends_free(path, checks) && smooth(path, guides, SLIDING, false, checks) &&
+  return are_ends_free(path, checks) && smooth(path, guides, SLIDING_APART, false, checks) &&
          length_of(path.points(), checks.joints) <= (1.0 + LONGER) * shortest;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 /// Paths of trees may be longer than the best path by up to this share, by that times the square of a multiple of the
 /// golden ratio, without its integer.
-constexpr double LOOSEST = 3.0, GOLDEN = 0.6180339887498949;
+constexpr double LOOSEST = 3.0;
 
 /// The trees of a round may check so many motions at least, or so many times those of the first path, times 1, 1, 2, 1,
 /// 1, 2, 4 ...

@@ -24,6 +24,9 @@ struct Joints {
   double range(std::size_t k) const { return high[k] - low[k]; }
 };
 
+/// Multiples of the golden ratio, without their integers, fill 0 to 1 evenly.
+inline constexpr double GOLDEN = 0.6180339887498949;
+
 /// Return the rest of a division with the sign of the divisor, which is positive.
 inline double modulo(double value, double divisor) {
   const double rest = std::fmod(value, divisor);

@@ -21,6 +21,9 @@ struct ProofLimits {
   std::int64_t batches;
 };
 
+/// Of the proofs of the motions of a path.
+constexpr ProofLimits PATH_PROOF{1e-6, 1024};
+
 /// The lanes whose configurations touch something.
 struct Touching {
   std::uint32_t lanes = 0;

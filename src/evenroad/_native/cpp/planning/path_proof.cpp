@@ -7,8 +7,6 @@ namespace evenroad::planning {
 
 namespace {
 
-constexpr ProofLimits PROOF{1e-6, 1024};
-
 /// So many motions of a path are bent; so many places are tried for the waypoint in the middle, about half of them do.
 constexpr int MOST_BENT = 2;
 constexpr std::size_t PLACES = 8;
@@ -31,8 +29,8 @@ bool write_bend(ConstConfiguration a, ConstConfiguration b, double margin, Matri
     for (std::size_t k = 0; k < a.size(); k++) there[k] = a[k] + 0.5 * way[k] + checks.resolution * direction[k];
     const bool is_within = enter(there, checks.joints);
     bring_inside(there, checks.joints);
-    if (is_within && is_free_with_margin(a, there, b, margin, checks) && checks.is_proved(a, there, PROOF) &&
-        checks.is_proved(there, b, PROOF)) {
+    if (is_within && is_free_with_margin(a, there, b, margin, checks) && checks.is_proved(a, there, PATH_PROOF) &&
+        checks.is_proved(there, b, PATH_PROOF)) {
       return true;
     }
   }
@@ -43,7 +41,7 @@ bool write_bend(ConstConfiguration a, ConstConfiguration b, double margin, Matri
 
 bool is_proved(const Path& path, std::size_t first, std::size_t last, MotionChecks& checks) {
   for (std::size_t i = first; i + 1 < last; i++) {
-    if (!checks.is_proved(path[i], path[i + 1], PROOF)) return false;
+    if (!checks.is_proved(path[i], path[i + 1], PATH_PROOF)) return false;
   }
   return true;
 }
@@ -52,7 +50,7 @@ bool prove_or_bend(Path& path, double margin, Matrix<const double> directions, M
   std::vector<double> there(checks.joints.size());
   int bent = 0;
   for (std::size_t i = 0; i + 1 < path.size(); i++) {
-    if (checks.is_proved(path[i], path[i + 1], PROOF)) continue;
+    if (checks.is_proved(path[i], path[i + 1], PATH_PROOF)) continue;
     if (bent == MOST_BENT || !write_bend(path[i], path[i + 1], margin, directions, checks, there)) return false;
     path.insert(i + 1, there);
     // Both of its motions are proved.

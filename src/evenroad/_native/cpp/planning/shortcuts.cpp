@@ -8,7 +8,7 @@ namespace evenroad::planning {
 namespace {
 
 /// Of the proof of a motion that would make the path shorter [m].
-constexpr ProofLimits PROOF{1e-3, 64};
+constexpr ProofLimits SHORTCUT_PROOF{1e-3, 64};
 
 /// Motions that shorten the path by less than this share are not looked at; the second where corners are cut.
 constexpr double WORTH_WHILE = 3e-3, CORNER_WORTH_WHILE = 1e-3;
@@ -27,7 +27,8 @@ Shortcuts::Shortcuts(Path& path, MotionChecks& checks, Demand demand)
       direction_(checks.joints.size()) {}
 
 bool Shortcuts::is_shortcut(ConstConfiguration a, ConstConfiguration b) {
-  return demand_ == Demand::PROVED ? checks_.is_shortcut(a, b, PROOF) : checks_.is_free(a, b, Known::BOTH_ENDPOINTS);
+  return demand_ == Demand::PROVED ? checks_.is_shortcut(a, b, SHORTCUT_PROOF)
+                                   : checks_.is_free(a, b, Known::BOTH_ENDPOINTS);
 }
 
 void Shortcuts::pass_by() {

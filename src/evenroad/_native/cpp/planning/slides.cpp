@@ -18,8 +18,8 @@ constexpr double AHEAD = 0.2;
 /// The states beside a place are so far towards the neighbours, as a share of the way.
 constexpr double BESIDE = 0.4;
 
-/// The lanes of the first place, and all.
-constexpr std::uint32_t STATES_OF_ONE = 7, ALL_LANES = 0xFFFF;
+/// The lanes of the first place.
+constexpr std::uint32_t STATES_OF_ONE = 7;
 
 /// So many of the places that are free are looked at closely, the one with the shortest way first.
 constexpr int TRIED = 2;

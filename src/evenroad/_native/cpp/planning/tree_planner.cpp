@@ -17,9 +17,6 @@ constexpr Node MOST_STRAIGHT = 16;
 /// Trees that offered no step so often in a row have no room to grow within their bounds.
 constexpr std::int64_t MOST_IDLE = 1000;
 
-/// Of the proofs of the motions of a path [m].
-constexpr ProofLimits PROOF{1e-6, 1024};
-
 }  // namespace
 
 TreePlanner::TreePlanner(Matrix<const double> ends, const Sequences& sequences, MotionChecks& checks,
@@ -119,7 +116,7 @@ bool TreePlanner::join_straight(Node goal) {
   const Node last = reach(0, 0, goal);
   met_ = {last, last == NO_NODE ? NO_NODE : goal};
   if (!have_met()) return false;
-  if (last != 0 && !is_spent() && checks_.is_proved(trees_[0][0], trees_[1][goal], PROOF)) {
+  if (last != 0 && !is_spent() && checks_.is_proved(trees_[0][0], trees_[1][goal], PATH_PROOF)) {
     met_[0] = 0;
   } else if (!is_path_proved()) {
     return false;
@@ -167,7 +164,7 @@ Node TreePlanner::reach(std::size_t tree, Node found, Node other) {
 bool TreePlanner::is_path_proved() {
   if (is_spent()) return false;
   // The motion between the trees first: it is the only one that can go without taking nodes along.
-  bool is_proved = checks_.is_proved(trees_[0][met_[0]], trees_[1][met_[1]], PROOF);
+  bool is_proved = checks_.is_proved(trees_[0][met_[0]], trees_[1][met_[1]], PATH_PROOF);
   for (std::size_t tree = 0; tree < 2; tree++) is_proved &= is_branch_proved(tree, met_[tree]);
   return is_proved;
 }
@@ -178,7 +175,7 @@ bool TreePlanner::is_branch_proved(std::size_t tree, Node leaf) {
   for (Node node = leaf; !own.is_root(node); node = own.parent(node)) {
     if (own.is_proved(node)) continue;
     if (is_spent()) return false;
-    if (checks_.is_proved(own[own.parent(node)], own[node], PROOF)) {
+    if (checks_.is_proved(own[own.parent(node)], own[node], PATH_PROOF)) {
       own.set_proved(node);
     } else {
       broken = node;

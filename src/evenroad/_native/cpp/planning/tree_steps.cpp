@@ -21,11 +21,6 @@ constexpr double BALL_SHARE = 1.5, LARGEST_BALL = 2.0;
 /// So many steps of the sequence are rounds apart.
 constexpr std::size_t APART = 1279;
 
-constexpr std::uint32_t ALL_LANES = 0xFFFF;
-
-/// Shifts of an even sequence of their own: multiples of the golden ratio, one more for each coordinate.
-constexpr double GOLDEN = 0.6180339887498949;
-
 double longest_step(const Joints& joints) {
   double squares = 0.0;
   for (std::size_t k = 0; k < joints.size(); k++) {

@@ -50,6 +50,7 @@ class Checker {
   ~Checker();
 
   const Robot& robot() const { return *robot_; }
+  std::size_t dim() const { return static_cast<std::size_t>(robot_->dim()); }
   const Scene& scene() const { return *scene_; }
   const Lengths& lengths() const { return lengths_; }
   double resolution() const { return resolution_; }  // largest distance between neighbouring states of a motion

@@ -9,7 +9,7 @@ namespace evenroad::robot {
 namespace {
 
 constexpr float NEVER_HIT = -1e30F;  // half extent that fills unused places of a block
-constexpr double FARTHEST = 1e6;     // no length may be larger [m]: single precision would leave decimetres
+constexpr double LARGEST = 1e6;      // no length may be larger [m]: single precision would leave decimetres
 
 /// Return whether a rotation takes axes to axes, up to the rounding of sines of right angles.
 bool is_straight(const double* rotation) {
@@ -126,7 +126,7 @@ bool is_too_far(const GivenObstacle& given) {
                                    std::abs(given.translation[2]), given.size[0], given.size[1], given.size[2]});
   const bool cut =
       static_cast<GivenKind>(static_cast<int>(given.kind)) == GivenKind::BOX && is_straight(given.rotation);
-  return largest > FARTHEST && !cut;
+  return largest > LARGEST && !cut;
 }
 
 double add(Obstacles& all, const Exact& o, int number) {

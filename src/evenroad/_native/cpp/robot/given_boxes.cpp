@@ -9,13 +9,13 @@ namespace evenroad::robot {
 namespace {
 
 /// Of others the square of a quaternion's norm may have too few digits.
-constexpr double LEAST_SQUARE = 1e-200, MOST_SQUARE = 1e200;
+constexpr double LEAST_NORM = 1e-200, MOST_NORM = 1e200;
 
 /// Write the matrix of a quaternion x, y, z, w; return whether its norm is an ordinary number.
 bool write_rotation(std::span<const double> xyzw, double* rotation) {
   double x = xyzw[0], y = xyzw[1], z = xyzw[2], w = xyzw[3];
   const double square = w * w + x * x + y * y + z * z;
-  if (!(square >= LEAST_SQUARE && square <= MOST_SQUARE)) return false;
+  if (!(square >= LEAST_NORM && square <= MOST_NORM)) return false;
   const double norm = std::sqrt(square);
   x /= norm, y /= norm, z /= norm, w /= norm;
   const double rows[9] = {1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z),       2.0 * (x * z + w * y),

@@ -13,13 +13,10 @@ namespace {
 constexpr int PLANES = 12;  // so many are tried for each two hulls before they are left to double precision
 /// Planes for all lanes at once cost as much as a search in one lane for each so many corners, and so many more.
 constexpr int CORNERS_OF_A_LANE = 12, CORNERS_OF_PLANES = 32;
-constexpr float FAR = 1e30F;
 /// Half extents of boxes [m], and squares of sines in triangles, are taken for at least that: so all stays finite.
-constexpr float THIN = 1e-4F, FLAT = 1e-7F, LEAST_SQUARE = 1e-30F;
+constexpr float THIN = 1e-4F, FLAT = 1e-7F;
 
 using Node = HullNode<float>;
-
-Vec3x16 spread3(const float* v) { return {spread(v[0]), spread(v[1]), spread(v[2])}; }
 
 /// The poses of one frame in another.
 struct RelativePose16 {
@@ -64,11 +61,11 @@ RelativePose relative_pose(const PlacedFrame& a, const PlacedFrame& b, int lane)
 
 /// The way from the middle of the second node's box to that of the first, as the first and as the second body sees it,
 /// and the half extents of both boxes together along the axes of the first and of the second.
-struct Boxes {
+struct TwoBoxes {
   Vec3x16 way, turned, sizes, other_sizes;
 };
 
-EVENROAD_INLINE Boxes boxes_of(const RelativePose16& pose, const Node& a, const Node& b) {
+EVENROAD_INLINE TwoBoxes boxes_of(const RelativePose16& pose, const Node& a, const Node& b) {
   const Vec3x16 way = spread3(a.centre) - pose.seen(spread3(b.centre));
   const Vec3x16 half = spread3(a.half), other = spread3(b.half);
   const Vec3x16 x = abs(pose.rows[0]), y = abs(pose.rows[1]), z = abs(pose.rows[2]);
@@ -78,19 +75,19 @@ EVENROAD_INLINE Boxes boxes_of(const RelativePose16& pose, const Node& a, const 
 
 /// Return the mask of lanes in which no side of the boxes of two nodes separates them.
 Mask boxes_near(const RelativePose16& pose, const Node& a, const Node& b, Floats16 near) {
-  const Boxes boxes = boxes_of(pose, a, b);
+  const TwoBoxes boxes = boxes_of(pose, a, b);
   const Vec3x16 gap = abs(boxes.way) - boxes.sizes, other = abs(boxes.turned) - boxes.other_sizes;
   return below_zero(max(largest(gap), largest(other)) - near);
 }
 
-struct Farthest {
+struct Farthest16 {
   Floats16 along;
   Vec3x16 corner;
 };
 
 /// Return how far a leaf's hull and disc reach along unit directions, and their farthest points.
-EVENROAD_INLINE Farthest farthest(Vec3x16 direction, const HullTree<float>& tree, const Node& leaf) {
-  Farthest most{spread(-FAR), {Floats16{}, Floats16{}, Floats16{}}};
+EVENROAD_INLINE Farthest16 farthest(Vec3x16 direction, const HullTree<float>& tree, const Node& leaf) {
+  Farthest16 most{spread(-FAR), {Floats16{}, Floats16{}, Floats16{}}};
   for (int i = leaf.points.first; i < leaf.points.end; i++) {
     const auto& [x, y, z] = tree.points[i];
     const Vec3x16 point = spread(Vec3{x, y, z});
@@ -137,7 +134,7 @@ Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const No
                const Node& b, Floats16 near, Mask asked) {
   near = near + (a.width + b.width);
   const Floats16 near_squared = near * near;
-  const Boxes boxes = boxes_of(pose, a, b);
+  const TwoBoxes boxes = boxes_of(pose, a, b);
   // First across where the boxes are thin; no step leaves the range of single precision.
   const Vec3x16 thick = {max(boxes.sizes.x, spread(THIN)), max(boxes.sizes.y, spread(THIN)),
                          max(boxes.sizes.z, spread(THIN))};
@@ -147,7 +144,7 @@ Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const No
   Mask meeting = 0;
   for (int step = 0; step < PLANES; step++) {
     const Vec3x16 along = way * (1.0F / sqrt(max(dot(way, way), spread(LEAST_SQUARE))));
-    const Farthest back = farthest(-along, tree, a), on = farthest(pose.turned_back(along), other, b);
+    const Farthest16 back = farthest(-along, tree, a), on = farthest(pose.turned_back(along), other, b);
     asked &= ~below_zero(near + (back.along + on.along + dot(along, pose.translation)));
     if (asked == 0) break;
     // On from the way between these corners; then from what of the last two and the way so far is nearest to 0.

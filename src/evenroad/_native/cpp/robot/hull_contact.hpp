@@ -7,6 +7,9 @@ namespace evenroad::robot {
 
 using Mask = std::uint32_t;
 
+/// Farther than anything [m].
+constexpr float FAR = 1e30F;
+
 /// Which lanes are asked for together: where one of them is blocked, the others need no answer, and are blocked, too.
 enum class Wanted : std::uint8_t { ALL, PAIRS, TRIPLES, FIRST };
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double ROUNDING = 1e-12;  // boxes are larger by that [m]
 /// So small a volume, of the line's unit and two corners, leaves open on which side of a triangle's side it passes
 /// [m^2].
-constexpr double UNSURE = 1e-14;
+constexpr double ROUNDED = 1e-14;
 
 struct Box {
   double low[3], high[3];
@@ -142,8 +142,8 @@ std::optional<int> crossing(const HullPoint<float>* corners, const double (&plac
   };
   for (int i = 0; i < 3; i++) sides[i] = volume(way, p[i], p[(i + 1) % 3]);
   const double least = std::min({sides[0], sides[1], sides[2]}), most = std::max({sides[0], sides[1], sides[2]});
-  if (least < -UNSURE && most > UNSURE) return 0;
-  if (least < UNSURE && most > -UNSURE) return std::nullopt;
+  if (least < -ROUNDED && most > ROUNDED) return 0;
+  if (least < ROUNDED && most > -ROUNDED) return std::nullopt;
   // The triangle's volume with the place tells on which side of it that is.
   const double ahead = volume(p[0], p[1], p[2]);
   return (ahead > 0) == (least > 0) ? (least > 0 ? 1 : -1) : 0;
@@ -165,7 +165,7 @@ std::optional<int> windings(const HullTree<float>& tree, int root, const double 
     // Whether the half line ahead meets the box.
     double enter = 0, leave = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; k++) {
-      const double from = node.centre[k] - place[k], half = node.half[k] + UNSURE;
+      const double from = node.centre[k] - place[k], half = node.half[k] + ROUNDED;
       const double one = (from - half) / way[k], other = (from + half) / way[k];
       enter = std::max(enter, std::min(one, other)), leave = std::min(leave, std::max(one, other));
     }

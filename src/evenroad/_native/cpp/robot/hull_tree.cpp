@@ -18,9 +18,9 @@ namespace evenroad::robot {
 namespace {
 
 constexpr int MOST_STEPS = 40;
-constexpr double SAME = 1e-9;  // lengths that differ by less are one [m]
-constexpr double THIN = 1e-4;  // half extents of boxes are taken for so much more [m]
-constexpr int FEW_POINTS = 4;  // so few are looked at one by one, in double precision
+constexpr double SAME = 1e-9;     // lengths that differ by less are one [m]
+constexpr double THICKER = 1e-4;  // half extents of boxes are taken for so much more [m]
+constexpr int FEW_POINTS = 4;     // so few are looked at one by one, in double precision
 
 /// Return the way from the middle of the second node to that of the first, in the first's frame.
 template <class T>
@@ -109,7 +109,7 @@ Vector first_way(const HullNode<T>& a, const HullNode<T>& b, const RelativePose&
   const Vector between = way_between(a, b, pose);
   double most = 0.0;
   for (int axis = 0; axis < 3; axis++, m += 3) {
-    double thick = a.half[axis] + THIN;
+    double thick = a.half[axis] + THICKER;
     for (int entry = 0; entry < 3; entry++) thick += std::abs(m[entry]) * b.half[entry];
     way[axis] = between[axis] / thick, most = std::max(most, std::abs(way[axis]));
   }

@@ -12,11 +12,8 @@ namespace {
 constexpr float SLACK = 2e-6F;
 /// A plane is tested for all lanes at once where more of them are asked for.
 constexpr int LANES_OF_A_PLANE = 5;
-constexpr float FAR = 1e30F;
 
 using Node = HullNode<float>;
-
-Vec3x16 spread3(const float* v) { return {spread(v[0]), spread(v[1]), spread(v[2])}; }
 
 /// Return how far a body reaches from the origin of its frame, at most.
 float reach_of(const Node& root) {

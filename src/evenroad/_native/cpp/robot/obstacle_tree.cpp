@@ -58,8 +58,6 @@ Around around_block(const Block& block) {
   return around_boxes({boxes.data(), static_cast<std::size_t>(count)}, WIDER);
 }
 
-Vec3 lane_of(const Vec3x16& v, int lane) { return {v.x[lane], v.y[lane], v.z[lane]}; }
-
 /// Return which obstacles of a block are near a capsule.
 EVENROAD_INLINE Mask near_of_block(const Block& block, const CapsuleAt& capsule) {
   return near_nodes({block.centre, block.half, sqrt(dot(block.half, block.half))}, capsule);

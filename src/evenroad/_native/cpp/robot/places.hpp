@@ -15,6 +15,9 @@ struct PlacedFrame {
   Vec3x16 origin;
 };
 
+/// Return places of segments `centre + s half` cut to the segments, s from -1 to 1.
+EVENROAD_INLINE Floats16 cut(Floats16 place) { return clamp(place, spread(-1), spread(1)); }
+
 struct PlacedBody {
   Vec3x16 centre, half;  // half extents of the box around its capsules, along the root's axes
   Box16 around;          // in all lanes: written by the check against obstacles

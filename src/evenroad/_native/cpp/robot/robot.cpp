@@ -11,7 +11,8 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr double LEAST_SQUARE = 1e-30;  // what a squared length is taken for at least where one divides by it [m^2]
+constexpr double LEAST_SQUARED_LENGTH =
+    1e-30;  // what a squared length is taken for at least where one divides by it [m^2]
 
 /// A number of something, within 0 and `count`.
 int index(std::int64_t value, std::size_t count, const char* name) {
@@ -73,13 +74,13 @@ struct Shapes {
   }
 };
 
-struct Around {
+struct Ball {
   double centre[3], radius;
 };
 
 /// Return a ball that holds capsules: around the middle of their box.
-Around ball_around(const Shapes& shapes, Range capsules) {
-  Around ball{};
+Ball ball_around(const Shapes& shapes, Range capsules) {
+  Ball ball{};
   for (int axis = 0; axis < 3; axis++) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (int i = capsules.first; i < capsules.end; i++) {
@@ -135,7 +136,7 @@ void add_capsules(Robot& robot, const GivenRobot& given) {
     robot.capsules.push_back({static_cast<int>(from.body[i]), single(from.centre.data() + 3 * i), half,
                               half.x == 0 && half.y == 0 && half.z == 0, Shapes{given}.samples(static_cast<int>(i)),
                               static_cast<float>(length),
-                              static_cast<float>(1.0 / std::max(length * length, LEAST_SQUARE)),
+                              static_cast<float>(1.0 / std::max(length * length, LEAST_SQUARED_LENGTH)),
                               static_cast<float>(from.covering[i] - from.radius[i])});
     robot.lengths.capsules.push_back(static_cast<float>(Shapes{given}.covering(static_cast<int>(i)) + given.padding));
   }
@@ -154,11 +155,11 @@ void add_fixed_spheres(Robot& robot, const GivenRobot& given) {
   }
 }
 
-std::vector<Around> add_bodies(Robot& robot, const GivenRobot& given) {
+std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
   const std::size_t count = given.bodies.frame.size();
   const std::vector<int> roots = add_trees(robot.hulls, given.hulls);
   require(given.bodies.hulls.size() == count, "bodies.hulls must be as long as bodies.frame");
-  std::vector<Around> balls;
+  std::vector<Ball> balls;
   int capsule = 0;
   for (std::size_t b = 0; b < count; b++) {
     Body body{index(given.bodies.frame[b], robot.frames.size() + 1, "bodies.frame"),
@@ -177,7 +178,7 @@ std::vector<Around> add_bodies(Robot& robot, const GivenRobot& given) {
     const bool fixed = body.frame == 0;
     require(!fixed || robot.fixed_bodies == static_cast<int>(b), "bodies that do not move must come first");
     robot.fixed_bodies += fixed;
-    const Around ball = ball_around({given}, body.capsules);
+    const Ball ball = ball_around({given}, body.capsules);
     body.centre = single(ball.centre);
     // Boxes are wider by twice the padding: they must not miss what the spheres, wider by one, would find.
     robot.lengths.bodies.push_back({static_cast<float>(ball.radius + given.padding),
@@ -222,7 +223,7 @@ void add_shapes(Robot& robot, const GivenRobot& given) {
   }
 }
 
-void add_pairs(Robot& robot, const GivenRobot& given, const std::vector<Around>& balls) {
+void add_pairs(Robot& robot, const GivenRobot& given, const std::vector<Ball>& balls) {
   const Shapes shapes{given};
   require(given.pairs.bodies.size() % 2 == 0, "pairs.bodies must have two columns");
   for (std::size_t p = 0; 2 * p < given.pairs.bodies.size(); p++) {

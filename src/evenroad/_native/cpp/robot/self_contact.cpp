@@ -5,15 +5,11 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr float LEAST_SQUARE = 1e-30F;  // what a squared length is taken for at least where one divides by it [m^2]
-
 /// Return the mask of lanes in which two centres are nearer to each other than `near`.
 EVENROAD_INLINE Mask within(const Vec3x16& a, const Vec3x16& b, float near) {
   const Vec3x16 apart = a - b;
   return below_zero(dot(apart, apart) - near * near);
 }
-
-EVENROAD_INLINE Floats16 cut(Floats16 place) { return clamp(place, spread(-1), spread(1)); }
 
 }  // namespace
 

@@ -20,13 +20,13 @@ bool is_inside(const Simplex& s) {
 }
 
 /// What of a simplex is nearest to the origin, and which corners that is between, as bits.
-struct Nearest {
+struct NearestPlace {
   Vector place;
   int between;
   double squared;
 };
 
-Nearest nearest_of_two(const Simplex& s, int i, int j) {
+NearestPlace nearest_of_two(const Simplex& s, int i, int j) {
   const Vector &a = s.corners[i], &b = s.corners[j];
   const Vector edge = b - a;
   const double along = -dot(a, edge), whole = squared_length(edge);
@@ -37,7 +37,7 @@ Nearest nearest_of_two(const Simplex& s, int i, int j) {
 }
 
 /// Return the same of a triangle; an edge is left out where the origin is on the inner side of it.
-Nearest nearest_of_three(const Simplex& s, int i, int j, int k) {
+NearestPlace nearest_of_three(const Simplex& s, int i, int j, int k) {
   const Vector &a = s.corners[i], &b = s.corners[j], &c = s.corners[k];
   const Vector normal = cross(b - a, c - a);
   const double size = squared_length(normal);
@@ -47,10 +47,10 @@ Nearest nearest_of_three(const Simplex& s, int i, int j, int k) {
     const Vector place = normal * (dot(a, normal) / size);
     return {place, 1 << i | 1 << j | 1 << k, squared_length(place)};
   }
-  Nearest found{{}, 0, std::numeric_limits<double>::infinity()};
+  NearestPlace found{{}, 0, std::numeric_limits<double>::infinity()};
   const auto look = [&](bool beyond, int first, int second) {
     if (!beyond) return;
-    const Nearest here = nearest_of_two(s, first, second);
+    const NearestPlace here = nearest_of_two(s, first, second);
     if (here.squared < found.squared) found = here;
   };
   look(!(of_c > 0.0), i, j), look(!(of_b > 0.0), i, k), look(!(of_a > 0.0), j, k);
@@ -64,14 +64,14 @@ void nearest(Simplex& s, Vector& v) {
     s.size = 0;
     return;
   }
-  Nearest found{s.corners[0], 1, 0.0};
+  NearestPlace found{s.corners[0], 1, 0.0};
   if (s.size == 2) found = nearest_of_two(s, 0, 1);
   if (s.size == 3) found = nearest_of_three(s, 0, 1, 2);
   if (s.size == 4) {
     // The side without the last corner is farther than it.
     found = nearest_of_three(s, 0, 1, 3);
     for (const auto& [i, j] : {std::pair{0, 2}, std::pair{1, 2}}) {
-      const Nearest here = nearest_of_three(s, i, j, 3);
+      const NearestPlace here = nearest_of_three(s, i, j, 3);
       if (here.squared < found.squared) found = here;
     }
   }

@@ -11,7 +11,7 @@ namespace evenroad::robot {
 namespace {
 
 /// Nodes are wider than what they hold by this share of the places' size, and of one metre.
-constexpr double WIDER = 1e-6;
+constexpr double WIDER_NODES = 1e-6;
 
 void put(Vec3x16& where, int lane, const double* v) {
   where.x[lane] = static_cast<float>(v[0]), where.y[lane] = static_cast<float>(v[1]);
@@ -102,7 +102,7 @@ Surface make_surface(const GivenSurface& given) {
     for (int entry = 0; entry < 3 * each; entry++) largest = std::max(largest, std::abs(corners[entry]));
   }
   const std::vector<int> order = order_of(std::move(middles));
-  const auto wider = static_cast<float>(WIDER * (1.0 + largest));
+  const auto wider = static_cast<float>(WIDER_NODES * (1.0 + largest));
   const Floats16 nowhere = spread(NOWHERE), zero{};
   const Vec3x16 far = {nowhere, nowhere, nowhere}, none = {zero, zero, zero};
   std::vector<Around> around;

@@ -9,9 +9,9 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr double CELLS = 100'000;    // about so many of a grid around surfaces
-constexpr double LESS = 1.0 - 1e-5;  // what distances are multiplied by, for what single precision loses
-constexpr float NEVER = 1e9F;        // far more than any distance: the grid never says that something touches
+constexpr double CELLS_AROUND = 100'000;  // about so many of a grid around surfaces
+constexpr double LESS = 1.0 - 1e-5;       // what distances are multiplied by, for what single precision loses
+constexpr float NEVER = 1e9F;             // far more than any distance: the grid never says that something touches
 
 /// Where a surface's grid has the middles of cells along one axis: the cell, and the square of what is outside of it.
 struct Along {
@@ -44,7 +44,7 @@ Surface make_surface_around(std::span<const std::shared_ptr<const Surface>> surf
       low[axis] = std::min(low[axis], begin), high[axis] = std::max(high[axis], begin + wide);
     }
   }
-  const GridPlace grid = place_grid(low, high, CELLS);
+  const GridPlace grid = place_grid(low, high, CELLS_AROUND);
   std::vector<double> middles[3];
   for (int axis = 0; axis < 3; axis++) {
     for (int i = 0; i < grid.cells[axis]; i++) middles[axis].push_back(grid.low[axis] + (i + 0.5) * grid.cell);

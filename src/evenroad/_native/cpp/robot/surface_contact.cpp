@@ -72,8 +72,6 @@ bool touches(const Surface& surface, const CapsuleAt& capsule) {
   return false;
 }
 
-Vec3 lane_of(const Vec3x16& v, int lane) { return {v.x[lane], v.y[lane], v.z[lane]}; }
-
 Vec3x16 all_lanes(const Vec3x16& v, int lane) { return spread(lane_of(v, lane)); }
 
 /// Where points of the scene, one a lane, have their frames.

@@ -29,7 +29,7 @@ struct Polygon {
 };
 
 /// Return what is left of a polygon above a bound, or below it where `side` is -1.
-Polygon cut(const Polygon& from, int axis, double bound, double side) {
+Polygon part_of(const Polygon& from, int axis, double bound, double side) {
   Polygon left;
   for (int i = 0; i < from.count; i++) {
     const double *corner = from.corners[i], *next = from.corners[i + 1 < from.count ? i + 1 : 0];
@@ -45,7 +45,7 @@ Polygon cut(const Polygon& from, int axis, double bound, double side) {
 
 /// Return what of a polygon is in a row of cells across an axis.
 Polygon within(const Polygon& from, int axis, int row) {
-  return cut(cut(from, axis, row - SURE, 1.0), axis, row + 1 + SURE, -1.0);
+  return part_of(part_of(from, axis, row - SURE, 1.0), axis, row + 1 + SURE, -1.0);
 }
 
 /// Return the first and last of `count` cells that a range along an axis is in, the first not above the second if any.

@@ -10,11 +10,9 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr float LEAST_SQUARE = 1e-30F;
 /// So near to a triangle's plane or side it is left open on which side of it a place is, in parts of a metre [m].
 constexpr float UNSURE = 2e-6F;
 
-EVENROAD_INLINE Floats16 cut(Floats16 place) { return clamp(place, spread(-1), spread(1)); }
 EVENROAD_INLINE Floats16 part(Floats16 share) { return clamp(share, Floats16{}, spread(1)); }
 
 /// Return which sides are within `reach` of a segment, see `capsules_touching`.

@@ -9,10 +9,8 @@ namespace {
 
 using Kind = Check::Kind;
 using planning::Known;
-using planning::LANES;
 
 /// Limits of the proof of a motion [m].
-constexpr planning::ProofLimits PROOF{1e-6, 1024};
 
 Verdict verdict_of(bool is_free) { return is_free ? Verdict::FREE : Verdict::BLOCKED; }
 
@@ -39,8 +37,8 @@ Ended ProvedSearch::go_on(std::int64_t most_motions, std::int64_t batches) {
 /// Bring start and goals into their ranges; return whether they are free.
 bool ProvedSearch::enter_terminals() {
   std::vector<Terminal>& terminals = search_.terminals();
-  for (std::size_t first = 0; first < terminals.size(); first += LANES) {
-    for (std::size_t lane = 0; lane < LANES; lane++) {
+  for (std::size_t first = 0; first < terminals.size(); first += planning::LANES) {
+    for (std::size_t lane = 0; lane < planning::LANES; lane++) {
       // Lanes to spare repeat the last row.
       std::vector<double>& q = terminals[std::min(first + lane, terminals.size() - 1)].q;
       if (!planning::enter(q, checks_.everything.joints)) return false;
@@ -57,7 +55,7 @@ void ProvedSearch::evaluate() {
   const auto from = search_.from(), to = search_.to();
   if (check.kind == Kind::MILESTONE) {
     for (std::size_t k = 0; k < from.size(); k++) {
-      for (std::size_t lane = 0; lane < LANES; lane++) checks_.moved.state(k, lane) = from[k];
+      for (std::size_t lane = 0; lane < planning::LANES; lane++) checks_.moved.state(k, lane) = from[k];
     }
     search_.record(verdict_of(checks_.moved.touching().lanes == 0));
   } else if (check.kind == Kind::LINK && search_.graph().milestones[check.milestone] == Verdict::UNKNOWN) {
@@ -71,7 +69,7 @@ void ProvedSearch::evaluate() {
 /// Return whether the path that was found is proved; a motion that is not is blocked from now on.
 bool ProvedSearch::is_path_proved() {
   while (search_.find_unproved()) {
-    const bool is_proved = judge().is_proved(search_.from(), search_.to(), PROOF);
+    const bool is_proved = judge().is_proved(search_.from(), search_.to(), planning::PATH_PROOF);
     search_.record(is_proved ? Verdict::PROVED : Verdict::BLOCKED);
     if (!is_proved) return false;
   }

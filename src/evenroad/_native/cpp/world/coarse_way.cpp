@@ -22,7 +22,7 @@ using Bits = std::array<std::uint64_t, SIDE>;
 enum Border : std::uint8_t { TOP, LEFT, BOTTOM, RIGHT, BORDERS };
 
 /// Cells of a border, from `first` to `last`, which are open on both sides, and what they hang together with inside.
-struct Run {
+struct BorderRun {
   std::uint8_t first, last;
   std::int16_t part;
 };
@@ -32,7 +32,7 @@ struct Tile {
   bool is_divided = false;
   /// What hangs together inside, and the runs of each border.
   std::vector<Bits> parts;
-  std::array<std::vector<Run>, BORDERS> runs;
+  std::array<std::vector<BorderRun>, BORDERS> runs;
 };
 
 /// How far to the sides the squares of a row reach that close a cell, by how many rows they are away; -1 where none do.
@@ -109,7 +109,7 @@ class Graph {
   }
 
   /// Return the cell in the middle of a run of a border of a tile, on its side.
-  Cell middle(std::int64_t tile, int border, const Run& run) const {
+  Cell middle(std::int64_t tile, int border, const BorderRun& run) const {
     const std::int64_t top = tile / wide_ << COARSE_SHIFT, left = tile % wide_ << COARSE_SHIFT;
     const std::int64_t along = (run.first + run.last) / 2;
     const std::int64_t row = border == TOP ? 0 : border == BOTTOM ? SIDE - 1 : along;
@@ -132,7 +132,7 @@ class Graph {
       const std::uint64_t both = outermost(tile.open, border) & outermost(opened(other).open, (border + 2) % BORDERS);
       for (std::uint64_t rest = both; rest != 0;) {
         const int first = std::countr_zero(rest), length = std::countr_one(rest >> first);
-        const Run run{static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(first + length - 1), 0};
+        const BorderRun run{static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(first + length - 1), 0};
         rest = first + length >= SIDE ? 0 : rest >> (first + length) << (first + length);
         tile.runs[border].push_back({run.first, run.last, part_of(tile, inside(middle(number, border, run)))});
       }
@@ -268,7 +268,7 @@ class WaySearch {
     }
     const Tile& tile = graph_.divided(number);
     for (int border = 0; border < BORDERS; border++) {
-      const std::vector<Run>& runs = tile.runs[border];
+      const std::vector<BorderRun>& runs = tile.runs[border];
       if (runs.empty()) continue;
       const std::int32_t first = first_portal(number, border, runs);
       for (std::size_t run = 0; run < runs.size(); run++) {
@@ -284,7 +284,7 @@ class WaySearch {
   }
 
   /// Return the number of the first portal of a border, of which the runs are the same on both sides.
-  std::int32_t first_portal(std::int64_t number, int border, const std::vector<Run>& runs) {
+  std::int32_t first_portal(std::int64_t number, int border, const std::vector<BorderRun>& runs) {
     const bool is_own = border >= BOTTOM;
     const std::int64_t owner = is_own ? number : graph_.beyond(number, border);
     const int own = is_own ? border : border + BOTTOM;

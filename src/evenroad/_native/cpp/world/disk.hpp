@@ -15,6 +15,8 @@ struct Point {
   double x, y;
 };
 
+inline double distance(Point a, Point b) { return std::hypot(b.x - a.x, b.y - a.y); }
+
 /// Where the pixels of a map lie in the plane: the origin, the map directions of increasing column and row, the side of
 /// a pixel, and the origin's row.
 struct Frame {

@@ -80,9 +80,9 @@ class Buckets {
   std::int64_t key_, waiting_ = 0;
 };
 
-class Search {
+class LatticeSearch {
  public:
-  Search(const Disk& disk, std::span<const Point> goals, std::int64_t most, const Corridor* corridor)
+  LatticeSearch(const Disk& disk, std::span<const Point> goals, std::int64_t most, const Corridor* corridor)
       : disk_(disk),
         most_(most),
         corridor_(corridor),
@@ -255,7 +255,7 @@ class Search {
 
 LatticePath search_cells(const Disk& disk, Point start, std::span<const Point> goals, std::int64_t most,
                          const Corridor* corridor) {
-  return Search(disk, goals, most, corridor).run(start);
+  return LatticeSearch(disk, goals, most, corridor).run(start);
 }
 
 }  // namespace evenroad::world

@@ -45,11 +45,9 @@ bool is_on(const Disk& disk, Point at) {
          at.y <= static_cast<double>(disk.rows());
 }
 
-double distance(Point a, Point b) { return std::hypot(b.x - a.x, b.y - a.y); }
-
-class Search {
+class AnyAngleSearch {
  public:
-  Search(const Disk& disk, Point goal) : disk_(disk), goal_(goal), rows_(disk.rows()) {}
+  AnyAngleSearch(const Disk& disk, Point goal) : disk_(disk), goal_(goal), rows_(disk.rows()) {}
 
   double run(Point start, std::int64_t most) {
     if (begin(start)) return distance(start, goal_);
@@ -216,7 +214,7 @@ double least_length(const Disk& disk, Point start, Point goal, std::int64_t most
   const Frame& frame = disk.frame();
   const Point from = frame.to_padded(start), to = frame.to_padded(goal);
   if (!is_on(disk, from) || !is_on(disk, to)) return NEVER;
-  const double least = Search(disk, to).run(from, most) * frame.scale * (1.0 - ROUNDING);
+  const double least = AnyAngleSearch(disk, to).run(from, most) * frame.scale * (1.0 - ROUNDING);
   return std::max(least, distance(start, goal));
 }
 

@@ -18,8 +18,6 @@ constexpr double WORTHWHILE = 2e-4, WORTH_A_CORNER = 2e-4;
 constexpr double CLOSE = 1.0 / 64.0;
 constexpr int HALVINGS = 20;
 
-double distance(Point a, Point b) { return std::hypot(b.x - a.x, b.y - a.y); }
-
 Point between(Point a, Point b, double share) { return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)}; }
 
 double length_of(const std::vector<Point>& points) {
