@@ -31,8 +31,9 @@ FEW_JOINTS = 7
 BEFORE_PROOF_OF_CELLS = 200_000
 """The same for a search of cells, which begins again after it."""
 
-SMOOTHING = 500
-"""Number of batches of sixteen checks after which no waypoint of an arm's path slides any more."""
+SMOOTHING, LONG_SMOOTHING = 500, 2000
+"""Numbers of batches of sixteen checks after which no waypoint of an arm's path slides any more; the second of a path
+that is to be as short as can be."""
 
 Smoothing = Literal["none", "quick", "tight", "apart"]
 """What compiled code calls the ways to smooth a path."""
@@ -138,8 +139,9 @@ class ArmTrees:
         inside = self.inside or world
         if quick:
             return arm_trees.shorten(inside, path)
-        smooth = arm_trees.smooth if self.shortest else arm_trees.smooth_apart
-        return smooth(inside, path, batches=SMOOTHING)
+        if self.shortest:
+            return arm_trees.smooth(inside, path, batches=LONG_SMOOTHING)
+        return arm_trees.smooth_apart(inside, path, batches=SMOOTHING)
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ constexpr std::size_t MOST_POLISHED = 4;
 constexpr double PROMISING = 0.01;
 
 /// After so many batches of sixteen checks no waypoint slides any more before a path is polished.
-constexpr std::int64_t SMOOTHING = 500;
+constexpr std::int64_t SMOOTHING = 2000;
 
 /// A path is as short as can be when it exceeds the straight distance by less than this share.
 constexpr double STRAIGHT = 1e-9;
