@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
 from struct import Struct
@@ -160,7 +160,7 @@ class Obstacle:
 Bodies: TypeAlias = "Sequence[Obstacle | Shape]"
 
 
-def as_obstacles(bodies: object, taken: Collection[str], scene: str) -> tuple[Obstacle, ...]:
+def as_obstacles(bodies: object, taken: Container[str], scene: str) -> tuple[Obstacle, ...]:
     """Return shapes and obstacles as obstacles; a shape without a name gets one that neither they nor `taken` has."""
     if isinstance(bodies, Shape | Obstacle):
         bodies = [bodies]

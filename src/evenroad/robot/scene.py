@@ -7,7 +7,6 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 
 from evenroad._above import above
@@ -24,6 +23,7 @@ from evenroad.robot.obstacle import Cut as Cut
 from evenroad.robot.obstacle import Obstacle as Obstacle
 from evenroad.robot.obstacle import Seen as Seen
 from evenroad.robot.scene_changes import SceneChanges
+from evenroad.robot.scene_delta import rows_of
 
 
 @explains_calls
@@ -146,20 +146,19 @@ class Scene(SceneChanges):
         return scene
 
     def __getattr__(self, name: str) -> Any:
-        # Boxes of arrays, and what was moved, become objects when these are first used.
-        if name != "obstacles" or not self.__dict__.keys() & {"rows", "moved_from"}:
+        # Boxes of arrays, and those of a changed scene, become objects when these are first used.
+        if name != "obstacles" or not self.__dict__.keys() & {"rows", "delta"}:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-        if "moved_from" in self.__dict__:
-            base, poses = self.moved_from
-            obstacles = list(base.obstacles)
-            for number, pose in poses.items():
-                obstacles[number] = obstacles[number].at(pose)
-            return self.__dict__.setdefault(name, tuple(obstacles))
-        return self.__dict__.setdefault(name, boxes_of(self.rows, self.names))
+        delta = self.__dict__.get("delta")
+        obstacles = boxes_of(self.rows, self.names) if delta is None else delta.obstacles()
+        return self.__dict__.setdefault(name, obstacles)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of the obstacles."""
+        if (delta := self.__dict__.get("delta")) is not None:
+            names: tuple[str, ...] = delta.names()
+            return names
         return tuple([obstacle.name for obstacle in self.obstacles])
 
     @cached_property
@@ -169,12 +168,8 @@ class Scene(SceneChanges):
         Their kind; full extents of a box, or radius and length without caps, and zeros [m]; rotation to the root link's
         frame, row by row; centre in that frame [m]; clearance [m].
         """
-        if "moved_from" in self.__dict__ and not self.moved_from[0].surfaces:
-            base, poses = self.moved_from
-            rows = base.rows.copy()
-            rows[list(poses), 4:16] = [(*pose.rotation, *pose.xyz) for pose in poses.values()]
-            return rows
-        return np.frombuffer(b"".join([obstacle.row for obstacle in self.obstacles])).reshape(-1, 17)
+        delta = self.__dict__.get("delta")
+        return rows_of(self.obstacles) if delta is None else delta.rows()
 
     @cached_property
     def surfaces(self) -> tuple[tuple[int, Obstacle], ...]:

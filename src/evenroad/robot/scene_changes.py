@@ -1,31 +1,29 @@
-"""What a scene is changed by: each verb returns another scene, which shares what stays."""
+"""How a scene is changed: what comes of it is remembered as few changes of its base."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Self
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
-from evenroad.geometry.shapes import Shape
+from evenroad.robot.changes import Changes
 from evenroad.robot.held import HeldObject
-from evenroad.robot.obstacle import Bodies, Obstacle, as_obstacles
+from evenroad.robot.obstacle import Obstacle, as_obstacles
+from evenroad.robot.scene_delta import MOST, Delta
 
-_DERIVED = ("obstacles", "moved_from", "rows", "names", "numbers", "surfaces")
+_DERIVED = ("obstacles", "delta", "rows", "names", "numbers", "surfaces")
 """A scene's obstacles, and what it makes of them."""
 
 
 @explains_calls
-class SceneChanges:
-    """The verbs that change a scene; see :class:`evenroad.Scene`."""
+class SceneChanges(Changes):
+    """How a scene is changed; see :class:`evenroad.Scene`."""
 
     if TYPE_CHECKING:
         name: str
@@ -33,105 +31,79 @@ class SceneChanges:
         allowed: frozenset[tuple[str, str]]
         near_ends: frozenset[tuple[str, str, float]]
         attached: tuple[HeldObject, ...]
-        moved_from: tuple[Any, dict[int, Pose]]
+        delta: Delta
 
         def _require_names(self) -> None: ...
 
         @property
         def names(self) -> tuple[str, ...]: ...  # noqa: D102
 
+        @property
+        def surfaces(self) -> tuple[tuple[int, Obstacle], ...]: ...  # noqa: D102
+
     @cached_property
     def numbers(self) -> Mapping[str, int]:
         """The number of each obstacle, by name."""
         return {name: number for number, name in enumerate(self.names)}
 
-    def moved(self, poses: Mapping[str, Pose]) -> Self:
-        """Return the scene with obstacles in other poses, in some microseconds each.
-
-        Parameters
-        ----------
-        poses : mapping of str to Pose
-            Obstacle -> its pose in the frame of the robot's root link; of a capsule with its axis along z.
-
-        Returns
-        -------
-        Scene
-
-        Raises
-        ------
-        UnknownName
-            If there is no such obstacle.
-        InvalidValue
-            If something is no pose.
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> er.Scene([er.Sphere(0.1, name="ball")]).moved({"ball": er.Pose((0.5, 0, 0.2))}).obstacles[0].xyz
-        (0.5, 0.0, 0.2)
-        """
-        if not isinstance(poses, Mapping):
-            raise InvalidValue(f"poses must be a mapping, obstacle -> Pose, got {shown(poses)}")
-        numbers, changed = self.numbers, {}
+    def _moved(self, poses: Mapping[str, Pose]) -> Self:
+        delta = self._delta_of()
+        taken = self.numbers if delta is None else delta
         for name, pose in poses.items():
-            number = numbers.get(name, -1)
-            if number < 0:
+            if name not in taken:
                 require_known(f"obstacle of scene {self.name!r}:", name, self.names)
             if not isinstance(pose, Pose):
                 raise InvalidValue(f"the pose of obstacle {name!r} must be a Pose, got {shown(pose)}")
-            changed[number] = pose
-        base, before = self.__dict__.get("moved_from", (self, {}))
-        # Obstacles are made when they are first used.
-        return self._changed(
-            moved_from=(base, {**before, **changed}), names=self.names, numbers=numbers, **_solid(base)
-        )
+        if delta is not None:
+            return self._changed(delta=delta.moving(poses), surfaces=())
+        moved = [each.at(poses[each.name]) if each.name in poses else each for each in self.obstacles]
+        return self._changed(obstacles=tuple(moved))
+
+    def _delta_of(self) -> Delta | None:
+        """Return by what the scene differs from its base, or None where it has clouds or meshes."""
+        delta: Delta | None = self.__dict__.get("delta")
+        if delta is not None and len(delta) > MOST:
+            # It has all lists now, and does without the scene that it was changed from.
+            _ = self.obstacles, self.names, self.rows  # type: ignore[attr-defined]
+            self.__dict__.pop("delta", None)
+            delta = None
+        if delta is None and not self.surfaces:
+            return Delta(self)
+        return delta
 
     def _changed(self, **parts: Any) -> Self:
         """Return a scene with other parts that fit each other."""
         scene: Any = object.__new__(type(self))
-        made = {name: part for name, part in self.__dict__.items() if name not in _DERIVED}
-        scene.__dict__.update(made, **parts)
+        values = scene.__dict__
+        values.update(self.__dict__)
+        for name in _DERIVED:
+            values.pop(name, None)
+        values.update(parts)
         return scene
 
-    def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Self:
-        """Return the scene with more obstacles, and more contacts left untested.
+    def _with(self, obstacles: Sequence[object], allowed: Sequence[tuple[str, str]]) -> Self:
+        return self._with_these(obstacles, allowed)[0]
 
-        Parameters
-        ----------
-        *obstacles : Shape, Obstacle, or sequence of such
-            Of new names.
-        allowed : sequence of (str, str)
-            Contacts that are not tested, (link, obstacle).
-
-        Returns
-        -------
-        Scene
-
-        Raises
-        ------
-        InvalidValue
-            As :class:`Scene`.
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> er.load_scene("box-reach").with_(er.Sphere(0.05, xyz=(0.3, 0.3, 0.3), name="ball")).obstacles[-1].name
-        'ball'
-        """
+    def _with_these(
+        self, obstacles: Sequence[object], allowed: Sequence[tuple[str, str]]
+    ) -> tuple[Self, list[Obstacle]]:
+        """Return the scene with more obstacles, and these."""
         more: list[object] = []
         for each in obstacles:
             more += each if isinstance(each, list | tuple) else [each]
-        added = as_obstacles(more, self.numbers, self.name)
-        names = [each.name for each in added]
-        scene = self._changed(
-            obstacles=(*self.obstacles, *added),
-            names=(*self.names, *names),
-            allowed=self.allowed.union(allowed),
-            **(_solid(self) if all(each.row for each in added) else {}),
-        )
-        if len(set(names)) < len(names) or not self.numbers.keys().isdisjoint(names) or self.attached:
-            scene._require_names()
-        return scene
+        delta = self._delta_of()
+        taken = self.numbers if delta is None else delta
+        added = as_obstacles(more, taken, self.name)
+        may_touch = self.allowed.union(allowed)
+        if delta is not None and all(each.row for each in added):
+            scene = self._changed(delta=delta.adding(added), allowed=may_touch, surfaces=())
+        else:
+            scene = self._changed(obstacles=(*self.obstacles, *added), allowed=may_touch)
+        names = {each.name for each in added}
+        if len(names) < len(added) or self.attached or any(name in taken for name in names):
+            # Those that are here twice are named.
+            replace(cast("Any", self), obstacles=(*self.obstacles, *added))
+        return scene, list(added)
 
     def with_clearance(self, clearance: Mapping[str, float]) -> Self:
         """Return the scene with obstacles from which robots keep more away.
@@ -167,59 +139,21 @@ class SceneChanges:
         scene: Any = self
         return replace(scene, obstacles=tuple(changed))
 
-    def without(self, *names: str) -> Self:
-        """Return the scene without some obstacles, and without what was allowed to touch them.
-
-        Parameters
-        ----------
-        *names : str
-            Of the obstacles.
-
-        Returns
-        -------
-        Scene
-
-        Raises
-        ------
-        UnknownName
-            If there is no such obstacle.
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> er.Scene([er.Sphere(0.1, name="ball"), er.Sphere(0.2, name="moon")]).without("moon")
-        Scene('scene', 1 obstacle: ball)
-        """
+    def _without(self, names: Sequence[str]) -> Self:
+        delta = self._delta_of()
+        taken = self.numbers if delta is None else delta
         for name in names:
-            if name not in self.numbers:
+            if name not in taken:
                 require_known(f"obstacle of scene {self.name!r}:", name, self.names)
-        left = sorted(self.numbers[name] for name in set(names))
-        obstacles: list[Obstacle] = []
-        others: list[str] = []
-        for first, end in pairwise([-1, *left, len(self.names)]):
-            obstacles += self.obstacles[first + 1 : end]
-            others += self.names[first + 1 : end]
-        return self._changed(
-            obstacles=tuple(obstacles),
-            names=tuple(others),
-            allowed=frozenset((link, name) for link, name in self.allowed if name not in names),
-            near_ends=frozenset(each for each in self.near_ends if each[1] not in names),
-            **_solid(self),
-        )
+        left: dict[str, Any] = {
+            "allowed": frozenset(each for each in self.allowed if each[1] not in names),
+            "near_ends": frozenset(each for each in self.near_ends if each[1] not in names),
+        }
+        if delta is not None:
+            return self._changed(delta=delta.removing(names), surfaces=(), **left)
+        return self._changed(obstacles=tuple(each for each in self.obstacles if each.name not in names), **left)
 
     def _rows_of(self, names: Collection[str]) -> Floats:
         """Return the rows, see `Scene.rows`, of some obstacles, neither clouds nor meshes: (n, 17)."""
-        numbers = [self.numbers[name] for name in names] if len(names) else []
-        if "moved_from" not in self.__dict__:
-            return np.frombuffer(b"".join([self.obstacles[number].row for number in numbers])).reshape(-1, 17)
-        base, poses = self.moved_from
-        rows = base.rows[numbers]
-        for row, number in zip(rows, numbers, strict=True):
-            if (pose := poses.get(number)) is not None:
-                row[4:16] = (*pose.rotation, *pose.xyz)
-        return rows
-
-
-def _solid(scene: Any) -> dict[str, Any]:
-    """Return, as a part of other scenes, that a scene has neither clouds nor meshes, where that is so."""
-    return {} if scene.surfaces else {"surfaces": ()}
+        delta: Delta = self.__dict__.get("delta", Delta(self))
+        return delta.rows(names)

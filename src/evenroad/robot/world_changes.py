@@ -1,4 +1,4 @@
-"""What the world of an arm is changed by: each verb returns another world, which shares what stays."""
+"""How the scene of an arm's world is changed: what native checks know of the obstacles that stay is shared."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._native.robot import Scene as NativeScene
 from evenroad.geometry.pose import Pose
-from evenroad.geometry.shapes import Shape
+from evenroad.robot.changes import Changes
 from evenroad.robot.kernel.robot_tables import RobotTables
-from evenroad.robot.obstacle import Bodies, Obstacle
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
+from evenroad.robot.scene_delta import rows_of
 
 _STAYS = ("robot", "resolution", "clearance", "_space", "bounds", "robot_tables")
 
@@ -26,8 +26,8 @@ FEW, MOST = 128, 128
 
 
 @explains_calls
-class WorldChanges:
-    """The verbs that change the scene of a world; see :class:`evenroad.ArmWorld`."""
+class WorldChanges(Changes):
+    """How the scene of a world is changed; see :class:`evenroad.ArmWorld`."""
 
     if TYPE_CHECKING:
         scene: Scene
@@ -39,87 +39,17 @@ class WorldChanges:
     _last = 0
     """How many obstacles have come later since the scene was made for native checks."""
 
-    def moved(self, poses: Mapping[str, Pose]) -> Self:
-        """Return the world with obstacles in other poses.
+    def _moved(self, poses: Mapping[str, Pose]) -> Self:
+        return self._changed(self.scene._moved(poses), poses, poses)
 
-        Parameters
-        ----------
-        poses : mapping of str to Pose
-            Obstacle -> its pose in the frame of the robot's root link.
-
-        Returns
-        -------
-        ArmWorld
-
-        Raises
-        ------
-        UnknownName, InvalidValue
-            As :meth:`evenroad.Scene.moved`.
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> world = er.ArmWorld("ur5", er.Scene([er.Box((0.1, 0.1, 0.1), xyz=(2, 0, 0), name="box")]))
-        >>> world.valid("home"), world.moved({"box": er.Pose((0, 0.1, 0.5))}).valid("home")
-        (True, False)
-        """
-        return self._changed(self.scene.moved(poses), poses, poses)
-
-    def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Self:
-        """Return the world with more obstacles.
-
-        Parameters
-        ----------
-        *obstacles : Shape, Obstacle, or sequence of such
-            Of new names.
-        allowed : sequence of (str, str)
-            Contacts that are not tested, (link, obstacle).
-
-        Returns
-        -------
-        ArmWorld
-
-        Raises
-        ------
-        UnknownName, InvalidValue
-            As :meth:`evenroad.Scene.with_`.
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> er.ArmWorld("ur5").with_(er.Sphere(0.2, xyz=(0, 0.1, 0.5))).valid("home")
-        False
-        """
-        scene, count = self.scene.with_(*obstacles, allowed=allowed), len(self.scene.names)
+    def _with(self, obstacles: Sequence[object], allowed: Sequence[tuple[str, str]]) -> Self:
+        scene, added = self.scene._with_these(obstacles, allowed)
         if allowed or scene.surfaces:
             return self.within(scene)
-        rows = np.frombuffer(b"".join([each.row for each in scene.obstacles[count:]])).reshape(-1, 17)
-        return self._changed(scene, (), scene.names[count:], rows)
+        return self._changed(scene, (), [each.name for each in added], rows_of(added))
 
-    def without(self, *names: str) -> Self:
-        """Return the world without some obstacles.
-
-        Parameters
-        ----------
-        *names : str
-            Of the obstacles.
-
-        Returns
-        -------
-        ArmWorld
-
-        Raises
-        ------
-        UnknownName
-            If there is no such obstacle.
-
-        Examples
-        --------
-        >>> import evenroad as er
-        >>> er.ArmWorld("ur5", "box-reach").without("box top").scene.names[-1]
-        'box back'
-        """
-        return self._changed(self.scene.without(*names), names, ())
+    def _without(self, names: Sequence[str]) -> Self:
+        return self._changed(self.scene._without(names), names, ())
 
     def within(self, scene: Scene) -> Self:
         """Return the same world with the obstacles of another scene.
@@ -192,9 +122,13 @@ class WorldChanges:
             return self.within(scene)
         since, changed = self.__dict__.get("_since", (self, {}))
         world: Any = object.__new__(type(self))
-        world.__dict__.update({name: self.__dict__[name] for name in _STAYS}, scene=scene, native_scene=native)
-        world.__dict__.update(_numbered=(names, {**later, **fresh}), _numbers=numbers, _last=self._last + len(fresh))
-        world.__dict__.update(_since=(since, {**changed, **dict.fromkeys(gone), **dict.fromkeys(come)}))
+        values = world.__dict__
+        for name in _STAYS:
+            values[name] = self.__dict__[name]
+        values["scene"], values["native_scene"] = scene, native
+        values["_numbered"], values["_numbers"] = (names, {**later, **fresh}), numbers
+        values["_last"] = self._last + len(fresh)
+        values["_since"] = since, {**changed, **dict.fromkeys(gone), **dict.fromkeys(come)}
         return world
 
     def _after_changes(self, made: Callable[[Self], Self]) -> Self | None:

@@ -1,0 +1,119 @@
+"""The verbs that change a scene, or the scene of a world: each returns another one, which shares what stays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Self
+
+from evenroad._call import explains_calls
+from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import Shape
+from evenroad.robot.obstacle import Bodies, Obstacle
+
+
+@explains_calls
+class Changes:
+    """Verbs of :class:`evenroad.Scene` and of :class:`evenroad.ArmWorld`."""
+
+    if TYPE_CHECKING:
+
+        def _moved(self, poses: Mapping[str, Pose]) -> Self: ...
+
+        def _with(self, obstacles: Sequence[object], allowed: Sequence[tuple[str, str]]) -> Self: ...
+
+        def _without(self, names: Sequence[str]) -> Self: ...
+
+    def moved(self, poses: Mapping[str, Pose]) -> Self:
+        """Return the same with obstacles in other poses, in some microseconds.
+
+        Parameters
+        ----------
+        poses : mapping of str to Pose
+            Obstacle -> its pose in the frame of the robot's root link; of a capsule with its axis along z.
+
+        Returns
+        -------
+        Scene or ArmWorld
+            As this.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such obstacle.
+        InvalidValue
+            If something is no pose.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> scene = er.Scene([er.Box((0.1, 0.1, 0.1), xyz=(2, 0, 0), name="box")])
+        >>> scene.moved({"box": er.Pose((0.5, 0, 0.2))}).obstacles[0].xyz
+        (0.5, 0.0, 0.2)
+        >>> world = er.ArmWorld("ur5", scene)
+        >>> world.valid("home"), world.moved({"box": er.Pose((0, 0.1, 0.5))}).valid("home")
+        (True, False)
+        """
+        if not isinstance(poses, Mapping):
+            raise InvalidValue(f"poses must be a mapping, obstacle -> Pose, got {shown(poses)}")
+        return self._moved(poses)
+
+    def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Self:
+        """Return the same with more obstacles, and more contacts left untested.
+
+        Parameters
+        ----------
+        *obstacles : Shape, Obstacle, or sequence of such
+            Of new names.
+        allowed : sequence of (str, str)
+            Contacts that are not tested, (link, obstacle), e.g. of the base with its table.
+
+        Returns
+        -------
+        Scene or ArmWorld
+            As this.
+
+        Raises
+        ------
+        InvalidValue
+            If two have one name, or something is no shape.
+        UnknownName
+            If a world's robot has no such link.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.load_scene("box-reach").with_(er.Sphere(0.05, xyz=(0.3, 0.3, 0.3), name="ball")).obstacles[-1].name
+        'ball'
+        >>> er.ArmWorld("ur5").with_(er.Sphere(0.2, xyz=(0, 0.1, 0.5))).valid("home")
+        False
+        """
+        return self._with(obstacles, allowed)
+
+    def without(self, *names: str) -> Self:
+        """Return the same without some obstacles, and without what was allowed to touch them.
+
+        Parameters
+        ----------
+        *names : str
+            Of the obstacles.
+
+        Returns
+        -------
+        Scene or ArmWorld
+            As this.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such obstacle.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.Scene([er.Sphere(0.1, name="ball"), er.Sphere(0.2, name="moon")]).without("moon")
+        Scene('scene', 1 obstacle: ball)
+        >>> er.ArmWorld("ur5", "box-reach").without("box top").scene.names[-1]
+        'box back'
+        """
+        return self._without(names)
