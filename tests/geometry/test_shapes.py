@@ -116,3 +116,17 @@ def test_a_height_map_is_the_surface_over_its_grid_where_heights_are_known():
 ])  # fmt: skip
 def test_heights_that_are_none_are_refused(arguments, says):
     refused(InvalidValue, says, height_map, *arguments)
+
+
+def test_clouds_are_equal_by_the_bits_of_every_point():
+    points = np.random.default_rng(0).normal(size=(1000, 3))
+    cloud, same = PointCloud(points, 0.01), PointCloud(points.copy(), 0.01)
+    assert cloud == same
+    assert hash(cloud) == hash(same)
+    for row in (0, 1, 500, 999):
+        other = points.copy()
+        other[row, 2] += 1e-9
+        assert PointCloud(other, 0.01) != cloud
+    assert PointCloud(points[:-1], 0.01) != cloud
+    assert PointCloud(points, 0.02) != cloud
+    assert PointCloud([(0.0, 0, 0)]) != PointCloud([(-0.0, 0, 0)])
