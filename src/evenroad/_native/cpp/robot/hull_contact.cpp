@@ -10,7 +10,7 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr int PLANES = 12;  // so many are tried for each two hulls before they are left to double precision
+constexpr int PLANES = 3;  // so many are tried for each two hulls before they are left to double precision
 /// Planes for all lanes at once cost as much as a search in one lane for each so many corners, and so many more.
 constexpr int CORNERS_OF_A_LANE = 12, CORNERS_OF_PLANES = 32;
 /// Half extents of boxes [m], and squares of sines in triangles, are taken for at least that: so all stays finite.
