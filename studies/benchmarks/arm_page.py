@@ -5,7 +5,7 @@
 
 For each robot: its file stands in place of `my_arm.urdf`, in an empty folder with a fresh home, and each command is a
 process of its own.  A row says with what they ended, what they printed last, how many arms the robot has (chains of at
-least `ARM` joints in the SRDF that is written), and the processor's seconds.
+least `ARM` joints, none of them another's, in the SRDF that is written), and the processor's seconds.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ FIELDS = (
 def printed_commands() -> list[str]:
     """Return the page's commands for one's own robot: that which writes the SRDF, and that which plans with it."""
     lines = [line.partition("  #")[0] for line in PAGE.read_text().splitlines()]
-    return [line for line in lines if line.startswith("evenroad ") and "--robot my_arm.urdf" in line or "--write" in line]
+    return [line for line in lines if line.startswith("evenroad") and ("--write" in line or "--srdf my_arm" in line)]
 
 
 def run(command: str, folder: Path) -> tuple[subprocess.CompletedProcess[str], float]:
@@ -69,8 +69,12 @@ def measured(file: Path) -> dict[str, object]:
         if not srdf.exists():
             return row
         groups = [each.get("name") for each in ET.parse(srdf).getroot().findall("group")]
-        joints = [len(load_robot(file, srdf=srdf, group=group).group) for group in groups]
-        row |= {"arms": sum(count >= ARM for count in joints), "joints": max(joints, default=0)}
+        chains = sorted((load_robot(file, srdf=srdf, group=group).group for group in groups), key=len, reverse=True)
+        arms: list[tuple[str, ...]] = []
+        for chain in chains:
+            if len(chain) >= ARM and not any(set(chain) & set(other) for other in arms):
+                arms.append(chain)
+        row |= {"arms": len(arms), "joints": max(map(len, chains), default=0)}
         done, spent = run(plan, folder)
         row |= {"plan_exit": done.returncode, "plan_s": round(spent, 1), "said": last_line(done)}
         found = json.loads((folder / "empty.json").read_text()) if (folder / "empty.json").exists() else {}
