@@ -62,9 +62,7 @@ Workspace::Workspace(const Checker& checker)
       enlarged(checker.lengths()),
       motion(checker.robot().dim()),
       waiting(MOST_WAITING),
-      speeds(checker.robot().arms.columns),
-      pair_speeds(checker.robot().pair_arms.columns),
-      shape_speeds(checker.robot().bodies.size()) {}
+      speeds(checker.robot()) {}
 
 void Workspace::set(int lane, std::span<const double> q) {
   for (std::size_t k = 0; k < states.size(); k++) states[k][lane] = q[k];
@@ -96,9 +94,13 @@ Mask blocked_lanes(Workspace& workspace, const Lengths& lengths, Mask settled, W
 
 }  // namespace
 
-Mask blocked_where_placed(Workspace& workspace, Wanted wanted) {
+Mask blocked_where_placed(Workspace& workspace, const Lengths& lengths, Wanted wanted) {
   workspace.counts.batches++;
-  return meeting_anything(workspace, *workspace.lengths, 0, wanted, nullptr);
+  return meeting_anything(workspace, lengths, 0, wanted, nullptr);
+}
+
+Mask blocked_where_placed(Workspace& workspace, Wanted wanted) {
+  return blocked_where_placed(workspace, *workspace.lengths, wanted);
 }
 
 Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted, Mask settled) {

@@ -20,6 +20,7 @@
 
 #include "robot/motion.hpp"
 #include "robot/self_contact.hpp"
+#include "robot/speeds.hpp"
 #include "robot/surface_contact.hpp"
 
 namespace evenroad::robot {
@@ -95,8 +96,7 @@ struct Workspace {
   Lengths enlarged;  // that decide stretches of a motion in a proof
   Motion motion;
   std::vector<Stretch> waiting;
-  // How far a motion moves each capsule, each pair, and the true shape of each body, at most [m].
-  std::vector<double> speeds, pair_speeds, shape_speeds;
+  Speeds speeds;
   Counts counts;
 };
 
@@ -111,6 +111,7 @@ Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted, Mask s
 
 /// The same where the workspace's places are those of the states already.
 Mask blocked_where_placed(Workspace& workspace, Wanted wanted);
+Mask blocked_where_placed(Workspace& workspace, const Lengths& lengths, Wanted wanted);
 
 /// Write which rows, (n, dim), are within bounds and free.
 void configurations_free(const Checker& checker, Matrix<const double> rows, std::span<bool> free);

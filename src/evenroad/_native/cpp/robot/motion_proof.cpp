@@ -28,17 +28,6 @@ constexpr float UP = 1.0F + 3e-7F;
 /// Return a length of single precision that is no less than the sum of the two [m].
 float wider(float length, double margin) { return (length + static_cast<float>(margin)) * UP; }
 
-/// Write how far each body can move during the whole motion, and return the largest [m].
-double write_speeds(const OwnMatrix<double>& arms, std::span<const double> way, std::span<double> speeds) {
-  std::fill(speeds.begin(), speeds.end(), 0.0);
-  for (std::size_t k = 0; k < way.size(); k++) {
-    const double size = std::abs(way[k]);
-    const auto row = arms[k];
-    for (std::size_t i = 0; i < speeds.size(); i++) speeds[i] += row[i] * size;
-  }
-  return speeds.empty() ? 0.0 : std::max(0.0, *std::max_element(speeds.begin(), speeds.end()));
-}
-
 double largest(std::span<const double> speeds, Range range) {
   double most = 0;
   for (int i = range.first; i < range.end; i++) most = std::max(most, speeds[i]);
@@ -50,11 +39,11 @@ void enlarge(Workspace& workspace, double half) {
   const Robot& robot = workspace.checker.robot();
   const Lengths& from = *workspace.lengths;
   Lengths& into = workspace.enlarged;
-  const std::vector<double>&speeds = workspace.speeds, &pair_speeds = workspace.pair_speeds;
+  const std::vector<double>&speeds = workspace.speeds.capsules, &pair_speeds = workspace.speeds.pairs;
   for (std::size_t i = 0; i < from.capsules.size(); i++) into.capsules[i] = wider(from.capsules[i], half * speeds[i]);
   // What is around a body moves no farther than the fastest of its capsules.
   for (std::size_t b = 0; b < robot.bodies.size(); b++) {
-    into.shapes[b] = wider(from.shapes[b], half * workspace.shape_speeds[b]);
+    into.shapes[b] = wider(from.shapes[b], half * workspace.speeds.shapes[b]);
     const double margin = half * largest(speeds, robot.bodies[b].capsules);
     const auto& [radius, extents] = from.bodies[b];
     into.bodies[b] = {wider(radius, margin),
@@ -86,9 +75,8 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
   Motion& motion = workspace.motion;
   motion.span(a, b, robot.bounds, workspace.checker.resolution());
   workspace.counts.motions++;
-  const double fastest = std::max({write_speeds(robot.arms, motion.way, workspace.speeds),
-                                   write_speeds(robot.pair_arms, motion.way, workspace.pair_speeds),
-                                   write_speeds(robot.shape_arms, motion.way, workspace.shape_speeds)});
+  workspace.speeds.take_anywhere(robot, motion.way);
+  double fastest = 0;
   std::vector<Stretch>& waiting = workspace.waiting;
   int count = LANES, enlarged_for = -1;
   // The first stretch is the last to be pushed and the first to be looked at.
@@ -96,20 +84,27 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
   double half = 0;
   for (int batch = 0; batch < limits.most_batches; batch++) {
     const int level = waiting[count - 1].level;
-    if (level != enlarged_for) {
-      half = 0.5 / static_cast<double>(std::int64_t{LANES} << level);
-      enlarge(workspace, half);
-      workspace.enlarged.shapes_decide = half * fastest < std::max(COARSE, 2.0 * limits.tolerance);
-      enlarged_for = level;
-    }
     int taken = 0;
     for (; taken < LANES && taken < count && waiting[count - 1 - taken].level == level; taken++) {
       motion.share[taken] = waiting[count - 1 - taken].centre;
     }
     for (int lane = taken; lane < LANES; lane++) motion.share[lane] = motion.share[taken - 1];
     motion.write_states(workspace.states);
+    workspace.places.place(robot, workspace.enlarged, workspace.states);
     workspace.counts.configurations += taken;
-    const Mask near = blocked(workspace, workspace.enlarged, Wanted::ALL) & ((1U << taken) - 1);
+    if (level != enlarged_for) {
+      half = 0.5 / static_cast<double>(std::int64_t{LANES} << level);
+      if (batch == 0) {
+        // These stretches are the whole motion.
+        workspace.speeds.take_here(robot, workspace.places, motion.way, half);
+        fastest = workspace.speeds.fastest();
+      }
+      enlarge(workspace, half);
+      workspace.enlarged.shapes_decide = half * fastest < std::max(COARSE, 2.0 * limits.tolerance);
+      enlarged_for = level;
+      workspace.places.place_boxes(robot, workspace.enlarged);
+    }
+    const Mask near = blocked_where_placed(workspace, workspace.enlarged, Wanted::ALL) & ((1U << taken) - 1);
     count -= taken;
     const bool is_halvable =
         half * fastest >= limits.tolerance && level < DEEPEST_STRETCH && count + 2 * LANES <= MOST_WAITING;
@@ -134,9 +129,8 @@ Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const d
     way_between(starts[row], end, robot.bounds, ways[row]);
     for (std::size_t k = 0; k < dim; k++) longest[k] = std::max(longest[k], std::abs(ways(row, k)));
   }
-  const double whole = std::max({write_speeds(robot.arms, longest, workspace.speeds),
-                                 write_speeds(robot.pair_arms, longest, workspace.pair_speeds),
-                                 write_speeds(robot.shape_arms, longest, workspace.shape_speeds)});
+  workspace.speeds.take_anywhere(robot, longest);
+  const double whole = workspace.speeds.fastest();
   if (0.5 * whole > SHORT) return 0;
   std::vector<Piece> pieces, halves;
   for (std::size_t row = 0; row < count; row++) pieces.push_back({row, 0.5});

@@ -80,16 +80,19 @@ void place_frames(const Robot& robot, std::span<const Doubles16> states, std::ve
   }
 }
 
+/// Return half the extents of the box around a turned one.
+EVENROAD_INLINE Vec3x16 box_around(const PlacedFrame& frame, Vec3 extents) {
+  const Vec3x16 half = spread(extents);
+  return {dot(abs(frame.rows[0]), half), dot(abs(frame.rows[1]), half), dot(abs(frame.rows[2]), half)};
+}
+
 void place_bodies(const Robot& robot, const Lengths& lengths, Range bodies, Places& places) {
   for (int b = bodies.first; b < bodies.end; b++) {
     const Body& body = robot.bodies[b];
     const PlacedFrame frame = places.frames[body.frame];
     PlacedBody& here = places.bodies[b];
     here.centre = frame.origin + turned(frame, body.centre);
-    if (body.capsules.size() > FEW) {
-      const Vec3x16 half = spread(lengths.bodies[b].half);
-      here.half = {dot(abs(frame.rows[0]), half), dot(abs(frame.rows[1]), half), dot(abs(frame.rows[2]), half)};
-    }
+    if (body.capsules.size() > FEW) here.half = box_around(frame, lengths.bodies[b].half);
     for (int i = body.capsules.first; i < body.capsules.end; i++) {
       const Capsule& capsule = robot.capsules[i];
       places.capsules[i].centre = frame.origin + turned(frame, capsule.centre);
@@ -110,6 +113,13 @@ Places::Places(const Robot& robot)
 void Places::place(const Robot& robot, const Lengths& lengths, std::span<const Doubles16> states) {
   place_frames(robot, states, frames);
   place_bodies(robot, lengths, {robot.fixed_bodies, static_cast<int>(robot.bodies.size())}, *this);
+}
+
+void Places::place_boxes(const Robot& robot, const Lengths& lengths) {
+  for (std::size_t b = robot.fixed_bodies; b < robot.bodies.size(); b++) {
+    const Body& body = robot.bodies[b];
+    if (body.capsules.size() > FEW) bodies[b].half = box_around(frames[body.frame], lengths.bodies[b].half);
+  }
 }
 
 }  // namespace evenroad::robot

@@ -60,6 +60,9 @@ struct Places {
 
   /// Write what moves for sixteen configurations: sixteen numbers a coordinate.
   void place(const Robot& robot, const Lengths& lengths, std::span<const Doubles16> states);
+
+  /// Write the boxes around bodies again, for other lengths.
+  void place_boxes(const Robot& robot, const Lengths& lengths);
 };
 
 /// Bodies of so few capsules need no box around all of them.

@@ -1,0 +1,114 @@
+// A point that a joint turns moves across the joint's axis, as fast as it is far from it.  Its acceleration is a sum
+// over pairs of joints: with rates r, of joints from the root on, at most
+//
+//   sum over m of r_m arm_m (2 sum over j < m of turn_j + turn_m)
+//
+// where arm_m is how far the point ever is from axis m (1 where that slides), and turn_j is r_j (0 where that slides).
+// For what joint m does to a point is turned by the joints before it, and the point's way by m itself.
+#include "robot/speeds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evenroad::robot {
+
+namespace {
+
+/// What single precision may lose of velocities, as a share: some tens of roundings.
+constexpr double LOST = 2e-5;
+
+void write_sums(const OwnMatrix<double>& arms, std::span<const double> way, std::span<double> sums) {
+  std::fill(sums.begin(), sums.end(), 0.0);
+  for (std::size_t k = 0; k < way.size(); k++) {
+    const double size = std::abs(way[k]);
+    const auto row = arms[k];
+    for (std::size_t i = 0; i < sums.size(); i++) sums[i] += row[i] * size;
+  }
+}
+
+/// Write by what to multiply what each coordinate moves, to have its part of the acceleration; return all turns.
+double write_weights(const Robot& robot, std::span<const double> way, std::span<double> weights) {
+  std::fill(weights.begin(), weights.end(), -1.0);
+  double turns = 0.0;
+  bool one_each = true;
+  for (const Frame& frame : robot.frames) {
+    const double turn = frame.slides ? 0.0 : std::abs(frame.multiplier * way[frame.coordinate]);
+    double& weight = weights[frame.coordinate];
+    one_each &= weight < 0.0;
+    weight = 2.0 * turns + turn;
+    turns += turn;
+  }
+  // Of coordinates that move several frames it is not known which comes first.
+  for (double& weight : weights) weight = one_each ? std::max(weight, 0.0) : 2.0 * turns;
+  return turns;
+}
+
+}  // namespace
+
+Speeds::Speeds(const Robot& robot)
+    : capsules(robot.arms.columns),
+      pairs(robot.pair_arms.columns),
+      shapes(robot.bodies.size()),
+      velocities_(robot.frames.size() + 1),
+      accelerations_(robot.arms.columns),
+      weights_(robot.dim()) {}
+
+void Speeds::take_anywhere(const Robot& robot, std::span<const double> way) {
+  write_sums(robot.arms, way, capsules);
+  write_sums(robot.pair_arms, way, pairs);
+  write_sums(robot.shape_arms, way, shapes);
+}
+
+void Speeds::take_here(const Robot& robot, const Places& places, std::span<const double> way, double half) {
+  velocities_[0] = {};
+  double slides = 0.0;
+  for (std::size_t i = 0; i < robot.frames.size(); i++) {
+    const Frame& frame = robot.frames[i];
+    const Velocity& below = velocities_[frame.parent];
+    Velocity& here = velocities_[i + 1];
+    const PlacedFrame& at = places.frames[i + 1];
+    const double rate = frame.multiplier * way[frame.coordinate];
+    const Vec3x16 axis{at.rows[0].z, at.rows[1].z, at.rows[2].z};
+    here.along = below.along + cross(below.turning, at.origin - places.frames[frame.parent].origin);
+    here.turning = below.turning;
+    Vec3x16& moved = frame.slides ? here.along : here.turning;
+    moved = plus(moved, axis, spread(static_cast<float>(rate)));
+    if (frame.slides) slides += std::abs(rate);
+  }
+  const double turns = write_weights(robot, way, weights_);
+  const double lost = LOST * (slides + turns * robot.reach);
+  std::fill(accelerations_.begin(), accelerations_.end(), 0.0);
+  for (std::size_t k = 0; k < way.size(); k++) {
+    const double size = std::abs(way[k]) * weights_[k];
+    const auto row = robot.arms[k];
+    for (std::size_t i = 0; i < accelerations_.size(); i++) accelerations_[i] += row[i] * size;
+  }
+  for (int i = robot.fixed_capsules(); i < static_cast<int>(capsules.size()); i++) {
+    const int frame = robot.bodies[robot.capsules[i].body].frame;
+    const auto& [along, turning] = velocities_[frame];
+    const PlacedCapsule& capsule = places.capsules[i];
+    const Vec3x16 middle = along + cross(turning, capsule.centre - places.frames[frame].origin);
+    Floats16 square = dot(middle, middle);
+    if (!robot.capsules[i].is_ball) {
+      // Between its ends a segment is no faster than at one of them.
+      const Vec3x16 end = cross(turning, capsule.half), one = middle + end, other = middle - end;
+      square = max(dot(one, one), dot(other, other));
+    }
+    const double here = std::sqrt(static_cast<double>(largest(square))) + half * accelerations_[i] + lost;
+    capsules[i] = std::min(capsules[i], here);
+  }
+  for (std::size_t k = 0; k < robot.pairs.size(); k++) {
+    const auto& [first, second, one, two] = robot.pairs[k];
+    pairs[k] = std::min(pairs[k], capsules[first] + capsules[second]);
+  }
+}
+
+double Speeds::fastest() const {
+  double most = 0.0;
+  for (const auto* each : {&capsules, &pairs, &shapes}) {
+    for (const double speed : *each) most = std::max(most, speed);
+  }
+  return most;
+}
+
+}  // namespace evenroad::robot

@@ -1,0 +1,37 @@
+// How fast a motion moves bodies, at most: what a proof enlarges them by.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "robot/places.hpp"
+
+namespace evenroad::robot {
+
+/// Lengths that a whole motion moves things by, at most [m].
+struct Speeds {
+  std::vector<double> capsules, pairs, shapes;  // pairs: the two against each other; shapes: those of bodies
+
+  explicit Speeds(const Robot& robot);
+
+  /// Take what holds wherever the motion is, by how far things ever are from the axes that turn them.
+  void take_anywhere(const Robot& robot, std::span<const double> way);
+
+  /// Lower them to what holds along this motion alone.
+  ///
+  /// The places are those in the middles of sixteen stretches that are the whole motion, each of `half` of it to both
+  /// sides.  There velocities are known; from there on they change by no more than accelerations allow.
+  void take_here(const Robot& robot, const Places& places, std::span<const double> way, double half);
+
+  double fastest() const;
+
+ private:
+  /// Velocities of a frame's origin, and of its turning.
+  struct Velocity {
+    Vec3x16 along, turning;
+  };
+  std::vector<Velocity> velocities_;
+  std::vector<double> accelerations_, weights_;
+};
+
+}  // namespace evenroad::robot

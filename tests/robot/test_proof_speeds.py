@@ -1,0 +1,82 @@
+"""Proofs enlarge bodies by how fast a motion moves them: a tip that gets ever faster does not pass its post."""
+
+import math
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.geometry.shapes import Capsule
+from evenroad.robot.joint import Joint, Mimic
+from evenroad.robot.robot import Robot
+
+STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+TINY = 2e-5
+"""Radius of the tip and of the post [m]: what one is missed by is seen."""
+
+
+def turned(axis, angle):
+    """The rotation about an axis (Rodrigues)."""
+    x, y, z = axis
+    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + math.sin(angle) * across + (1.0 - math.cos(angle)) * across @ across
+
+
+def random_chain(rng, kinds, mimic=False):
+    """A chain of joints with axes at random and a ball of a fiftieth of a millimetre at its tip."""
+    joints = []
+    for i, kind in enumerate(kinds):
+        axis = rng.normal(size=3)
+        follows = Mimic(f"joint {i - 1}", -1.5) if mimic and i == 2 else None
+        joints.append(
+            Joint(
+                f"joint {i}", kind, f"link {i}", f"link {i + 1}", tuple(rng.normal(scale=0.3, size=3)), STRAIGHT,
+                tuple(axis / np.linalg.norm(axis)), -6.0, 6.0, mimic=follows,
+            )
+        )  # fmt: skip
+    links = tuple(f"link {i}" for i in range(len(kinds) + 1))
+    ball = Capsule((0.4, 0.0, 0.0), (0.4, 0.0, 0.0), TINY, link=links[-1])
+    return Robot("chain", links, tuple(joints), (ball,), (), tuple(each.name for each in joints if each.mimic is None))
+
+
+def tip(robot, q):
+    """Where the ball is."""
+    values, place, rotation = dict(zip(robot.group, q, strict=True)), np.zeros(3), np.eye(3)
+    for joint in robot.joints:
+        value = values[joint.name] if joint.mimic is None else joint.mimic.multiplier * values[joint.mimic.joint]
+        place = place + rotation @ np.array(joint.xyz)
+        if joint.kind == "prismatic":
+            place = place + rotation @ np.array(joint.axis) * value
+        else:
+            rotation = rotation @ turned(joint.axis, value)
+    return place + rotation @ np.array([0.4, 0.0, 0.0])
+
+
+R, P = "revolute", "prismatic"
+
+
+@pytest.mark.parametrize(
+    ("kinds", "mimic"), [((R, R, R, R), False), ((R, P, R, R), False), ((P, R, P, R), False), ((R, R, R, R), True)]
+)
+def test_a_post_near_the_end_of_a_motion_is_not_missed(kinds, mimic):
+    """There a stretch moves the tip by more than it does in its middle: without accelerations some would be proved."""
+    rng = np.random.default_rng([len(kinds), kinds.count(P), mimic])
+    posts = 0
+    while posts < 100:
+        robot = random_chain(rng, kinds, mimic)
+        for _ in range(10):
+            a = rng.uniform(-1.5, 1.5, len(robot.group))
+            b = a + rng.uniform(-1.5, 1.5, len(a))
+            at = tip(robot, b + rng.uniform(0.0001, 0.001) * (a - b))
+            # One that is faster at the end, and past the post by more than it is wide.
+            last, before = (np.linalg.norm(tip(robot, q) - at) for q in (b, b + 0.1 * (a - b)))
+            middle = np.linalg.norm(tip(robot, b + 0.2 * (a - b)) - tip(robot, b + 0.1 * (a - b)))
+            if last < 2.5 * TINY or before < 1.05 * middle:
+                continue
+            world = er.ArmWorld(robot, er.Scene([er.Sphere(TINY, xyz=tuple(at))]), resolution=9.0)
+            if not world.valid(b):
+                continue
+            posts += 1
+            assert not world.motion_certified(a[np.newaxis], b[np.newaxis], 1e-6)[0]
+            half = 0.5 * (a + b)
+            assert not world.motion_certified(half[np.newaxis], b[np.newaxis], 1e-6)[0]
