@@ -10,10 +10,11 @@ carry one of the two and not the other: a common one moves both as one body.
 If at share t every capsule is farther than ``h D_c`` from every obstacle, and every pair farther apart than ``h D_ce``,
 then nothing touches between the shares t - h and t + h.  So the motion's middle is tested with those margins, h one
 half; where that fails the motion is halved, and so on, into 2^15 pieces at most (F. Schwarzer, M. Saha and J.-C.
-Latombe, Adaptive Dynamic Collision Checking, 2005).  ``D_c`` is lowered to what the motion itself moves the capsule by:
-its velocities in the middles of sixteen pieces, and what accelerations, bounded by arms, add to these.  Distances are those of the model: exact between capsules, and
-hulls, and to obstacles from spheres that cover them.  Sixteen pieces are proved at once in single precision, with
-bodies larger by what that may lose.  "No" means blocked, or that somewhere the clearance is too small for a proof.
+Latombe, Adaptive Dynamic Collision Checking, 2005).  ``D_c`` is lowered to what the motion itself moves the capsule
+by: its velocities in the middles of sixteen pieces, and what accelerations, bounded by arms, add to these.  Distances
+are those of the model: exact between capsules, and hulls, and to obstacles from spheres that cover them.  Sixteen
+pieces are proved at once in single precision, with bodies larger by what that may lose.  "No" means blocked, or that
+somewhere the clearance is too small for a proof.
 """
 
 from __future__ import annotations
