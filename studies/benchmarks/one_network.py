@@ -7,6 +7,10 @@ two points, by a learned function of their distance in radii of a ball that hold
 discrepancy, whose weight is learned, too; both know the step, n and d.  So 384 weights fit any n and d.  What falls is
 the score that chose `even`: log(E) / (2 d) + 2 log(W), with E the periodic Riesz energy, s = 2 d, and W the wrap-around
 discrepancy.  Training is by evolution strategies in d = 5, 6 and 8, n = 48 to 200; the table has n and d not seen.
+
+Success is that of roadmaps in the reported worlds ``apart``, linked as a plan links, mean over 6, 10 and 20 neighbours.
+All sets are contracted as a plan contracts `even`.  "network" is how much more its sets solve, in points, paired by
+world, with its standard error.
 """
 
 from __future__ import annotations
@@ -23,6 +27,10 @@ from evenroad.points import draw
 from evenroad.points.anneal import anneal
 from evenroad.points.measures import MEASURES
 from evenroad.points.measures.separation import log_riesz_of_columns
+from evenroad.points.samplers.even import contraction
+from evenroad_studies.connected import connected
+from evenroad_studies.problems.apart import SIZES as SIZES_OF_WORLDS
+from evenroad_studies.problems.apart import Kind, Use, make
 from evenroad_studies.training.objective import parse_objective
 
 OBJECTIVE = parse_objective("riesz+2*wrap_around")
@@ -33,6 +41,10 @@ FRESH = ((5, 100), (7, 100), (7, 250), (10, 100))
 """Dimensions and numbers of points of the table."""
 RATES = (0.003, 0.01, 0.02, 0.03)
 """Learning rates of Adam, of which the best counts."""
+STARTS = 8
+KS = (6, 10, 20)
+FIRST_WORLD = 50_000
+"""Number of the first world of each kind; no lower one was used here."""
 
 
 def score(points: Floats) -> float:
@@ -128,33 +140,64 @@ def trained(seconds: float) -> Floats:
     return weights
 
 
-def compared(weights: Floats, d: int, n: int) -> None:
-    """Print the scores of four starts after the network, and after what takes as long."""
-    rows = []
-    for seed in range(100, 104):
-        starts = draw("sobol", n, d, rng=seed).points
-        times = []
-        for _ in range(3):
-            began = time.process_time()
-            made = passed(weights, starts)
-            times.append(time.process_time() - began)
+def sets_of(weights: Floats, starts: Floats, seed: int) -> tuple[dict[str, Floats], float, int]:
+    """Return what becomes of starts, by how; the milliseconds of the network; steps of Adam that take as long."""
+    n, d = starts.shape
+    times = []
+    for _ in range(3):
         began = time.process_time()
-        anneal(n, d, OBJECTIVE, steps=30, start=starts)
-        steps = max(1, round(30 * min(times) / (time.process_time() - began)))
-        adam = [score(anneal(n, d, OBJECTIVE, steps=steps, start=starts, rates=(rate, 0.0)).points) for rate in RATES]
-        short, long = (score(anneal(n, d, OBJECTIVE, steps=some, start=starts).points) for some in (steps, 600))
-        even = score(draw("even", n, d, rng=seed).points)
-        rows.append([score(starts), score(made), 1e3 * min(times), min(adam), short, long, even, steps])
-    names = ["start", "network", "ms", "adam", "annealed-as-long", "annealed-600", "even", "steps"]
-    print(f"d={d} n={n}", *(f"{name} {value:.3f}" for name, value in zip(names, np.mean(rows, axis=0), strict=True)))
+        passed(weights, starts)
+        times.append(time.process_time() - began)
+    began = time.process_time()
+    anneal(n, d, OBJECTIVE, steps=30, start=starts)
+    steps = max(1, round(30 * min(times) / (time.process_time() - began)))
+    adam = [anneal(n, d, OBJECTIVE, steps=steps, start=starts, rates=(rate, 0.0)).points for rate in RATES]
+    made = {
+        "start": starts,
+        "network": passed(weights, starts),
+        "adam": min(adam, key=score),
+        "annealed-as-long": anneal(n, d, OBJECTIVE, steps=steps, start=starts).points,
+        "annealed-600": anneal(n, d, OBJECTIVE, steps=600, start=starts).points,
+        "even": draw("even", n, d, rng=seed).points,
+    }
+    return made, 1e3 * min(times), steps
+
+
+def compared(weights: Floats, d: int, n: int, worlds: int) -> None:
+    """Print mean scores of what becomes of the starts, and the success of roadmaps of these sets beside the network's.
+
+    World i takes the sets of start i modulo :data:`STARTS`, with the axes in an order of its own.
+    """
+    made = [sets_of(weights, draw("sobol", n, d, rng=seed).points, seed) for seed in range(100, 100 + STARTS)]
+    names = list(made[0][0])
+    scores = np.array([[score(sets[name]) for name in names] for sets, _, _ in made])
+    found = np.zeros((len(Kind) * worlds, len(names), len(KS)))
+    for at, (kind, i) in enumerate((kind, i) for kind in Kind for i in range(worlds)):
+        problem = make(Use.REPORTING, kind, d, SIZES_OF_WORLDS[Use.REPORTING, kind, d], FIRST_WORLD + i)
+        axes = np.random.default_rng([d, at]).permutation(d)
+        for column, name in enumerate(names):
+            points = made[at % STARTS][0][name][:, axes] - 0.5
+            found[at, column] = [connected(problem, 0.5 + contraction(k) * points, [k])[1, 0] for k in KS]
+    success = 100.0 * found.mean(axis=2)
+    more = success[:, [names.index("network")]] - success
+    errors = more.std(axis=0, ddof=1) / np.sqrt(len(more))
+    ms, steps = (np.mean([each[of] for each in made]) for of in (1, 2))
+    print(f"d={d} n={n}: {ms:.1f} ms, {steps:.0f} steps, {len(more)} worlds")
+    for column, name in enumerate(names):
+        solved = f"{success[:, column].mean():.1f} %, network {more[:, column].mean():+.1f} ({errors[column]:.1f})"
+        gap = scores[:, names.index("network")] - scores[:, column]
+        error = gap.std(ddof=1) / np.sqrt(STARTS)
+        print(f"  {name}: score {scores[:, column].mean():.3f}, network {gap.mean():+.3f} ({error:.3f}); {solved}")
 
 
 def main() -> None:
     parser = parser_of(__doc__)
     parser.add_argument("--seconds", type=float, default=14.0)
-    weights = trained(parser.parse_args().seconds)
+    parser.add_argument("--worlds", type=int, default=60, help="of each of five kinds")
+    options = parser.parse_args()
+    weights = trained(options.seconds)
     for d, n in FRESH:
-        compared(weights, d, n)
+        compared(weights, d, n, options.worlds)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad._arrays import Ints
-from evenroad._checks import require_count
+from evenroad._checks import require_count, require_positive
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.anneal import Annealed, Callback
@@ -26,7 +26,10 @@ GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 """Multiples of it modulo 1, from a random shift on, are the orders that the search begins with."""
 
 HEAT = 0.003
-"""The search takes an order that is worse by about this share of the discrepancy, at first; less and less later."""
+"""The search takes an order that is worse by about this share of the discrepancy, at first; less and less later.
+
+With few points 0.02 is better: their orders differ more.
+"""
 
 QUICK_ROUNDS, ROUNDS = 60, 400
 """Rounds of bounds before a discrepancy counts as out of reach, in the search and at its end: never too good."""
@@ -47,7 +50,9 @@ def place_order(order: npt.ArrayLike) -> Annealed:
     return Annealed(points, star_discrepancy(points))
 
 
-def search_orders(n: int, *, steps: int = 5000, rng: RngLike = 0, callback: Callback | None = None) -> Annealed:
+def search_orders(
+    n: int, *, steps: int = 5000, heat: float = HEAT, rng: RngLike = 0, callback: Callback | None = None
+) -> Annealed:
     """Return n points in the plane of small star discrepancy: the best order of many, placed exactly.
 
     Parameters
@@ -56,12 +61,15 @@ def search_orders(n: int, *, steps: int = 5000, rng: RngLike = 0, callback: Call
         Number of points, >= 1.  A step takes O(n^2) time: 20 us at n = 20, 20 ms at n = 1000.
     steps : int
         Orders that are tried: half of them multiples of the golden ratio, then neighbours of the best of those.
+    heat : float
+        Share of the discrepancy by which a worse order is taken at first, >= 0.
     rng : int, SeedSequence or Generator
         Draws shifts and neighbours.
     callback : callable, optional
         Called as ``callback(step, steps, best)`` after every step; what it raises stops the search.
     """
     n, steps, draws = require_count("n", n), require_count("steps", steps), generator(rng)
+    require_positive("heat", heat, or_zero=True)
     x, y = np.empty(n + 1), np.empty(n + 1)
     now, best, order = 1.0, 1.0, np.arange(n)
     kept = order
@@ -69,7 +77,7 @@ def search_orders(n: int, *, steps: int = 5000, rng: RngLike = 0, callback: Call
         beginning = 2 * step <= steps or n == 1
         cooling = 0.0 if beginning else 2.0 * (steps - step) / steps
         tried = _golden(n, draws.random()) if beginning else _neighbour(order, draws)
-        limit = now * (1.0 + HEAT * cooling * draws.exponential())
+        limit = now * (1.0 + heat * cooling * draws.exponential())
         value = _place(tried, limit, x, y, QUICK_ROUNDS, 1e-4 * now)
         if value < limit:
             now, order = value, tried

@@ -1,0 +1,188 @@
+"""Both families of random worlds side by side: what `even` solves more than other samplers, and every loss.
+
+    evenroad bench fair --store fair.db
+    evenroad bench apart --store apart.db
+    python -m studies.benchmarks.families fair.db apart.db
+    python -m studies.benchmarks.families --candidates studies/docs/data/which_points.csv --fresh FRESH.csv
+
+The stores may be parts of a suite; a row says of how many worlds it is.  Differences are in percentage points, paired
+by world, with the standard error over worlds; k is the number of neighbours of the rule, and "all" the mean over k.
+
+`--candidates` reads rows of ``points_apart --use reporting``.  In each dimension, with each k and linked as a plan
+links, it names the best set there and how far it is ahead of `even`.  A best set of many is ahead by luck as well, so
+`--fresh` asks the same set in other worlds; the last two columns are the best set of all these worlds together.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from studies.benchmarks.rows import parser_of
+
+from evenroad._arrays import Floats
+from evenroad_studies.bench.rows import Rows, joined
+from evenroad_studies.bench.store import read_rows
+from evenroad_studies.report.fair import parts_of
+
+KS = (4, 6, 10, 20)
+BESIDE = ("sobol scrambled", "lattice", "halton scrambled", "hickernell", "mpmc", "uniform")
+BARS = (6, 10, 20)
+"""Numbers of neighbours for which `even` is to be the best set or within one standard error of it."""
+World = tuple[str, int]
+Differences = Mapping[World, Sequence[float]]
+"""World -> difference from `even`, for each k."""
+
+
+def solved_by_world(rows: Rows, sampler: str) -> dict[World, dict[tuple[int, int, int], bool]]:
+    """Return for each random world which of its (k, n, run) a sampler solved, by connecting."""
+    here = rows.where(rows.sampler.is_in([sampler]) & rows.search.is_in(["connect"]))
+    found: dict[World, dict[tuple[int, int, int], bool]] = defaultdict(dict)
+    columns = zip(here.instance.tolist(), here.n.tolist(), here.run.tolist(), here.solved.tolist(), strict=True)
+    for row, (instance, n, run, solved) in enumerate(columns):
+        k = int(here.rule[row].removeprefix("k=").split()[0])
+        found[here.problem[row], instance][k, n, run] = solved
+    return found
+
+
+def differences(rows: Rows, sampler: str) -> dict[World, list[float]]:
+    """Return by how much `even` solves more of the runs that both have, in points, for each world and k."""
+    ours, theirs = solved_by_world(rows, "even"), solved_by_world(rows, sampler)
+    gains: dict[World, list[float]] = {}
+    for world in ours.keys() & theirs.keys():
+        both = ours[world].keys() & theirs[world].keys()
+        of_k: dict[int, list[float]] = {k: [] for k in KS}
+        for at in both:
+            of_k[at[0]].append(100.0 * (ours[world][at] - theirs[world][at]))
+        if all(of_k.values()):
+            gains[world] = [float(np.mean(of_k[k])) for k in KS]
+    return gains
+
+
+def group_of(problem: str) -> str:
+    """Return what a problem is pooled with: family and dimension, or its kind where that has one dimension."""
+    kind, dimension, _ = parts_of(problem.removeprefix("apart-"))
+    family = "apart" if problem.startswith("apart-") else "fair"
+    return f"{family}, d = {dimension.removesuffix('d')}" if dimension != kind else kind
+
+
+def kind_of(problem: str) -> str:
+    """Return the kind of a problem's worlds, with its dimension."""
+    kind, dimension, _ = parts_of(problem.removeprefix("apart-"))
+    return kind if dimension == kind else f"{kind}, d = {dimension.removesuffix('d')}"
+
+
+def with_errors(values: Floats) -> list[str]:
+    """Return the means of columns of worlds with their standard errors, and of their mean; as texts of a table."""
+    every = np.column_stack([values, values.mean(axis=1)])
+    errors = every.std(axis=0, ddof=1) / np.sqrt(len(every))
+    return [f"{mean:+.1f} ({error:.1f})" for mean, error in zip(every.mean(axis=0), errors, strict=True)]
+
+
+def pooled(gains: Differences, by: Mapping[World, str]) -> dict[str, Floats]:
+    """Return the differences of each group, (worlds, ks), of groups with two worlds or more."""
+    groups: dict[str, list[Sequence[float]]] = defaultdict(list)
+    for world in sorted(gains):
+        groups[by[world]].append(gains[world])
+    return {name: np.array(rows) for name, rows in groups.items() if len(rows) > 1}
+
+
+def line(*cells: object) -> None:
+    """Print a row of a table."""
+    print("|", " | ".join(map(str, cells)), "|")
+
+
+def print_gains(rows: Rows) -> None:
+    """Print a table with a row for each sampler and group, and then the losses of single kinds of worlds."""
+    losses, cells = [], 0
+    line("`even` minus", "worlds", "of them", *(f"k = {k}" for k in KS), "all")
+    line(":--", ":--", "--:", *["--:"] * 5)
+    for sampler in BESIDE:
+        gains = differences(rows, sampler)
+        groups = pooled(gains, {world: group_of(world[0]) for world in gains})
+        for name, values in sorted(groups.items(), key=lambda item: order(item[0])):
+            line(sampler, name, len(values), *with_errors(values))
+        kinds = pooled(gains, {world: kind_of(world[0]) for world in gains})
+        for name, values in kinds.items():
+            errors = values.std(axis=0, ddof=1) / np.sqrt(len(values))
+            for k, mean, error in zip(KS, values.mean(axis=0), errors, strict=True):
+                cells += 1
+                if mean < -error < 0.0:
+                    losses.append((mean / error, sampler, name, k, f"{mean:+.1f} ({error:.1f})"))
+    print(f"\n{len(losses)} of {cells} differences by kind of world and k are below 0 by more than one standard error;")
+    print(f"{0.159 * cells:.0f} would be if the sets were equal.  All of two errors or more, the largest first:\n")
+    for share, sampler, name, k, text in sorted(losses):
+        if share <= -2.0:
+            print(f"* {name}, k = {k}: {text} behind {sampler}")
+
+
+def order(group: str) -> tuple[bool, bool, int, str]:
+    """Return the place of a group: families by dimension, then the others."""
+    family, _, d = group.partition(", d = ")
+    return (not d, family != "apart", int(d or 0), family)
+
+
+def candidates(path: Path) -> dict[tuple[str, int], dict[str, dict[str, str]]]:
+    """Return the rows over all kinds of worlds: (family, dimension) -> name of a set -> its row."""
+    found: dict[tuple[str, int], dict[str, dict[str, str]]] = defaultdict(dict)
+    with path.open(newline="") as file:
+        for row in csv.DictReader(file):
+            if row["kind"] == "all" and row["use"] == "reporting":
+                found[row["family"], int(row["d"])][row["set"]] = row
+    return found
+
+
+def best_of(sets: Mapping[str, tuple[float, float]]) -> tuple[str, str]:
+    """Return the set that is furthest ahead of `even`, which is none of them, and by how much, with its error."""
+    name = max(sets, key=lambda each: sets[each][0])
+    mean, error = sets[name]
+    return (name, f"{mean:+.1f} ({error:.1f})") if mean > 0.0 else ("even", "–")
+
+
+def print_best(path: Path, fresh: Path | None) -> None:
+    """Print for each family, dimension and k the best set and by how much it is ahead of `even`, here and elsewhere."""
+    here, there = candidates(path), candidates(fresh) if fresh else {}
+    line("worlds", "d", "k", "`even`, %", "best set", "- `even`", "in fresh worlds", "best of all", "- `even`")
+    line(":--", "--:", "--:", "--:", ":--", "--:", "--:", ":--", "--:")
+    ahead = cells = 0
+    for (family, d), sets in sorted(here.items()):
+        again = there.get((family, d), {})
+        for k in BARS:
+            column = f"plan {k}"
+            first = {name: over_all([row], column) for name, row in sets.items() if name != "even"}
+            second = {name: over_all([row], column) for name, row in again.items()}
+            both = {name: over_all([sets[name], again[name]], column) for name in first.keys() & again.keys()} or first
+            name, gap = best_of(first)
+            retold = "{:+.1f} ({:.1f})".format(*second[name]) if name in second and name != "even" else "–"
+            best, most = best_of(both)
+            cells += 1
+            ahead += best != "even" and both[best][0] > both[best][1]
+            line(family, d, k, sets["even"][column], f"`{name}`", gap, retold, f"`{best}`", most)
+    print(f"\n{ahead} of {cells} best sets of all worlds are ahead of `even` by more than one standard error")
+
+
+def over_all(rows: Sequence[Mapping[str, str]], column: str) -> tuple[float, float]:
+    """Return the mean difference of runs over different worlds, with its standard error."""
+    worlds = np.array([float(row["worlds"]) for row in rows])
+    means, errors = (np.array([float(row[f"{column} {of}"]) for row in rows]) for of in ("more", "error"))
+    share = worlds / worlds.sum()
+    return float(share @ means), float(np.sqrt(share**2 @ errors**2))
+
+
+def main() -> None:
+    parser = parser_of(__doc__)
+    parser.add_argument("stores", type=Path, nargs="*", help="of the suites fair and apart")
+    parser.add_argument("--candidates", type=Path, help="CSV of points_apart, reporting worlds")
+    parser.add_argument("--fresh", type=Path, help="the same, of other worlds")
+    options = parser.parse_args()
+    if options.stores:
+        print_gains(joined([read_rows(store) for store in options.stores]))
+    if options.candidates:
+        print_best(options.candidates, options.fresh)
+
+
+if __name__ == "__main__":
+    main()
