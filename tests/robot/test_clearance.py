@@ -81,16 +81,28 @@ def test_what_is_nearer_than_the_clearance_is_told_so_and_what_touches_is_told_t
     q = world.space.from_cube(np.random.default_rng(0).random((600, 6)))
     told = [world.explain(each) for each in q]
     free = plain.valid(q)
-    for text, within in zip(told, world.valid(q), strict=True):
+    for row, text, within in zip(q, told, world.valid(q), strict=True):
         assert (text == "it is free") == within
         if "clearance" in text:
-            assert text.endswith("is nearer than the clearance 0.3 to 'wall'")
+            said, away = text.removesuffix(" m away").split(" is nearer than the clearance 0.3 to 'wall', ")
+            assert said.startswith("'")
+            assert float(away) == pytest.approx(plain._distances(row[np.newaxis], to_itself=False).metres[0], rel=0.01)
     nearer = np.array(["clearance" in text for text in told])
     np.testing.assert_array_equal(nearer, free & ~world.valid(q))
     assert nearer.sum() > 20
     result = plan(scene, q[world.valid(q)][0], q[nearer][0], robot=robot, clearance=0.3)
     assert result.status == "goal_invalid"
     assert "is nearer than the clearance 0.3 to 'wall'" in result.message
+
+
+def test_an_obstacle_that_is_to_be_kept_away_from_is_not_said_to_be_touched():
+    robot, scene = ur5(np.pi), Scene((Obstacle.of("wall", "box", (0.1, 2.0, 2.0), (0.9, 0.0, 0.5)),), name="s")
+    q = ArmWorld(robot).space.from_cube(np.random.default_rng(0).random((600, 6)))
+    some = q[ArmWorld(robot, scene).valid(q) & ~ArmWorld(robot, scene.with_clearance({"wall": 0.2})).valid(q)][0]
+    told = ArmWorld(robot, scene.with_clearance({"wall": 0.2})).explain(some)
+    assert "is nearer than the clearance 0.2 to 'wall', 0." in told
+    told = ArmWorld(robot, scene.with_clearance({"wall": 0.2}), clearance=0.1).explain(some)
+    assert "is nearer than the clearance 0.3 to 'wall', 0." in told
 
 
 def test_a_world_with_a_clearance_is_another_world():

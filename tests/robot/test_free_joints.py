@@ -35,6 +35,16 @@ def test_a_base_is_held_unless_it_is_named(load):
     assert load(group="turn,drive").robot.joint_names == ("turn", *COORDINATES)
 
 
+def test_a_note_says_how_a_base_is_planned_for_until_it_is(load):
+    held = [note for note in load(group="arm").notes if "drive" in note]
+    assert held == [
+        "joint 'drive' is planar: it is held at 0; --group drive plans for drive/x, drive/y, drive/theta, within 50 m"
+        " or the limits of a scene"
+    ]
+    for group in ("whole", "drive", "turn,drive"):
+        assert not [note for note in load(group=group).notes if "held at 0" in note]
+
+
 def test_a_base_moves_its_links_in_the_plane_and_turns_them(load):
     robot = load(group="whole").robot
     pose = robot.fk(np.array([0.5, -0.25, np.pi / 2, 0.0]), "arm")
@@ -97,3 +107,18 @@ def test_a_floating_joint_is_held_at_0_and_a_note_says_so(tmp_path):
     turned = robot.fk(np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.0]), "base")
     np.testing.assert_allclose(turned.xyz, (0.1, 0.2, 0.4), atol=1e-12)
     np.testing.assert_allclose(turned.rpy, (0.6, 0.5, 0.4), atol=1e-12)
+
+
+def test_a_floating_virtual_joint_moves_a_base_in_all_ways(tmp_path):
+    (tmp_path / "r.urdf").write_text(FIXED)
+    (tmp_path / "r.srdf").write_text(SRDF.replace('"planar"', '"floating"'))
+    load = lambda group: load_model(tmp_path / "r.urdf", srdf=tmp_path / "r.srdf", group=group)  # noqa: E731
+    names = tuple(f"drive/{each}" for each in ("x", "y", "z", "yaw", "pitch", "roll"))
+    assert load("whole").robot.joint_names == (*names, "turn")
+    assert load("arm").robot.joint_names == ("turn",)
+    assert (
+        load("arm").notes[0].startswith("joint 'drive' is floating: it is held at 0; --group drive plans for drive/x,")
+    )
+    pose = load("whole").robot.fk(np.array([0.5, -0.25, 0.3, 0.0, np.pi / 2, 0.0, 0.0]), "base")
+    np.testing.assert_allclose(pose.xyz, (0.5, -0.25, 0.3), atol=1e-12)
+    np.testing.assert_allclose(pose.apply((1.0, 0.0, 0.0)) - pose.xyz, (0.0, 0.0, -1.0), atol=1e-12)

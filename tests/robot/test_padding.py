@@ -109,7 +109,7 @@ def test_a_file_of_moveit_pads_links_wherever_its_parameters_lie(tmp_path):
         "default_robot_padding: -0.1": "the padding of 'base_link' in",
         "default_robot_scale: 0.9": "the scale of 'base_link' in .* must be at least 1, got 0.9",
         "default_robot_scale: 99": "the scale of .*, in metres, must be at most 1",
-        "default_object_padding: 0.1": "default_object_padding in .* must be 0: the clearance",
+        "default_object_padding: 0.1": "default_object_padding in .* must be 0, got 0.1: give a clearance",
         "a: {default_robot_padding: 0}\nb: {default_robot_padding: 1}": "has default_robot_padding twice",
     }.items():
         file.write_text(text)

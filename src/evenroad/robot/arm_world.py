@@ -264,14 +264,25 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
         bodies = bodies or self._touching(row)
         if bodies is None:
             return "it is free"
-        kept = {"clearance": self.clearance, "padding": dict(self.robot.padding).get(bodies[0], 0.0)}
-        if any(kept.values()):
-            plain = replace(self, clearance=0.0, robot=replace(self.robot, padding=()))
+        if any(self._kept_from(*bodies)):
+            obstacles = dict.fromkeys((each.name for each in self.scene.obstacles if each.clearance), 0.0)
+            scene, robot = self.scene.with_clearance(obstacles), replace(self.robot, padding=())
+            plain = replace(self, scene=scene, clearance=0.0, robot=robot)
             if not plain.valid(batch)[0]:
                 return plain.explain(q)
-            both = " and the ".join(f"{name} {metres:g}" for name, metres in kept.items() if metres)
-            return f"{bodies[0]!r} is nearer than the {both} to {bodies[1]!r}"
+            apart, (nearest, *_) = plain._distances(batch, to_itself=False)
+            if nearest is not None and apart[0] < sum(self._kept_from(*nearest)):
+                bodies = nearest
+            so_near = f", {apart[0]:.3g} m away" if bodies == nearest else ""
+            kept = zip(("clearance", "padding"), self._kept_from(*bodies), strict=True)
+            both = " and the ".join(f"{name} {metres:g}" for name, metres in kept if metres)
+            return f"{bodies[0]!r} is nearer than the {both} to {bodies[1]!r}{so_near}"
         return f"{bodies[0]!r} touches {bodies[1]!r}"
+
+    def _kept_from(self, link: str, obstacle: str) -> tuple[float, float]:
+        """Return by how much an obstacle is kept away from, and by how much a link is padded [m]."""
+        wider = sum(each.clearance for each in self.scene.obstacles if each.name == obstacle)
+        return self.clearance + wider, dict(self.robot.padding).get(link, 0.0)
 
     def explain_start(self, q: Floats) -> str:
         """Return, as `explain`, why a robot cannot start from a configuration, (dim,), and for a scan what helps."""

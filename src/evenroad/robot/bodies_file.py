@@ -93,7 +93,7 @@ def _read_padding(robot: Robot, path: Path) -> dict[str, float]:
         raise BrokenFile(f"{path} has no padding: it must have {', '.join((*_PADDING, *_SCALE))}, or some of them")
     for name in _OTHERS:
         if said.get(name):
-            raise NotAvailable(f"{name} in {path} must be 0: the clearance of a world or an obstacle stands for it")
+            raise NotAvailable(f"{name} in {path} must be 0, got {said[name]}: give a clearance in its place")
     metres = _by_link(robot, said, _PADDING, 0.0, path)
     scale = _by_link(robot, said, _SCALE, 1.0, path)
     for link in robot.links:

@@ -54,10 +54,23 @@ def coordinates(kind: str, joint: Joint) -> list[Joint]:
     return found
 
 
-def of_planar(name: str, parent: str, child: str) -> list[Joint]:
-    """Return the joints of a planar joint in the x-y plane of its parent."""
+def of_base(kind: str, name: str, parent: str, child: str) -> list[Joint]:
+    """Return the joints of a planar joint in the x-y plane of its parent, or of a floating one."""
     joint = Joint(name, "fixed", parent, child, (0.0, 0.0, 0.0), IDENTITY.rotation)
-    return coordinates("planar", joint)
+    return coordinates(kind, joint)
+
+
+def held_note(kind: str, name: str, joints: Sequence[Joint]) -> str:
+    """Return the note about a planar or floating joint that is not planned for."""
+    names = ", ".join(each.name for each in joints)
+    said = f"joint {name!r} is {kind}: it is held at 0"
+    return f"{said}; --group {name} plans for {names}, within {FAR:g} m or the limits of a scene"
+
+
+def without_moved(notes: Sequence[str], group: Sequence[str]) -> tuple[str, ...]:
+    """Return notes but those that hold a joint of which a group has coordinates."""
+    moved = tuple(f"joint {name.rpartition('/')[0]!r} is " for name in group if "/" in name)
+    return tuple(note for note in notes if not (moved and note.startswith(moved) and "it is held at 0" in note))
 
 
 def named(joint: str, order: Sequence[str]) -> list[str]:

@@ -22,6 +22,7 @@ from evenroad.robot.apart import held_apart
 from evenroad.robot.bodies_file import read_bodies
 from evenroad.robot.cache import cached, keep, key_of, know, known, stamps
 from evenroad.robot.find import find_robot
+from evenroad.robot.free_joints import without_moved
 from evenroad.robot.groups import choose_group, chosen_states, group_notes, held_states
 from evenroad.robot.mjcf import read_mjcf
 from evenroad.robot.pairs import pairs_of, self_pairs
@@ -240,7 +241,7 @@ def _build(
         pairs.always,
         pairs.never_free,
         (
-            *urdf.notes,
+            *without_moved(urdf.notes, chosen),
             *(() if srdf is None else srdf.notes),
             *group_notes(urdf, srdf, group),
             *map(_contained, pairs.contained),
@@ -254,14 +255,14 @@ def _planned(
     """Return the robot, its SRDF and the group that is planned for; its base moves if the group says so."""
     if srdf_path is None:
         return urdf, None, choose_group(urdf, None, group)
+    moving = with_moving_base(urdf, srdf_path)
     if group is not None:
-        moving = with_moving_base(urdf, srdf_path)
         srdf = read_srdf(srdf_path, moving)
         chosen = choose_group(moving, srdf, group)
         if not set(chosen) <= set(urdf.order):
             return moving, srdf, chosen
     srdf = read_srdf(srdf_path, urdf)
-    return urdf, srdf, choose_group(urdf, srdf, group)
+    return replace(urdf, notes=moving.notes), srdf, choose_group(urdf, srdf, group)
 
 
 def _contained(pair: tuple[str, str]) -> str:

@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element
 from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.robot.apart import bent_posture, held_apart
-from evenroad.robot.free_joints import named, of_planar
+from evenroad.robot.free_joints import held_note, named, of_base
 from evenroad.robot.groups import chains, few_of
 from evenroad.robot.joint import Joint
 from evenroad.robot.pairs import TOUCHING
@@ -75,19 +75,21 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
 
 
 def with_moving_base(urdf: Urdf, srdf: Path) -> Urdf:
-    """Return a robot whose root moves in the plane, where a virtual joint of its SRDF says so."""
+    """Return a robot whose root moves, in the plane or in all ways, where a virtual joint of its SRDF says so."""
     root = urdf.links[0]
     for element in read_xml(srdf, "SRDF", "an SRDF").findall("virtual_joint"):
         name, frame = element.get("name", ""), element.get("parent_frame", "world")
-        if element.get("type") != "planar" or element.get("child_link") != root or not name:
+        kind = element.get("type", "")
+        if kind not in ("planar", "floating") or element.get("child_link") != root or not name:
             continue
-        joints = of_planar(name, frame if frame not in urdf.links else f"{name}/{frame}", root)
+        joints = of_base(kind, name, frame if frame not in urdf.links else f"{name}/{frame}", root)
         if {name, *(joint.name for joint in joints)} & set(urdf.order):
             # The robot's own joint of that name is meant.
             continue
         links = (joints[0].parent, *(joint.child for joint in joints), *urdf.links[1:])
         order = (*(joint.name for joint in joints), *urdf.order)
-        return replace(urdf, links=links, joints=(*joints, *urdf.joints), order=order)
+        notes = (*urdf.notes, held_note(kind, name, joints))
+        return replace(urdf, links=links, joints=(*joints, *urdf.joints), order=order, notes=notes)
     return urdf
 
 

@@ -16,7 +16,7 @@ from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
-from evenroad.robot.free_joints import FAR, coordinates
+from evenroad.robot.free_joints import coordinates, held_note
 from evenroad.robot.joint import Joint, Kind, Mimic, with_direct_mimics, within_limits_of_mimics
 from evenroad.robot.planes import Plane
 from evenroad.robot.urdf_xml import RobotFile, drawn_only, find_mesh, read_urdf_xml
@@ -127,9 +127,7 @@ def _joints(element: Element, path: Path, notes: list[str]) -> list[Joint]:
     if kind != joint.kind:
         plane = (0.0, 0.0, 1.0) if element.find("axis") is None else _axis(element, f"joint {joint.name!r} in {path}")
         joints = coordinates(kind, replace(joint, axis=plane))
-        names = ", ".join(each.name for each in joints)
-        said = f"joint {joint.name!r} is {kind}: it is held at 0"
-        notes.append(f"{said}; --group {joint.name} plans for {names}, within {FAR:g} m or the limits of a scene")
+        notes.append(held_note(kind, joint.name, joints))
         return joints
     return [joint]
 
