@@ -139,8 +139,9 @@ class PointCloud(Shape):
         points = np.array(as_batch("points of a cloud", points, 3))
         if len(points) == 0:
             raise InvalidValue("a cloud must have one point or more: one without would never collide")
-        if np.abs(points).max() > FARTHEST:
-            raise InvalidValue(f"points of a cloud must lie within {FARTHEST:g} m, got {np.abs(points).max():g}")
+        # Magnitudes would be one more array of a frame's size.
+        if (most := max(points.max(), -points.min())) > FARTHEST:
+            raise InvalidValue(f"points of a cloud must lie within {FARTHEST:g} m, got {most:g}")
         radius = require_positive("the radius of a cloud", radius, at_most=FARTHEST)
         set_fields(self, points=points, radius=radius)
         self._set_pose(placed)

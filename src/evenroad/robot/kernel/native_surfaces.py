@@ -46,20 +46,20 @@ def surface_of(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) ->
 
 def make_surface(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) -> native.Surface | None:
     """Return the same, made anew."""
-    solid, turned, reach = np.zeros((0, 3, 3)), False, reach + clearance
+    reach += clearance
     if isinstance(body, PointCloud):
-        near, radius = _near_points(body, reach), body.radius
-    else:
-        corners, radius = body.pose.apply(body.triangles.vertices)[body.triangles.triangles], 0.0
-        near, (closed, turned) = _within_reach(corners, reach), closed_parts(body.triangles)
-        solid = corners[closed]
+        pose = np.array(body.pose.rotation), np.array(body.pose.xyz)
+        return native.Surface.of_cloud(body.points, *pose, body.radius, clearance, reach)
+    corners = body.pose.apply(body.triangles.vertices)[body.triangles.triangles]
+    near, (closed, turned) = _within_reach(corners, reach), closed_parts(body.triangles)
+    solid = corners[closed]
     if len(near) == 0:
         if not turned or abs(winding_number(solid, np.zeros(3))) < 0.5:
             return None
         # All that the robot can reach is inside.
         near = solid = reach * _CUBE
-    padding = PADDING * (math.sqrt(np.einsum("ijk,ijk->ij", near, near).max()) + radius)
-    return native.Surface(np.ascontiguousarray(near), radius + clearance + padding, solid, turned, reach)
+    padding = PADDING * math.sqrt(np.einsum("ijk,ijk->ij", near, near).max())
+    return native.Surface(np.ascontiguousarray(near), clearance + padding, solid, turned, reach)
 
 
 _surfaces = lru_cache(maxsize=64)(make_surface)
@@ -70,14 +70,6 @@ _frames = lru_cache(maxsize=4)(make_surface)
 def surfaces_around(bodies: tuple[tuple[PointCloud | Mesh, float], ...], reach: float) -> native.Surface:
     """Return the grid around several bodies that can be reached, each with its clearance; kept, as they are."""
     return native.Surface.around([surface_of(body, reach, clearance) for body, clearance in bodies])
-
-
-def _near_points(body: PointCloud, reach: float) -> Floats:
-    """Return the points of a cloud within reach of the origin, (n, 1, 3)."""
-    points = body.pose.apply(body.points)
-    near = np.einsum("ij,ij->i", points, points) <= (reach + body.radius) ** 2
-    # A frame of a camera is not copied more often than it must be.
-    return (points if near.all() else points[near])[:, np.newaxis]
 
 
 def _within_reach(corners: Floats, reach: float) -> Floats:

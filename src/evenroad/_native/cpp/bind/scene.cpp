@@ -32,6 +32,18 @@ void make_surface(Surface* self, nb::handle corners, double radius, nb::handle s
   new (self) Surface(robot::make_surface({of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach}));
 }
 
+/// Return what of a cloud a robot can reach, or None; points must be finite, and within 1e9 m.
+nb::object surface_of_cloud(nb::handle points, nb::handle rotation, nb::handle xyz, double radius, double clearance,
+                            double reach) {
+  const FloatRows of(points, "points");
+  const Array<const double, 1> turn(rotation, "rotation"), to(xyz, "xyz");
+  require(of.shape(1) == 3, "points must be (n, 3)");
+  turn.of_shape({9}), to.of_shape({3});
+  require_within({&reach, 1}, 0.0, FARTHEST, "reach");
+  auto made = robot::make_cloud({{of.data(), 3 * of.shape(0)}, turn.span(), to.span(), radius, clearance, reach});
+  return made ? nb::cast(std::make_unique<Surface>(std::move(*made))) : nb::none();
+}
+
 /// Return the grid around surfaces, without leaves.
 std::unique_ptr<Surface> surface_around(nb::list surfaces) {
   std::vector<std::shared_ptr<const Surface>> all;
@@ -112,6 +124,7 @@ void add_scene(nb::module_& part) {
   nb::class_<Surface>(part, "Surface")
       .def("__init__", &make_surface, nb::arg("corners"), nb::arg("radius"), nb::arg("solid"), nb::arg("turned"),
            nb::arg("reach"))
+      .def_static("of_cloud", &surface_of_cloud)
       .def_static("around", &surface_around);
   part.def("box_rows", &box_rows, nb::arg("size"), nb::arg("xyz"), nb::arg("xyzw").none());
   nb::class_<Scene>(part, "Scene")

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 namespace evenroad::robot {
@@ -31,16 +30,21 @@ void put(TriangleLeaf& leaf, int lane, const double* t) {
   put(leaf.normal, lane, normal);
 }
 
+constexpr std::size_t AHEAD = 2 * LANES;
+
 constexpr double CELLS = 400'000;  // about so many of a surface's grid
 
 /// Write a surface's grid, and how often it winds around each cell.
 void add_grid(Surface& surface, const GivenSurface& given) {
   double low[3], high[3];
-  for (int axis = 0; axis < 3; axis++) {
-    low[axis] = std::numeric_limits<double>::infinity(), high[axis] = -low[axis];
-    for (std::size_t i = axis; i < given.corners.size(); i += 3) {
-      low[axis] = std::min(low[axis], given.corners[i]), high[axis] = std::max(high[axis], given.corners[i]);
+  std::copy_n(given.corners.begin(), 3, low), std::copy_n(low, 3, high);
+  for (std::size_t i = 0; i < given.corners.size(); i += 3) {
+    for (std::size_t axis = 0; axis < 3; axis++) {
+      const double at = given.corners[i + axis];
+      low[axis] = std::min(low[axis], at), high[axis] = std::max(high[axis], at);
     }
+  }
+  for (int axis = 0; axis < 3; axis++) {
     if (given.triangles) {
       low[axis] = std::clamp(low[axis], -given.reach, given.reach);
       high[axis] = std::clamp(high[axis], -given.reach, given.reach);
@@ -107,7 +111,17 @@ Surface make_surface(const GivenSurface& given) {
   const Vec3x16 far = {nowhere, nowhere, nowhere}, none = {zero, zero, zero};
   std::vector<Around> around;
   std::vector<Place> corners;
+  const std::size_t blocks = (count + LANES - 1) / LANES;
+  around.reserve(blocks);
+  if (given.triangles)
+    surface.triangles.reserve(blocks + LANES);
+  else
+    surface.points.reserve(blocks + LANES);
   for (std::size_t first = 0; first < count; first += LANES) {
+    // Neighbours lie anywhere in memory: those of some blocks later are fetched.
+    for (std::size_t i = first + AHEAD; i < std::min(first + AHEAD + LANES, count); i++) {
+      __builtin_prefetch(given.corners.data() + 3 * static_cast<std::size_t>(each * order[i]));
+    }
     PointLeaf points{far};
     TriangleLeaf triangles{far, none, none, none};
     corners.clear();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,6 +48,16 @@ struct GivenSurface {
 
 /// Return a surface; std::invalid_argument if sizes do not fit.
 Surface make_surface(const GivenSurface& given);
+
+/// A cloud as Python gives it: points, and their pose.
+struct GivenCloud {
+  std::span<const double> points, rotation, xyz;  // (n, 3) [m]; (3, 3); (3,) [m]
+  double radius, clearance;                       // of a ball about each, and by which that is larger [m]
+  double reach;  // of the robot with that clearance: no more than this is looked at [m]
+};
+
+/// Return as a surface what of a cloud can be reached, or nothing.
+std::optional<Surface> make_cloud(const GivenCloud& given);
 
 /// Return a grid around surfaces, without leaves: a byte counts how far all of a cell is from every one.
 Surface make_surface_around(std::span<const std::shared_ptr<const Surface>> surfaces);
