@@ -1,20 +1,24 @@
 """How soon the paths of arms become short: their length over the best known, after milliseconds of processor time.
 
-    python -m studies.benchmarks.anytime --count 8                     # 8 problems a kind, the UR5 and seven joints
-    python -m studies.benchmarks.anytime --count 3 --ompl 3            # AORRTC and BIT* of OMPL beside it, 3 s each
-    python -m studies.benchmarks.anytime --picture FILE                # and a picture of the curves
+    python -m studies.benchmarks.anytime --count 8                   # 8 problems a kind, the UR5 and seven joints
+    python -m studies.benchmarks.anytime --count 3 --ompl            # planners of OMPL beside it, 3 s each
+    python -m studies.benchmarks.anytime --count 3 --ompl --roboplan --picture FILE   # RoboPlan, too, and the curves
 
 Time counts from the query of a known world on: first path, smoothing and improvement.  The best known is the shortest
-that this run or others find, which are driven by other sequences and take far longer; where OMPL runs, its paths
-count, too.  A path that comes later counts as it is when it comes; problems with straight paths are in.  OMPL (extra
-[ompl], 2.0 for AORRTC; its wheel has no AIT*) asks the same proofs through Python, one motion at a time.
+that this run or others find, which are driven by other sequences and take far longer; what runs beside counts, too.
+A path that comes later counts as it is when it comes; problems with straight paths are in.
+
+OMPL (extra [ompl], 2.0 for AORRTC; its wheel has no AIT*) asks the same proofs through Python, one motion at a time.
+Its RRT-Connect plans again and again, each path is simplified, and the shortest is kept.  So does RoboPlan (wheels
+roboplan-core and roboplan-rrt), which asks coal at states 0.02 rad apart: its paths count unless they touch.
 """
 
 from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +31,7 @@ from evenroad.roadmap.attempt import NO_LIMIT
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.tree_sequences import shifted_cube_points
+from evenroad.space.path import path_length
 
 TREES = ArmTrees(shortest=True)
 
@@ -34,9 +39,12 @@ MOST_MOTIONS = 200_000
 TIMES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
 LATER = (1000.0, 3000.0)
 """Times of OMPL alone [ms]."""
-OF_OMPL = ("AORRTC", "BITstar")
+OF_OMPL = {"AORRTC": "AORRTC", "BITstar": "BIT*"}
+"""Planners of OMPL that go on after the first path, and how they are named."""
 OTHERS = 3
 SLICE = 100
+Beside = dict[str, Callable[[Problem, float], Iterator[tuple[float, float]]]]
+"""What runs beside: a problem and its milliseconds to times [ms] and lengths, as `lengths` yields them."""
 
 
 def lengths(world: ArmWorld, problem: Problem, variant: int, most: float) -> Iterator[tuple[float, float]]:
@@ -61,15 +69,14 @@ def lengths(world: ArmWorld, problem: Problem, variant: int, most: float) -> Ite
         state = improver.improve(NO_LIMIT, NO_LIMIT, SLICE)
 
 
-def lengths_of(name: str, world: ArmWorld, problem: Problem, most: float) -> Iterator[tuple[float, float]]:
+def lengths_of(name: str, problem: Problem, most: float) -> Iterator[tuple[float, float]]:
     """Yield as `lengths` of a planner of OMPL, looked at after each of the times."""
     from ompl import base as ob
     from ompl import geometric as og
-    from ompl import util as ou
 
     from evenroad.adapters.ompl import format_of, space_information
 
-    ou.setLogLevel(ou.LogLevel.LOG_NONE)
+    world = ArmWorld(problem.robot, problem.scene)
     begin = time.thread_time()
     information = space_information(CertifiedWorld(world))
     definition = ob.ProblemDefinition(information)
@@ -91,15 +98,47 @@ def lengths_of(name: str, world: ArmWorld, problem: Problem, most: float) -> Ite
             yield 1e3 * (time.thread_time() - begin), definition.getSolutionPath().length()
 
 
-def measured(problem: Problem, best: float, ompl: float) -> list[list[float]] | None:
+def simplified(problem: Problem, most: float) -> Iterator[tuple[float, float]]:
+    """Yield as `lengths` of OMPL's RRT-Connect, planning again and again."""
+    from ompl import geometric as og
+
+    from evenroad.adapters.ompl import ompl_path, path_of, solve, space_information
+
+    world = ArmWorld(problem.robot, problem.scene)
+    begin = time.thread_time()
+    information = space_information(CertifiedWorld(world))
+    while (left := 1e-3 * most - (time.thread_time() - begin)) > 0.0:
+        path = solve(og.RRTConnect(information), problem.start, problem.goal, seconds=left)
+        if path is not None:
+            states = ompl_path(information, path)
+            og.PathSimplifier(information).simplifyMax(states)
+            yield 1e3 * (time.thread_time() - begin), path_length(path_of(information, states), world.space)
+
+
+def by_roboplan(problem: Problem, most: float) -> Iterator[tuple[float, float]]:
+    """Yield as `lengths` of RoboPlan's RRT-Connect, planning again and again; what touches does not count."""
+    from studies.benchmarks.roboplan_arm import plans
+    from studies.benchmarks.with_ompl import file_of, touches
+
+    world = ArmWorld(problem.robot, problem.scene)
+    begin, apart = time.thread_time(), 0.0
+    for path in plans(problem, file_of(problem.robot), 1e-3 * most):
+        spent = 1e3 * (time.thread_time() - begin - apart)
+        if path is not None and spent <= most and not touches(problem, path):
+            yield spent, path_length(path, world.space)
+        if spent > most:
+            return
+        apart = time.thread_time() - begin - 1e-3 * spent
+
+
+def measured(problem: Problem, best: float, beside: Beside, seconds: float) -> list[list[float]] | None:
     """Return the lengths after each time over the best known of each planner; None where there is no path."""
     world = ArmWorld(problem.robot, problem.scene)
     runs = [list(lengths(world, problem, 0, TIMES[-1]))]
     if not runs[0]:
         return None
     others = [list(lengths(world, problem, 1 + i, 1e3 * best)) for i in range(OTHERS)]
-    if ompl:
-        runs += [list(lengths_of(name, world, problem, 1e3 * ompl)) for name in OF_OMPL]
+    runs += [list(planner(problem, 1e3 * seconds)) for planner in beside.values()]
     shortest = min(length for each in (*runs, *others) for _, length in each)
     first = [run[0][1] if run else np.nan for run in runs]
     return [
@@ -114,20 +153,32 @@ def main() -> None:
     parser.add_argument("--arms", nargs="*", default=["arm7", "ur5"])
     parser.add_argument("--tuning", action="store_true", help="the problems that constants are chosen on")
     parser.add_argument("--best", type=float, default=1.0, help="seconds of each of three other runs [s]")
-    parser.add_argument("--ompl", type=float, default=0.0, help="seconds of each planner of OMPL, 0 for none [s]")
+    parser.add_argument("--ompl", action="store_true", help="planners of OMPL beside it")
+    parser.add_argument("--roboplan", action="store_true", help="RoboPlan beside it")
+    parser.add_argument("--seconds", type=float, default=3.0, help="seconds of each planner beside it [s]")
     parser.add_argument("--picture", type=Path, help="file of a picture of the curves")
     options = parser.parse_args()
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
+    beside: Beside = {}
+    if options.ompl:
+        from ompl import util as ou
+
+        ou.setLogLevel(ou.LogLevel.LOG_NONE)
+        beside |= {f"OMPL's {called}": partial(lengths_of, name) for name, called in OF_OMPL.items()}
+        beside["OMPL's RRT-Connect, simplified, again and again"] = simplified
+    if options.roboplan:
+        beside["RoboPlan's RRT-Connect, shortcuts, again and again"] = by_roboplan
     curves: dict[str, Vector] = {}
     for name in options.arms:
         every = list(problems(Pool(arm_named(name)), (TUNING if options.tuning else REPORTING)[: options.count]))
         # The first query of a process loads what all others use.
         list(lengths(ArmWorld(every[0].robot, every[0].scene), every[0], 0, 10.0))
-        ratios = np.array([row for row in (measured(each, options.best, options.ompl) for each in every) if row])
-        for i, who in enumerate(("evenroad", *OF_OMPL)[: ratios.shape[1]]):
+        rows = (measured(each, options.best, beside, options.seconds) for each in every)
+        ratios = np.array([row for row in rows if row])
+        for i, who in enumerate(("evenroad", *beside)):
             own = ratios[:, i]
             found = ~np.isnan(own[:, 0])
-            curves[f"{who}, {name}"] = own[found]
+            curves[f"{who}; {name}"] = own[found]
             print(f"{name}, {who}: {found.sum()} of {len(own)} problems; mean / median / 95 % / largest")
             for most, column in zip((*TIMES, *LATER)[: None if i else len(TIMES)], own[found].T, strict=False):
                 spread = np.mean(column), np.median(column), np.quantile(column, 0.95), column.max()
@@ -141,17 +192,19 @@ def draw(curves: dict[str, Vector], file: Path) -> None:
     """Draw the mean ratios against the time."""
     import matplotlib.pyplot as plt
 
-    figure, axis = plt.subplots(figsize=(7, 4), constrained_layout=True)
-    arms = list(dict.fromkeys(name.split(", ")[1] for name in curves))
-    planners = list(dict.fromkeys(name.split(", ")[0] for name in curves))
+    arms = list(dict.fromkeys(name.split("; ")[1] for name in curves))
+    planners = list(dict.fromkeys(name.split("; ")[0] for name in curves))
+    figure, axes = plt.subplots(1, len(arms), figsize=(5.5 * len(arms), 4.6), layout="constrained", squeeze=False)
     for name, ratios in curves.items():
-        who, arm = name.split(", ")
-        look = dict(color=f"C{planners.index(who)}", linestyle=("-", "--", ":")[arms.index(arm) % 3], marker="o")
+        who, arm = name.split("; ")
+        axis = axes[0][arms.index(arm)]
         shown = len(TIMES) if who == "evenroad" else len(TIMES) + len(LATER)
-        axis.loglog((*TIMES, *LATER)[:shown], ratios.mean(axis=0)[:shown] - 1.0, label=name, **look)
-    axis.set(xlabel="processor time from the query on [ms]", ylabel="mean length above the best known, as a share")
-    axis.grid(alpha=0.3, which="both")
-    axis.legend()
+        excess = 100.0 * (ratios.mean(axis=0)[:shown] - 1.0)
+        axis.loglog((*TIMES, *LATER)[:shown], excess, color=f"C{planners.index(who)}", marker="o", label=who)
+        axis.set(xlabel="processor time from the query on [ms]", title=arm)
+        axis.grid(alpha=0.3, which="both")
+    axes[0][0].set(ylabel="mean length above the best known [%]")
+    figure.legend(*axes[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize=8)
     figure.savefig(file)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -83,16 +84,24 @@ def scene_of(problem: Problem, urdf: Path) -> Scene:
 
 def plan(problem: Problem, urdf: Path, seconds: float) -> Vector | None:
     """Return a shortened path, (p, dim), or None."""
+    return next(plans(problem, urdf, seconds))
+
+
+def plans(problem: Problem, urdf: Path, seconds: float) -> Iterator[Vector | None]:
+    """Yield shortened paths, (p, dim), or None: plans of the seeds 1, 2, 3 ... of so many seconds at most."""
     scene, names = scene_of(problem, urdf), list(problem.robot.group)
-    options = RRTOptions()
+    options, shorter = RRTOptions(), PathShortcuttingOptions()
     options.group_name, options.rrt_connect, options.max_nodes = GROUP, True, MOST_NODES
     options.max_planning_time, options.collision_check_step_size = seconds, STEP
-    planner = RRT(scene, options)
-    planner.setRngSeed(1)
-    try:
-        path = planner.plan(JointConfiguration(names, problem.start), JointConfiguration(names, problem.goal))
-    except RuntimeError:
-        return None
-    shorter = PathShortcuttingOptions()
     shorter.group_name, shorter.max_step_size = GROUP, STEP
-    return np.array(PathShortcutter(scene, shorter).shortcut(path).positions)
+    start, goal = JointConfiguration(names, problem.start), JointConfiguration(names, problem.goal)
+    for seed in itertools.count(1):
+        planner = RRT(scene, options)
+        planner.setRngSeed(seed)
+        shorter.seed = seed - 1
+        try:
+            path = planner.plan(start, goal)
+        except RuntimeError:
+            yield None
+            continue
+        yield np.array(PathShortcutter(scene, shorter).shortcut(path).positions)

@@ -30,6 +30,7 @@ import evenroad as er
 from evenroad.adapters.ompl import ompl_path, path_of, solve, space_information
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
+from evenroad.robot.robot import Robot
 
 SECONDS = 2.0
 APART = 1e-3
@@ -57,13 +58,17 @@ def theirs(problem: Problem) -> Row:
     return 1e3 * (time.thread_time() - begin), path
 
 
+def file_of(robot: Robot) -> Path:
+    """Return the URDF of a robot that ships."""
+    return DATA / f"{'ur5' if robot.name.startswith('ur5') else robot.name}.urdf"
+
+
 def by_roboplan(problem: Problem) -> Row:
     """Plan with RoboPlan's RRT-Connect, and its shortcuts."""
     from studies.benchmarks.roboplan_arm import plan
 
-    name = "ur5" if problem.robot.name.startswith("ur5") else problem.robot.name
     begin = time.thread_time()
-    path = plan(problem, DATA / f"{name}.urdf", SECONDS)
+    path = plan(problem, file_of(problem.robot), SECONDS)
     return 1e3 * (time.thread_time() - begin), path
 
 
