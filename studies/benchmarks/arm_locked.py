@@ -26,7 +26,7 @@ TRIES = (
 def locked_by(problem: Problem) -> int:
     """Return by how many of the first joints it is proved that there is no path; 0 where that is not proved."""
     bodies = outer_bodies(ArmWorld(problem.robot, problem.scene))
-    return shown_by(bodies, problem.start, problem.goal[np.newaxis], (), (*THOROUGH, *TRIES))[0]
+    return len(shown_by(bodies, problem.start, problem.goal[np.newaxis], (), (*THOROUGH, *TRIES))[0])
 
 
 def main() -> None:

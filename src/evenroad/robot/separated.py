@@ -31,7 +31,7 @@ THOROUGH = (
 )
 """These take tenths of a second."""
 
-SPLIT, MOST_SPLIT = 2, 200_000
+SPLIT, MOST_SPLIT = 2, 1_000_000
 """So many joints are also looked at with cells that are split where it matters, and with how many cells at most: some
 passages are closed by millimetres.  Where one is clear it takes some milliseconds to say so."""
 
