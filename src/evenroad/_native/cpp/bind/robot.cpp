@@ -154,10 +154,11 @@ template <class Write>
 nb::object flags(std::size_t count, Write&& write) {
   static const nb::handle kind = numpy("bool_");
   const nb::object made = empty_array(nb::int_(count), kind);
+  if (count == 0) return made;
   Py_buffer view;
   if (PyObject_GetBuffer(made.ptr(), &view, PyBUF_WRITABLE) != 0) throw nb::python_error();
   const std::span<bool> all(static_cast<bool*>(view.buf), count);
-  if (count > 0) without_gil([&] { write(all); });
+  without_gil([&] { write(all); });
   PyBuffer_Release(&view);
   return made;
 }
