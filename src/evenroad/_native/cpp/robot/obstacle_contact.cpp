@@ -38,6 +38,16 @@ struct Boxes {
     const Vec3x16 reach = spread(Vec3{block.half.x[k], block.half.y[k], block.half.z[k]});
     return below_zero(largest(abs(centre - there) - half - reach));
   }
+
+  /// Return which of some obstacles of a block they meet in lanes that are not blocked.
+  EVENROAD_INLINE Mask near(const Block& block, Mask asked, Mask blocked) const {
+    Mask met = 0;
+    for (; asked != 0; asked &= asked - 1) {
+      const int k = std::countr_zero(asked);
+      met |= static_cast<Mask>((near(block, k) & ~blocked) != 0) << k;
+    }
+    return met;
+  }
 };
 
 /// So few obstacles are looked at one by one: the box around all lanes of a capsule costs more than it saves.
@@ -135,13 +145,8 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
       Mask near_body = ALL_LANES;
       if (many) {
         PlacedBody& body = places.bodies[b];
-        const Boxes boxes(body, 0);
-        near_body = 0;
-        for (Mask near = near_obstacles(block, number == 0 ? make_around(body, 0) : body.around); near != 0;
-             near &= near - 1) {
-          const int k = std::countr_zero(near);
-          if ((boxes.near(block, k) & ~blocked) != 0) near_body |= 1U << k;
-        }
+        const Mask asked = near_obstacles(block, number == 0 ? make_around(body, 0) : body.around);
+        near_body = Boxes(body, 0).near(block, asked, blocked);
         if (near_body == 0) continue;
       }
       // By obstacles: lanes that the true shape is to decide, and the first capsule that touches.
