@@ -5,7 +5,7 @@ def fastest(
     stops: Floats,
     velocity: Floats,
     acceleration: Floats,
-    ceiling: Floats,
+    within: tuple[Floats, float, float, tuple[Floats, Floats, Floats, Floats, Floats, Floats] | None],
 ) -> tuple[Floats, Floats, Floats, Floats]: ...
 def states(
     path: tuple[Floats, Floats, Floats, Floats, Floats], law: tuple[Floats, Floats, Floats, Floats], t: Floats

@@ -73,9 +73,7 @@ def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
     the numbers that it must; NotAvailable if it is a xacro and the extra for these is not installed.
     """
     path, notes = file.path, list[str]()
-    root = read_xml(path, "robot", "a URDF")
-    if path.suffix == ".xacro" or any(element.tag.startswith("xacro:") for element in root.iter()):
-        root = _expanded(file)
+    root = read_robot_xml(file)
     for name in _IGNORED:
         for parent in list(root.iter()):
             for element in parent.findall(name):
@@ -109,6 +107,16 @@ def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
                 f"joint {joint.attrib['name']!r} in {path} mimics {mimic.attrib['joint']!r}, which is no joint"
             )
     return root, notes
+
+
+def read_robot_xml(file: RobotFile) -> Element:
+    """Return the ``<robot>`` element of a URDF or xacro as it stands there; raises BrokenFile and NotAvailable as
+    `read_urdf_xml`.
+    """
+    root = read_xml(file.path, "robot", "a URDF")
+    if file.path.suffix == ".xacro" or any(element.tag.startswith("xacro:") for element in root.iter()):
+        root = _expanded(file)
+    return root
 
 
 def read_xml(path: Path, what: str, kind: str, tag: str = "robot") -> Element:

@@ -15,7 +15,7 @@ from evenroad.roadmap import PlanResult, Status
 from evenroad.robot import ArmWorld
 from evenroad.task.motion import Motion
 from evenroad.task.steps import Move, Step, Wait
-from evenroad.trajectory.limits import Limits, TipSpeed, limits_of
+from evenroad.trajectory.limits import Limits, TipLimits, limits_of
 from evenroad.trajectory.make import MOST_STATES
 from evenroad.trajectory.trajectory import Trajectory
 
@@ -141,7 +141,8 @@ def _kept(motion: Motion, part: PlanResult, options: dict[str, Any]) -> dict[str
     if motion.speed is not None:
         robot, given = cast(ArmWorld, part.world).robot, options.get("limits")
         limits = given if isinstance(given, Limits) else limits_of(robot, given)
-        options = options | {"limits": replace(limits, tip=TipSpeed(robot, motion.tip, motion.speed))}
+        push = math.inf if limits.tip is None else limits.tip.acceleration
+        options = options | {"limits": replace(limits, tip=TipLimits(robot, motion.tip, motion.speed, push))}
     return kept | options
 
 

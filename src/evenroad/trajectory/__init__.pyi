@@ -1,9 +1,13 @@
 from evenroad.trajectory.arm import arm_trajectory as arm_trajectory
 from evenroad.trajectory.arm import controller_joints as controller_joints
+from evenroad.trajectory.dynamics import Dynamics as Dynamics
+from evenroad.trajectory.dynamics import Mass as Mass
+from evenroad.trajectory.dynamics import load_dynamics as load_dynamics
 from evenroad.trajectory.files import format_of as format_of
 from evenroad.trajectory.files import load_trajectory as load_trajectory
 from evenroad.trajectory.files import save_trajectory as save_trajectory
 from evenroad.trajectory.limits import Limits as Limits
+from evenroad.trajectory.limits import TipLimits as TipLimits
 from evenroad.trajectory.limits import limits_of as limits_of
 from evenroad.trajectory.make import make_trajectory as make_trajectory
 from evenroad.trajectory.trajectory import Trajectory as Trajectory

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,41 +13,80 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import as_row, require_known, require_positive
 from evenroad._yaml import read_mapping
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.robot import Robot
 from evenroad.robot.chain import chain_of
+from evenroad.trajectory.dynamics import Dynamics
 
 SECONDS_TO_FULL_SPEED = 0.5
 """Default time from rest to full speed [s]: URDF has no acceleration."""
 
+_SIDES = 8
+"""Number of directions in which a tip's acceleration is limited."""
 _KINDS = ("velocity", "acceleration", "jerk")
 
 
 @dataclass(frozen=True)
-class TipSpeed:
-    """Largest speed of a robot's link, > 0 [m/s].
+class TipLimits:
+    """Largest speed and acceleration of a robot's link, of the origin of its frame.
 
     Attributes
     ----------
     robot : Robot
     link : str
-        Its origin counts.
-    most : float
-        > 0 [m/s].
+    speed : float
+        > 0 [m/s]; infinite: no limit.
+    acceleration : float
+        > 0 [m/s^2]; infinite: no limit.
     """
 
     robot: Robot
     link: str
-    most: float
+    speed: float = math.inf
+    acceleration: float = math.inf
 
     def __post_init__(self) -> None:
-        require_positive("the tip's speed", self.most)
+        for kind in ("speed", "acceleration"):
+            if (most := getattr(self, kind)) != math.inf:
+                require_positive(f"the tip's {kind}", most)
 
     def along(self, q: Floats, direction: Floats) -> Floats:
         """Return the largest speeds of the joints together, (n,), at configurations in directions, (n, dim) each."""
+        return self.speed / np.maximum(np.linalg.norm(self._moves(q, direction), axis=1), 1e-9)
+
+    def accelerations(self, q: Floats, direction: Floats, bend: Floats) -> tuple[Floats, Floats]:
+        """Return the link's acceleration, (n, 3) each, by the acceleration along a path and by its squared speed."""
+        chain = chain_of(self.robot, self.link)
+        # How its derivative changes along the path, by central differences of a millionth.
+        step = 1e-6 * direction
+        ahead, behind = (chain.derivatives(q + sign * step)[:, :3] for sign in (1.0, -1.0))
+        turned = np.einsum("nij,nj->ni", ahead - behind, direction) / 2e-6
+        return self._moves(q, direction), self._moves(q, bend) + turned
+
+    def sides(self, q: Floats, direction: Floats, bend: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the acceleration in some directions as shares of the largest, of the two kinds, (n, k) each, and 0.
+
+        The two span a plane.  In it a polygon of 16 sides lies within the circle of what is allowed.
+        """
+        first, second = self.accelerations(q, direction, bend)
+        along = first / np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-12)
+        across = second - along * (second * along).sum(axis=1, keepdims=True)
+        across = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+        angles = np.arange(_SIDES) * np.pi / _SIDES
+        normals = np.multiply.outer(np.cos(angles), along) + np.multiply.outer(np.sin(angles), across)
+        most = self.acceleration * math.cos(0.5 * np.pi / _SIDES)
+        slope, rise = (np.einsum("knj,nj->nk", normals, each) / most for each in (first, second))
+        return slope, rise, np.zeros_like(slope)
+
+    def share(self, q: Floats, velocity: Floats, acceleration: Floats) -> float:
+        """Return the largest acceleration of the link as a share of what is allowed, of states, (n, dim) each."""
+        pushed, turned = self.accelerations(q, velocity, acceleration)
+        del pushed
+        return float(np.linalg.norm(turned, axis=1).max()) / self.acceleration
+
+    def _moves(self, q: Floats, direction: Floats) -> Floats:
         derivatives = chain_of(self.robot, self.link).derivatives(q)[:, :3]
-        moves = np.linalg.norm(np.einsum("nij,nj->ni", derivatives, direction), axis=1)
-        return self.most / np.maximum(moves, 1e-9)
+        return np.einsum("nij,nj->ni", derivatives, direction)
 
 
 @dataclass(frozen=True)
@@ -62,15 +101,19 @@ class Limits:
         > 0, one per joint [rad/s^3]; None: no limit.
     along_path : float or None
         Largest speed of all coordinates together, as of a vehicle, > 0 [m/s]; None: no limit.
-    tip : TipSpeed or None
-        Largest speed of a link; None: no limit.  A share of full speed leaves it as it is.
+    tip : TipLimits or None
+        Largest speed and acceleration of a link; None: no limit.  A share of full speed leaves them as they are.
+    torque : Dynamics or None
+        Masses of the links and efforts of the joints; None: no limit of torque.  A share of full speed leaves it as it
+        is.
     """
 
     velocity: tuple[float, ...]
     acceleration: tuple[float, ...]
     jerk: tuple[float, ...] | None = None
     along_path: float | None = None
-    tip: TipSpeed | None = None
+    tip: TipLimits | None = None
+    torque: Dynamics | None = None
 
     def __post_init__(self) -> None:
         for kind in _KINDS:
@@ -96,7 +139,50 @@ class Limits:
 
         jerk = None if self.jerk is None else scaled(self.jerk, 3)
         along = None if self.along_path is None else self.along_path * speed
-        return Limits(scaled(self.velocity, 1), scaled(self.acceleration, 2), jerk, along, self.tip)
+        return replace(
+            self,
+            velocity=scaled(self.velocity, 1),
+            acceleration=scaled(self.acceleration, 2),
+            jerk=jerk,
+            along_path=along,
+        )
+
+    @property
+    def is_further(self) -> bool:
+        """Whether there are limits beside those of joints and of speeds: of a tip's acceleration, or of torques."""
+        return self.torque is not None or (self.tip is not None and self.tip.acceleration < math.inf)
+
+    def further(self, q: Floats, direction: Floats, bend: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return by what such limits are used, as shares, (n, k) each: by the acceleration along a path, by its squared
+        speed, and at rest; at configurations with these directions and bends of the path, (n, dim) each.
+        """
+        kinds = []
+        if self.tip is not None and self.tip.acceleration < math.inf:
+            kinds.append(self.tip.sides(q, direction, bend))
+        if self.torque is not None:
+            kinds.append(self.torque.along(q, direction, bend))
+        slope, rise, rest = (np.ascontiguousarray(np.hstack(each)) for each in zip(*kinds, strict=True))
+        return slope, rise, rest
+
+    def too_heavy(self, q: Floats) -> NotAvailable:
+        """Return the error of a path, (n, dim), along which torques cannot hold the robot, or hardly."""
+        assert self.torque is not None, "only torques are needed at rest"
+        shares = np.abs(self.torque.shares(q, np.zeros_like(q), np.zeros_like(q)))
+        row, joint = np.unravel_index(int(shares.argmax()), shares.shape)
+        name, effort = self.torque.robot.group[joint], self.torque.efforts[joint]
+        return NotAvailable(
+            f"joint {name!r} needs {shares[row, joint] * effort:.4g} N m to hold the robot still on the path, of"
+            f" {effort:.4g}: there is too little left to move"
+        )
+
+    def further_shares(self, q: Floats, velocity: Floats, acceleration: Floats) -> dict[str, float]:
+        """Return the largest shares of such limits, by kind, at states, (n, dim) each."""
+        shares = {}
+        if self.tip is not None and self.tip.acceleration < math.inf:
+            shares["tip acceleration"] = self.tip.share(q, velocity, acceleration)
+        if self.torque is not None:
+            shares["torque"] = float(np.abs(self.torque.shares(q, velocity, acceleration)).max())
+        return shares
 
 
 def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limits:

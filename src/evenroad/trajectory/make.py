@@ -13,7 +13,7 @@ from evenroad._arrays import Bools, Floats
 from evenroad._checks import as_batch, require_positive
 from evenroad._native.trajectory import distances_to, drive, largest_share
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.trajectory.blends import rounded
+from evenroad.trajectory.blends import RoundedPath, rounded
 from evenroad.trajectory.limits import Limits
 from evenroad.trajectory.timing import TimeLaw, fastest, paused, slowed
 from evenroad.trajectory.trajectory import Trajectory
@@ -36,6 +36,8 @@ MOST_STATES = 1_000_000
 
 _HALVINGS = 6
 """Number of times that a blend in collision is halved; then the robot stops at the corner."""
+_SHARES, _LESS = 8, 0.995
+"""Number of times that less of a tip's acceleration and of torques is used, and how much less than would do."""
 _STOPPINGS = 6
 """Number of times that corners become stops: each moves the times at which states are checked."""
 
@@ -117,9 +119,7 @@ def make_trajectory(
     cuts = np.full(len(waypoints), deviation)
     for halved in range(_HALVINGS + _STOPPINGS):
         curve = rounded(waypoints, cuts)
-        law, fine, driven = _on_steps(paused(fastest(curve, limits), window), waypoints, limits, window, step)
-        if window > 0.0:
-            driven = _averaged(law, waypoints, limits, window, fine)
+        law, fine, driven = _timed(curve, waypoints, limits, window, step)
         free, proof = drivable(world, driven.positions)
         bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[driven.off > deviation + 1e-6]])
         if len(bad) == 0:
@@ -155,6 +155,30 @@ def _apart(path: Floats) -> Floats:
     if len(kept) > 1:
         kept[-1] = path[-1]
     return np.array(kept).reshape(-1, path.shape[1])
+
+
+def _timed(
+    curve: RoundedPath, waypoints: Floats, limits: Limits, window: float, step: float
+) -> tuple[TimeLaw, Floats, Driven]:
+    """Return the fastest law that keeps all limits at fine times, these times, and what the robot does then.
+
+    A tip's acceleration and torques are kept at the law's own grid: less of them is used where more comes between.
+    """
+    share = 1.0
+    for _ in range(_SHARES):
+        law, fine, driven = _on_steps(
+            paused(fastest(curve, limits, share=share), window), waypoints, limits, window, step
+        )
+        if window > 0.0:
+            driven = _averaged(law, waypoints, limits, window, fine)
+        if not limits.is_further:
+            return law, fine, driven
+        further = limits.further_shares(*(law.averages(window, fine) if window > 0.0 else law.at(fine)))
+        if max(further.values()) <= 1.0:
+            return law, fine, driven._replace(highest=driven.highest | further)
+        share *= _LESS / max(further.values())
+    over = ", ".join(f"{100.0 * used:.1f} % of {kind}" for kind, used in further.items())
+    raise NotAvailable(f"no times were found that keep all limits: the slowest ones tried need {over}")
 
 
 def _on_steps(

@@ -1,6 +1,8 @@
 // evenroad._native.trajectory: times along a path.
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <optional>
 
 #include "bind/arrays.hpp"
 #include "trajectory/averages.hpp"
@@ -62,16 +64,45 @@ struct LawArrays {
   TimeLaw law() const { return {times.span(), lengths.span(), speeds.span(), accelerations.span()}; }
 };
 
-nb::tuple fastest(nb::tuple path, nb::handle stops, nb::handle velocity, nb::handle acceleration, nb::handle highest) {
+/// Further limits in arrays of Python: slope, rise and rest at the beginnings of intervals, and at their ends.
+struct FurtherArrays {
+  FloatRows slope, rise, rest, end_slope, end_rise, end_rest;
+
+  explicit FurtherArrays(nb::tuple given, std::size_t intervals)
+      : slope(PathArrays::column(given, 0, 6), "slope"),
+        rise(given[1], "rise"),
+        rest(given[2], "rest"),
+        end_slope(given[3], "end_slope"),
+        end_rise(given[4], "end_rise"),
+        end_rest(given[5], "end_rest") {
+    for (const auto* each : {&slope, &rise, &rest, &end_slope, &end_rise, &end_rest}) {
+      each->of_shape({intervals, slope.shape(1)});
+    }
+    for (const auto* each : {&rest, &end_rest}) {
+      for (const double share : each->span()) require(std::abs(share) < 1.0, "rest must be less than 1");
+    }
+  }
+
+  trajectory::Further further() const {
+    return {slope.matrix(), rise.matrix(), rest.matrix(), end_slope.matrix(), end_rise.matrix(), end_rest.matrix()};
+  }
+};
+
+/// Return the fastest law; `within` are the squares of speeds, those at start and goal, and further limits or None.
+nb::tuple fastest(nb::tuple path, nb::handle stops, nb::handle velocity, nb::handle acceleration, nb::tuple within) {
   const PathArrays arrays(path);
   const Floats at(stops, "stops"), speeds(velocity, "velocity"), pushes(acceleration, "acceleration");
-  const Floats ceiling(highest, "ceiling");
+  const Floats ceiling(PathArrays::column(within, 0, 4), "ceiling");
   speeds.of_shape({arrays.path().dim()}), pushes.of_shape({arrays.path().dim()});
   trajectory::Grid grid = trajectory::grid_of(arrays.path());
   if (ceiling.size() != 1) ceiling.of_shape({grid.lengths.size()});
+  const double start = value_of<double>(within[1], "start"), goal = value_of<double>(within[2], "goal");
+  require(start >= 0.0 && start < LONGEST && goal >= 0.0 && goal < LONGEST, "speeds must be >= 0 and below 1e9");
+  std::optional<FurtherArrays> further;
+  if (!within[3].is_none()) further.emplace(value_of<nb::tuple>(within[3], "further"), grid.pieces.size());
   trajectory::OwnTimeLaw law = without_gil([&] {
     return trajectory::fastest(arrays.path(), std::move(grid), at.span(), {speeds.span(), pushes.span()},
-                               ceiling.span());
+                               {ceiling.span(), further ? further->further() : trajectory::Further{}, start, goal});
   });
   return nb::make_tuple(as_row(std::move(law.times)), as_row(std::move(law.lengths)), as_row(std::move(law.speeds)),
                         as_row(std::move(law.accelerations)));

@@ -33,7 +33,15 @@ struct Line {
 /// The limits of acceleration along the intervals of a path, from which both passes read.
 class Limits {
  public:
-  Limits(const Curve& curve, std::span<const double> acceleration) : curve_(curve) {
+  Limits(const Curve& curve, const Further& further, std::span<const double> acceleration) : curve_(curve) {
+    for (std::size_t i = 0; further.size() > 0 && i < curve.row.size(); i++) {
+      further_.push_back({between_.size(), between_.size(), NO_LIMIT});
+      for (std::size_t k = 0; k < further.size(); k++) {
+        add_between(further.slope(i, k), further.rise(i, k), further.rest(i, k));
+        const double rise = further.end_rise(i, k);
+        add_between(further.end_slope(i, k) + rise * (2.0 * curve.steps[i]), rise, further.end_rest(i, k));
+      }
+    }
     std::size_t row = NO_ROW;
     for (std::size_t i = 0; i < curve.row.size(); i++) {
       if (curve.row[i] == row) continue;
@@ -60,6 +68,12 @@ class Limits {
       push.least = std::max(push.least, rise * square - value);
       push.most = std::min(push.most, rise * square + value);
     }
+    if (further_.empty()) return push;
+    if (square > further_[i].flat) return {1.0, 0.0};
+    for (std::size_t side = further_[i].begin; side < further_[i].end; side++) {
+      push.least = std::max(push.least, between_[side].low.at(square));
+      push.most = std::min(push.most, between_[side].high.at(square));
+    }
     return push;
   }
 
@@ -84,6 +98,23 @@ class Limits {
     std::size_t begin, end;
     double flat;
   };
+
+  /// What lies between two lines.
+  struct Between {
+    Line low, high;
+  };
+
+  /// Add that |slope * push + rise * square + rest| is at most 1.
+  void add_between(double slope, double rise, double rest) {
+    Row& row = further_.back();
+    if (std::abs(slope) < FLAT) {
+      if (rise != 0.0) row.flat = std::min(row.flat, (1.0 - (rise > 0.0 ? rest : -rest)) / std::abs(rise));
+      return;
+    }
+    const double inverse = 1.0 / slope, middle = -rest * inverse, most = std::abs(inverse);
+    between_.push_back({{middle - most, -rise * inverse}, {middle + most, -rise * inverse}});
+    row.end++;
+  }
 
   /// Add that |slope * push + rise * square| is at most an acceleration.
   void add(double slope, double rise, double most) {
@@ -117,7 +148,14 @@ class Limits {
       if (low.at(square) > least.at(square)) least = low;
       if (high.at(square) < most.at(square)) most = high;
     }
-    const double flat = std::min(square, row.flat);
+    double flat = std::min(square, row.flat);
+    if (!further_.empty()) {
+      flat = std::min(flat, further_[i].flat);
+      for (std::size_t side = further_[i].begin; side < further_[i].end; side++) {
+        if (between_[side].low.at(square) > least.at(square)) least = between_[side].low;
+        if (between_[side].high.at(square) < most.at(square)) most = between_[side].high;
+      }
+    }
     if (least.at(square) <= most.at(square)) return flat;
     return std::min(flat, (most.value - least.value) / (least.rise - most.rise));
   }
@@ -126,16 +164,21 @@ class Limits {
   std::vector<Row> rows_;
   /// The largest accelerations along the path that each joint allows; the least are the same with the value negative.
   std::vector<Line> sides_;
+  /// The further limits of each interval, of which none share a row.
+  std::vector<Row> further_;
+  std::vector<Between> between_;
 };
 
 }  // namespace
 
-std::vector<double> squared_speeds(const Curve& curve, std::span<const double> ceiling,
+std::vector<double> squared_speeds(const Curve& curve, const Further& further, std::span<const double> ceiling,
                                    std::span<const double> acceleration) {
   const std::size_t m = ceiling.size();
-  const Limits limits(curve, acceleration);
+  const Limits limits(curve, further, acceleration);
   std::vector<double> highest(m), squares(m);
+  highest.back() = ceiling.back();
   for (std::size_t i = m - 1; i-- > 0;) highest[i] = limits.highest(i, ceiling[i], highest[i + 1]);
+  squares.front() = highest.front();
   for (std::size_t i = 0; i + 1 < m; i++) {
     const Push push = limits.push(i, squares[i], highest[i + 1]);
     squares[i + 1] = std::min(std::max(squares[i] + 2.0 * curve.steps[i] * push.most, 0.0), highest[i + 1]);

@@ -19,10 +19,20 @@ struct Curve {
   std::span<const double> steps;
 };
 
-/// Return the squares of the speeds at the ends of all intervals, from rest to rest.
+/// Further limits of each interval, of a torque or of a tip: |slope * push + rise * square + rest| is at most 1.
+///
+/// They hold at the beginning and, by a row of their own, at the end of an interval: (intervals, limits) each.
+struct Further {
+  Matrix<const double> slope, rise, rest, end_slope, end_rise, end_rest;
+
+  std::size_t size() const { return slope.columns; }
+};
+
+/// Return the squares of the speeds at the ends of all intervals.
 ///
 /// They are at most `ceiling`, and each joint accelerates by at most `acceleration`: back for what can be stopped, on.
-std::vector<double> squared_speeds(const Curve& curve, std::span<const double> ceiling,
+/// The first is that of `ceiling`; it is less where one is too fast to keep all limits.
+std::vector<double> squared_speeds(const Curve& curve, const Further& further, std::span<const double> ceiling,
                                    std::span<const double> acceleration);
 
 }  // namespace evenroad::trajectory

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "common/lanes.hpp"
-#include "trajectory/fastest_speeds.hpp"
 
 namespace evenroad::trajectory {
 
@@ -117,7 +116,7 @@ Grid grid_of(const RoundedPath& path) {
 }
 
 OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> stops, const Most& most,
-                   std::span<const double> highest) {
+                   const Within& within) {
   OwnTimeLaw law;
   law.lengths = std::move(grid.lengths);
   const std::vector<std::size_t>& pieces = grid.pieces;
@@ -131,8 +130,8 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
   }
   const auto is_line = std::make_unique<bool[]>(rows);
   Sides sides(rows, path.dim());
-  std::vector<double> steps(intervals), ceiling(highest.begin(), highest.end());
-  ceiling.resize(intervals + 1, highest[0]);
+  std::vector<double> steps(intervals), ceiling(within.highest.begin(), within.highest.end());
+  ceiling.resize(intervals + 1, within.highest[0]);
   double before = 0.0, after = 0.0;
   for (std::size_t i = 0; i < intervals; i++) {
     steps[i] = law.lengths[i + 1] - law.lengths[i];
@@ -145,13 +144,14 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
     ceiling[i] = std::min(ceiling[i], before);
     ceiling[i + 1] = std::min(ceiling[i + 1], after);
   }
-  ceiling.front() = ceiling.back() = 0.0;
+  ceiling.front() = std::min(ceiling.front(), within.start * within.start);
+  ceiling.back() = std::min(ceiling.back(), within.goal * within.goal);
   for (const double stop : stops) {
     const auto at = std::ranges::lower_bound(law.lengths, stop);
     if (at != law.lengths.end() && *at == stop) ceiling[static_cast<std::size_t>(at - law.lengths.begin())] = 0.0;
   }
   const Curve curve{sides.ahead, sides.ahead_bend, sides.behind, sides.behind_bend, row, {is_line.get(), rows}, steps};
-  const std::vector<double> squares = squared_speeds(curve, ceiling, most.acceleration);
+  const std::vector<double> squares = squared_speeds(curve, within.further, ceiling, most.acceleration);
   law.times.push_back(0.0);
   for (const double square : squares) law.speeds.push_back(std::sqrt(square));
   for (std::size_t i = 0; i < intervals; i++) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/matrix.hpp"
+#include "trajectory/fastest_speeds.hpp"
 
 namespace evenroad::trajectory {
 
@@ -43,10 +44,17 @@ struct Grid {
 };
 Grid grid_of(const RoundedPath& path);
 
-/// Return the fastest law from rest to rest, also at `stops`: lengths at which the direction jumps.  Squares of speeds
-/// along the path are at most those of `ceiling`: one, or one at each length of the grid.
+/// What a law keeps beside velocities and accelerations: squares of speeds along the path, one, or one at each length
+/// of the grid; further limits; and speeds at start and goal.
+struct Within {
+  std::span<const double> highest;
+  Further further;
+  double start = 0.0, goal = 0.0;
+};
+
+/// Return the fastest law, at rest at `stops`: lengths at which the direction jumps.
 OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> stops, const Most& most,
-                   std::span<const double> ceiling);
+                   const Within& within);
 
 /// Positions, velocities and accelerations at times; before and after the path one is at rest.
 class StatesAt {
