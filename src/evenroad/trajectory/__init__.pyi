@@ -1,7 +1,7 @@
+from evenroad.robot.masses import Mass as Mass
 from evenroad.trajectory.arm import arm_trajectory as arm_trajectory
 from evenroad.trajectory.arm import controller_joints as controller_joints
 from evenroad.trajectory.dynamics import Dynamics as Dynamics
-from evenroad.trajectory.dynamics import Mass as Mass
 from evenroad.trajectory.dynamics import load_dynamics as load_dynamics
 from evenroad.trajectory.files import format_of as format_of
 from evenroad.trajectory.files import load_trajectory as load_trajectory

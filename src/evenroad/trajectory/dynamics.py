@@ -8,33 +8,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_batch, as_row, require_known, require_positive
-from evenroad.errors import BrokenFile, InvalidValue
-from evenroad.geometry.pose import Pose
+from evenroad.errors import InvalidValue
 from evenroad.robot import Robot
 from evenroad.robot.kinematics import joint_values, poses_at
-from evenroad.robot.urdf_xml import RobotFile, read_robot_xml
+from evenroad.robot.masses import Mass, read_masses
 
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 EARTH = (0.0, 0.0, -9.81)
 """Acceleration of what falls, in the frame of the root [m/s^2]."""
-
-
-@dataclass(frozen=True)
-class Mass:
-    """A mass on a link: its centre in the link's frame [m], and its inertia about that along the link's axes, row by
-    row [kg m^2].
-    """
-
-    link: str
-    mass: float
-    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    inertia: tuple[float, ...] = (0.0,) * 9
 
 
 @dataclass(frozen=True)
@@ -99,19 +85,19 @@ class Dynamics:
         and what they are at rest: (n, dim) each.
         """
         still, n = np.zeros_like(q), len(q)
-        lifted = np.zeros((3 * n, 3))
-        lifted[2 * n :] = -np.array(self.gravity)
+        pulled = np.zeros((3 * n, 3))
+        pulled[2 * n :] = -np.array(self.gravity)
         forces = self._forces(
             np.concatenate([q, q, q]),
             np.concatenate([still, direction, still]),
             np.concatenate([direction, bend, still]),
-            lifted,
+            pulled,
         )
         slope, rise, rest = forces.reshape(3, n, -1) / np.array(self.efforts)
         return slope, rise, rest
 
-    def _forces(self, q: Floats, velocity: Floats, acceleration: Floats, lifted: Floats) -> Floats:
-        """Return torques where the root is accelerated by `lifted`, (n, 3): that is as good as gravity."""
+    def _forces(self, q: Floats, velocity: Floats, acceleration: Floats, pulled: Floats) -> Floats:
+        """Return torques where the root is accelerated by `pulled`, (n, 3): that is as good as gravity."""
         robot, n = self.robot, len(q)
         values = joint_values(robot, q)
         poses = dict(zip(robot.links, np.moveaxis(poses_at(robot, values, n), 1, 0), strict=True))
@@ -120,7 +106,7 @@ class Dynamics:
         pushes = _with_mimics(robot, none | dict(zip(robot.group, acceleration.T, strict=True)))
         zero = np.zeros((n, 3))
         # Of each link: how it turns, and is pushed to turn and to move.
-        moves = {robot.links[0]: (zero, zero, lifted)}
+        moves = {robot.links[0]: (zero, zero, pulled)}
         axes: dict[str, Floats] = {}
         for joint in robot.joints:
             turn, turned, pushed = moves[joint.parent]
@@ -198,50 +184,8 @@ def load_dynamics(robot: Robot, file: str | os.PathLike[str], *, gravity: Iterab
     InvalidValue
         If no link of the robot has a mass there, or gravity is no such row.
     """
-    path = Path(file)
-    root = read_robot_xml(RobotFile(path))
-    masses = []
-    for link in root.findall("link"):
-        inertial = link.find("inertial")
-        if inertial is not None and link.get("name") in robot.links:
-            masses.append(_mass_of(str(link.get("name")), inertial, path))
+    masses, efforts = read_masses(Path(file))
+    masses = tuple(mass for mass in masses if mass.link in robot.links)
     if not any(mass.mass > 0.0 for mass in masses):
-        raise InvalidValue(f"no link of {robot.name!r} has a mass in {path}")
-    efforts = dict.fromkeys(robot.group, math.inf)
-    for joint in root.findall("joint"):
-        limit = joint.find("limit")
-        if limit is not None and joint.get("name") in efforts:
-            given = _numbers(limit.get("effort", "0"), 1, f"effort of {joint.get('name')!r} in {path}")[0]
-            efforts[str(joint.get("name"))] = given if given > 0.0 else math.inf
-    return Dynamics(robot, tuple(masses), tuple(efforts.values()), tuple(gravity))
-
-
-def _mass_of(link: str, inertial: Element, path: Path) -> Mass:
-    """Return the mass that an ``<inertial>`` gives a link."""
-    where = f"of link {link!r} in {path}"
-    mass, origin, inertia = (inertial.find(tag) for tag in ("mass", "origin", "inertia"))
-    kilograms = _numbers("0" if mass is None else mass.get("value", ""), 1, f"mass {where}")[0]
-    moments = {} if inertia is None else inertia.attrib
-    xx, xy, xz, yy, yz, zz = (
-        _numbers(moments.get(f"i{name}", "0"), 1, f"i{name} {where}")[0]
-        for name in ("xx", "xy", "xz", "yy", "yz", "zz")
-    )
-    if min(kilograms, xx, yy, zz) < 0.0:
-        raise BrokenFile(f"the mass and moments {where} must be >= 0")
-    at = {} if origin is None else origin.attrib
-    xyz = _numbers(at.get("xyz", "0 0 0"), 3, f"origin of the mass {where}")
-    rpy = _numbers(at.get("rpy", "0 0 0"), 3, f"rotation of the mass {where}")
-    turn = Pose(rpy=tuple(rpy)).rotation_matrix
-    about = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
-    return Mass(link, kilograms, (xyz[0], xyz[1], xyz[2]), tuple(about.ravel().tolist()))
-
-
-def _numbers(text: str, count: int, what: str) -> list[float]:
-    """Return so many finite numbers of a text; BrokenFile if it has others."""
-    try:
-        numbers = [float(part) for part in text.split()]
-    except ValueError:
-        numbers = []
-    if len(numbers) != count or not all(map(math.isfinite, numbers)):
-        raise BrokenFile(f"{what} must be {count} finite number(s), got {text!r}")
-    return numbers
+        raise InvalidValue(f"no link of {robot.name!r} has a mass in {file}")
+    return Dynamics(robot, masses, tuple(efforts.get(name) or math.inf for name in robot.group), tuple(gravity))
