@@ -65,7 +65,7 @@ def _mass_of(link: str, inertial: Element, path: Path) -> Mass:
 
 
 def _numbers(text: str, count: int, what: str) -> list[float]:
-    """Return so many finite numbers of a text; BrokenFile if there are not so many."""
+    """Return the finite numbers of a text, `count` of them; BrokenFile for any other text."""
     try:
         numbers = [float(part) for part in text.split()]
     except ValueError:
