@@ -2,7 +2,7 @@
 
 import pytest
 
-from evenroad.errors import BrokenFile
+from evenroad.errors import BrokenFile, UnknownName
 from evenroad.robot import load_model, load_robot
 
 pytest.importorskip("xacrodoc")
@@ -38,6 +38,32 @@ def test_arguments_decide_and_are_not_mixed_up_in_the_cache(tmp_path):
     path.write_text(XACRO)
     assert load_robot(path).joints[0].xyz[2] == 0.6
     assert load_robot(path, arguments={"reach": "1.5"}).joints[0].xyz[2] == 3.0
+
+
+def test_a_file_beside_a_xacro_is_included_by_its_name_wherever_the_process_is(tmp_path, monkeypatch):
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "arm.xacro").write_text(XACRO)
+    whole = '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="{}"/></robot>'
+    (tmp_path / "parts" / "inner.xacro").write_text(whole.format("arm.xacro"))
+    (tmp_path / "whole.xacro").write_text(whole.format("parts/inner.xacro"))
+    assert load_robot(tmp_path / "whole.xacro").group == ("to_upper", "to_lower")
+    monkeypatch.chdir(tmp_path)
+    assert load_robot("whole.xacro").group == ("to_upper", "to_lower")
+    monkeypatch.chdir(tmp_path / "parts")
+    assert load_robot("../whole.xacro", arguments={"reach": "1.5"}).joints[0].xyz[2] == 3.0
+
+
+def test_an_argument_that_no_file_knows_is_refused(tmp_path):
+    path = tmp_path / "arm.xacro"
+    path.write_text(XACRO)
+    with pytest.raises(UnknownName, match="argument of the xacro .*'reech'; known: reach; did you mean 'reach'"):
+        load_robot(path, arguments={"reech": "1.5"})
+    (tmp_path / "whole.xacro").write_text(
+        '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="arm.xacro"/></robot>'
+    )
+    assert load_robot(tmp_path / "whole.xacro", arguments={"reach": "1.5"}).joints[0].xyz[2] == 3.0
+    with pytest.raises(UnknownName, match="known: reach"):
+        load_robot(tmp_path / "whole.xacro", arguments={"reech": "1.5"})
 
 
 def test_packages_that_are_given_are_found_in_a_xacro_and_for_its_meshes(tmp_path):

@@ -90,6 +90,8 @@ BROKEN = {
     "a number of 400 digits": (f"obstacles: {{a: {{shape: sphere, radius: 1{'0' * 400}}}}}", InvalidValue,
         "radius of obstacle 'a' in .* must be a finite number"),
     "no shape": (a("radius: 1"), UnknownName, "shape of obstacle 'a' in .*: None"),
+    "a half space": (a("shape: half_space"), UnknownName, "'half_space'; known: .*; shape: plane is all that is below"),
+    "a hull": (a("shape: hull"), UnknownName, "'hull'; known: .*; shape: mesh with convex: true is the hull of a file"),
     "no obstacles": ("states: {}", BrokenFile, "the scene .* lacks obstacles"),
     "a length that is missing": (a("shape: cylinder, radius: 1"), BrokenFile, "obstacle 'a' in .* lacks length"),
     "a size of two numbers": (a("shape: box, size: [1, 2]"), InvalidValue,

@@ -40,7 +40,9 @@ def load_cloud(path: str | os.PathLike[str]) -> Floats:
     file = Path(path)
     readers = {".ply": _read_ply, ".pcd": _read_pcd, ".xyz": _read_xyz, ".npy": _read_npy}
     if file.suffix.lower() not in readers:
-        raise UnknownName.among(f"format of the cloud {file}:", file.suffix, readers)
+        error = UnknownName.among(f"format of the cloud {file}:", file.suffix, readers)
+        of_boxes = "; an OctoMap is included as boxes: include: FILE.bt"
+        raise UnknownName(f"{error}{of_boxes}") if file.suffix.lower() == ".bt" else error
     with reading(file, "cloud of points"):
         points = np.asarray(readers[file.suffix.lower()](file), dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 3:

@@ -23,6 +23,14 @@ from evenroad.robot.scene_objects import objects_of
 _OPTIONAL = ("xyz", "rpy", "xyzw", "cell", "clearance")
 _OF_A_CLOUD = ("seen_at", "margin", "cut")
 PLANE, HEIGHTS = "plane", "height_map"
+_MEANT = {
+    **dict.fromkeys(("half_space", "halfspace", "floor", "ground"), "shape: plane is all that is below it"),
+    **dict.fromkeys(("hull", "convex", "convex_hull"), "shape: mesh with convex: true is the hull of a file"),
+    **dict.fromkeys(("points", "pointcloud", "point_cloud"), "shape: cloud has the points of a file"),
+    **dict.fromkeys(("heightmap", "height_field", "heightfield"), "shape: height_map has the heights of a file"),
+    **dict.fromkeys(("octomap", "octree"), "include: FILE.bt has the boxes of an OctoMap"),
+}
+"""What others call a shape -> how it is given here."""
 
 
 def obstacles_of(name: str, entry: dict[str, Any], path: Path) -> tuple[Obstacle, ...]:
@@ -56,7 +64,8 @@ def obstacle_of(name: str, entry: dict[str, Any], path: Path, where: str = "") -
     shape = entry.get("shape")
     kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind, PLANE, HEIGHTS)
     if not isinstance(shape, str) or shape not in kinds:
-        raise UnknownName.among(f"shape of {where}:", shape, kinds)
+        error = UnknownName.among(f"shape of {where}:", shape, kinds)
+        raise UnknownName(f"{error}; {_MEANT[shape]}") if isinstance(shape, str) and shape in _MEANT else error
     cell = _yes("cell", entry, where)
     if shape == PointCloud.kind:
         return _cloud(name, entry, path, cell)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +18,7 @@ from xml.parsers import expat
 
 from evenroad._checks import require_extra
 from evenroad._files import not_a
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.shapes import PRIMITIVES
 
 _SIZES = {tag: dict(shape.dimensions) for tag, shape in PRIMITIVES.items()}
@@ -47,6 +48,10 @@ _SINGLE = ("origin", "axis", "limit", "mimic", "parent", "child", "geometry")
 """Of these, the first would be taken and others passed over, unless they are equal."""
 _IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_control", "collision_checking")
 """What collision checking does not need; much of it in dialects of its own."""
+
+
+_ARGUMENT = re.compile(r"""<[\w.-]+:arg\s[^>]*?\bname\s*=\s*["']([^"']+)|\$\(arg\s+([^)\s]+)""")
+"""Where a xacro declares an argument, or asks for one."""
 
 
 @dataclass(frozen=True)
@@ -153,15 +158,30 @@ def _no_xml(content: bytes, path: Path, error: Exception) -> BrokenFile:
 
 def _expanded(file: RobotFile) -> Element:
     """Return the URDF that a xacro stands for."""
-    xacro = require_extra("xacrodoc", "xacro", f"{file.path} is a xacro file, which")
-    # It keeps packages for the whole process, those of the last robot, too.
-    xacro.packages.reset()
-    xacro.packages._finder.finder_funcs.insert(0, (lambda name: _package(name, file), LookupError))
+    xacrodoc = require_extra("xacrodoc", "xacro", f"{file.path} is a xacro file, which")
+    import xacro
+
+    # They keep packages and files for the whole process, those of the last robot, too.
+    xacrodoc.packages.reset()
+    xacrodoc.packages._finder.finder_funcs.insert(0, (lambda name: _package(name, file), LookupError))
+    xacro.all_includes.clear()
+    # What is included by a relative name lies beside the file that includes it.
+    xacro.init_stacks(str(file.path.resolve()))
     try:
-        text = xacro.XacroDoc.from_file(str(file.path), subargs=dict(file.arguments)).to_urdf_string()
+        text = xacrodoc.XacroDoc.from_file(str(file.path), subargs=dict(file.arguments)).to_urdf_string()
     except Exception as error:  # Whatever its macros raise.
         raise BrokenFile(f"the xacro {file.path} cannot be expanded: {error}") from error
+    known = _known_arguments([file.path, *map(Path, xacro.all_includes)])
+    for name, _ in file.arguments:
+        if name not in known:
+            raise UnknownName.among(f"argument of the xacro {file.path}:", name, known)
     return _parsed(text.encode(), file.path)
+
+
+def _known_arguments(files: Iterable[Path]) -> set[str]:
+    """Return the arguments that some xacros declare or ask for."""
+    text = "".join(each.read_text(errors="replace") for each in files)
+    return {declared or asked for declared, asked in _ARGUMENT.findall(text)}
 
 
 def _package(name: str, file: RobotFile) -> str:
