@@ -51,7 +51,7 @@ _IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_co
 
 
 _ARGUMENT = re.compile(r"""<[\w.-]+:arg\s[^>]*?\bname\s*=\s*["']([^"']+)|\$\(arg\s+([^)\s]+)""")
-"""Where a xacro declares an argument, or asks for one."""
+"""Where a xacro names an argument, or asks for one."""
 
 
 @dataclass(frozen=True)
@@ -179,9 +179,9 @@ def _expanded(file: RobotFile) -> Element:
 
 
 def _known_arguments(files: Iterable[Path]) -> set[str]:
-    """Return the arguments that some xacros declare or ask for."""
+    """Return the arguments that some xacros name or ask for."""
     text = "".join(each.read_text(errors="replace") for each in files)
-    return {declared or asked for declared, asked in _ARGUMENT.findall(text)}
+    return {named or asked for named, asked in _ARGUMENT.findall(text)}
 
 
 def _package(name: str, file: RobotFile) -> str:
