@@ -51,7 +51,7 @@ _IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_co
 
 
 _ARGUMENT = re.compile(r"""<[\w.-]+:arg\s[^>]*?\bname\s*=\s*["']([^"']+)|\$\(arg\s+([^)\s]+)""")
-"""Where a xacro names an argument, or asks for one."""
+"""Where a xacro declares or uses an argument."""
 
 
 @dataclass(frozen=True)
@@ -179,9 +179,9 @@ def _expanded(file: RobotFile) -> Element:
 
 
 def _known_arguments(files: Iterable[Path]) -> set[str]:
-    """Return the arguments that some xacros name or ask for."""
+    """Return the arguments that some xacros declare or use."""
     text = "".join(each.read_text(errors="replace") for each in files)
-    return {named or asked for named, asked in _ARGUMENT.findall(text)}
+    return {declared or used for declared, used in _ARGUMENT.findall(text)}
 
 
 def _package(name: str, file: RobotFile) -> str:
