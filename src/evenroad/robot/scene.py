@@ -140,7 +140,7 @@ class Scene(SceneChanges):
         texts = tuple(names) if len(names) else tuple([f"box {i}" for i in range(len(rows))])
         if len(texts) != len(rows):
             raise InvalidValue(f"names must be {len(rows)}, one a box, got {len(texts)}")
-        scene = _of_rows(rows, texts, _named(name), allowed)
+        scene = scene_of_rows(rows, texts, _named(name), allowed)
         if len(set(texts)) < len(texts):
             scene._require_names()
         return scene
@@ -220,10 +220,10 @@ def smaller_scene(scene: Scene, by: float) -> Scene:
     solid = [name for number, name in enumerate(scene.names) if number not in dict(scene.surfaces)]
     names = tuple(name for name, is_left in zip(solid, left.tolist(), strict=True) if is_left)
     allowed = frozenset(each for each in scene.allowed if each[1] in names)
-    return _of_rows(rows, names, scene.name, allowed)
+    return scene_of_rows(rows, names, scene.name, allowed)
 
 
-def _of_rows(rows: Floats, names: tuple[str, ...], name: str, allowed: frozenset[tuple[str, str]]) -> Scene:
+def scene_of_rows(rows: Floats, names: tuple[str, ...], name: str, allowed: frozenset[tuple[str, str]]) -> Scene:
     """Return a scene of obstacles by their rows and names, which are not looked at again."""
     scene = object.__new__(Scene)
     rows.setflags(write=False)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self, cast
 
-from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, shown
@@ -152,8 +151,3 @@ class SceneChanges(Changes):
         if delta is not None:
             return self._changed(delta=delta.removing(names), surfaces=(), **left)
         return self._changed(obstacles=tuple(each for each in self.obstacles if each.name not in names), **left)
-
-    def _rows_of(self, names: Collection[str]) -> Floats:
-        """Return the rows, see `Scene.rows`, of some obstacles, neither clouds nor meshes: (n, 17)."""
-        delta: Delta = self.__dict__.get("delta", Delta(self))
-        return delta.rows(names)

@@ -74,6 +74,10 @@ class Delta:
             obstacles[number] = obstacles[number].at(pose)
         return (*self._left(obstacles), *self.more.values())
 
+    def of(self, name: str) -> tuple[Obstacle | None, bool, Pose | None]:
+        """Return what an obstacle is, if it came later; whether that of the base is gone; and where else it is."""
+        return self.more.get(name), name in self.gone, self.moved.get(name)
+
     def rows(self, names: Iterable[str] | None = None) -> Floats:
         """Return the rows, see `Scene.rows`, of some obstacles, (n, 17); by default of all."""
         numbers, moved = self.base.numbers, self.moved
@@ -98,3 +102,21 @@ class Delta:
 def rows_of(obstacles: Iterable[Obstacle]) -> Floats:
     """Return the rows of obstacles, (n, 17); clouds and meshes have none."""
     return np.frombuffer(b"".join([each.row for each in obstacles])).reshape(-1, 17)
+
+
+def delta_of(scene: Any) -> Delta:
+    """Return by what a scene without clouds and meshes differs from its base, or from itself."""
+    delta: Delta | None = scene.__dict__.get("delta")
+    return Delta(scene) if delta is None else delta
+
+
+def changed_names(before: Any, after: Any) -> set[str]:
+    """Return the names of obstacles that two scenes without clouds and meshes do not have in common."""
+    names = {name for _, name in before.allowed ^ after.allowed}
+    first, second = delta_of(before), delta_of(after)
+    if first.base is second.base:
+        either = {*first.moved, *first.gone, *first.more, *second.moved, *second.gone, *second.more}
+        return names.union(name for name in either if first.of(name) != second.of(name))
+    one = {each.name: each for each in before.obstacles}
+    other = {each.name: each for each in after.obstacles}
+    return names.union(name for name in one.keys() | other.keys() if one.get(name) != other.get(name))

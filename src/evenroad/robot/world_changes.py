@@ -17,7 +17,7 @@ from evenroad.robot.kernel.robot_tables import RobotTables
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.robot.scene_delta import rows_of
+from evenroad.robot.scene_delta import delta_of, rows_of
 
 _STAYS = ("robot", "resolution", "clearance", "_space", "bounds", "robot_tables")
 
@@ -114,7 +114,7 @@ class WorldChanges(Changes):
             if name in come:
                 bodies = [capsule.link == link for capsule in self.robot_tables.capsules]
                 tested[bodies, list(come).index(name)] = False
-        rows = scene._rows_of(come) if rows is None else rows
+        rows = delta_of(scene).rows(come) if rows is None else rows
         native = before.changed(
             prepared(self.robot).native, np.array(left, np.int64), rows, np.array(at, np.int64), tested, self.clearance
         )

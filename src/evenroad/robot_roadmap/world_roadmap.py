@@ -13,6 +13,7 @@ from evenroad._arrays import Floats
 from evenroad._checks import counted, require_count
 from evenroad._shared import OwnLock, one_at_a_time
 from evenroad.planning import arm_trees
+from evenroad.planning.arm_trees import checks_of
 from evenroad.planning.connectors import ArmTrees
 from evenroad.planning.read_request import request_in
 from evenroad.planning.request import ConfigurationLike, Goal, Reading
@@ -28,6 +29,7 @@ from evenroad.roadmap.query import Query as PlanQuery
 from evenroad.roadmap.result import NO_POINTS, make_result
 from evenroad.robot import ArmWorld
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
+from evenroad.robot_roadmap.changed_world import changed_dynamic, names_changed, world_of_changes
 from evenroad.robot_roadmap.query import GREED, Query, SearchResult, search
 from evenroad.robot_roadmap.static_scene import left_to_check, require_within
 from evenroad.space.path import path_length
@@ -84,6 +86,47 @@ class ArmWorldRoadmap(WorldRoadmap):
         self._wraps = bool(np.any(world.space.wrapping))
         self._graph = roadmap.graph.within(np.array(world.space.low), np.array(world.space.high))
         self._lock = OwnLock()
+
+    @one_at_a_time
+    def within(self, world: ArmWorld) -> WorldRoadmap:
+        """Return the roadmap in its world after that was changed, with what is known of all that is not near a change.
+
+        Parameters
+        ----------
+        world : ArmWorld
+            As a rule made of `world` by ``moved``, ``with_`` or ``without``.  In another one nothing is known yet, nor
+            where there are clouds or meshes, or the robot holds something.
+
+        Returns
+        -------
+        WorldRoadmap
+
+        Raises
+        ------
+        InvalidValue
+            As :meth:`ArmRoadmap.within`.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> world = er.ArmWorld("ur5", "box-reach")
+        >>> kept = er.build_roadmap(er.ArmWorld("ur5"), er.draw("even", 32, 6)).within(world)
+        >>> kept.plan("home", "inside").solved
+        True
+        >>> kept.within(world.without("box top")).plan("home", "inside").solved
+        True
+        """
+        before, names, roadmap = self.world, names_changed(self.world, world), self.roadmap
+        assert isinstance(roadmap, ArmRoadmap)
+        if names is None or world.robot.holds or not names.isdisjoint(roadmap.scene.names):
+            return roadmap.within(world)
+        made: ArmWorldRoadmap = object.__new__(type(self))
+        made.roadmap, made.world, made._wraps, made._lock = roadmap, world, self._wraps, OwnLock()
+        made._worlds = world, changed_dynamic(self._worlds[1], roadmap.scene, before.scene, world.scene, names)
+        ranges = np.array(world.space.low), np.array(world.space.high)
+        changes = world_of_changes(self._worlds[1], before.scene, world.scene, names)
+        made._graph = self._graph.within(*ranges, checks_of(changes))
+        return made
 
     @property
     def _size(self) -> int:

@@ -7,6 +7,7 @@
 
 #include "bind/arrays.hpp"
 #include "planning/native_checks.hpp"
+#include "robot_roadmap/changed_scene.hpp"
 #include "robot_roadmap/proved_search.hpp"
 #include "robot_roadmap/visibility.hpp"
 
@@ -71,7 +72,7 @@ void make_scene_graph(SceneGraph* self, nb::handle milestones, nb::handle edges,
   new (self) SceneGraph(std::move(graph), std::move(of), ends.shape(0));
 }
 
-SceneGraph within(const SceneGraph& graph, nb::handle low, nb::handle high) {
+SceneGraph within(const SceneGraph& graph, nb::handle low, nb::handle high, NativeChecks* changed) {
   const Floats lower(low, "low", Entries::ANY), upper(high, "high", Entries::ANY);
   lower.of_shape({graph.joints.size()}), upper.of_shape({graph.joints.size()});
   for (std::size_t k = 0; k < graph.joints.size(); k++) {
@@ -79,7 +80,9 @@ SceneGraph within(const SceneGraph& graph, nb::handle low, nb::handle high) {
     require(!joint.multi_turn || (lower.span()[k] <= joint.high && joint.low <= upper.span()[k]),
             "low and high must meet the ranges of joints that have several turns");
   }
-  return graph.within(lower.span(), upper.span());
+  if (changed == nullptr) return graph.within(lower.span(), upper.span());
+  require(changed->joints.size() == graph.joints.size(), "checks must be of the roadmap's joints");
+  return without_gil([&] { return robot_roadmap::after_change(graph, *changed, lower.span(), upper.span()); });
 }
 
 void insert(SceneGraph& graph, nb::handle path) {
@@ -232,7 +235,7 @@ void add_robot_roadmap(nb::module_& module) {
       .def("__init__", &make_scene_graph)
       .def("__getstate__", &state_of)
       .def("__setstate__", [](SceneGraph& self, nb::tuple state) { restore(&self, state); })
-      .def("within", &within)
+      .def("within", &within, nb::arg("low"), nb::arg("high"), nb::arg("changed") = nb::none())
       .def("insert", &insert)
       .def_prop_ro("size", &SceneGraph::size);
   nb::class_<Search>(part, "Search")
