@@ -6,6 +6,7 @@ from evenroad.trajectory.dynamics import load_dynamics as load_dynamics
 from evenroad.trajectory.files import format_of as format_of
 from evenroad.trajectory.files import load_trajectory as load_trajectory
 from evenroad.trajectory.files import save_trajectory as save_trajectory
+from evenroad.trajectory.in_motion import InMotion as InMotion
 from evenroad.trajectory.limits import Limits as Limits
 from evenroad.trajectory.limits import TipLimits as TipLimits
 from evenroad.trajectory.limits import limits_of as limits_of

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from functools import reduce
 from inspect import signature
 from operator import and_
@@ -18,6 +19,7 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.robot import ArmWorld, Robot, held_values, tip_links
 from evenroad.robot.constraint import Constraint
 from evenroad.robot.kinematics import link_poses
+from evenroad.trajectory.in_motion import InMotion
 from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of
 from evenroad.trajectory.make import DEVIATION, STEP, make_trajectory
 from evenroad.trajectory.tip_constraints import constrained_world
@@ -25,10 +27,13 @@ from evenroad.trajectory.trajectory import Trajectory
 from evenroad.trajectory.urscript import with_radii
 from evenroad.world import World
 
+_VELOCITIES = ("start_velocity", "goal_velocity")
+"""Keywords of a plan's trajectory that begins or ends in motion."""
+
 
 def arm_trajectory(
     world: ArmWorld,
-    path: npt.ArrayLike,
+    path: npt.ArrayLike | InMotion,
     limits: Limits | None = None,
     *,
     speed: float = 1.0,
@@ -43,7 +48,7 @@ def arm_trajectory(
     ----------
     world : ArmWorld
         The arm among its obstacles.
-    path : array_like, shape (p, dim)
+    path : array_like, shape (p, dim), or InMotion
         As :attr:`PlanResult.path`.  Continuous joints take the shorter direction and may leave the range of one turn.
     limits : Limits, optional
         Default: those of the robot, see :func:`limits_of`.
@@ -64,13 +69,14 @@ def arm_trajectory(
     robot = world.robot
     within = (limits_of(robot) if limits is None else limits).at_speed(speed)
     controller = controller_joints(robot)
-    waypoints = as_batch("path", path, world.space.dim)
+    moving = path if isinstance(path, InMotion) else InMotion(path)
+    waypoints = as_batch("path", moving.path, world.space.dim)
     if len(waypoints) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
     waypoints = _turned_on(world, waypoints)
     checked = constrained_world(world, waypoints, constraints)
     trajectory = make_trajectory(
-        waypoints,
+        replace(moving, path=waypoints),
         within,
         world=checked,
         names=robot.group,
@@ -129,9 +135,10 @@ def trajectory_of(
     **options: Any,
 ) -> Trajectory:
     """See :meth:`PlanResult.trajectory`."""
-    known = {*signature(arm_trajectory).parameters} - {"world", "path"}
+    known = {*signature(arm_trajectory).parameters} - {"world", "path"} | {*_VELOCITIES}
     for key in options:
         require_known("keyword of trajectory:", key, known)
+    moving = InMotion(path, *(options.pop(name, None) for name in _VELOCITIES))
     if isinstance(world, KeptWorld):
         # A plan without lines is one in such a world: its arm has names and limits, and keeps constraints as it moves.
         options.setdefault("constraints", reduce(and_, world.keeps))
@@ -139,7 +146,7 @@ def trajectory_of(
     if isinstance(world, ArmWorld):
         if isinstance(limits, str | os.PathLike):
             limits = limits_of(world.robot, limits)
-        return arm_trajectory(world, path, limits, speed=speed, **options)
+        return arm_trajectory(world, moving, limits, speed=speed, **options)
     if limits is None:
         fastest = require_positive("speed", speed)
         each = (fastest,) * path.shape[1]
@@ -150,4 +157,4 @@ def trajectory_of(
         raise InvalidValue(
             f"limits must be Limits(velocity=..., acceleration=...) where there is no robot, got {shown(limits)}"
         )
-    return make_trajectory(path, at_speed, world=world, **options)
+    return make_trajectory(moving, at_speed, world=world, **options)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from evenroad._checks import as_batch, require_positive
 from evenroad._native.trajectory import distances_to, drive, largest_share
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import RoundedPath, rounded
+from evenroad.trajectory.in_motion import InMotion
 from evenroad.trajectory.limits import Limits
 from evenroad.trajectory.timing import TimeLaw, fastest, paused, slowed
 from evenroad.trajectory.trajectory import Trajectory
@@ -62,7 +64,7 @@ class Driven(NamedTuple):
 
 
 def make_trajectory(
-    path: npt.ArrayLike,
+    path: npt.ArrayLike | InMotion,
     limits: Limits,
     *,
     world: World | None = None,
@@ -80,8 +82,9 @@ def make_trajectory(
 
     Parameters
     ----------
-    path : array_like, shape (p, dim)
-        Waypoints joined by straight motions, p >= 2, at least two of them different.
+    path : array_like, shape (p, dim), or InMotion
+        Waypoints joined by straight motions, p >= 2, at least two of them different; and the velocities at both ends,
+        where these are not at rest.
     limits : Limits
     world : World, optional
         Checks the trajectory, by its strict check if it has one.  Default: no check.
@@ -97,7 +100,7 @@ def make_trajectory(
     Returns
     -------
     Trajectory
-        Its duration is a whole number of steps.
+        Its duration is a whole number of steps; in motion these are a little shorter.
 
     Raises
     ------
@@ -108,25 +111,31 @@ def make_trajectory(
     """
     deviation = require_positive("deviation", deviation, or_zero=True)
     step = require_positive("step", step)
-    waypoints = as_batch("path", path, len(limits.velocity))
-    waypoints = _apart(waypoints)
+    moving = path if isinstance(path, InMotion) else InMotion(path)
+    waypoints = _apart(as_batch("path", moving.path, len(limits.velocity)))
     if len(waypoints) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
     joints = tuple(names) if names is not None else tuple(f"joint_{i + 1}" for i in range(waypoints.shape[1]))
     if len(joints) != waypoints.shape[1]:
         raise InvalidValue(f"names must be {waypoints.shape[1]}, one a joint, got {len(joints)}")
+    waypoints, speeds = moving.led(waypoints, limits)
     window = 0.0 if limits.jerk is None else float(np.max(2.0 * np.divide(limits.acceleration, limits.jerk)))
     cuts = np.full(len(waypoints), deviation)
     for halved in range(_HALVINGS + _STOPPINGS):
         curve = rounded(waypoints, cuts)
-        law, fine, driven = _timed(curve, waypoints, limits, window, step)
+        law, fine, driven = _timed(curve, waypoints, limits, (window, step), speeds)
         free, proof = drivable(world, driven.positions)
         bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[driven.off > deviation + 1e-6]])
+        # A corner that is too near to a start or a goal in motion is too round, too.
+        late = [law.is_slower_than((speeds[0], 0.0)), law.is_slower_than((0.0, speeds[1]))]
+        bad = np.concatenate([bad, fine[[0, -1]][late]])
         if len(bad) == 0:
             break
         cuts = _less(cuts, curve.corners, law.length_at(bad - 0.5 * window), stop=halved >= _HALVINGS - 1)
     else:
-        raise NotAvailable(f"the trajectory is not proved free, or not near enough to its path, at {bad[0]:.3f} s")
+        raise NotAvailable(
+            f"the trajectory is not proved free, too far from its path, or too fast for it, at {bad[0]:.3f} s"
+        )
     return Trajectory(
         names=joints,
         times=fine[::_FINER],
@@ -158,20 +167,24 @@ def _apart(path: Floats) -> Floats:
 
 
 def _timed(
-    curve: RoundedPath, waypoints: Floats, limits: Limits, window: float, step: float
+    curve: RoundedPath, waypoints: Floats, limits: Limits, times: tuple[float, float], speeds: tuple[float, float]
 ) -> tuple[TimeLaw, Floats, Driven]:
     """Return the fastest law that keeps all limits at fine times, these times, and what the robot does then.
 
+    `times` are those over which the motion is averaged, and of a step.
+
     A tip's acceleration and torques are kept at the law's own grid: less of them is used where more comes between.
     """
-    share = 1.0
+    share, (window, step) = 1.0, times
     for _ in range(_SHARES):
-        law, fine, driven = _on_steps(
-            paused(fastest(curve, limits, share=share), window), waypoints, limits, window, step
-        )
+        if any(speeds):
+            law, fine, driven = _in_motion(curve, waypoints, (limits, share), step, speeds)
+        else:
+            law = paused(fastest(curve, limits, share=share), window)
+            law, fine, driven = _on_steps(law, waypoints, limits, window, step)
         if window > 0.0:
             driven = _averaged(law, waypoints, limits, window, fine)
-        if not limits.is_further:
+        if not limits.is_further or law.is_slower_than(speeds):
             return law, fine, driven
         further = limits.further_shares(*(law.averages(window, fine) if window > 0.0 else law.at(fine)))
         if max(further.values()) <= 1.0:
@@ -179,6 +192,27 @@ def _timed(
         share *= _LESS / max(further.values())
     over = ", ".join(f"{100.0 * used:.1f} % of {kind}" for kind, used in further.items())
     raise NotAvailable(f"no times were found that keep all limits: the slowest ones tried need {over}")
+
+
+def _in_motion(
+    curve: RoundedPath, waypoints: Floats, within: tuple[Limits, float], step: float, speeds: tuple[float, float]
+) -> tuple[TimeLaw, Floats, Driven]:
+    """Return the same of a law that is not slowed down, which would change its speeds at start and goal.
+
+    Its steps are a little shorter instead, and less of the limits is used where more comes between grid points.
+    """
+    (limits, share), used = within, 1.0
+    for _ in range(_SHARES):
+        pushes = tuple(used * push for push in limits.acceleration)
+        law = fastest(curve, replace(limits, acceleration=pushes), speeds, share)
+        steps = max(math.ceil(law.duration / step - 1e-9), 1)
+        require_steps(steps, law.duration, step)
+        fine = np.linspace(0.0, law.duration, _FINER * steps + 1)
+        driven = Driven.along(law, waypoints, limits, fine)
+        if driven.highest["acceleration"] <= 1.0 or law.is_slower_than(speeds):
+            break
+        used *= _LESS / driven.highest["acceleration"]
+    return law, fine, driven
 
 
 def _on_steps(
@@ -191,11 +225,7 @@ def _on_steps(
     velocity, acceleration = law.largest_shares(limits, _FINER)
     law = slowed(law, max(1.0, velocity, math.sqrt(acceleration)))
     steps = max(math.ceil((law.duration + window) / step - 1e-9), math.floor(window / step) + 1)
-    if steps > MOST_STATES:
-        raise InvalidValue(
-            f"the trajectory would take {law.duration + window:.4g} s in steps of {step:g} s, more than"
-            f" {MOST_STATES} of them: take longer steps, or move faster"
-        )
+    require_steps(steps, law.duration + window, step)
     while True:
         law = slowed(law, (steps * step - window) / law.duration)
         fine = np.linspace(0.0, law.duration + window, _FINER * steps + 1)
@@ -220,6 +250,15 @@ def _averaged(law: TimeLaw, waypoints: Floats, limits: Limits, window: float, fi
         distances_to(waypoints, positions),
         highest,
     )
+
+
+def require_steps(steps: int, duration: float, step: float) -> None:
+    """Raise InvalidValue for too many steps."""
+    if steps > MOST_STATES:
+        raise InvalidValue(
+            f"the trajectory would take {duration:.4g} s in steps of {step:g} s, more than {MOST_STATES} of them:"
+            " take longer steps, or move faster"
+        )
 
 
 def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:

@@ -36,6 +36,10 @@ class TimeLaw:
         """Duration [s]."""
         return float(self.times[-1])
 
+    def is_slower_than(self, speeds: tuple[float, float]) -> bool:
+        """Return whether it has less than these speeds at start or goal."""
+        return any(own < (1.0 - 1e-9) * speed for own, speed in zip(self.speeds[[0, -1]], speeds, strict=True))
+
     def length_at(self, t: Floats) -> Floats:
         """Return the lengths along the path at times, (n,) [s]."""
         return self._where(np.clip(t, 0.0, self.duration))[1]
@@ -80,7 +84,7 @@ def fastest(path: RoundedPath, limits: Limits, speeds: tuple[float, float] = (0.
     most = np.array(limits.velocity), _WITHIN * np.array(limits.acceleration)
     ceiling = np.array([_ANY_SPEED if limits.along_path is None else limits.along_path**2])
     law = TimeLaw(path, *native_fastest(path.columns, path.stops, *most, (ceiling, *speeds, None)))
-    if limits.tip is None and limits.torque is None:
+    if (limits.tip is None and limits.torque is None) or law.is_slower_than(speeds):
         return law
     # At speed 1 times are lengths, velocities directions, and accelerations bends; an interval ends with its own.
     grid = law.lengths

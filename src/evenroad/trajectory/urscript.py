@@ -20,6 +20,8 @@ CYCLES = (0.008, 0.002)
 LOOKAHEAD = 0.1
 """Time over which the controller smooths ``servoj`` commands [s]."""
 
+_STILL = 1e-6
+"""Speed of an arm that is at rest [rad/s]."""
 _JOINTS = 6
 _AT_START = 0.01
 """Largest distance of a joint from the start at which the program begins [rad]."""
@@ -133,6 +135,8 @@ def columns_of_ur(
     names, tables = trajectory.columns(order)
     if len(names) != _JOINTS:
         raise InvalidValue(f"URScript needs the six joints of a UR arm, got {len(names)}: {', '.join(names)}")
+    if np.abs(trajectory.velocities[[0, -1]]).max() > _STILL:
+        raise InvalidValue("a UR arm starts and stops at rest, but the trajectory begins or ends in motion")
     return names, tables
 
 

@@ -1,0 +1,78 @@
+"""Paths that begin or end in motion: a robot that moves goes straight on before it turns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Floats
+from evenroad._checks import as_row
+from evenroad.errors import InvalidValue
+from evenroad.trajectory.limits import Limits
+
+_FARTHER = 1.1
+"""Length of the straight way on, as a share of that on which the robot can stop."""
+_ALONG = 1e-9
+"""Largest sine of an angle between a velocity and a path that begins along it."""
+
+
+@dataclass(frozen=True, eq=False)
+class InMotion:
+    """A path, and how fast the joints move at its start and its goal.
+
+    A trajectory of it goes straight on at the start, as far as the robot needs to stop, and comes straight to the goal,
+    where the path does not begin and end along the velocities.
+
+    Attributes
+    ----------
+    path : array_like, shape (p, dim)
+        Waypoints joined by straight motions.
+    start, goal : array_like, shape (dim,), or None
+        Velocities [rad/s or m/s]; None: at rest.
+    """
+
+    path: npt.ArrayLike
+    start: npt.ArrayLike | None = None
+    goal: npt.ArrayLike | None = None
+
+    def led(self, waypoints: Floats, limits: Limits) -> tuple[Floats, tuple[float, float]]:
+        """Return waypoints, (p, dim), with those that lead in and out, and the speeds along the path at both ends.
+
+        Raises InvalidValue for velocities that are no such rows, or over the limits.
+        """
+        speeds = []
+        for name, given, sign in (("start", self.start, 1.0), ("goal", self.goal, -1.0)):
+            velocity = _velocity(name, given, limits)
+            speed = float(np.linalg.norm(velocity))
+            speeds.append(speed)
+            if speed == 0.0:
+                continue
+            direction = velocity / speed
+            path = waypoints if sign > 0.0 else waypoints[::-1]
+            first = path[1] - path[0]
+            off = first / np.linalg.norm(first) - sign * direction
+            if np.linalg.norm(off) > _ALONG:
+                push = np.min(np.array(limits.acceleration) / np.maximum(np.abs(direction), 1e-12))
+                turning = path[0] + sign * direction * (_FARTHER * speed**2 / (2.0 * push))
+                path = np.concatenate([path[:1], turning[np.newaxis], path[1:]])
+            waypoints = path if sign > 0.0 else path[::-1]
+        return np.ascontiguousarray(waypoints), (speeds[0], speeds[1])
+
+
+def _velocity(name: str, given: Any, limits: Limits) -> Floats:
+    """Return a velocity within limits, zero for None."""
+    dim = len(limits.velocity)
+    row = np.zeros(dim) if given is None else np.array(as_row(f"the velocity at the {name}", given, dim))
+    shares = np.abs(row) / np.array(limits.velocity)
+    if shares.max() > 1.0:
+        joint = int(shares.argmax())
+        most = limits.velocity[joint]
+        raise InvalidValue(
+            f"the velocity at the {name} of joint {joint} must be up to {most:.4g}, got {row[joint]:.4g}"
+        )
+    if limits.jerk is not None and row.any():
+        raise InvalidValue(f"with limits of jerk the robot must be at rest at the {name}, got the velocity {row!r}")
+    return row
