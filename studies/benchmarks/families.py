@@ -10,7 +10,8 @@ by world, with the standard error over worlds; k is the number of neighbours of 
 
 `--candidates` reads rows of ``points_apart --use reporting``.  In each dimension, with each k and linked as a plan
 links, it names the best set there and how far it is ahead of `even`.  A best set of many is ahead by luck as well, so
-`--fresh` asks the same set in other worlds; the last two columns are the best set of all these worlds together.
+`--fresh` has the same sets in other worlds: the table is of all worlds together, and the list after it says what became
+there of sets that were best in the first worlds.
 """
 
 from __future__ import annotations
@@ -32,6 +33,8 @@ KS = (4, 6, 10, 20)
 BESIDE = ("sobol scrambled", "lattice", "halton scrambled", "hickernell", "mpmc", "uniform")
 BARS = (6, 10, 20)
 """Numbers of neighbours for which `even` is to be the best set or within one standard error of it."""
+SPANS = ((2, 4), (5, 10))
+"""Dimensions over which kinds of worlds are pooled."""
 World = tuple[str, int]
 Differences = Mapping[World, Sequence[float]]
 """World -> difference from `even`, for each k."""
@@ -125,43 +128,102 @@ def order(group: str) -> tuple[bool, bool, int, str]:
     return (not d, family != "apart", int(d or 0), family)
 
 
-def candidates(path: Path) -> dict[tuple[str, int], dict[str, dict[str, str]]]:
-    """Return the rows over all kinds of worlds: (family, dimension) -> name of a set -> its row."""
-    found: dict[tuple[str, int], dict[str, dict[str, str]]] = defaultdict(dict)
-    with path.open(newline="") as file:
-        for row in csv.DictReader(file):
-            if row["kind"] == "all" and row["use"] == "reporting":
-                found[row["family"], int(row["d"])][row["set"]] = row
-    return found
+Sets = Mapping[str, list[dict[str, str]]]
+"""Name of a set -> its rows over all kinds of worlds, one for each run of ``points_apart``."""
 
 
-def best_of(sets: Mapping[str, tuple[float, float]]) -> tuple[str, str]:
-    """Return the set that is furthest ahead of `even`, which is none of them, and by how much, with its error."""
-    name = max(sets, key=lambda each: sets[each][0])
-    mean, error = sets[name]
-    return (name, f"{mean:+.1f} ({error:.1f})") if mean > 0.0 else ("even", "–")
+def candidates(paths: Sequence[Path]) -> dict[tuple[str, int], Sets]:
+    """Return the rows over all kinds of worlds: (family, dimension) -> sets."""
+    found: dict[tuple[str, int], dict[str, list[dict[str, str]]]] = defaultdict(lambda: defaultdict(list))
+    for row in reported(paths):
+        if row["kind"] == "all":
+            found[row["family"], int(row["d"])][row["set"]].append(row)
+    return dict(found)
 
 
-def print_best(path: Path, fresh: Path | None) -> None:
-    """Print for each family, dimension and k the best set and by how much it is ahead of `even`, here and elsewhere."""
-    here, there = candidates(path), candidates(fresh) if fresh else {}
-    line("worlds", "d", "k", "`even`, %", "best set", "- `even`", "in fresh worlds", "best of all", "- `even`")
-    line(":--", "--:", "--:", "--:", ":--", "--:", "--:", ":--", "--:")
-    ahead = cells = 0
-    for (family, d), sets in sorted(here.items()):
-        again = there.get((family, d), {})
-        for k in BARS:
-            column = f"plan {k}"
-            first = {name: over_all([row], column) for name, row in sets.items() if name != "even"}
-            second = {name: over_all([row], column) for name, row in again.items()}
-            both = {name: over_all([sets[name], again[name]], column) for name in first.keys() & again.keys()} or first
-            name, gap = best_of(first)
-            retold = "{:+.1f} ({:.1f})".format(*second[name]) if name in second and name != "even" else "–"
-            best, most = best_of(both)
-            cells += 1
-            ahead += best != "even" and both[best][0] > both[best][1]
-            line(family, d, k, sets["even"][column], f"`{name}`", gap, retold, f"`{best}`", most)
-    print(f"\n{ahead} of {cells} best sets of all worlds are ahead of `even` by more than one standard error")
+def reported(paths: Sequence[Path]) -> list[dict[str, str]]:
+    """Return the rows of CSVs that are of reporting worlds."""
+    rows: list[dict[str, str]] = []
+    for path in paths:
+        with path.open(newline="") as file:
+            rows += [row for row in csv.DictReader(file) if row["use"] == "reporting"]
+    return rows
+
+
+def print_kinds(rows: Sequence[Mapping[str, str]]) -> None:
+    """Print what `even` solves more than scrambled Sobol points in each kind of world, over dimensions."""
+    line("`even` minus Sobol", *(f"d = {low} to {high}, k = {k}" for low, high in SPANS for k in KS))
+    line(":--", *["--:"] * len(SPANS) * len(KS))
+    for kind in dict.fromkeys(row["kind"] for row in rows if row["kind"] != "all"):
+        of_kind = [row for row in rows if row["kind"] == kind and row["set"] == "sobol"]
+        spans = [[row for row in of_kind if low <= int(row["d"]) <= high] for low, high in SPANS]
+        line(kind, *(gap_text(span, f"plan {k}", -1.0) for span in spans for k in KS))
+    print()
+
+
+def print_beside(sets: Mapping[tuple[str, int], Sets]) -> None:
+    """Print what `even` solves more than each other set in both families, over all worlds, linked as a plan links."""
+    line("`even` minus", "d", *(f"{family}, k = {k}" for family in ("apart", "fair") for k in BARS))
+    line(":--", "--:", *["--:"] * 2 * len(BARS))
+    names = dict.fromkeys(name for each in sets.values() for name in each if name != "even")
+    for name in names:
+        for d in sorted({d for _, d in sets}):
+            cells = [
+                gap_text(sets.get((family, d), {}).get(name, []), f"plan {k}", -1.0)
+                for family in ("apart", "fair")
+                for k in BARS
+            ]
+            if set(cells) != {"–"}:
+                line(f"`{name}`", d, *cells)
+    print()
+
+
+def gap_text(rows: Sequence[Mapping[str, str]], column: str, sign: float = 1.0) -> str:
+    """Return by how much a set is ahead of `even`, with its error; a dash without rows."""
+    if not rows:
+        return "–"
+    mean, error = over_all(rows, column)
+    return f"{sign * mean + 0.0:+.1f} ({error:.1f})"
+
+
+def print_best(here: Mapping[tuple[str, int], Sets], there: Mapping[tuple[str, int], Sets]) -> None:
+    """Print in each family, dimension and k the best set and how far it is ahead of `even`; then, what luck does."""
+    both = {
+        at: {name: rows + there.get(at, {}).get(name, []) for name, rows in sets.items()} for at, sets in here.items()
+    }
+    line("d", *(f"{family}, k = {k}" for family in ("apart", "fair") for k in BARS))
+    line("--:", *[":--"] * 2 * len(BARS))
+    gaps, again = [], []
+    for d in sorted({d for _, d in here}):
+        cells = []
+        for family in ("apart", "fair"):
+            for column in (f"plan {k}" for k in BARS):
+                sets = both.get((family, d))
+                if sets is None:
+                    cells.append("–")
+                    continue
+                best = best_of(sets, column)
+                gaps.append(over_all(sets[best], column))
+                cells.append(f"`{best}`" if best == "even" else f"`{best}` {gap_text(sets[best], column)}")
+                first = best_of(here[family, d], column)
+                fresh = there.get((family, d), {}).get(first, [])
+                if first != "even" and fresh:
+                    text = gap_text(here[family, d][first], column)
+                    again.append(
+                        (over_all(fresh, column)[0], f"{family}, d = {d}, {column}, `{first}`: {text}", fresh, column)
+                    )
+        line(d, *cells)
+    ahead = sum(mean > error for mean, error in gaps)
+    print(f"\n{ahead} of {len(gaps)} best sets are ahead of `even` by more than one standard error.")
+    behind = sum(mean <= 0.0 for mean, *_ in again)
+    print(f"Of {len(again)} sets that were best in the first worlds, {behind} are not ahead in the others:\n")
+    for _, text, fresh, column in again:
+        print(f"* {text}, then {gap_text(fresh, column)}")
+
+
+def best_of(sets: Sets, column: str) -> str:
+    """Return the set that solves most, `even` where others do as well."""
+    return max(sets, key=lambda name: (over_all(sets[name], column)[0], name == "even"))
 
 
 def over_all(rows: Sequence[Mapping[str, str]], column: str) -> tuple[float, float]:
@@ -176,12 +238,15 @@ def main() -> None:
     parser = parser_of(__doc__)
     parser.add_argument("stores", type=Path, nargs="*", help="of the suites fair and apart")
     parser.add_argument("--candidates", type=Path, help="CSV of points_apart, reporting worlds")
-    parser.add_argument("--fresh", type=Path, help="the same, of other worlds")
+    parser.add_argument("--fresh", type=Path, nargs="*", default=[], help="the same, of other worlds")
     options = parser.parse_args()
     if options.stores:
         print_gains(joined([read_rows(store) for store in options.stores]))
     if options.candidates:
-        print_best(options.candidates, options.fresh)
+        paths = [options.candidates, *options.fresh]
+        print_beside(candidates(paths))
+        print_kinds(reported(paths))
+        print_best(candidates([options.candidates]), candidates(options.fresh))
 
 
 if __name__ == "__main__":
