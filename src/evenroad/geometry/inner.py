@@ -109,6 +109,7 @@ def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
     away = cKDTree(points, balanced_tree=False, compact_nodes=False).query(middles)[0]
     centroids = corners.mean(axis=1)
     reach = 1e-9 + np.linalg.norm(corners - centroids[:, np.newaxis], axis=2).max(axis=1)
+    along, farthest = np.ascontiguousarray(centroids[:, 0]), float(reach.max())
     balls: list[Fitted] = []
     left, largest = np.ones(len(middles), dtype=np.bool_), 0.0
     while left.any() and len(balls) < MOST_BALLS:
@@ -121,7 +122,8 @@ def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
         if not is_inside(corners, centre):
             continue
         # Corners of others are farther away than some point of the surface.
-        near = corners[np.linalg.norm(centroids - centre, axis=1) <= away[k] + reach]
+        some = np.flatnonzero(np.abs(along - centre[0]) <= away[k] + farthest)
+        near = corners[some[np.linalg.norm(centroids[some] - centre, axis=1) <= away[k] + reach[some]]]
         radius = float(distances(np.broadcast_to(centre, (len(near), 3)), near).min())
         left &= np.linalg.norm(middles - centre, axis=1) > _APART * radius
         largest = max(largest, radius)

@@ -72,8 +72,14 @@ class TriangleMesh:
         """The same triangles; of their corners those at one place are one, and there are no others."""
         used = np.zeros(len(self.vertices), dtype=np.bool_)
         used[self.triangles] = True
-        corners, number = np.unique(self.vertices[used], axis=0, return_inverse=True)
-        found = TriangleMesh(corners, number.reshape(-1)[(np.cumsum(used) - 1)[self.triangles]], self.name)
+        corners = self.vertices[used]
+        # As np.unique has it, which compares rows one by one.
+        order = np.lexsort(corners.T[::-1])
+        is_new = np.ones(len(order), dtype=np.bool_)
+        is_new[1:] = (corners[order[1:]] != corners[order[:-1]]).any(axis=1)
+        number = np.empty(len(order), dtype=np.int64)
+        number[order] = np.cumsum(is_new) - 1
+        found = TriangleMesh(corners[order[is_new]], number[(np.cumsum(used) - 1)[self.triangles]], self.name)
         set_fields(found, compact=found)
         return found
 
@@ -81,6 +87,10 @@ class TriangleMesh:
     def welded(self) -> Ints:
         """The triangles, (t, 3), by numbers of places: corners at one place have one number, whatever their rows."""
         return self.compact.triangles
+
+    @cached_property
+    def _closed(self) -> tuple[Bools, bool]:
+        return _closed_parts(self.welded)
 
     @cached_property
     def outer(self) -> Floats:
@@ -217,10 +227,14 @@ def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
     A part, of triangles that share corners, is closed if every edge belongs to an even number of triangles, and
     oriented if its triangles run along each edge in both directions equally often.  Equal corners are one.
     """
+    return mesh._closed
+
+
+def _closed_parts(faces: Ints) -> tuple[Bools, bool]:
+    """Return the same of triangles whose equal corners have one number."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
-    faces = mesh.welded
     a, b = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).T
     count = int(faces.max()) + 1
     _, part = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count)), directed=False)
