@@ -10,7 +10,6 @@ configuration, nor are among those that the loader names because one goes into t
 
 from __future__ import annotations
 
-import time
 import xml.etree.ElementTree as ET
 from itertools import combinations
 from pathlib import Path
@@ -32,25 +31,9 @@ PATHS = 10
 NO_AREA = 1e-12
 """Triangles of a mesh file up to this area are none [m²]."""
 FIELDS = (
-    *(
-        "robot",
-        "dim",
-        "links",
-        "tested",
-        "dropped_touching",
-        "configurations",
-        "truth_blocked",
-        "blocked",
-        "beyond",
-    ),
-    *(
-        "free_that_collide",
-        "at_contact",
-        "at_contact_that_collide",
-        "path_states",
-        "path_states_that_collide",
-    ),
-    *("hulls", "load_s", "us_per_configuration", "note"),
+    *("robot", "dim", "links", "tested", "dropped_touching", "configurations", "truth_blocked", "blocked", "beyond"),
+    *("free_that_collide", "at_contact", "at_contact_that_collide", "path_states", "path_states_that_collide"),
+    *("hulls", "note"),
 )
 
 
@@ -189,9 +172,7 @@ class Truth:
 def measured(file: Path, rng: np.random.Generator) -> dict[str, object]:
     """Return the row of one robot."""
     row: dict[str, object] = {"robot": file.stem}
-    began = time.perf_counter()
     model = load_model(file)
-    row["load_s"] = round(time.perf_counter() - began, 1)
     robot = model.robot
     world = ArmWorld(robot, Scene((), name="empty"))
     held = {
@@ -202,9 +183,6 @@ def measured(file: Path, rng: np.random.Generator) -> dict[str, object]:
     truth = Truth(file, robot.group, held)
     q = world.space.from_cube(rng.random((COUNT, world.space.cube_dim)))
     free = world.valid(q)
-    began = time.perf_counter()
-    world.valid(q)
-    row["us_per_configuration"] = round(1e6 * (time.perf_counter() - began) / COUNT, 2)
     hits = truth.touching(q)
     contained = {frozenset((first, second)) for first, second, why in model.dropped if why == CONTAINED}
     counted = ~hits.all(axis=0) & [frozenset(pair) not in contained for pair in truth.pairs]
