@@ -96,6 +96,9 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
       half = 0.5 / static_cast<double>(std::int64_t{LANES} << level);
       if (batch == 0) {
         // These stretches are the whole motion.
+        for (std::size_t k = 0; k < motion.way.size(); k++) {
+          workspace.speeds.ways[k] = spread(static_cast<float>(motion.way[k]));
+        }
         workspace.speeds.take_here(robot, workspace.places, motion.way, half);
         fastest = workspace.speeds.fastest();
       }
@@ -124,6 +127,7 @@ Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const d
   OwnMatrix<double> starts(count, dim), ways(count, dim);
   std::vector<double> end(dim), longest(dim);
   Mask proved = 0;
+  Speeds& speeds = workspace.speeds;
   double whole = 0;
   for (std::size_t row = 0; row < count; row++) {
     if (enter(a[row], robot.bounds, starts[row]) && enter(b[row], robot.bounds, end)) proved |= 1U << row;
@@ -131,16 +135,14 @@ Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const d
     for (std::size_t k = 0; k < dim; k++) longest[k] = std::max(longest[k], std::abs(ways(row, k)));
     // Of long motions nearly always the first is long.
     if (row > 0 && row + 1 < count) continue;
-    workspace.speeds.take_anywhere(robot, longest);
-    whole = workspace.speeds.fastest();
+    speeds.take_anywhere(robot, longest);
+    whole = speeds.fastest();
     if (0.5 * whole > SHORT) return 0;
   }
   std::vector<Piece> pieces, halves;
   for (std::size_t row = 0; row < count; row++) pieces.push_back({row, 0.5});
   for (int level = 0; level <= HALVED && !pieces.empty(); level++) {
     const double half = 0.5 / (1 << level);
-    enlarge(workspace, half);
-    workspace.enlarged.shapes_decide = half * whole < std::max(COARSE, 2.0 * tolerance);
     halves.clear();
     for (std::size_t first = 0; first < pieces.size(); first += LANES) {
       const std::size_t some = std::min<std::size_t>(LANES, pieces.size() - first);
@@ -149,9 +151,20 @@ Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const d
         const auto [row, centre] = pieces[first + std::min(lane, some - 1)];
         for (std::size_t k = 0; k < dim; k++) {
           workspace.states[k][static_cast<int>(lane)] = starts(row, k) + centre * ways(row, k);
+          if (level == 0) speeds.ways[k][static_cast<int>(lane)] = static_cast<float>(ways(row, k));
         }
       }
-      const Mask near = blocked(workspace, workspace.enlarged, Wanted::ALL);
+      workspace.places.place(robot, workspace.enlarged, workspace.states);
+      if (first == 0) {
+        if (level == 0) {
+          speeds.take_here(robot, workspace.places, longest, half);
+          whole = speeds.fastest();
+        }
+        enlarge(workspace, half);
+        workspace.enlarged.shapes_decide = half * whole < std::max(COARSE, 2.0 * tolerance);
+        workspace.places.place_boxes(robot, workspace.enlarged);
+      }
+      const Mask near = blocked_where_placed(workspace, workspace.enlarged, Wanted::ALL);
       for (std::size_t lane = 0; lane < some; lane++) {
         const auto [row, centre] = pieces[first + lane];
         // Of one that is given up, the other pieces do not matter.

@@ -46,7 +46,8 @@ double write_weights(const Robot& robot, std::span<const double> way, std::span<
 }  // namespace
 
 Speeds::Speeds(const Robot& robot)
-    : capsules(robot.arms.columns),
+    : ways(robot.dim()),
+      capsules(robot.arms.columns),
       pairs(robot.pair_arms.columns),
       shapes(robot.bodies.size()),
       velocities_(robot.frames.size() + 1),
@@ -59,7 +60,7 @@ void Speeds::take_anywhere(const Robot& robot, std::span<const double> way) {
   write_sums(robot.shape_arms, way, shapes);
 }
 
-void Speeds::take_here(const Robot& robot, const Places& places, std::span<const double> way, double half) {
+void Speeds::take_here(const Robot& robot, const Places& places, std::span<const double> longest, double half) {
   velocities_[0] = {};
   double slides = 0.0;
   for (std::size_t i = 0; i < robot.frames.size(); i++) {
@@ -67,19 +68,18 @@ void Speeds::take_here(const Robot& robot, const Places& places, std::span<const
     const Velocity& below = velocities_[frame.parent];
     Velocity& here = velocities_[i + 1];
     const PlacedFrame& at = places.frames[i + 1];
-    const double rate = frame.multiplier * way[frame.coordinate];
     const Vec3x16 axis{at.rows[0].z, at.rows[1].z, at.rows[2].z};
     here.along = below.along + cross(below.turning, at.origin - places.frames[frame.parent].origin);
     here.turning = below.turning;
     Vec3x16& moved = frame.slides ? here.along : here.turning;
-    moved = plus(moved, axis, spread(static_cast<float>(rate)));
-    if (frame.slides) slides += std::abs(rate);
+    moved = plus(moved, axis, spread(static_cast<float>(frame.multiplier)) * ways[frame.coordinate]);
+    if (frame.slides) slides += std::abs(frame.multiplier * longest[frame.coordinate]);
   }
-  const double turns = write_weights(robot, way, weights_);
+  const double turns = write_weights(robot, longest, weights_);
   const double lost = LOST * (slides + turns * robot.reach);
   std::fill(accelerations_.begin(), accelerations_.end(), 0.0);
-  for (std::size_t k = 0; k < way.size(); k++) {
-    const double size = std::abs(way[k]) * weights_[k];
+  for (std::size_t k = 0; k < longest.size(); k++) {
+    const double size = std::abs(longest[k]) * weights_[k];
     const auto row = robot.arms[k];
     for (std::size_t i = 0; i < accelerations_.size(); i++) accelerations_[i] += row[i] * size;
   }
