@@ -46,6 +46,17 @@ void Shortcuts::pass_by() {
   path_.measure();
 }
 
+void Shortcuts::pass_by_one() {
+  for (std::size_t i = 0; i + 2 < path_.size();) {
+    if (is_shortcut(path_[i], path_[i + 2])) {
+      path_.erase(i + 1, i + 2);
+    } else {
+      i++;
+    }
+  }
+  path_.measure();
+}
+
 void Shortcuts::join_shares(std::span<const double> pair) {
   const double length = path_.length();
   join(std::min(pair[0], pair[1]) * length, std::max(pair[0], pair[1]) * length, WORTH_WHILE);

@@ -26,6 +26,9 @@ class Shortcuts {
   /// Go from each waypoint straight to the farthest one that can be reached.
   void pass_by();
 
+  /// Take out single waypoints that their neighbours can do without: where few are left, in half the time.
+  void pass_by_one();
+
   /// Join two places, shares of the path's length.
   void join_shares(std::span<const double> pair);
 

@@ -171,7 +171,7 @@ void shorten(Path& path, Matrix<const double> pairs, std::int64_t most_shortcuts
   shortcuts.pass_by();
   for (std::size_t row = 0; row < pairs.rows; row++) shortcuts.join_shares(pairs[row]);
   shortcuts.shortcut_corners(most_shortcuts);
-  shortcuts.pass_by();
+  shortcuts.pass_by_one();
 }
 
 bool smooth(Path& path, const Guides& guides, std::int64_t most_batches, bool is_given_proved, MotionChecks& checks) {
