@@ -5,7 +5,7 @@
 
 For each robot: its file stands in place of `my_arm.urdf`, in an empty folder with a fresh home, and each command is a
 process of its own.  A row says with what they ended, what they printed last, how many arms the robot has (chains of at
-least `ARM` joints, none of them another's, in the SRDF that is written), and the processor's seconds.
+least `ARM` joints, none of them another's), and the processor's seconds.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ import shlex
 import subprocess
 import sys
 import tempfile
-import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from pathlib import Path
 
 from studies.benchmarks.rows import parser_of, row_per_robot
 
 from evenroad.robot import load_robot
+from evenroad.robot.groups import chains
 
 PAGE = Path(__file__).parents[2] / "docs" / "start" / "arm.md"
 ARM = 4
@@ -68,13 +68,12 @@ def measured(file: Path) -> dict[str, object]:
         srdf = folder / "my_arm.srdf"
         if not srdf.exists():
             return row
-        groups = [each.get("name") for each in ET.parse(srdf).getroot().findall("group")]
-        chains = sorted((load_robot(file, srdf=srdf, group=group).group for group in groups), key=len, reverse=True)
-        arms: list[tuple[str, ...]] = []
-        for chain in chains:
-            if len(chain) >= ARM and not any(set(chain) & set(other) for other in arms):
+        groups = chains(load_robot(file, srdf=srdf).joints).values()
+        arms: list[set[str]] = []
+        for chain in sorted(({joint.name for joint in group} for group in groups), key=len, reverse=True):
+            if len(chain) >= ARM and not any(chain & other for other in arms):
                 arms.append(chain)
-        row |= {"arms": len(arms), "joints": max(map(len, chains), default=0)}
+        row |= {"arms": len(arms), "joints": max(map(len, groups), default=0)}
         done, spent = run(plan, folder)
         row |= {"plan_exit": done.returncode, "plan_s": round(spent, 1), "said": last_line(done)}
         found = json.loads((folder / "empty.json").read_text()) if (folder / "empty.json").exists() else {}

@@ -7,10 +7,11 @@ Ends are near obstacles and free by `CLEAR` in coal, on the triangles of the fil
 many problems either solves, how many ends it refuses, how many states of its paths touch an obstacle in coal by more
 than `DEEP`, and how long a plan with shapes takes in parts of the same with capsules, where both solve it.
 
-Three more ratios say where that comes from.  ``same`` is the time that shapes take for the motions between nodes of the
+More ratios say where that comes from.  ``same`` is the time that shapes take for the motions between nodes of the
 trees that they grow, in parts of what capsules take for the same motions: what a test costs.  ``back`` is the time that
-capsules take from goal to start, in parts of that from start to goal: what is luck of a search.  ``motions`` is how
-many more motions a plan with shapes looks at.  ``--table`` prints the rows as docs/robots.md has them.
+capsules take from goal to start, in parts of that from start to goal, and ``own`` the same of shapes: what is luck of a
+search.  ``motions`` is how many more motions a plan with shapes looks at.  The last row is of all problems together.
+``--table`` prints the rows as docs/robots.md has them.
 """
 
 from __future__ import annotations
@@ -39,9 +40,9 @@ NEAR = 0.04
 COLUMNS = (
     *("robot", "family", "problems", "solved", "solved_capsules", "refused", "refused_capsules"),
     *("states", "states_that_touch", "ms", "ms_capsules", "ratio_median", "ratio_95"),
-    *("same_median", "same_95", "back_median", "back_95", "motions_median", "motions_95"),
+    *("same_median", "same_95", "back_median", "back_95", "motions_median", "motions_95", "own_median", "own_95"),
 )
-RATIOS = ("ratio", "same", "back", "motions")
+RATIOS = ("ratio", "same", "back", "motions", "own")
 
 
 def box(name: str, size: tuple[float, ...], *xyz: float) -> Obstacle:
@@ -169,8 +170,19 @@ def motions_of(result: er.PlanResult) -> int:
     return result.counts["edges_checked"] + result.counts["shortcut_motions"]
 
 
-def measured(file: Path, each: int) -> Iterator[dict[str, object]]:
-    """Yield the rows of one robot."""
+def shares_of(rows: np.ndarray) -> dict[str, float]:
+    """Return the median times and the quantiles of the ratios of problems that both solve, (n, 6)."""
+    found: dict[str, float] = {}
+    shares = np.c_[rows[:, 0] / rows[:, 1], rows[:, 2:]]
+    for key, column in zip(RATIOS, shares.T, strict=True):
+        middle, most = np.nanquantile(column, (0.5, 0.95)) if len(column) else (np.nan, np.nan)
+        found |= {f"{key}_median": round(float(middle), 3), f"{key}_95": round(float(most), 3)}
+    times = (1e3 * np.median(rows[:, :2], axis=0)).round(2).tolist()
+    return found | dict(zip(("ms", "ms_capsules"), times, strict=True))
+
+
+def measured(file: Path, each: int) -> Iterator[tuple[dict[str, object], np.ndarray]]:
+    """Yield the rows of one robot, each with the times and ratios of its problems, (n, 6)."""
     robot = load_robot(file)
     arm = [name for name in robot.group if not any(word in name for word in ("finger", "robotiq", "gripper", "drive"))]
     robot = load_robot(file, group=arm)
@@ -192,16 +204,11 @@ def measured(file: Path, each: int) -> Iterator[dict[str, object]]:
             if result.solved and plain.solved:
                 back = planned(capsules, scene, goal, start)[1] / spent_plain
                 same = same_motions(world, ArmWorld(capsules, scene), start, goal)
-                rows.append((spent, spent_plain, same, back, motions_of(result) / max(1, motions_of(plain))))
-        both = np.array(rows).reshape(-1, 5)
-        shares = np.c_[both[:, 0] / both[:, 1], both[:, 2:]]
-        row = {"robot": file.stem, "family": family, **count}
-        for key, column in zip(RATIOS, shares.T, strict=True):
-            middle, most = np.nanquantile(column, (0.5, 0.95)) if len(column) else (np.nan, np.nan)
-            row |= {f"{key}_median": round(float(middle), 3), f"{key}_95": round(float(most), 3)}
-        row |= dict(zip(("ms", "ms_capsules"), (1e3 * np.median(both[:, :2], axis=0)).round(2).tolist(), strict=True))
-        print(row, flush=True)
-        yield row
+                own = planned(robot, scene, goal, start)[1] / spent
+                more = motions_of(result) / max(1, motions_of(plain))
+                rows.append((spent, spent_plain, same, back, more, own))
+        both = np.array(rows).reshape(-1, 6)
+        yield {"robot": file.stem, "family": family, **count, **shares_of(both)}, both
 
 
 def table(rows: list[dict[str, str]]) -> str:
@@ -231,10 +238,15 @@ def main() -> None:
             print(table(list(csv.DictReader(stream))))
         return
     done: list[dict[str, object]] = []
+    problems_of_all: list[np.ndarray] = []
     for file in given.robots:
-        for row in measured(file, given.each):
+        for row, both in measured(file, given.each):
+            print(row, flush=True)
             done.append(row)
-            write_rows(given.out, COLUMNS, done)
+            problems_of_all.append(both)
+            total = {key: sum(int(str(each[key])) for each in done) for key in COLUMNS[2:9]}
+            every = {"robot": "all", "family": "all", **total, **shares_of(np.concatenate(problems_of_all))}
+            write_rows(given.out, COLUMNS, [*done, every])
 
 
 if __name__ == "__main__":
