@@ -44,7 +44,7 @@ OF_OMPL = {"AORRTC": "AORRTC", "BITstar": "BIT*"}
 OTHERS = 3
 SLICE = 100
 Beside = dict[str, Callable[[Problem, float], Iterator[tuple[float, float]]]]
-"""What runs beside: a problem and its milliseconds to times [ms] and lengths, as `lengths` yields them."""
+"""What runs beside: a problem and milliseconds to times [ms] and lengths, as `lengths` yields them."""
 
 
 def lengths(world: ArmWorld, problem: Problem, variant: int, most: float) -> Iterator[tuple[float, float]]:
@@ -70,32 +70,37 @@ def lengths(world: ArmWorld, problem: Problem, variant: int, most: float) -> Ite
 
 
 def lengths_of(name: str, problem: Problem, most: float) -> Iterator[tuple[float, float]]:
-    """Yield as `lengths` of a planner of OMPL, looked at after each of the times."""
+    """Yield as `lengths` of a planner of OMPL, which begins anew for each of the times.
+
+    AORRTC of 2.0.1 cannot go on: its path then has length 0, or the process ends.  It has length 0 also where it is
+    straight, so it counts as long as that.
+    """
     from ompl import base as ob
     from ompl import geometric as og
 
     from evenroad.adapters.ompl import format_of, space_information
 
     world = ArmWorld(problem.robot, problem.scene)
-    begin = time.thread_time()
-    information = space_information(CertifiedWorld(world))
-    definition = ob.ProblemDefinition(information)
-    ends = []
-    for q in (problem.start, problem.goal):
-        state = information.allocState()
-        format_of(information.getStateSpace()).write(state, q.tolist())
-        ends.append(state)
-    definition.setStartAndGoalStates(*ends)
-    definition.setOptimizationObjective(ob.PathLengthOptimizationObjective(information))
-    planner = getattr(og, name)(information)
-    planner.setProblemDefinition(definition)
-    planner.setup()
+    straight = path_length(np.stack([problem.start, problem.goal]), world.space)
     for until in (each for each in (*TIMES, *LATER) if each <= most):
-        left = 1e-3 * until - (time.thread_time() - begin)
-        if left > 0.0:
-            planner.solve(left)
+        begin = time.thread_time()
+        information = space_information(CertifiedWorld(world))
+        definition = ob.ProblemDefinition(information)
+        ends = [information.allocState() for _ in range(2)]
+        for state, q in zip(ends, (problem.start, problem.goal), strict=True):
+            format_of(information.getStateSpace()).write(state, q.tolist())
+        definition.setStartAndGoalStates(*ends)
+        definition.setOptimizationObjective(ob.PathLengthOptimizationObjective(information))
+        planner = getattr(og, name)(information)
+        planner.setProblemDefinition(definition)
+        planner.setup()
+        planner.solve(ob.PlannerTerminationCondition(partial(_is_over, begin + 1e-3 * until)))
         if definition.hasExactSolution():
-            yield 1e3 * (time.thread_time() - begin), definition.getSolutionPath().length()
+            yield 1e3 * (time.thread_time() - begin), max(definition.getSolutionPath().length(), straight)
+
+
+def _is_over(deadline: float) -> bool:
+    return time.thread_time() > deadline
 
 
 def simplified(problem: Problem, most: float) -> Iterator[tuple[float, float]]:
@@ -132,7 +137,10 @@ def by_roboplan(problem: Problem, most: float) -> Iterator[tuple[float, float]]:
 
 
 def measured(problem: Problem, best: float, beside: Beside, seconds: float) -> list[list[float]] | None:
-    """Return the lengths after each time over the best known of each planner; None where there is no path."""
+    """Return of each planner when its first path comes [ms], and lengths after each time over the best known.
+
+    None where there is no path.
+    """
     world = ArmWorld(problem.robot, problem.scene)
     runs = [list(lengths(world, problem, 0, TIMES[-1]))]
     if not runs[0]:
@@ -140,10 +148,10 @@ def measured(problem: Problem, best: float, beside: Beside, seconds: float) -> l
     others = [list(lengths(world, problem, 1 + i, 1e3 * best)) for i in range(OTHERS)]
     runs += [list(planner(problem, 1e3 * seconds)) for planner in beside.values()]
     shortest = min(length for each in (*runs, *others) for _, length in each)
-    first = [run[0][1] if run else np.nan for run in runs]
+    firsts = [run[0] if run else (np.nan, np.nan) for run in runs]
     return [
-        [min([c for t, c in run if t <= most] or [late]) / shortest for most in (*TIMES, *LATER)]
-        for run, late in zip(runs, first, strict=True)
+        [first[0], *(min([c for t, c in run if t <= most] or [first[1]]) / shortest for most in (*TIMES, *LATER))]
+        for run, first in zip(runs, firsts, strict=True)
     ]
 
 
@@ -180,7 +188,7 @@ def main() -> None:
             found = ~np.isnan(own[:, 0])
             curves[f"{who}; {name}"] = own[found]
             print(f"{name}, {who}: {found.sum()} of {len(own)} problems; mean / median / 95 % / largest")
-            for most, column in zip((*TIMES, *LATER)[: None if i else len(TIMES)], own[found].T, strict=False):
+            for most, column in zip((*TIMES, *LATER)[: None if i else len(TIMES)], own[found].T[1:], strict=False):
                 spread = np.mean(column), np.median(column), np.quantile(column, 0.95), column.max()
                 print(f"  {most:5g} ms: {' / '.join(f'{each:.4f}' for each in spread)}", flush=True)
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
@@ -189,7 +197,7 @@ def main() -> None:
 
 
 def draw(curves: dict[str, Vector], file: Path) -> None:
-    """Draw the mean ratios against the time."""
+    """Draw the mean ratios against the time, from that on by which half of the paths are there."""
     import matplotlib.pyplot as plt
 
     arms = list(dict.fromkeys(name.split("; ")[1] for name in curves))
@@ -198,9 +206,10 @@ def draw(curves: dict[str, Vector], file: Path) -> None:
     for name, ratios in curves.items():
         who, arm = name.split("; ")
         axis = axes[0][arms.index(arm)]
-        shown = len(TIMES) if who == "evenroad" else len(TIMES) + len(LATER)
-        excess = 100.0 * (ratios.mean(axis=0)[:shown] - 1.0)
-        axis.loglog((*TIMES, *LATER)[:shown], excess, color=f"C{planners.index(who)}", marker="o", label=who)
+        times = np.array(TIMES if who == "evenroad" else (*TIMES, *LATER))
+        begun = times >= np.median(ratios[:, 0])
+        excess = 100.0 * (ratios[:, 1 : 1 + len(times)].mean(axis=0) - 1.0)
+        axis.loglog(times[begun], excess[begun], color=f"C{planners.index(who)}", marker="o", label=who)
         axis.set(xlabel="processor time from the query on [ms]", title=arm)
         axis.grid(alpha=0.3, which="both")
     axes[0][0].set(ylabel="mean length above the best known [%]")
