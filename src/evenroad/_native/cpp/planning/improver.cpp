@@ -16,6 +16,11 @@ namespace {
 /// golden ratio, without its integer.
 constexpr double LOOSEST = 3.0;
 
+/// Every third round begins with ends alone, the others with the beginning and the end of the best path, too: the way
+/// out of a narrow place need not be found again.  Where they are cut is even in the plane: powers of 1 / 1.3247...
+constexpr std::int64_t ANEW = 3;
+constexpr double PLASTIC = 0.7548776662466927;
+
 /// The trees of a round may check so many motions at least, or so many times those of the first path, times 1, 1, 2, 1,
 /// 1, 2, 4 ...
 constexpr std::int64_t LEAST_MOTIONS = 400, TIMES_FIRST = 2;
@@ -94,7 +99,17 @@ TreePlanner& Improver::begin_round() {
   const double share = std::fmod(static_cast<double>(rounds_) * GOLDEN, 1.0);
   bound_.longest = is_smoothing_ ? length() * (1.0 + LOOSEST * share * share) : length();
   left_ = round_motions_ * luby(rounds_);
-  return trees_.emplace(ends_, sequences_, checks_, &bound_, static_cast<std::size_t>(rounds_));
+  TreePlanner& trees = trees_.emplace(ends_, sequences_, checks_, &bound_, static_cast<std::size_t>(rounds_));
+  if (is_smoothing_ && rounds_ % ANEW != 0) {
+    const double one = place_of_round(PLASTIC), other = place_of_round(PLASTIC * PLASTIC);
+    trees.begin_along(best_, goal_, std::min(one, other), std::max(one, other));
+  }
+  return trees;
+}
+
+/// Return a place along the best path, even over the rounds.
+double Improver::place_of_round(double step) const {
+  return length() * std::fmod(static_cast<double>(rounds_) * step, 1.0);
 }
 
 Growth Improver::grow(TreePlanner& trees, Effort most, std::int64_t pause) {

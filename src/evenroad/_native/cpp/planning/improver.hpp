@@ -65,6 +65,7 @@ class Improver {
   static constexpr std::int64_t MOST_MOTIONS = 1'000'000;
 
   TreePlanner& begin_round();
+  double place_of_round(double step) const;
   Growth grow(TreePlanner& trees, Effort most, std::int64_t pause);
   void take(const std::vector<double>& points, std::int64_t goal);
   void polish_best();

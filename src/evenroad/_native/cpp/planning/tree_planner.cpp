@@ -76,6 +76,27 @@ void TreePlanner::plant() {
   }
 }
 
+void TreePlanner::begin_along(const Path& path, std::int64_t goal, double first, double second) {
+  plant();
+  is_begun_ = true;
+  const auto root = std::ranges::find(goals_, goal);
+  if (!is_planted() || root == goals_.end()) return;
+  const auto add = [&](std::size_t tree, Node parent, std::size_t i, double apart) {
+    const Node node = trees_[tree].add(path[i], parent, apart);
+    trees_[tree].set_proved(node);
+    return node;
+  };
+  Node node = 0;
+  const std::size_t last = path.size() - 1;
+  for (std::size_t i = 1; i < last && path.place(i) <= first; i++) {
+    node = add(0, node, i, path.place(i) - path.place(i - 1));
+  }
+  node = root - goals_.begin();
+  for (std::size_t i = last - 1; i > 0 && path.place(i) >= second; i--) {
+    node = add(1, node, i, path.place(i + 1) - path.place(i));
+  }
+}
+
 /// Return the tree to grow: the one that grew last, unless the other is smaller.
 std::size_t TreePlanner::growing_tree() {
   if (trees_[growing_].size() > trees_[1 - growing_].size()) growing_ = 1 - growing_;

@@ -11,6 +11,8 @@
 
 #include "common/matrix.hpp"
 #include "planning/motion_checks.hpp"
+#include "planning/path.hpp"
+#include "planning/path_bound.hpp"
 #include "planning/tree.hpp"
 #include "planning/tree_steps.hpp"
 
@@ -28,6 +30,10 @@ class TreePlanner {
   /// round is driven by other points of the sequences.
   TreePlanner(Matrix<const double> ends, const Sequences& sequences, MotionChecks& checks,
               const PathBound* bound = nullptr, std::size_t round = 0);
+
+  /// Plant the trees, and add the waypoints of a path of proved motions to this goal: to that of the start those up to
+  /// the first place along the path, to that of the goals those from the second on.  Call it before `grow`.
+  void begin_along(const Path& path, std::int64_t goal, double first, double second);
 
   /// Grow until the trees meet, so many motions are spent, or about so many batches of sixteen were checked in this
   /// call; the next call goes on.
