@@ -66,6 +66,8 @@ CALLS = {
     "result.plot(world='office.yaml')": "world",
     "er.show('plan.json')": "plan or a map",
     "er.plan(arm, 'home', 'zero', timeout=1)": "seconds=5",
+    "er.plan(arm, 'home', 'zero', clearance=0.02)": "ArmWorld(robot, scene, clearance=...)",
+    "er.plan(arm, 'home', 'zero', padding=0.02)": "load_robot(file, padding=...)",
     "er.RRTConnect(range=0.5)": "known: improve",
     "er.PRM(n=512)": "points",
     "er.build_roadmap(arm, n=64)": "points",

@@ -75,6 +75,10 @@ def read_request(
         return arm_request(of_world.pop("robot"), world, start, goal, reading, **of_world)
     if of_world:
         unknown = f"unknown keyword of plan in {shown(world)}: {next(iter(of_world))!r}"
+        name = next(iter(of_world))
+        if isinstance(world, ArmWorld) and name in OF_SCENE:
+            makes = "ArmWorld(robot, scene" if name in ("clearance", "resolution") else "load_robot(file"
+            raise InvalidValue(f"{unknown}; this world has its own: {makes}, {name}=...) takes it")
         raise InvalidValue(f"{unknown}; the time limit is seconds=5, others are limits={{'motions': 1000}}")
     if not hasattr(world, "motion_valid"):
         raise InvalidValue(
