@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_batch, as_row, require_positive
+from evenroad._native import robot as native
 from evenroad.errors import InvalidValue
 
 _AS_LARGE = 1e-4
@@ -90,7 +91,7 @@ class TriangleMesh:
 
     @cached_property
     def _closed(self) -> tuple[Bools, bool]:
-        return _closed_parts(self.welded)
+        return native.closed_parts(self.vertices, self.triangles)
 
     @cached_property
     def outer(self) -> Floats:
@@ -228,18 +229,3 @@ def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
     oriented if its triangles run along each edge in both directions equally often.  Equal corners are one.
     """
     return mesh._closed
-
-
-def _closed_parts(faces: Ints) -> tuple[Bools, bool]:
-    """Return the same of triangles whose equal corners have one number."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    a, b = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).T
-    count = int(faces.max()) + 1
-    _, part = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count)), directed=False)
-    _, side = np.unique(np.minimum(a, b) * count + np.maximum(a, b), return_inverse=True)
-    times, turns = np.bincount(side), np.bincount(side, weights=np.sign(b - a))
-    is_open, unturned = (np.unique(part[a[bad[side]]]) for bad in (times % 2 != 0, turns != 0.0))
-    closed = ~np.isin(part, is_open)
-    return closed[faces[:, 0]], not (closed[faces[:, 0]] & np.isin(part, unturned)[faces[:, 0]]).any()

@@ -8,7 +8,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from evenroad._arrays import Floats
 from evenroad._native import robot as native
 from evenroad.geometry.hulls import winding_number
 from evenroad.geometry.mesh import closed_parts
@@ -36,22 +35,29 @@ _CUBE = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))[np.concatenate(
 """Triangles of a cube around the origin, outside to the right of their turn."""
 
 
-def surface_of(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) -> native.Surface | None:
+def surface_of(
+    body: PointCloud | Mesh, reach: float, clearance: float = 0.0, shaped: bool = True
+) -> native.Surface | None:
     """Return what a robot of this reach can touch of a body that is larger by a clearance, None where that is nothing;
     kept for the next scene.
+
+    It says whether true shapes of the robot are to be tested: without them a mesh takes a tenth of the memory.
     """
     is_frame = isinstance(body, PointCloud) and len(body.points) > FRAME
-    return (_frames if is_frame else _surfaces)(body, reach, clearance)
+    return (_frames if is_frame else _surfaces)(body, reach, clearance, shaped)
 
 
-def make_surface(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) -> native.Surface | None:
+def make_surface(
+    body: PointCloud | Mesh, reach: float, clearance: float = 0.0, shaped: bool = True
+) -> native.Surface | None:
     """Return the same, made anew."""
     reach += clearance
     if isinstance(body, PointCloud):
         pose = np.array(body.pose.rotation), np.array(body.pose.xyz)
         return native.Surface.of_cloud(body.points, *pose, body.radius, clearance, reach)
     corners = body.pose.apply(body.triangles.vertices)[body.triangles.triangles]
-    near, (closed, turned) = _within_reach(corners, reach), closed_parts(body.triangles)
+    near = native.pieces_within(corners, reach, reach * PIECE).reshape(-1, 3, 3)
+    closed, turned = closed_parts(body.triangles)
     solid = corners[closed]
     if len(near) == 0:
         if not turned or abs(winding_number(solid, np.zeros(3))) < 0.5:
@@ -59,7 +65,7 @@ def make_surface(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) 
         # All that the robot can reach is inside.
         near = solid = reach * _CUBE
     padding = PADDING * math.sqrt(np.einsum("ijk,ijk->ij", near, near).max())
-    return native.Surface(np.ascontiguousarray(near), clearance + padding, solid, turned, reach)
+    return native.Surface(np.ascontiguousarray(near), clearance + padding, solid, turned, reach, shaped)
 
 
 _surfaces = lru_cache(maxsize=64)(make_surface)
@@ -67,24 +73,6 @@ _frames = lru_cache(maxsize=4)(make_surface)
 
 
 @lru_cache(maxsize=4)
-def surfaces_around(bodies: tuple[tuple[PointCloud | Mesh, float], ...], reach: float) -> native.Surface:
+def surfaces_around(bodies: tuple[tuple[PointCloud | Mesh, float], ...], reach: float, shaped: bool) -> native.Surface:
     """Return the grid around several bodies that can be reached, each with its clearance; kept, as they are."""
-    return native.Surface.around([surface_of(body, reach, clearance) for body, clearance in bodies])
-
-
-def _within_reach(corners: Floats, reach: float) -> Floats:
-    """Return the pieces of triangles, (n, 3, 3), that come within reach along each axis, see `PIECE`."""
-    pieces = []
-    while len(corners):
-        touched = (np.abs(corners).min(axis=1) <= reach) | (corners.min(axis=1) * corners.max(axis=1) <= 0.0)
-        corners = corners[touched.all(axis=1)]
-        lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
-        large = lengths.max(axis=1, initial=0.0) > reach * PIECE
-        pieces.append(corners[~large])
-        longest = lengths[large].argmax(axis=1)
-        # Longest sides first.
-        turn = (longest[:, np.newaxis] + np.arange(3)) % 3
-        a, b, c = np.take_along_axis(corners[large], turn[:, :, np.newaxis], axis=1).transpose(1, 0, 2)
-        middle = 0.5 * (a + b)
-        corners = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
-    return np.concatenate(pieces) if pieces else np.empty((0, 3, 3))
+    return native.Surface.around([surface_of(body, reach, clearance, shaped) for body, clearance in bodies])

@@ -10,6 +10,7 @@
 #include "bind/doubles.hpp"
 #include "bind/parts.hpp"
 #include "robot/given_boxes.hpp"
+#include "robot/triangles.hpp"
 
 namespace evenroad::bind {
 
@@ -18,18 +19,48 @@ namespace {
 /// No obstacle has a larger number.
 constexpr std::size_t MOST_OBSTACLES = 1 << 24;
 
+/// Nor is any of a mesh's triangles.
+constexpr std::size_t MOST_CORNERS = 1 << 28;
+
 using robot::Robot;
 using robot::Scene;
 using robot::Surface;
 
-void make_surface(Surface* self, nb::handle corners, double radius, nb::handle solid, bool turned, double reach) {
+void make_surface(Surface* self, nb::handle corners, double radius, nb::handle solid, bool turned, double reach,
+                  bool shaped) {
   const Array<const double, 3> of(corners, "corners"), closed(solid, "solid");
   require(of.shape(2) == 3 && (of.shape(1) == 1 || of.shape(1) == 3), "corners must be (n, 1, 3) or (n, 3, 3)");
   require_within(of.span(), -FARTHEST, FARTHEST, "corners"),
       require_within(closed.span(), -FARTHEST, FARTHEST, "solid");
   require_within({&radius, 1}, 0.0, FARTHEST, "radius"), require_within({&reach, 1}, 0.0, FARTHEST, "reach");
   closed.of_shape({closed.shape(0), 3, 3});
-  new (self) Surface(robot::make_surface({of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach}));
+  new (self) Surface(robot::make_surface({of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach, shaped}));
+}
+
+/// Return whether true shapes of a robot decide.
+bool is_shaped(const Robot& robot) {
+  return std::ranges::any_of(robot.bodies, [](const robot::Body& body) { return body.shape >= 0; });
+}
+
+/// Return which triangles, (t, 3) rows of vertices, (n, 3), belong to closed parts, and whether these are oriented.
+nb::tuple closed_parts(nb::handle vertices, nb::handle triangles) {
+  const FloatRows corners(vertices, "vertices");
+  const Array<const std::int64_t, 2> rows(triangles, "triangles");
+  require(corners.shape(1) == 3 && rows.shape(1) == 3, "vertices and triangles must be (n, 3)");
+  require(corners.shape(0) <= MOST_CORNERS && rows.shape(0) <= MOST_CORNERS, "a mesh has too many triangles");
+  require_below(rows.span(), corners.shape(0), "triangles");
+  const std::size_t count = rows.shape(0);
+  robot::ClosedParts parts = robot::closed_parts({corners.data(), 3 * corners.shape(0)}, rows.span());
+  return nb::make_tuple(as_bools(std::move(parts.closed), {count}), parts.oriented);
+}
+
+/// Return the pieces of triangles, (t, 3, 3), that come within reach, none of a side longer than `longest`: (p, 9).
+nb::object pieces_within(nb::handle triangles, double reach, double longest) {
+  const Array<const double, 3> given(triangles, "triangles");
+  given.of_shape({given.shape(0), 3, 3});
+  require_within(given.span(), -FARTHEST, FARTHEST, "triangles");
+  require_within({&reach, 1}, 0.0, FARTHEST, "reach"), require(longest > 0, "longest must be > 0");
+  return as_rows(robot::pieces_within(given.span(), reach, longest), 9);
 }
 
 /// Return what of a cloud a robot can reach, or None; points must be finite, and within 1e9 m.
@@ -96,6 +127,7 @@ void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle t
     const Array<const bool, 1> capsules(part[2], "tested");
     capsules.of_shape({of.capsules.size()});
     auto surface = value_of<std::shared_ptr<Surface>>(part[0], "surface");
+    require(!surface->hulls.nodes.empty() || !is_shaped(of), "surface must be made for true shapes");
     require(!surface->tree.levels.empty(), "a grid around surfaces is no surface");
     scene.surfaces.push_back(
         {std::move(surface), value_of<int>(part[1], "number"), {capsules.span().begin(), capsules.span().end()}});
@@ -123,9 +155,12 @@ nb::object changed_scene(const Scene& before, const Robot& of, nb::handle gone, 
 void add_scene(nb::module_& part) {
   nb::class_<Surface>(part, "Surface")
       .def("__init__", &make_surface, nb::arg("corners"), nb::arg("radius"), nb::arg("solid"), nb::arg("turned"),
-           nb::arg("reach"))
+           nb::arg("reach"), nb::arg("shaped") = true)
       .def_static("of_cloud", &surface_of_cloud)
       .def_static("around", &surface_around);
+  part.def("is_shaped", &is_shaped);
+  part.def("closed_parts", &closed_parts);
+  part.def("pieces_within", &pieces_within);
   part.def("box_rows", &box_rows, nb::arg("size"), nb::arg("xyz"), nb::arg("xyzw").none());
   nb::class_<Scene>(part, "Scene")
       .def("__init__", &make_scene, nb::arg("robot"), nb::arg("obstacles"), nb::arg("tested"), nb::arg("surfaces"),

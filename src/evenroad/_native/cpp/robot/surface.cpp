@@ -93,7 +93,7 @@ Surface make_surface(const GivenSurface& given) {
   Surface surface;
   surface.radius = static_cast<float>(given.radius);
   add_grid(surface, given);
-  add_hulls(surface, given);
+  if (given.shaped) add_hulls(surface, given);
   std::vector<Place> middles(count);
   double largest = 0;
   for (std::size_t i = 0; i < count; i++) {

@@ -44,6 +44,7 @@ struct GivenSurface {
   std::span<const double> solid;  // (m, 3, 3): triangles of closed surfaces, however far
   bool turned;                    // whether the sides of these tell inside from outside
   double reach;                   // the grid ends at that distance from the origin along each axis
+  bool shaped = true;             // whether true shapes of a robot are to be tested against it
 };
 
 /// Return a surface; std::invalid_argument if sizes do not fit.

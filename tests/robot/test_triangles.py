@@ -1,0 +1,86 @@
+"""Closed parts of meshes, and the pieces that a robot can reach, as slow loops find them."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from evenroad._native import robot as native
+from evenroad.geometry import TriangleMesh
+from evenroad.geometry.mesh import closed_parts
+
+
+def slow_closed_parts(mesh):
+    """The same by dictionaries of corners."""
+    faces = [[tuple((mesh.vertices[i] + 0.0).tolist()) for i in face] for face in mesh.triangles]
+    part = {}
+    for face in faces:
+        joined = set().union(*(part.get(corner, {corner}) for corner in face))
+        for corner in joined:
+            part[corner] = joined
+    sides = [(face[k], face[(k + 1) % 3]) for face in faces for k in range(3)]
+    times = Counter(min(side, side[::-1]) for side in sides)
+    turns = Counter()
+    for a, b in sides:
+        turns[min((a, b), (b, a))] += (b > a) - (a > b)
+    odd = {id(part[a]) for (a, _), count in times.items() if count % 2}
+    unturned = {id(part[a]) for (a, _), count in turns.items() if count}
+    closed = [id(part[face[0]]) not in odd for face in faces]
+    return closed, not any(
+        is_closed and id(part[face[0]]) in unturned for is_closed, face in zip(closed, faces, strict=True)
+    )
+
+
+def slow_pieces(corners, reach, longest):
+    """The same one after the other."""
+    if not ((np.abs(corners).min(axis=0) <= reach) | (corners.min(axis=0) * corners.max(axis=0) <= 0.0)).all():
+        return []
+    lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)
+    if lengths.max() <= longest:
+        return [corners.ravel().tolist()]
+    a, b, c = np.roll(corners, -lengths.argmax(), axis=0)
+    middle = 0.5 * (a + b)
+    one, other = (np.stack(piece) for piece in ((a, middle, c), (middle, b, c)))
+    return slow_pieces(one, reach, longest) + slow_pieces(other, reach, longest)
+
+
+def tetrahedra(rng, count, turned):
+    """Closed surfaces, some without a triangle, some with one turned, as a soup of corners or with shared ones."""
+    vertices, triangles = [], []
+    for _ in range(count):
+        faces = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)])
+        if rng.random() < 0.3:
+            faces = faces[: rng.integers(1, 4)]
+        if turned and rng.random() < 0.4:
+            faces[0] = faces[0, ::-1]
+        triangles.append(faces + 4 * len(vertices))
+        corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]) * rng.choice((-1.0, 1.0), 3)
+        vertices.append(corners + rng.integers(-2, 3, 3))
+    vertices, triangles = np.concatenate(vertices), np.concatenate(triangles)
+    if rng.random() < 0.5:
+        return TriangleMesh(vertices[triangles].reshape(-1, 3), np.arange(triangles.size).reshape(-1, 3))
+    return TriangleMesh(vertices, triangles)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_closed_parts_are_those_of_a_slow_search(seed):
+    rng = np.random.default_rng(seed)
+    mesh = tetrahedra(rng, int(rng.integers(1, 30)), turned=seed % 2 == 1)
+    closed, oriented = closed_parts(mesh)
+    expected = slow_closed_parts(mesh)
+    assert closed.tolist() == expected[0]
+    assert oriented == expected[1]
+
+
+def test_pieces_are_those_of_a_slow_recursion_and_cover_what_is_reached():
+    rng = np.random.default_rng(0)
+    corners = rng.normal(size=(60, 3, 3)) * rng.uniform(0.05, 3.0, (60, 1, 1))
+    pieces = native.pieces_within(corners, 0.9, 0.3)
+    expected = [piece for triangle in corners for piece in slow_pieces(triangle, 0.9, 0.3)]
+    assert len(pieces) > 300
+    assert sorted(pieces.tolist()) == sorted(expected)
+    # Places of the triangles within reach are in one of the pieces: areas tell.
+    near = corners[(np.abs(corners) < 0.9).all(axis=(1, 2))]
+    assert len(near) > 5
+    area = lambda t: np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1).sum()  # noqa: E731
+    assert np.isclose(area(native.pieces_within(near, 0.9, 0.3).reshape(-1, 3, 3)), area(near))
