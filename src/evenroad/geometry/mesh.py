@@ -12,7 +12,7 @@ from hashlib import sha256
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._arrays import Bools, Floats, Ints, set_fields
+from evenroad._arrays import Bools, Floats, Ints, set_fields, unique_rows
 from evenroad._checks import as_batch, as_row, require_positive
 from evenroad._native import robot as native
 from evenroad.errors import InvalidValue
@@ -73,14 +73,8 @@ class TriangleMesh:
         """The same triangles; of their corners those at one place are one, and there are no others."""
         used = np.zeros(len(self.vertices), dtype=np.bool_)
         used[self.triangles] = True
-        corners = self.vertices[used]
-        # As np.unique has it, which compares rows one by one.
-        order = np.lexsort(corners.T[::-1])
-        is_new = np.ones(len(order), dtype=np.bool_)
-        is_new[1:] = (corners[order[1:]] != corners[order[:-1]]).any(axis=1)
-        number = np.empty(len(order), dtype=np.int64)
-        number[order] = np.cumsum(is_new) - 1
-        found = TriangleMesh(corners[order[is_new]], number[(np.cumsum(used) - 1)[self.triangles]], self.name)
+        corners, number = unique_rows(self.vertices[used])
+        found = TriangleMesh(corners, number[(np.cumsum(used) - 1)[self.triangles]], self.name)
         set_fields(found, compact=found)
         return found
 

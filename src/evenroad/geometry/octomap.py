@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Floats, Ints, unique_rows
 from evenroad.errors import BrokenFile
 
 _LEVELS = 16
@@ -74,10 +74,10 @@ def _surface(cells: Ints, resolution: float) -> tuple[Floats, Ints]:
     """Return the sides of cells, (n, 4), that no neighbour of the same width shares."""
     corner = np.array([(i & 1, i >> 1 & 1, i >> 2) for i in range(8)])
     corners = cells[:, np.newaxis, :3] + cells[:, np.newaxis, 3:] * corner
-    lattice, number = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    lattice, number = unique_rows(corners.reshape(-1, 3))
     sides = number.reshape(-1, 8)[:, _SIDES].reshape(-1, 4)
-    _, side, times = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
-    a, b, c, d = sides[times[side.reshape(-1)] == 1].T
+    _, side = unique_rows(np.sort(sides, axis=1))
+    a, b, c, d = sides[np.bincount(side)[side] == 1].T
     triangles = np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3)
     vertices: Floats = resolution * lattice.astype(np.float64)
     return vertices, triangles

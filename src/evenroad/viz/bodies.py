@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from PIL import ImageColor
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Floats, Ints, unique_rows
 from evenroad._files import atomic_write, cache_folder
 from evenroad._seal import read_sealed, sealed
 from evenroad.errors import EvenroadError
@@ -77,7 +77,7 @@ def indexed(part: Part) -> tuple[Floats, Floats, Ints]:
     rows = np.column_stack([
         np.round(part.corners.reshape(-1, 3), 5), np.round(127.0 * part.normals.reshape(-1, 3))
     ])  # fmt: skip
-    different, index = np.unique(rows, axis=0, return_inverse=True)
+    different, index = unique_rows(rows)
     return different[:, :3], different[:, 3:] / 127.0, index.reshape(-1, 3)
 
 
@@ -161,7 +161,8 @@ def _simplified(part: Part) -> Part:
         return part
     corners = part.corners.reshape(-1, 3)
     cells = np.floor(corners / _GRAIN).astype(np.int64)
-    _, cluster, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+    _, cluster = unique_rows(cells)
+    count = np.bincount(cluster)
     middle = np.stack([np.bincount(cluster, corners[:, k]) / count for k in range(3)], axis=1)
     cluster = cluster.reshape(-1, 3)
     kept = (cluster != np.roll(cluster, 1, axis=1)).all(axis=1)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from PIL import Image
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Floats, Ints, unique_rows
 from evenroad._native.picture import paint
 from evenroad.viz import style
 from evenroad.viz.camera import Camera
@@ -52,8 +52,8 @@ def part_of(surface: Surface, colour: tuple[int, int, int], *, closed: bool = Fa
     # What has no area, as at the pole of a ball, shows nothing.
     corners, faces, triangles = (each[sizes > 0.0] for each in (corners, faces, triangles))
     units = faces / sizes[sizes > 0.0, np.newaxis]
-    _, same = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
-    at = same.reshape(-1)[triangles].reshape(-1)
+    _, same = unique_rows(np.round(vertices, 6))
+    at = same[triangles].reshape(-1)
     # Corners in the order of their vertex: pairs of faces at one vertex are pairs within its run.
     order = np.argsort(at, kind="stable")
     firsts = np.searchsorted(at[order], np.arange(at.max() + 2 if len(at) else 1))
