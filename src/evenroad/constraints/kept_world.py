@@ -194,7 +194,7 @@ class KeptWorld:
         A motion and the one back are the same.
         """
         world, flat, finer = self.world, self.space.flat, max(1, int(_STEP / self.step))
-        back, given = _is_backwards(a, b), (a, b)
+        back, given = is_backwards(a, b), (a, b)
         a, b = np.where(back[:, np.newaxis], given[::-1], given)
         states, counts = self.native.walk(a, flat.difference(a, b), flat.scale, self._walking(finer * self.step))
         states, counts = _without(states, counts, ~world.valid(self.space.wrapped(states)))
@@ -214,12 +214,8 @@ class KeptWorld:
             if len(steps):
                 good[motion[steps[~is_free(steps)]]] = False
                 steps = steps[good[motion[steps]]]
-        rows = np.flatnonzero(good[motion])
-        motion, states = motion[rows], states[rows]
-        # Of what was walked backwards the last state is the first.
-        number, until = np.arange(len(motion)), np.searchsorted(motion, motion, "right")
-        begins = np.searchsorted(motion, motion, "left")
-        return good, motion, states[np.where(back[motion], begins + until - 1 - number, number)]
+        rows = good[motion]
+        return good, *turned_round(motion[rows], states[rows], back)
 
     def _walking(self, step: float) -> tuple[float, float, float, float, int, float]:
         """Return how compiled code walks by such steps."""
@@ -285,7 +281,14 @@ class KeptWorld:
         return keep.words(float(keep.off(np.array([shares[k] * keep.limit]))[0]))
 
 
-def _is_backwards(a: Floats, b: Floats) -> Bools:
+def turned_round(motion: Ints, states: Floats, back: Bools) -> tuple[Ints, Floats]:
+    """Return the states of motions with those in the other order, (m,), of which `back` says so; and their motions."""
+    number, until = np.arange(len(motion)), np.searchsorted(motion, motion, "right")
+    begins = np.searchsorted(motion, motion, "left")
+    return motion, states[np.where(back[motion], begins + until - 1 - number, number)]
+
+
+def is_backwards(a: Floats, b: Floats) -> Bools:
     """Return which rows of `a` come after those of `b`, (m, dim) each, in the order of a dictionary."""
     moved = b - a
     number = (moved != 0.0).argmax(axis=1)

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.constraints.driven_world import DifferentialDrive, driven_world
 from evenroad.constraints.keep import Keep
 from evenroad.constraints.kept_world import KeptWorld, keeps_of, kept_line, kept_world
 from evenroad.errors import InvalidValue
@@ -60,11 +61,12 @@ class TipMotion:
 
     line: CartesianLine | None = None
     keeps: tuple[Keep, ...] = ()
+    drive: DifferentialDrive | None = None
 
     @classmethod
     def of(cls, constraints: Constraint | None) -> TipMotion:
         """Return the motion under these constraints; InvalidValue for what is no constraint."""
-        return cls(part_of(constraints, CartesianLine), keeps_of(constraints))
+        return cls(part_of(constraints, CartesianLine), keeps_of(constraints), part_of(constraints, DifferentialDrive))
 
     def plan(self, request: Request, plan_once: PlanOnce, smooth: Smooth) -> PlanResult:
         """Plan with `plan_once` under the constraints.
@@ -75,11 +77,16 @@ class TipMotion:
         world = request.world
         if not isinstance(world, ArmWorld):
             raise InvalidValue(f"constraints are those of an arm, got {world!r}")
-        if not self.keeps:
+        if self.drive is None and not self.keeps:
             return _between_lines(request, self.line, plan_once, world, smooth)
-        kept = kept_world(world, self.keeps, request.start, request.tip)
-        if (refusal := _off(request, kept)) is not None:
-            return refusal
+        if self.drive is not None:
+            if self.keeps or self.line is not None:
+                raise InvalidValue("a base that cannot go sideways goes without other constraints")
+            kept: KeptWorld = driven_world(world, self.drive)
+        else:
+            kept = kept_world(world, self.keeps, request.start, request.tip)
+            if (refusal := _off(request, kept)) is not None:
+                return refusal
 
         def plan_kept(_: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
             found = _walked(kept, start, goals)
@@ -188,6 +195,7 @@ def _with_path(world: World, result: PlanResult, path: Floats, raw: Floats, devi
     cost, raw_cost = (path_length(waypoints, world.space) for waypoints in (path, raw))
     to = f" to goal {result.goal_index}" if len(result.goals) > 1 else ""
     off = ", ".join(f"{name.replace('_', ' [')}] {value:.2g}" for name, value in deviation.items())
+    largest = f"; largest deviations: {off}" if off else ""
     changed = replace(
         result,
         path=path,
@@ -196,6 +204,6 @@ def _with_path(world: World, result: PlanResult, path: Floats, raw: Floats, devi
         cost=cost,
         milestone_cost=raw_cost,
         deviation=deviation,
-        message=f"path of length {cost:.6g} with {len(path)} waypoints{to}; largest deviations: {off}",
+        message=f"path of length {cost:.6g} with {len(path)} waypoints{to}{largest}",
     )
     return require_start_and_goal(world.space, changed)

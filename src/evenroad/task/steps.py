@@ -9,6 +9,7 @@ from typing import Any
 from evenroad._arrays import set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_positive
+from evenroad.constraints.driven_world import DifferentialDrive
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
 from evenroad.robot.cartesian_line import CartesianLine
@@ -58,6 +59,8 @@ class MoveTo:
             set_fields(self, **{name: require_positive(name, getattr(self, name), or_zero=True)})
         if part_of(self.constraints, CartesianLine) is not None:
             raise InvalidValue("the lines of MoveTo are its approach and retreat, not constraints")
+        if part_of(self.constraints, DifferentialDrive) is not None and (self.approach or self.retreat):
+            raise InvalidValue("a base that cannot go sideways goes without approach and retreat")
 
     def line(self, tip: str) -> CartesianLine:
         """Return the straight lines of a tip, where there are some."""

@@ -14,10 +14,11 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_batch, require_known, require_positive
+from evenroad.constraints.driven_world import DifferentialDrive, DrivenWorld
 from evenroad.constraints.kept_world import KeptWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.robot import ArmWorld, Robot, held_values, tip_links
-from evenroad.robot.constraint import Constraint
+from evenroad.robot.constraint import Constraint, part_of
 from evenroad.robot.kinematics import link_poses
 from evenroad.trajectory.in_motion import InMotion
 from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of
@@ -66,6 +67,9 @@ def arm_trajectory(
     InvalidValue, NotAvailable
         As :func:`make_trajectory`.
     """
+    if part_of(constraints, DifferentialDrive) is not None and deviation != 0.0:
+        # A rounded corner would take the base sideways.
+        raise InvalidValue("a base that cannot go sideways stops where it turns: deviation must be 0")
     robot = world.robot
     within = (limits_of(robot) if limits is None else limits).at_speed(speed)
     controller = controller_joints(robot)
@@ -139,6 +143,11 @@ def trajectory_of(
     for key in options:
         require_known("keyword of trajectory:", key, known)
     moving = InMotion(path, *(options.pop(name, None) for name in _VELOCITIES))
+    if isinstance(world, DrivenWorld):
+        if moving.start is not None or moving.goal is not None:
+            raise InvalidValue("a base that cannot go sideways starts and stops at rest")
+        options = {"deviation": 0.0, "constraints": DifferentialDrive()} | options
+        world = world.world
     if isinstance(world, KeptWorld):
         # A plan without lines is one in such a world: its arm has names and limits, and keeps constraints as it moves.
         options.setdefault("constraints", reduce(and_, world.keeps))
