@@ -21,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+from studies.benchmarks.rows import draw_costs
 
 from evenroad.planning import plan
 from evenroad.world import GridMap
@@ -116,19 +117,9 @@ def beside(count: int) -> None:
 
 def draw(rows: list[Row], file: Path) -> None:
     """Draw times and memory against the size."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, 3, figsize=(12, 3.8), constrained_layout=True)
-    for way in WAYS:
-        mine = np.array([row[1:] for row in rows if row[0] == way], dtype=float)
-        for axis, column in zip(axes, (4, 3, 5), strict=True):
-            axis.loglog(mine[:, 0], np.maximum(mine[:, column], 1e-2), marker="o", label=f"{way} way")
     titles = ("a plan in a known world [ms]", "world and first plan [ms]", "memory [MB]")
-    for axis, title in zip(axes, titles, strict=True):
-        axis.set(xlabel="rows and columns of the map", title=title)
-        axis.grid(alpha=0.3)
-    axes[0].legend()
-    figure.savefig(file, dpi=110)
+    curves = {f"{way} way": [(row[1], row[5], row[4], row[6]) for row in rows if row[0] == way] for way in WAYS}
+    draw_costs(file, "rows and columns of the map", titles, curves)
 
 
 def main() -> None:

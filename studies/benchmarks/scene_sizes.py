@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 from studies.benchmarks.arm_speed import random_boxes
+from studies.benchmarks.rows import draw_costs
 
 from evenroad.geometry import Mesh, PointCloud, TriangleMesh
 from evenroad.robot.arm_world import ArmWorld
@@ -111,19 +112,12 @@ def measured(what: str, size: int) -> tuple[str, int, float, float, float, float
 
 def draw(rows: list[tuple[str, int, float, float, float, float, float]], file: Path) -> None:
     """Draw what a configuration takes, what a world takes to be made, and its memory, against the size."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, 3, figsize=(12, 3.8), constrained_layout=True)
-    for what in SIZES:
-        mine = np.array([row[1:] for row in rows if row[0] == what], dtype=float)
-        for axis, values in zip(axes, (1e6 / mine[:, 4], mine[:, 2], mine[:, 3]), strict=True):
-            axis.loglog(mine[:, 0], np.maximum(values, 1e-2), marker="o", label=what)
     titles = ("a configuration [us]", "a world is made [ms]", "memory held [MB]")
-    for axis, title in zip(axes, titles, strict=True):
-        axis.set(xlabel="boxes, points or triangles", title=title)
-        axis.grid(alpha=0.3)
-    axes[0].legend()
-    figure.savefig(file, dpi=110)
+    curves = {
+        what: [(size, 1e6 / rate, made, memory) for kind, size, _, made, memory, rate, _ in rows if kind == what]
+        for what in SIZES
+    }
+    draw_costs(file, "boxes, points or triangles", titles, curves)
 
 
 def main() -> None:

@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+from studies.benchmarks.rows import draw_costs
 
 from evenroad_studies.bench.store import Session, open_store, read_rows
 from evenroad_studies.bench.store_parts import write_part
@@ -30,6 +31,7 @@ from evenroad_studies.report.streamed import write_cells
 COUNTS = (10_000, 100_000, 1_000_000, 10_000_000)
 OF_A_PART, OF_A_PROBLEM = 250_000, 50_000
 SAMPLERS = ("uniform", "sobol", "even", "korobov")
+KINDS = ("parts", "one file")
 COLUMNS = ("store", "rows", "write [s]", "bytes a row", "table of cells [s]", "most memory [MB]", "cells")
 
 
@@ -113,18 +115,9 @@ def measured(kind: str, rows: int, folder: Path) -> tuple[object, ...]:
 
 def draw(rows: list[tuple], file: Path) -> None:
     """Draw times, memory and bytes against the number of rows."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, 3, figsize=(12, 3.8), constrained_layout=True)
-    for kind in ("parts", "one file"):
-        mine = np.array([row[1:] for row in rows if row[0] == kind], dtype=float)
-        for axis, column in zip(axes, (3, 4, 1), strict=True):
-            axis.loglog(mine[:, 0], mine[:, column], marker="o", label=kind)
-    for axis, title in zip(axes, ("table of all cells [s]", "most memory [MB]", "to write [s]"), strict=True):
-        axis.set(xlabel="rows", title=title)
-        axis.grid(alpha=0.3)
-    axes[0].legend()
-    figure.savefig(file, dpi=110)
+    titles = ("table of all cells [s]", "most memory [MB]", "to write [s]")
+    curves = {kind: [(row[1], row[4], row[5], row[2]) for row in rows if row[0] == kind] for kind in KINDS}
+    draw_costs(file, "rows", titles, curves)
 
 
 def main() -> None:
@@ -136,7 +129,7 @@ def main() -> None:
     args = parser.parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as folder:
-        for kind, most in (("parts", args.most), ("one file", min(args.most, 100_000))):
+        for kind, most in zip(KINDS, (args.most, min(args.most, 100_000)), strict=True):
             for count in (each for each in COUNTS if each <= most):
                 rows.append(measured(kind, count, Path(folder)))
                 print(*(f"{value:.4g}" if isinstance(value, float) else value for value in rows[-1]), flush=True)

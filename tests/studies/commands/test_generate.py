@@ -64,6 +64,17 @@ def test_shards_merge_to_the_bytes_of_one_machine(run, tmp_path, made):
     assert run("generate", "shard-0", "nothing", "--merge", "-o", "other")[0] == 2
 
 
+def test_workers_of_a_dask_cluster_make_the_bytes_of_one_machine(run, tmp_path, made):
+    distributed = pytest.importorskip("distributed")
+    options = dict(n_workers=2, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=None)
+    with distributed.LocalCluster(host="127.0.0.1", **options) as cluster:
+        code, out, _ = run(*LINE[:-2], "--scheduler", cluster.scheduler_address, "-o", "set")
+    assert code == 0
+    assert "3 files made, 3 of 3 files there; complete" in out
+    written = files_of(tmp_path / "set")
+    assert {name: written[name] for name in files_of(made)} == files_of(made)
+
+
 def test_paths_are_free_in_their_scenes_and_so_are_the_states_of_trajectories(made):
     robot, solved = er.load_robot("arm7"), 0
     for file in sorted(made.iterdir()):
