@@ -13,8 +13,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, load_robot, load_scene
-from evenroad.robot.chain import default_tip
-from evenroad.robot.kinematics import link_poses
+from evenroad.robot.kinematics import link_poses, tip_links
 from evenroad_studies.arms.roadmaps import cell_of
 from evenroad_studies.arms.scenes import GENERATORS, Region, places_of
 
@@ -149,7 +148,8 @@ def _pool(robot: str) -> tuple[Floats, Floats]:
     world = ArmWorld(arm, _cell(arm))
     q = world.space.from_cube(np.random.default_rng(0).random((POOL, world.space.dim)))
     q = q[world.valid(q)]
-    return q, link_poses(arm, q)[:, arm.links.index(default_tip(arm)), :3, 3]
+    # Of a gripper the link that its fingers are on.
+    return q, link_poses(arm, q)[:, arm.links.index(tip_links(arm)[-1]), :3, 3]
 
 
 def _inside(tools: Floats, region: Region) -> Floats:
