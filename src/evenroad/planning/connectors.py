@@ -24,8 +24,11 @@ from evenroad.world.gridmap.gridmap import DiskWorld
 
 RESTART = 4_000
 """Number of motions of the first search, after which trees begin again, elsewhere: most queries need fewer."""
-BEFORE_QUICK_PROOF, BEFORE_PROOF = 4_000, 20_000
-"""Numbers of motions after which the world tries to prove that there is no path: more than hard queries need."""
+BEFORE_QUICK_PROOF, BEFORE_PROOF = 12_000, 60_000
+"""Numbers of motions after which the world tries to prove that there is no path.
+
+By then most hard queries are answered, and the proof takes a few times as long as the search so far.
+"""
 FEW_JOINTS = 7
 """With more joints queries need more motions, about as the square of their number, and a proof takes longer."""
 BEFORE_PROOF_OF_CELLS = 200_000
