@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_batch, require_known, require_positive
+from evenroad._shared import once
 from evenroad.constraints.driven_world import DifferentialDrive, DrivenWorld
 from evenroad.constraints.kept_world import KeptWorld
 from evenroad.errors import InvalidValue, shown
@@ -130,6 +131,11 @@ def controller_joints(robot: Robot) -> tuple[str, ...]:
     )
 
 
+@once
+def _known_options() -> set[str]:
+    return {*signature(arm_trajectory).parameters} - {"world", "path"} | {*_VELOCITIES}
+
+
 def trajectory_of(
     world: World,
     path: Floats,
@@ -139,9 +145,8 @@ def trajectory_of(
     **options: Any,
 ) -> Trajectory:
     """See :meth:`PlanResult.trajectory`."""
-    known = {*signature(arm_trajectory).parameters} - {"world", "path"} | {*_VELOCITIES}
     for key in options:
-        require_known("keyword of trajectory:", key, known)
+        require_known("keyword of trajectory:", key, _known_options())
     moving = InMotion(path, *(options.pop(name, None) for name in _VELOCITIES))
     if isinstance(world, DrivenWorld):
         if moving.start is not None or moving.goal is not None:
