@@ -187,10 +187,14 @@ def main() -> None:
             own = ratios[:, i]
             found = ~np.isnan(own[:, 0])
             curves[f"{who}; {name}"] = own[found]
-            print(f"{name}, {who}: {found.sum()} of {len(own)} problems; mean / median / 95 % / largest")
+            print(
+                f"{name}, {who}: {found.sum()} of {len(own)} problems; mean ± standard error / median / 95 % / largest"
+            )
             for most, column in zip((*TIMES, *LATER)[: None if i else len(TIMES)], own[found].T[1:], strict=False):
-                spread = np.mean(column), np.median(column), np.quantile(column, 0.95), column.max()
-                print(f"  {most:5g} ms: {' / '.join(f'{each:.4f}' for each in spread)}", flush=True)
+                error = np.std(column) / np.sqrt(len(column))
+                spread = np.median(column), np.quantile(column, 0.95), column.max()
+                shown = " / ".join(f"{each:.4f}" for each in spread)
+                print(f"  {most:5g} ms: {np.mean(column):.4f} ± {error:.4f} / {shown}", flush=True)
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
     if options.picture:
         draw(curves, options.picture)

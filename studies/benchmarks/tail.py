@@ -1,6 +1,7 @@
 """Random queries among boxes: how many are answered within a second, by a path or by a proof that there is none.
 
-    python -m studies.benchmarks.tail --count 10      # 200 queries of a UR5 with a gripper: needs the extra [robots]
+    python -m studies.benchmarks.tail --count 10                 # 200 queries of a UR5 with a gripper: extra [robots]
+    python -m studies.benchmarks.tail --count 25 --first 3000    # 500 others
 
 Each scene has boxes of random places, sizes and turns within reach; starts and goals are any free configurations.
 Times are processor time of one thread, from a robot and a scene to the answer.  What comes later, or stays open, is
@@ -62,11 +63,13 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=10, help="scenes, at most 100")
     parser.add_argument("--robot", default="ur5_gripper", help="a robot's name or file")
     parser.add_argument("--tuning", action="store_true", help="the scenes that constants are chosen on")
+    parser.add_argument("--first", type=int, default=REPORTING[0], help="seed of the first scene; not with --tuning")
     options = parser.parse_args()
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
     robot = er.load_robot(options.robot)
     times, paths, proofs, late = [], 0, 0, []
-    for problem in problems(robot, (TUNING if options.tuning else REPORTING)[: options.count]):
+    seeds = TUNING if options.tuning else range(options.first, options.first + len(REPORTING))
+    for problem in problems(robot, seeds[: options.count]):
         begin = time.thread_time()
         result = er.plan(ArmWorld(robot, problem.scene), problem.start, problem.goal, seconds=LIMIT)
         spent = time.thread_time() - begin
