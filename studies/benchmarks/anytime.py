@@ -41,6 +41,8 @@ LATER = (1000.0, 3000.0)
 """Times of OMPL alone [ms]."""
 OF_OMPL = {"AORRTC": "AORRTC", "BITstar": "BIT*"}
 """Planners of OMPL that go on after the first path, and how they are named."""
+SPENT = 0.98
+"""Share of a time after which OMPL is told to stop: it takes a little longer."""
 OTHERS = 3
 SLICE = 100
 Beside = dict[str, Callable[[Problem, float], Iterator[tuple[float, float]]]]
@@ -94,7 +96,7 @@ def lengths_of(name: str, problem: Problem, most: float) -> Iterator[tuple[float
         planner = getattr(og, name)(information)
         planner.setProblemDefinition(definition)
         planner.setup()
-        planner.solve(ob.PlannerTerminationCondition(partial(_is_over, begin + 1e-3 * until)))
+        planner.solve(ob.PlannerTerminationCondition(partial(_is_over, begin + SPENT * 1e-3 * until)))
         if definition.hasExactSolution():
             yield 1e3 * (time.thread_time() - begin), max(definition.getSolutionPath().length(), straight)
 

@@ -134,3 +134,21 @@ def test_in_each_space_more_effort_never_hurts_and_the_result_says_how_far_the_p
     costs = [each.cost if isinstance(planner, RRTConnect) else each.milestone_cost for each in (once, often)]
     assert costs[0] is None or costs[1] <= costs[0]
     assert often.gap == pytest.approx(often.cost / 0.8 - 1)
+
+
+@pytest.mark.parametrize("space", SPACES, ids=lambda space: f"{space.dim} coordinates")
+def test_an_informed_roadmap_leaves_out_what_no_shorter_path_passes(space):
+    world = FunctionWorld(space, below_a_wall, 0.02)
+    ends = np.tile(space.from_cube(np.full((1, space.cube_dim), 0.5)), (2, 1))
+    ends[:, :2] = (0.1, 0.3), (0.9, 0.3)
+    all_of, informed = (
+        plan(world, *ends, GrowingPRM(until="budget", informed=each), limits=Budget(seconds=None, samples=2048))
+        for each in (False, True)
+    )
+    assert informed.counts["configurations_checked"] < 0.9 * all_of.counts["configurations_checked"]
+    assert informed.milestone_cost <= 1.02 * all_of.milestone_cost
+
+
+def test_an_informed_roadmap_has_no_costs_of_its_own():
+    with pytest.raises(InvalidValue, match="informed must be False where edge_cost is given"):
+        GrowingPRM(informed=True, edge_cost=lambda a, b: np.zeros(len(a)))

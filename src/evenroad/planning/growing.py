@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad._call import explains_calls
 from evenroad._checks import require_count, require_known
 from evenroad.errors import InvalidValue
@@ -54,6 +55,9 @@ class GrowingPRM:
         the budget is spent.
     rule, edge_cost, links
         As in :class:`evenroad.PRM`.
+    informed : bool
+        Once there is a path, leave out points that no shorter path passes: those not nearer to start and goal together
+        than the path is long (Gammell et al. 2014).  Stages then find other paths than ``PRM(points)``.
 
     Without a path the status is ``budget_spent``; ``stages`` lists the stages.  Counts are of the last stage, checks
     of all.  Raises as :class:`evenroad.PRM`, and InvalidValue if the sampler's sets do not begin with the
@@ -69,10 +73,13 @@ class GrowingPRM:
     rule: Rule | None = None
     edge_cost: EdgeCost | None = None
     links: int | None = LINKS
+    informed: bool = False
 
     def __post_init__(self) -> None:
         require_known("until", self.until, UNTIL)
         require_count("first", self.first)
+        if self.informed and self.edge_cost is not None:
+            raise InvalidValue("informed must be False where edge_cost is given: costs may be below distances")
 
     def solve(self, problem: Problem) -> PlanResult:
         """Return the best path of all stages; see :class:`GrowingPRM`."""
@@ -97,7 +104,7 @@ class GrowingPRM:
         attempt = Attempt(world, query, points.origin, str(rule), "prm anytime", grows=True)
         if (refused := refusal(attempt)) is not None:
             return refused
-        growth = _Growth(attempt, rule)
+        growth = _Growth(attempt, rule, informed=self.informed)
         while growth.take(points) and not growth.is_done(self.until) and points.n < budget.samples:
             points = _draw(sampler, min(2 * points.n, budget.samples), problem, points)
         return growth.result(points.n)
@@ -106,8 +113,9 @@ class GrowingPRM:
 class _Growth:
     """A roadmap that grows: the milestones so far, their checked states, and the best path."""
 
-    def __init__(self, attempt: Attempt, rule: Rule) -> None:
+    def __init__(self, attempt: Attempt, rule: Rule, *, informed: bool) -> None:
         self.attempt, self.rule, self.pairs, self.drawn = attempt, rule, PairCache(), 0
+        self.informed = informed
         self.names = np.empty(0, dtype=np.int64)
         self.milestones = np.empty((0, attempt.world.space.dim))
         self.stages: list[Stage] = []
@@ -118,9 +126,14 @@ class _Growth:
         """Search with these points, whose first ones were searched before; return whether the budget was enough."""
         attempt, terminals = self.attempt, len(self.attempt.start_and_goals)
         samples = attempt.world.space.from_cube(points.points[self.drawn :])
-        valid = attempt.valid(samples)
         # Names of nodes: start and goals first, then the points.
-        self.names = np.concatenate([self.names, terminals + self.drawn + np.flatnonzero(valid)])
+        names = terminals + np.arange(self.drawn, points.n)
+        if self.best is not None and self.informed:
+            kept, new = self._may_shorten(self.milestones), self._may_shorten(samples)
+            self.names, self.milestones = self.names[kept], self.milestones[kept]
+            names, samples = names[new], samples[new]
+        valid = attempt.valid(samples)
+        self.names = np.concatenate([self.names, names[valid]])
         self.milestones = np.concatenate([self.milestones, samples[valid]])
         self.drawn = points.n
         states = attempt.candidates(self.rule, self.milestones)
@@ -137,6 +150,14 @@ class _Growth:
             self.best = self.last
         self.stages.append(Stage(points.n, len(self.milestones), checked, cost, attempt.elapsed()))
         return not attempt.spent and now() < attempt.deadline
+
+    def _may_shorten(self, q: Floats) -> Bools:
+        """Return by which configurations, (n, dim), a path may be shorter than the best: (n,)."""
+        assert self.best is not None
+        assert self.best.cost is not None
+        distance, (start, *goals) = self.attempt.world.space.distance, self.attempt.start_and_goals
+        behind = [distance(q, np.broadcast_to(goal, q.shape)) for goal in goals]
+        return distance(np.broadcast_to(start, q.shape), q) + np.min(behind, axis=0) < self.best.cost
 
     def is_done(self, until: str) -> bool:
         """Return whether the last stage was the final one."""

@@ -122,7 +122,7 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
     if left is None or not _goes_on(attempt, first, 1):
         return replace(first, counts=first.counts | {"rounds": 0}, stages=(stage,))
     before = attempt.elapsed()
-    grown = GrowingPRM(until="budget").solve(rest_of(attempt, left))
+    grown = GrowingPRM(until="budget", informed=True).solve(rest_of(attempt, left))
     stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
     best = grown if grown.cost is not None and grown.cost < _cost(first) else first
     message = f"{best.message}: {_gap(best)}"

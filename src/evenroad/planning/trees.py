@@ -106,7 +106,7 @@ _TREES = RRTConnect()
 
 
 def _growing(improve: bool) -> GrowingPRM:
-    return GrowingPRM(until="budget" if improve else "solved")
+    return GrowingPRM(until="budget", informed=True) if improve else GrowingPRM(until="solved")
 
 
 def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -> PlanResult:
