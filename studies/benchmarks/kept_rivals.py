@@ -36,8 +36,6 @@ SECONDS, BUSY = 2.0, 4.0
 """Processor time that a plan gets, and how much longer that may take by the clock, which alone RoboPlan reads."""
 LONGEST = 0.05
 """Longest step along a constraint [rad]."""
-RANGE = 1.0
-"""Longest motion of the trees of OMPL [rad]: its own choice, 5.8, takes seconds for one motion along a line."""
 URDF = Path(er.__file__).parent / "robot" / "data" / "ur5.urdf"
 RANKS = {"tray": 1, "line": 5, "door": 5, "box": 6}
 """Number of coordinates that a constraint takes away."""
@@ -94,9 +92,7 @@ def by_ompl(kind: str, problem: Kept, kept: KeptWorld, goal: Path_) -> Path_ | N
     first.copy(list(map(float, problem.start)))
     last.copy(list(map(float, goal)))
     setup.setStartAndGoalStates(first, last)
-    planner = og.RRTConnect(information)
-    planner.setRange(RANGE)
-    setup.setPlanner(planner)
+    setup.setPlanner(og.RRTConnect(information))
     until = time.process_time() + SECONDS
     setup.solve(ob.PlannerTerminationCondition(lambda: time.process_time() > until))
     if not setup.haveExactSolutionPath():

@@ -3,7 +3,9 @@
     python -m studies.benchmarks.trajectories [--problems 40]
 
 Plans, shortens and times paths of a UR5 on the reporting problems; toppra, on the same rounded path with a grid as
-fine, is beside it where it is installed.
+fine, is beside it where it is installed.  So is Ruckig, with limits of jerk, of `JERK` times the acceleration: from
+waypoint to waypoint on straight lines, and at rest at each, since its free version has no others.  The share of its
+duration is that of evenroad's trajectory with a stop at each corner, and of the one with rounded corners.
 """
 
 from __future__ import annotations
@@ -11,8 +13,10 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
 from importlib import import_module
-from itertools import chain
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -23,14 +27,18 @@ from evenroad.errors import NotAvailable
 from evenroad.planning import plan
 from evenroad.planning.arm_trees import shorten
 from evenroad.planning.read_request import arm_request
+from evenroad.robot import Scene
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.trajectory import Limits, arm_trajectory, limits_of
+from evenroad.trajectory import InMotion, Limits, TipLimits, arm_trajectory, limits_of
 from evenroad.trajectory.blends import rounded
+from evenroad.trajectory.make import DEVIATION
 from evenroad.trajectory.timing import TimeLaw
 
 REPEATS = 3
 INTERVALS = 600
 """Of the grid along a path, about as many as evenroad takes."""
+JERK = 20.0
+"""Jerk that joints may have, as a multiple of their acceleration [1/s]."""
 Path = npt.NDArray[np.float64]
 
 
@@ -82,6 +90,32 @@ def toppra_ms(path: Path, limits: Limits) -> float:
     return best_ms(run)
 
 
+def ruckig_times(path: Path, limits: Limits) -> tuple[float, float]:
+    """Return the duration of Ruckig's motions from waypoint to waypoint [s], and the CPU time that they take [ms]; NaN
+    where it is not installed.
+    """
+    try:
+        ruckig = import_module("ruckig")
+    except ImportError:
+        return float("nan"), float("nan")
+    assert limits.jerk is not None, "given by `measure`"
+
+    def run() -> float:
+        total, engine = 0.0, ruckig.Ruckig(path.shape[1])
+        for a, b in pairwise(path):
+            asked, found = ruckig.InputParameter(path.shape[1]), ruckig.Trajectory(path.shape[1])
+            asked.current_position, asked.target_position = list(a), list(b)
+            asked.max_velocity, asked.max_acceleration = list(limits.velocity), list(limits.acceleration)
+            asked.max_jerk = list(limits.jerk)
+            # All joints in the same phase: a straight line.
+            asked.synchronization = ruckig.Synchronization.Phase
+            engine.calculate(asked, found)
+            total += found.duration
+        return total
+
+    return run(), best_ms(run)
+
+
 def measure(name: str, world: ArmWorld, start: Path, goal: Path) -> dict[str, Any] | None:
     """Return a row of one problem; None where there is no path, or none to drive."""
     result = plan(world, start, goal[np.newaxis], seconds=5.0)
@@ -92,6 +126,11 @@ def measure(name: str, world: ArmWorld, start: Path, goal: Path) -> dict[str, An
         made = arm_trajectory(world, path, limits)
     except NotAvailable as reason:
         return {"name": name, "refused": str(reason)}
+    smooth = replace(limits, jerk=tuple(JERK * push for push in limits.acceleration))
+    ruckig_s, ruckig_ms = ruckig_times(path, smooth)
+    rounded_s, stopping_s = (
+        arm_trajectory(world, path, smooth, deviation=deviation).duration for deviation in (DEVIATION, 0.0)
+    )
     shares = np.linspace(0.0, 1.0, 10)[:-1, None, None]
     between = made.positions[:-1] + shares * np.diff(made.positions, axis=0)
     return {
@@ -101,6 +140,10 @@ def measure(name: str, world: ArmWorld, start: Path, goal: Path) -> dict[str, An
         "shorten_ms": best_ms(lambda: shorten(world, raw)),
         "timing_ms": best_ms(lambda: arm_trajectory(world, path, limits)),
         "toppra_ms": toppra_ms(path, limits),
+        "jerk_ms": best_ms(lambda: arm_trajectory(world, path, smooth)),
+        "ruckig_ms": ruckig_ms,
+        "by ruckig": rounded_s / ruckig_s,
+        "stop/ruckig": stopping_s / ruckig_s,
         "seconds": made.duration,
         "stopping": arm_trajectory(world, path, limits, deviation=0.0).duration / made.duration,
         "bound": made.duration / bound(path, limits),
@@ -111,6 +154,25 @@ def measure(name: str, world: ArmWorld, start: Path, goal: Path) -> dict[str, An
     }
 
 
+def ten_waypoints() -> None:
+    """Print how long trajectories of random paths of ten waypoints take in free space, proved free."""
+    world, rng = ArmWorld("ur5", Scene([])), np.random.default_rng(0)
+    limits = limits_of(world.robot)
+    tip = replace(limits, tip=TipLimits(world.robot, "tool0", speed=1.0, acceleration=5.0))
+    moving = 0.2 * np.array(limits.velocity)
+    rows: dict[str, list[float]] = {"plain": [], "in motion": [], "limits of the tip": []}
+    while len(rows["plain"]) < 20:
+        path = np.array([0.0, -1.5, 1.2, -1.2, -1.5, 0.0]) + np.cumsum(rng.uniform(-0.3, 0.3, (10, 6)), axis=0)
+        with suppress(NotAvailable):
+            asked = {"plain": (path, limits), "in motion": (InMotion(path, moving, moving), limits)}
+            asked["limits of the tip"] = path, tip
+            times = {name: best_ms(lambda each=each: arm_trajectory(world, *each)) for name, each in asked.items()}
+            for name, value in times.items():
+                rows[name].append(value)
+    for name, each in rows.items():
+        print(f"ten waypoints, {name}: {np.median(each):.2f} ms in the median, {np.max(each):.2f} at most")
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -118,6 +180,7 @@ def main() -> None:
     count = parser.parse_args().problems
     query = arm_request("ur5", "box-reach", "home", "inside")
     scene_c = [("scene c", query.world, query.start, query.goals[0])]
+    ten_waypoints()
     pool = Pool(arm_named("ur5"))
     random = (
         (f"{each.kind} {each.seed}", ArmWorld(each.robot, each.scene, resolution=0.05), each.start, each.goal)
@@ -132,6 +195,7 @@ def main() -> None:
         if row["refused"]:
             print(f"  {row['name']}: {row['refused']}")
     print(f"{'':14} {'scene c':>9} {'median':>9} {'95 %':>9} {'worst':>9}")
+
     for name in list(made[0])[2:]:
         values = np.array([row[name] for row in made], dtype=float)
         numbers = (values[0], np.median(values[1:]), np.quantile(values[1:], 0.95), np.max(values))

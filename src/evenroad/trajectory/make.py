@@ -123,10 +123,15 @@ def make_trajectory(
     cuts = np.full(len(waypoints), deviation)
     for halved in range(_HALVINGS + _STOPPINGS):
         curve = rounded(waypoints, cuts)
+        if any(speeds) and (law := fastest(curve, limits, speeds)).is_slower_than(speeds):
+            # A corner that is too near to a start or a goal in motion is too round.
+            bad = law.times[[0, -1]][[law.is_slower_than((speeds[0], 0.0)), law.is_slower_than((0.0, speeds[1]))]]
+            cuts = _less(cuts, curve.corners, law.length_at(bad), stop=halved >= _HALVINGS - 1)
+            continue
         law, fine, driven = _timed(curve, waypoints, limits, (window, step), speeds)
         free, proof = drivable(world, driven.positions)
         bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[driven.off > deviation + 1e-6]])
-        # A corner that is too near to a start or a goal in motion is too round, too.
+        # The last check may have taken less of the limits.
         late = [law.is_slower_than((speeds[0], 0.0)), law.is_slower_than((0.0, speeds[1]))]
         bad = np.concatenate([bad, fine[[0, -1]][late]])
         if len(bad) == 0:
