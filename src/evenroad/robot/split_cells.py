@@ -16,7 +16,7 @@ from evenroad.robot.locked import Bodies, Cells, CellTests, cells_around, first_
 
 COARSE = 500
 """Number of cells at first, for each joint squared."""
-MORE = 1.5
+MORE = 8.0
 """Cells are also split on paths that have more unknown cells than the best one, by this factor at most."""
 CLEAR = 1e-7
 """What a clear cell counts on a path; an unknown one counts 1."""
