@@ -13,10 +13,9 @@ from inspect import get_annotations
 from io import StringIO
 from itertools import dropwhile, takewhile
 from textwrap import fill
-from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Annotated, Any, Union
 
-from tyro import _resolver, cli, conf
+from tyro import cli, conf
 from tyro.constructors import (
     ConstructorRegistry,
     PrimitiveConstructorSpec,
@@ -120,20 +119,6 @@ def _parsed(kind: Any, prog: str, words: Sequence[str], about: str = "") -> Any:
         if not end.code:
             raise
         raise InvalidValue(f"{_in_words(said.getvalue())}; all options: {prog} --help") from None
-
-
-_asked = _resolver.is_instance
-
-
-def _is_of(typ: Any, value: Any) -> bool:
-    """Return whether a default is of its option's kind, without typeguard: to load it is a tenth of a command."""
-    origin = get_origin(typ)
-    if origin is UnionType:
-        return any(_is_of(each, value) for each in get_args(typ))
-    return isinstance(value, origin) if origin in (tuple, list, dict) else bool(_asked(typ, value))
-
-
-_resolver.is_instance = _is_of
 
 
 @RULES.struct_rule
