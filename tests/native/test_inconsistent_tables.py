@@ -306,7 +306,7 @@ def recording(name, calls):
             calls[name].append((*args, *kwargs.values()))
             return made(*args, **kwargs)
 
-        around = getattr(made, "around", None)
+        around, of_cloud = (getattr(made, each, None) for each in ("around", "of_cloud"))
 
     return Recording
 
