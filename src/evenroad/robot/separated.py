@@ -31,9 +31,9 @@ THOROUGH = (
 )
 """These take tenths of a second."""
 
-SPLIT, MOST_SPLIT = 2, 1_000_000
-"""So many joints are also looked at with cells that are split where it matters, and with how many cells at most: some
-passages are closed by millimetres.  Where one is clear it takes some milliseconds to say so."""
+SPLIT, QUICK_SPLIT, MOST_SPLIT = 2, 200_000, 1_000_000
+"""So many joints are also looked at with cells that are split where it matters, and with how many cells at most, quickly
+or not: some passages are closed by millimetres.  Where one is clear it mostly takes some milliseconds to say so."""
 
 MOST_GOALS = 4
 """Cells around a goal show what those around the start do not; around no more goals than these."""
@@ -79,15 +79,15 @@ def apart(
     It is proved where it holds for bodies inside the robot's true shapes and all postures that reach the `poses`.  The
     goals are postures found for these, and given ones; they are not the `whole` where there may be others.
     """
-    robot, tries = world.robot, QUICK if quickly else THOROUGH
+    robot, (tries, split) = world.robot, (QUICK, QUICK_SPLIT) if quickly else (THOROUGH, MOST_SPLIT)
     tasks = [task_of(robot, goal) for goal in poses]
     bodies, others = outer_bodies(world), False
     names: tuple[str, ...] = ()
     if robot.inner is not None:
-        names, others = shown_by(inner_bodies(world), start, goals, tasks, tries)
+        names, others = shown_by(inner_bodies(world), start, goals, tasks, tries, split)
     truly = bool(names) or robot.inner is None
     if not names and not robot.shapes:
-        names, others = shown_by(bodies, start, goals, tasks, tries)
+        names, others = shown_by(bodies, start, goals, tasks, tries, split)
     if not names:
         return None
     alone = (
@@ -124,7 +124,7 @@ def outer_bodies(world: InScene) -> Bodies:
 
 
 def shown_by(
-    bodies: Bodies, start: Floats, goals: Floats, tasks: Sequence[Task], tries: Tries
+    bodies: Bodies, start: Floats, goals: Floats, tasks: Sequence[Task], tries: Tries, split: int = MOST_SPLIT
 ) -> tuple[tuple[str, ...], bool]:
     """Return which joints cannot reach any goal, none where that is not shown; and whether other postures of poses may.
 
@@ -146,7 +146,7 @@ def shown_by(
     for joints, reach, cells in tries:
         if joints > len(group):
             break
-        if joints == SPLIT and unreached and is_cut_off(bodies, start, np.array(unreached), joints, MOST_SPLIT):
+        if joints == SPLIT and unreached and is_cut_off(bodies, start, np.array(unreached), joints, split):
             unreached = []
         piece = piece_of(bodies, start, reach, cells) if unreached or undecided else None
         if piece is not None:
