@@ -32,8 +32,8 @@ THOROUGH = (
 """These take tenths of a second."""
 
 SPLIT, QUICK_SPLIT, MOST_SPLIT = 2, 200_000, 1_000_000
-"""So many joints are also looked at with cells that are split where it matters, and with how many cells at most, quickly
-or not: some passages are closed by millimetres.  Where one is clear it mostly takes some milliseconds to say so."""
+"""So many joints are also looked at with cells that are split where it matters, and with how many cells at most,
+quickly or not: some passages are closed by millimetres.  Where one is clear it mostly takes some milliseconds."""
 
 MOST_GOALS = 4
 """Cells around a goal show what those around the start do not; around no more goals than these."""
