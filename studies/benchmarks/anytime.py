@@ -38,7 +38,7 @@ TREES = ArmTrees(shortest=True)
 MOST_MOTIONS = 200_000
 TIMES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
 LATER = (1000.0, 3000.0)
-"""Times of OMPL alone [ms]."""
+"""Times of what runs beside alone [ms]."""
 OF_OMPL = {"AORRTC": "AORRTC", "BITstar": "BIT*"}
 """Planners of OMPL that go on after the first path, and how they are named."""
 SPENT = 0.98
@@ -138,6 +138,11 @@ def by_roboplan(problem: Problem, most: float) -> Iterator[tuple[float, float]]:
         apart = time.thread_time() - begin - 1e-3 * spent
 
 
+def times_of(seconds: float) -> tuple[float, ...]:
+    """Return the times that are looked at [ms], of what runs so long."""
+    return (*TIMES, *(each for each in LATER if each <= 1e3 * seconds))
+
+
 def measured(problem: Problem, best: float, beside: Beside, seconds: float) -> list[list[float]] | None:
     """Return of each planner when its first path comes [ms], and lengths after each time over the best known.
 
@@ -152,7 +157,7 @@ def measured(problem: Problem, best: float, beside: Beside, seconds: float) -> l
     shortest = min(length for each in (*runs, *others) for _, length in each)
     firsts = [run[0] if run else (np.nan, np.nan) for run in runs]
     return [
-        [first[0], *(min([c for t, c in run if t <= most] or [first[1]]) / shortest for most in (*TIMES, *LATER))]
+        [first[0], *(min([c for t, c in run if t <= most] or [first[1]]) / shortest for most in times_of(seconds))]
         for run, first in zip(runs, firsts, strict=True)
     ]
 
@@ -192,17 +197,17 @@ def main() -> None:
             print(
                 f"{name}, {who}: {found.sum()} of {len(own)} problems; mean ± standard error / median / 95 % / largest"
             )
-            for most, column in zip((*TIMES, *LATER)[: None if i else len(TIMES)], own[found].T[1:], strict=False):
+            for most, column in zip(times_of(options.seconds if i else 0.0), own[found].T[1:], strict=False):
                 error = np.std(column) / np.sqrt(len(column))
                 spread = np.median(column), np.quantile(column, 0.95), column.max()
                 shown = " / ".join(f"{each:.4f}" for each in spread)
                 print(f"  {most:5g} ms: {np.mean(column):.4f} ± {error:.4f} / {shown}", flush=True)
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
     if options.picture:
-        draw(curves, options.picture)
+        draw(curves, options.seconds, options.picture)
 
 
-def draw(curves: dict[str, Vector], file: Path) -> None:
+def draw(curves: dict[str, Vector], seconds: float, file: Path) -> None:
     """Draw the mean ratios against the time, from that on by which half of the paths are there."""
     import matplotlib.pyplot as plt
 
@@ -212,7 +217,7 @@ def draw(curves: dict[str, Vector], file: Path) -> None:
     for name, ratios in curves.items():
         who, arm = name.split("; ")
         axis = axes[0][arms.index(arm)]
-        times = np.array(TIMES if who == "evenroad" else (*TIMES, *LATER))
+        times = np.array(times_of(0.0 if who == "evenroad" else seconds))
         begun = times >= np.median(ratios[:, 0])
         excess = 100.0 * (ratios[:, 1 : 1 + len(times)].mean(axis=0) - 1.0)
         axis.loglog(times[begun], excess[begun], color=f"C{planners.index(who)}", marker="o", label=who)
