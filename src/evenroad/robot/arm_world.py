@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -183,8 +183,13 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
     @once_property
     def roomier(self) -> ArmWorld:
         """The same world with 5 mm more clearance, which paths keep where they can."""
-        changed = self._after_changes(lambda since: since.roomier)
-        return changed or replace(self, clearance=min(self.clearance + 0.005, MOST_CLEARANCE))
+        if (changed := self._after_changes(lambda since: since.roomier)) is not None:
+            return changed
+        # What this world has read is not read again: that would take as long as a short plan.
+        world = object.__new__(type(self))
+        world.__dict__.update({each.name: self.__dict__[each.name] for each in fields(self)})
+        world.__dict__["clearance"] = min(self.clearance + 0.005, MOST_CLEARANCE)
+        return world
 
     @property
     def bodies(self) -> str:
