@@ -27,7 +27,7 @@ _STEP = 0.1
 _AIM, _ENOUGH = 0.3, 0.5
 """Lengths of residuals that a projection aims at, and that it needs, as shares of their limits: the rest is for motions
 between projected states."""
-_STEPS, _FEW = 20, 8
+_STEPS, _FEW = 20, 12
 """Largest number of steps of a projection, and of one of states along a motion."""
 _LONGEST = 0.3
 """Largest movement of a joint in such a step [rad or m]."""
@@ -131,7 +131,7 @@ class KeptWorld:
     @cached_property
     def step(self) -> float:
         """Longest step along a motion: between two states residuals grow with its square."""
-        return min(_STEP, *(math.sqrt(2.0 * keep.limit) for keep in self.keeps if keep.tips), _STEP)
+        return min(_STEP, *(math.sqrt(3.0 * keep.limit) for keep in self.keeps if keep.tips), _STEP)
 
     def shares(self, q: Floats) -> Floats:
         """Return the lengths of the residuals as shares of their limits, (n, c), at configurations, (n, dim)."""

@@ -5,6 +5,14 @@
 
 namespace evenroad::robot {
 
+namespace {
+
+/// Limits below this are those of lines and doors: what is left of the error there would make a path zigzag, so that
+/// the robot drives it slowly.
+constexpr double THIN = 5e-3, ENOUGH_OF_THIN = 0.02;
+
+}  // namespace
+
 double length_of(std::span<const double> residual) {
   double total = 0.0;
   for (const double each : residual) total += each * each;
@@ -70,8 +78,9 @@ bool Projection::measure() {
   for (const Keep& keep : keeps_.each) {
     const std::span<double> error = std::span(error_).subspan(row, keep.rows);
     const double share = length_of(error) / keep.limit;
-    enough &= share <= how_.enough;
-    const double off = std::max(0.0, 1.0 - how_.aim / std::max(share, 1e-12));
+    const bool is_thin = keep.limit < THIN && keep.kind != KeepKind::BOX && keep.kind != KeepKind::JOINTS;
+    enough &= share <= (is_thin ? ENOUGH_OF_THIN : how_.enough);
+    const double off = is_thin ? 1.0 : std::max(0.0, 1.0 - how_.aim / std::max(share, 1e-12));
     for (double& each : error) each *= off;
     row += keep.rows;
   }
