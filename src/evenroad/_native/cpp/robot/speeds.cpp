@@ -17,14 +17,19 @@ namespace {
 /// What single precision may lose of velocities, as a share: some tens of roundings.
 constexpr double LOST = 2e-5;
 
-void write_sums(const OwnMatrix<double>& arms, std::span<const double> way, std::span<double> sums) {
+/// Write sums over the coordinates of arms times what the coordinate moves, and times its weight if there are weights.
+void write_sums(const OwnMatrix<double>& arms, std::span<const double> way, std::span<double> sums,
+                std::span<const double> weights = {}) {
   std::fill(sums.begin(), sums.end(), 0.0);
   for (std::size_t k = 0; k < way.size(); k++) {
-    const double size = std::abs(way[k]);
+    const double size = std::abs(way[k]) * (weights.empty() ? 1.0 : weights[k]);
     const auto row = arms[k];
     for (std::size_t i = 0; i < sums.size(); i++) sums[i] += row[i] * size;
   }
 }
+
+/// Return a number that none of the lanes exceeds, of the roots of squares.
+double largest_root(Floats16 squares) { return std::sqrt(static_cast<double>(largest(squares))); }
 
 /// Write by what to multiply what each coordinate moves, to have its part of the acceleration; return all turns.
 double write_weights(const Robot& robot, std::span<const double> way, std::span<double> weights) {
@@ -52,6 +57,7 @@ Speeds::Speeds(const Robot& robot)
       shapes(robot.bodies.size()),
       velocities_(robot.frames.size() + 1),
       accelerations_(robot.arms.columns),
+      shape_accelerations_(robot.bodies.size()),
       weights_(robot.dim()) {}
 
 void Speeds::take_anywhere(const Robot& robot, std::span<const double> way) {
@@ -77,12 +83,8 @@ void Speeds::take_here(const Robot& robot, const Places& places, std::span<const
   }
   const double turns = write_weights(robot, longest, weights_);
   const double lost = LOST * (slides + turns * robot.reach);
-  std::fill(accelerations_.begin(), accelerations_.end(), 0.0);
-  for (std::size_t k = 0; k < longest.size(); k++) {
-    const double size = std::abs(longest[k]) * weights_[k];
-    const auto row = robot.arms[k];
-    for (std::size_t i = 0; i < accelerations_.size(); i++) accelerations_[i] += row[i] * size;
-  }
+  write_sums(robot.arms, longest, accelerations_, weights_);
+  write_sums(robot.shape_arms, longest, shape_accelerations_, weights_);
   for (int i = robot.fixed_capsules(); i < static_cast<int>(capsules.size()); i++) {
     const int frame = robot.bodies[robot.capsules[i].body].frame;
     const auto& [along, turning] = velocities_[frame];
@@ -94,8 +96,20 @@ void Speeds::take_here(const Robot& robot, const Places& places, std::span<const
       const Vec3x16 end = cross(turning, capsule.half), one = middle + end, other = middle - end;
       square = max(dot(one, one), dot(other, other));
     }
-    const double here = std::sqrt(static_cast<double>(largest(square))) + half * accelerations_[i] + lost;
-    capsules[i] = std::min(capsules[i], here);
+    capsules[i] = std::min(capsules[i], largest_root(square) + half * accelerations_[i] + lost);
+  }
+  for (std::size_t b = robot.fixed_bodies; b < robot.bodies.size(); b++) {
+    const Body& body = robot.bodies[b];
+    if (body.shape < 0) continue;
+    // Its middle moves, and what is around that turns about it.
+    const HullNode<float>& root = robot.shapes.nodes[body.shape];
+    const auto& [along, turning] = velocities_[body.frame];
+    const PlacedFrame& frame = places.frames[body.frame];
+    const Vec3x16 from = spread3(root.centre);
+    const Vec3x16 middle =
+        along + cross(turning, {dot(frame.rows[0], from), dot(frame.rows[1], from), dot(frame.rows[2], from)});
+    const double here = largest_root(dot(middle, middle)) + root.radius * largest_root(dot(turning, turning));
+    shapes[b] = std::min(shapes[b], here + half * shape_accelerations_[b] + lost);
   }
   for (std::size_t k = 0; k < robot.pairs.size(); k++) {
     const auto& [first, second, one, two] = robot.pairs[k];

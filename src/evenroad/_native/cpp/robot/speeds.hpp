@@ -32,7 +32,7 @@ struct Speeds {
     Vec3x16 along, turning;
   };
   std::vector<Velocity> velocities_;
-  std::vector<double> accelerations_, weights_;
+  std::vector<double> accelerations_, shape_accelerations_, weights_;
 };
 
 }  // namespace evenroad::robot
