@@ -9,7 +9,7 @@ namespace {
 
 /// Limits below this are those of lines and doors: what is left of the error there would make a path zigzag, so that
 /// the robot drives it slowly.
-constexpr double THIN = 5e-3, ENOUGH_OF_THIN = 0.02;
+constexpr double THIN_KEEP = 5e-3, ENOUGH_OF_THIN = 0.02;
 
 }  // namespace
 
@@ -78,7 +78,7 @@ bool Projection::measure() {
   for (const Keep& keep : keeps_.each) {
     const std::span<double> error = std::span(error_).subspan(row, keep.rows);
     const double share = length_of(error) / keep.limit;
-    const bool is_thin = keep.limit < THIN && keep.kind != KeepKind::BOX && keep.kind != KeepKind::JOINTS;
+    const bool is_thin = keep.limit < THIN_KEEP && keep.kind != KeepKind::BOX && keep.kind != KeepKind::JOINTS;
     enough &= share <= (is_thin ? ENOUGH_OF_THIN : how_.enough);
     const double off = is_thin ? 1.0 : std::max(0.0, 1.0 - how_.aim / std::max(share, 1e-12));
     for (double& each : error) each *= off;
