@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/float16.hpp"
+
 namespace evenroad::planning {
 
 namespace {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/float16.hpp"
+
 namespace evenroad::planning {
 
 namespace {

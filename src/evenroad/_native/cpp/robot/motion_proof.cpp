@@ -28,7 +28,7 @@ constexpr float UP = 1.0F + 3e-7F;
 /// Return a length of single precision that is no less than the sum of the two [m].
 float wider(float length, double margin) { return (length + static_cast<float>(margin)) * UP; }
 
-double largest(std::span<const double> speeds, Range range) {
+double fastest_in(std::span<const double> speeds, Range range) {
   double most = 0;
   for (int i = range.first; i < range.end; i++) most = std::max(most, speeds[i]);
   return most;
@@ -44,7 +44,7 @@ void enlarge(Workspace& workspace, double half) {
   // What is around a body moves no farther than the fastest of its capsules.
   for (std::size_t b = 0; b < robot.bodies.size(); b++) {
     into.shapes[b] = wider(from.shapes[b], half * workspace.speeds.shapes[b]);
-    const double margin = half * largest(speeds, robot.bodies[b].capsules);
+    const double margin = half * fastest_in(speeds, robot.bodies[b].capsules);
     const auto& [radius, extents] = from.bodies[b];
     into.bodies[b] = {wider(radius, margin),
                       {wider(extents.x, margin), wider(extents.y, margin), wider(extents.z, margin)}};
@@ -55,7 +55,7 @@ void enlarge(Workspace& workspace, double half) {
     into.pairs[pair] = {wider(from.pairs[pair].near, margin), wider(from.pairs[pair].reach, margin)};
   }
   for (std::size_t p = 0; p < robot.body_pairs.size(); p++) {
-    into.body_pairs[p] = wider(from.body_pairs[p], half * largest(pair_speeds, robot.body_pairs[p].pairs));
+    into.body_pairs[p] = wider(from.body_pairs[p], half * fastest_in(pair_speeds, robot.body_pairs[p].pairs));
   }
   for (std::size_t p = 0; p < from.hull_margins.size(); p++) {
     into.hull_margins[p] = wider(from.hull_margins[p], half * pair_speeds[pairs + p]);

@@ -67,7 +67,8 @@ void Speeds::take_anywhere(const Robot& robot, std::span<const double> way) {
 }
 
 void Speeds::take_here(const Robot& robot, const Places& places, std::span<const double> longest, double half) {
-  velocities_[0] = {};
+  const Floats16 still{};
+  velocities_[0].along = velocities_[0].turning = {still, still, still};
   double slides = 0.0;
   for (std::size_t i = 0; i < robot.frames.size(); i++) {
     const Frame& frame = robot.frames[i];
