@@ -59,7 +59,9 @@ nb::object pieces_within(nb::handle triangles, double reach, double longest) {
   const Array<const double, 3> given(triangles, "triangles");
   given.of_shape({given.shape(0), 3, 3});
   require_within(given.span(), -FARTHEST, FARTHEST, "triangles");
-  require_within({&reach, 1}, 0.0, FARTHEST, "reach"), require(longest > 0, "longest must be > 0");
+  require_within({&reach, 1}, 0.0, FARTHEST, "reach");
+  // Shorter sides would make pieces without end.
+  require(longest >= std::max(0.01 * reach, 1e-6), "longest must be at least 1e-6, and a hundredth of reach");
   return as_rows(robot::pieces_within(given.span(), reach, longest), 9);
 }
 
