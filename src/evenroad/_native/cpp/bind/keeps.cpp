@@ -135,7 +135,8 @@ struct States {
 
 /// A way of walking as Python gives it: step, jump, aim, enough, steps, longest; and the scale.
 robot::Walking walking(const Keeps& keeps, const Array<const double, 1>& scale, nb::tuple numbers) {
-  require(scale.shape(0) == keeps.dim(), "scale must have the coordinates of the limits");
+  require(scale.shape(0) == keeps.dim() && keeps.dim() > 0,
+          "scale must have the coordinates of the limits, one or more");
   require(numbers.size() == 6, "how must be a step, jump, aim, enough, steps and longest");
   const robot::Walking how{scale.span(),
                            value_of<double>(numbers[0], "step"),

@@ -10,7 +10,7 @@ namespace {
 
 /// A walk that turns back is none, and one that is so much longer than the straight way, in steps.
 constexpr double LONGER_THAN_STRAIGHT = 3.0;
-constexpr int MORE = 8;
+constexpr int MORE = 8, MOST_STATES = 1'000'000;
 /// A step along the constraints is made as long as others where so much of it is left.
 constexpr double LEFT = 0.02;
 
@@ -34,7 +34,8 @@ bool walk(const Keeps& keeps, std::span<const double> from, std::span<const doub
   Projection projection(keeps, how.projecting);
   states.insert(states.end(), here.begin(), here.end());
   double left = length_of(way, how.scale);
-  const int most = static_cast<int>(LONGER_THAN_STRAIGHT * left / how.step) + MORE;
+  const double longest = LONGER_THAN_STRAIGHT * left / how.step;
+  const int most = longest < MOST_STATES ? static_cast<int>(longest) + MORE : MOST_STATES;
   for (int count = 0; left > how.step; count++) {
     if (count == most) return false;
     for (double& each : step) each *= how.step / left;
