@@ -19,7 +19,7 @@ from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 from evenroad.robot_roadmap.world_roadmap import ArmWorldRoadmap
 from evenroad_studies.arms.roadmaps import box_roadmap, cell_of
 from evenroad_studies.arms.robots import arm_named, tool_of
-from evenroad_studies.arms.scenes import GENERATORS, Region, places_of
+from evenroad_studies.arms.scenes import GENERATORS, inside_of, places_of
 from evenroad_studies.bench.task import Problem, ProblemSource
 
 POOL = 300_000
@@ -83,7 +83,7 @@ def _drawn(robot: str, generator: str, stream: str, rng: np.random.Generator) ->
     pool, tools = _pool(robot)
     ends: list[Floats] = []
     for region in rng.permutation(len(regions))[:2] if regions else (-1, -1):
-        here = pool[rng.integers(len(pool), size=200)] if region < 0 else pool[_inside(tools, regions[region])]
+        here = pool[rng.integers(len(pool), size=200)] if region < 0 else pool[inside_of(tools, regions[region])]
         free = here[world.valid(here)]
         if not len(free):
             return None
@@ -127,15 +127,6 @@ def _pool(robot: str) -> tuple[Floats, Floats]:
     q = q[world.valid(q)]
     tool = tool_of(arm)
     return q, np.concatenate([link_poses(arm, part)[:, tool, :3, 3] for part in np.array_split(q, 40)])
-
-
-def _inside(tools: Floats, region: Region) -> Floats:
-    """Return which places are in a region, (n,)."""
-    cosine, sine = np.cos(region.angle), np.sin(region.angle)
-    x, y, z = (tools - region.centre).T
-    first, second, third = region.half
-    inside: Floats = (np.abs(cosine * x + sine * y) <= first) & (np.abs(cosine * y - sine * x) <= second)
-    return inside & (np.abs(z) <= third)
 
 
 ARM_ROBOTS = {"ur5-5": 5, "ur5": 6, "arm7": 7, "scara": 4, "twoarm": 8}

@@ -22,6 +22,15 @@ class Region(NamedTuple):
     angle: float
 
 
+def inside_of(places: Floats, region: Region) -> Floats:
+    """Return which places, (n, 3), are in a region, (n,)."""
+    cosine, sine = np.cos(region.angle), np.sin(region.angle)
+    x, y, z = (places - region.centre).T
+    first, second, third = region.half
+    inside: Floats = (np.abs(cosine * x + sine * y) <= first) & (np.abs(cosine * y - sine * x) <= second)
+    return inside & (np.abs(z) <= third)
+
+
 Places = tuple[list[Obstacle], list[Region]]
 """Obstacles and regions; without any, the ends are anywhere."""
 

@@ -15,7 +15,7 @@ from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, load_robot, load_scene
 from evenroad.robot.kinematics import link_poses, tip_links
 from evenroad_studies.arms.roadmaps import cell_of
-from evenroad_studies.arms.scenes import GENERATORS, Region, places_of
+from evenroad_studies.arms.scenes import GENERATORS, Region, inside_of, places_of
 
 POOL = 40_000
 """Number of configurations of which those with the tool in a region are taken."""
@@ -125,7 +125,7 @@ def _ends(world: ArmWorld, robot: str, regions: list[Region], count: int, rng: n
     chosen = [regions[int(i)] for i in rng.permutation(len(regions))[:2]] if regions else [None, None]
     ends: list[Floats] = []
     for region in chosen:
-        rows = np.arange(len(pool)) if region is None else np.flatnonzero(_inside(tools, region))
+        rows = np.arange(len(pool)) if region is None else np.flatnonzero(inside_of(tools, region))
         if not len(rows):
             return None
         some = pool[rows[rng.integers(len(rows), size=8 * count)]]
@@ -150,15 +150,6 @@ def _pool(robot: str) -> tuple[Floats, Floats]:
     q = q[world.valid(q)]
     # Of a gripper the link that its fingers are on.
     return q, link_poses(arm, q)[:, arm.links.index(tip_links(arm)[-1]), :3, 3]
-
-
-def _inside(tools: Floats, region: Region) -> Floats:
-    """Return which tools are in a region, (n,)."""
-    cosine, sine = np.cos(region.angle), np.sin(region.angle)
-    x, y, z = (tools - region.centre).T
-    first, second, third = region.half
-    inside: Floats = (np.abs(cosine * x + sine * y) <= first) & (np.abs(cosine * y - sine * x) <= second)
-    return inside & (np.abs(z) <= third)
 
 
 def as_text(scene: Scene) -> str:
