@@ -5,6 +5,8 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constraints.txt
 # A compiler of your own: `CXX=clang++ make test`; without, clang comes as a wheel.
 CLANG  := $(if $(filter default undefined,$(origin CXX)),ziglang)
+# Tests start hundreds of processes: where nothing compiled is kept, each compiles evenroad's files anew.
+unexport PYTHONDONTWRITEBYTECODE
 KERNEL := $(shell find src/evenroad/_native/cpp -name '*.?pp') src/evenroad/_native/CMakeLists.txt tools/build_backend.py
 
 .PHONY: help demo test test-peers lint native sanitize fuzz tidy docs bench bank mazes wheels release-check clean
@@ -37,16 +39,17 @@ $(VENV)/.native: $(KERNEL) | $(VENV)/.tools
 	$(BIN)/python tools/build_backend.py
 	@touch $@
 
-$(VENV)/.core: pyproject.toml studies/pyproject.toml constraints.txt | $(VENV)/.native
-	$(PIP) --no-build-isolation -e . -e ./studies
+# Of both packages only where they are is installed: the kernel is built by the rule above, at the same time.
+$(VENV)/.core: pyproject.toml studies/pyproject.toml constraints.txt | $(VENV)/.tools
+	$(PIP) -C kernel=no --no-build-isolation -e . -e ./studies
 	@touch $@
 
 $(VENV)/.dev: $(VENV)/.core
-	$(PIP) --no-build-isolation -e '.[dev,parquet,hdf5]' -e './studies[dask]'
+	$(PIP) -C kernel=no --no-build-isolation -e '.[dev,parquet,hdf5]' -e './studies[dask]'
 	@touch $@
 
 $(VENV)/.peers: $(VENV)/.dev
-	$(PIP) --no-build-isolation -e '.[dev,parquet,hdf5,peers]' -e './studies[dask]'
+	$(PIP) -C kernel=no --no-build-isolation -e '.[dev,parquet,hdf5,peers]' -e './studies[dask]'
 	@touch $@
 
 native: $(VENV)/.native
@@ -75,7 +78,9 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 	$(BIN)/clang-format --dry-run -Werror src/evenroad/_native/cpp/*/*.?pp
 
-test: lint $(VENV)/.native $(VENV)/.sanitized
+# While clang builds the kernel, which keeps one processor busy for half of the time, packages come and mypy reads.
+test:
+	+$(MAKE) --no-print-directory -j 2 lint $(VENV)/.native $(VENV)/.sanitized
 	$(BIN)/pytest -n 2
 
 test-peers: $(VENV)/.peers $(VENV)/.native

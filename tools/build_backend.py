@@ -98,8 +98,9 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
 def build_editable(
     wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None
 ) -> str:
-    """Build the kernel in place, and a wheel that holds nothing but a path to `src`."""
-    build_in_place()
+    """Build the kernel in place, but with `kernel=no`, and a wheel that holds nothing but a path to `src`."""
+    if (config_settings or {}).get("kernel") != "no":
+        build_in_place()
     with tempfile.TemporaryDirectory() as folder:
         info = prepare_metadata_for_build_editable(folder)
         name = info.removesuffix(".dist-info")
