@@ -1,5 +1,6 @@
 """Words of a command line become options; what cannot be read gets one line that says what is allowed."""
 
+import shutil
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -7,11 +8,11 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import pytest
-import tyro
 
-from evenroad.cli.options import option_names, read_options
+from evenroad.cli.options import Positional, Repeatable, option_names
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_file import read_plan
+from evenroad.cli.read_options import read_options
 from evenroad.errors import EvenroadError
 from tests.refused import refused
 
@@ -20,9 +21,9 @@ from tests.refused import refused
 class Bake:
     """Bake a cake."""
 
-    recipe: tyro.conf.Positional[Path]
+    recipe: Positional[Path]
     """Where it is written."""
-    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1
+    n: Annotated[int, "-n"] = 1
     """How many."""
     oven: Literal["gas", "wood"] = "gas"
     """What heats it."""
@@ -30,7 +31,7 @@ class Bake:
     """How hot."""
     fruit: tuple[str, ...] = ()
     """What is put in."""
-    layers: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    layers: Repeatable[tuple[tuple[str, ...], ...]] = ()
     """What is put between, from below."""
     glazed_twice: bool = False
     """Shiny."""
@@ -57,6 +58,14 @@ def test_every_kind_of_option_is_read():
     )
 
 
+@pytest.mark.parametrize("words", [
+    "-n3 -- cake.txt", "-n=3 cake.txt", "--n=3 cake.txt", "cake.txt -n 3 --", "--n 3 --fruit plum cake.txt",
+])  # fmt: skip
+def test_a_word_without_a_name_may_stand_anywhere_and_a_value_right_after_its_short_option(words):
+    made = read(*words.split())
+    assert (made.recipe, made.n) == (Path("cake.txt"), 3)
+
+
 def test_of_an_option_given_twice_the_last_one_counts():
     assert read("cake.txt", "--n", "3", "-n", "4").n == 4
 
@@ -67,11 +76,14 @@ def test_of_an_option_given_twice_the_last_one_counts():
     ("a -n many", "-n/--n must be a whole number, got 'many'"),
     ("a -n 1.5", "-n/--n must be a whole number, got '1.5'"),
     ("a --heat warm", "--heat must be a number, got 'warm'"),
-    ("a --oven sun", "invalid choice 'sun' for argument '--oven'. Expected one of ('gas', 'wood')"),
-    ("a --heat", "missing value for argument '--heat'"),
+    ("a --oven sun", "--oven must be one of gas, wood, got 'sun'"),
+    ("a --heat", "--heat needs a value: --heat FLOAT; all options: evenroad bake --help"),
     ("a --glazed-twice=yes", "evenroad bake has no use for the word 'yes'"),
     ("a --nuts 3", "unknown option of evenroad bake: '--nuts'; known: --fruit, --glazed-twice"),
     ("--nuts 3", "unknown option of evenroad bake: '--nuts'; known: --fruit, --glazed-twice"),
+    ("--fruit a b --", "missing from evenroad bake: RECIPE"),
+    ("a --fruit", "--fruit needs a value: --fruit STR ...; all options: evenroad bake --help"),
+    ("-x", "evenroad bake has no use for the word '-x'"),
     ("a -x", "evenroad bake has no use for the word '-x'"),
 ])  # fmt: skip
 def test_what_cannot_be_read_is_named_with_what_is_allowed(words, says):
@@ -101,7 +113,7 @@ class Iced(Bake):
     sampler: str | None = None
     """Who
     tastes it."""
-    many: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
+    many: Repeatable[tuple[tuple[str, ...], ...]]
     """Colours."""
 
 
@@ -122,26 +134,42 @@ def test_a_name_that_an_option_once_had_is_taken_where_the_verb_has_todays():
     refused(EvenroadError, "unknown option of evenroad bake: '--family'", read, "cake.txt", "--family", "aunts")
 
 
-def test_what_completes_words_knows_every_verb(run):
-    code, out, _ = run("--tyro-print-completion", "bash")
+@pytest.mark.parametrize(("shell", "dashes"), [("bash", "--"), ("zsh", "--"), ("fish", "-l ")])
+def test_what_completes_words_knows_every_verb_and_its_options(run, shell, dashes):
+    code, out, _ = run("--print-completion", shell)
     assert code == 0
-    for part in ("plan", "measure", "--robot-radius", "--no-picture"):
+    for part in ("plan", "measure", f"{dashes}robot-radius", f"{dashes}goal-pose", f"{dashes}no-picture"):
         assert part in out
-    assert run("--tyro-print-completion")[2] == "evenroad: error: unknown shell ''; known: bash, fish, zsh\n"
+    assert run("--tyro-print-completion", shell)[1] == out
+    assert run("--print-completion")[2] == "evenroad: error: unknown shell ''; known: bash, fish, zsh\n"
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
+@pytest.mark.parametrize(("words", "wanted"), [
+    ("evenroad m", "measure"),
+    ("evenroad plan --goal", "--goal --goal-pose"),
+    ("evenroad measure --j", "--json"),
+    ("evenroad plan off", ""),
+])  # fmt: skip
+def test_bash_completes_words(run, words, wanted):
+    script = run("--print-completion", "bash")[1]
+    asked = f"COMP_WORDS=({words}); COMP_CWORD={len(words.split()) - 1}; _evenroad; echo ${{COMPREPLY[@]}}"
+    done = subprocess.run(["bash", "-c", script + asked], capture_output=True, text=True, check=True)
+    assert (done.stdout.strip(), done.stderr) == (wanted, "")
 
 
 @pytest.mark.parametrize(("words", "says"), [
     ("plan a.png --robot-radius 1 --start 1 1 --goal 2 2 -n many", "-n/--n must be a whole number, got 'many'"),
     ("points -n 16 -d 2", "missing from evenroad points: -o PATH, --out PATH; all options: evenroad"),
     ("measure", "missing from evenroad measure: SET"),
-    ("train -n 16 -d 2 -o a --method sgd", "invalid choice 'sgd' for argument '--method'. Expected"),
+    ("train -n 16 -d 2 -o a --method sgd", "--method must be one of anneal, mpmc, order, got 'sgd'"),
     ("plot", "unknown verb 'plot'; known: bench, certify, demo, export"),
 ])  # fmt: skip
 def test_a_wrong_word_is_one_line_and_exit_code_2(refuse, words, says):
     assert refuse(*words.split()).startswith(f"evenroad: error: {says}")
 
 
-@pytest.mark.parametrize(("words", "unwanted"), [("plan --help", "rich"), ("--help", "tyro"), ("--version", "tyro")])
+@pytest.mark.parametrize(("words", "unwanted"), [("plan --help", "rich"), ("--help", "numpy"), ("--version", "numpy")])
 def test_only_what_is_asked_for_is_loaded(words, unwanted):
     code = (
         f"import sys, evenroad.cli.verbs as verbs; verbs.run({words.split()});"

@@ -26,7 +26,7 @@ def test_the_package_can_be_run_as_a_module():
 INTERRUPTED = (130, "evenroad: interrupted; what was finished is kept\n")
 
 
-@pytest.mark.parametrize("module", ["tyro", "evenroad.cli.verbs", "numpy", "PIL"])
+@pytest.mark.parametrize("module", ["evenroad.cli.options", "evenroad.cli.verbs", "numpy", "PIL"])
 def test_an_interrupt_while_modules_are_imported_exits_with_130_and_one_line(module):
     code = f"""
 import sys

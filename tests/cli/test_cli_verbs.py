@@ -26,7 +26,7 @@ def test_a_verb_of_the_studies_says_in_one_line_what_to_install(run, verb):
 
 @pytest.mark.usefixtures("_without_the_studies")
 def test_completions_name_what_is_installed(run):
-    _, script, _ = run("--tyro-print-completion", "bash")
+    _, script, _ = run("--print-completion", "bash")
     assert "certify" in script
     assert not re.search(r"\bbench\b", script)
 
@@ -40,7 +40,8 @@ def test_the_help_names_the_verbs_of_the_studies(run):
 @pytest.mark.parametrize("words", [example for _, examples in verbs.GROUPS.values() for example in examples[:1]])
 def test_examples_of_the_help_are_known_commands(run, words):
     """Asked for help with all that the example says: its options are known."""
-    from evenroad.cli.options import given_options, option_names
+    from evenroad.cli.options import option_names
+    from evenroad.cli.read_options import given_options
 
     verb, *rest = words.split()[1:]
     assert given_options(rest) <= option_names(verbs._kind(verb, rest))

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-import tyro
-
 from evenroad._checks import as_row, require_count, require_positive
 from evenroad._terminal import print_table
+from evenroad.cli.options import Positional
 from evenroad.cli.sampler import chosen_rule
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.npz import load_points
@@ -31,9 +30,9 @@ class Certify:
     Exit code 1 if nothing is guaranteed for the given clearance.
     """
 
-    set: tyro.conf.Positional[Path]
+    set: Positional[Path]
     """A .npy array of shape (n, d), or a .npz point set."""
-    k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
+    k: Annotated[int | None, "-k"] = None
     """Each milestone is joined to its k nearest, symmetrised (default 10; 20 from six dimensions on)."""
     connect_radius: float | None = None
     """Milestones are joined up to this distance instead."""

@@ -10,9 +10,9 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-import tyro
 
 from evenroad._terminal import print_table
+from evenroad.cli.options import Positional
 from evenroad.errors import EvenroadError, InvalidValue
 from evenroad.points import PointSet
 from evenroad.points.measures import (
@@ -34,7 +34,7 @@ WORK = 3e8
 class Measure:
     """Print every measure of a point set: discrepancies, dispersion, separation, energy."""
 
-    set: tyro.conf.Positional[Path]
+    set: Positional[Path]
     """A .npy array of shape (n, d), or a .npz point set."""
     json: bool = False
     """Print JSON instead of a table."""

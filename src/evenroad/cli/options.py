@@ -1,180 +1,106 @@
-"""Options of a verb, read by tyro from a command line; its errors become one line.
+"""The options of a verb, from the fields of its class.
 
-A verb is a frozen dataclass: its fields are the options, and the text below a field is its help.
+A verb is a frozen dataclass: its fields are the options, their types say what is read, and the text below a field is
+its help. Marks say what a type does not: ``Positional[Path]``, ``Repeatable[tuple[str, ...]]``, and the short name in
+``Annotated[int, "-n"]``.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import redirect_stderr, redirect_stdout
-from dataclasses import MISSING, fields, is_dataclass, replace
-from inspect import get_annotations
-from io import StringIO
-from itertools import dropwhile, takewhile
-from textwrap import fill
-from typing import Annotated, Any, Union
+from collections.abc import Callable, Sequence
+from dataclasses import MISSING, fields
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
 
-from tyro import cli, conf
-from tyro.constructors import (
-    ConstructorRegistry,
-    PrimitiveConstructorSpec,
-    PrimitiveTypeInfo,
-    StructConstructorSpec,
-    StructFieldSpec,
-    StructTypeInfo,
-)
+from evenroad.errors import InvalidValue, shown
 
-from evenroad._checks import require_known
-from evenroad._terminal import table_width
-from evenroad.cli.help import regrouped
-from evenroad.errors import InvalidValue, UnknownName, shown
+_T = TypeVar("_T")
+Positional = Annotated[_T, "positional"]
+"""A word by its position, without a name."""
+Repeatable = Annotated[_T, "repeatable"]
+"""An option that may be given several times: a tuple of its values."""
 
-HELP = {"-h", "--help"}
-MARKS = (conf.FlagCreatePairsOff, conf.DisallowNone, conf.PositionalMetavarFromFieldName)
-NUMBERS = {int: "a whole number", float: "a number"}
-RULES = ConstructorRegistry()
-AXES = ("-x", "-y", "-z")
-EARLIER = {"--family": "--sampler", "--certify": "--guarantees"}
-"""Earlier name of an option -> its name; verbs without an option of the earlier name take it."""
-_INSIDE: list[StructTypeInfo] = []
-"""The verb whose options tyro lists now."""
-UNSAID = (None, False, "", ())
-"""Defaults that the help does not print: its text describes them."""
+READ: dict[type, tuple[str, Callable[[str], Any], str]] = {
+    str: ("STR", str, "a text"),
+    Path: ("PATH", Path, "a path"),
+    int: ("INT", int, "a whole number"),
+    float: ("FLOAT", float, "a number"),
+}
+"""Type of a value -> its name in the help, what reads it, and what it must be."""
 
 
-def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
-    """Return a verb with the options of a command line; the last of repeated ones counts.
+class Option(NamedTuple):
+    """One option of a verb, or a word by its position, which has no names."""
 
-    Raises InvalidValue or UnknownName for wrong or missing options, and SystemExit after printing help.
-    """
-    known, program = option_names(kind), f"evenroad {verb}"
-    if not HELP.isdisjoint(words):
-        # Whoever wants help need not have finished the other options.
-        words = ["--help"]
-    words = [current_option(word, known) for word in words]
-    for name in sorted(given_options(words) - known - HELP):
-        raise UnknownName.among(f"option of {program}:", name, known)
-    texts = [" ".join(text.split()) for text in (kind.__doc__ or "").split("\n\n")]
-    # Tyro does not wrap the text about a verb, and joins lines that begin with a letter.
-    about = "\n\n".join(fill(text, table_width(), subsequent_indent="  ") for text in texts)
-    printed = StringIO()
-    try:
-        with redirect_stdout(printed):
-            options, unknown = _parsed(kind, program, _with_axes(words), about)
-    except SystemExit:
-        print(regrouped(printed.getvalue(), getattr(kind, "groups", {})), end="")
-        raise
-    if unknown:
-        raise InvalidValue(f"{program} has no use for the word {shown(unknown[0])}")
-    for field in fields(kind):
-        # Tyro does not require repeatable options.
-        if field.default is MISSING and getattr(options, field.name) == ():
-            raise InvalidValue(f"missing from {program}: --{field.name}; all options: {program} --help")
-    return options
+    field: str
+    names: tuple[str, ...]
+    kind: type
+    """Of a single value; bool: the option stands alone."""
+    choices: tuple[str, ...]
+    several: bool
+    """Takes all words up to the next option."""
+    repeatable: bool
+    default: Any
+    """MISSING where it is required."""
+
+    @property
+    def value(self) -> str:
+        """Return what stands for its value in the help."""
+        one = (
+            f"{{{','.join(self.choices)}}}"
+            if self.choices
+            else READ[self.kind][0]
+            if self.names
+            else self.field.upper()
+        )
+        return f"{one} ..." if self.several else one
+
+    @property
+    def text(self) -> str:
+        """Return the option as the help names it: ``-n INT, --n INT``."""
+        if not self.names:
+            return self.value if self.default is MISSING else f"[{self.value}]"
+        return ", ".join(self.names if self.kind is bool else (f"{name} {self.value}" for name in self.names))
+
+    def of(self, words: Sequence[str]) -> Any:
+        """Return the value that the words of one use say."""
+        values = tuple(map(self._read, words))
+        return values if self.several else values[0]
+
+    def _read(self, word: str) -> Any:
+        name = "/".join(self.names) or self.field.upper()
+        if self.choices:
+            if word not in self.choices:
+                raise InvalidValue(f"{name} must be one of {', '.join(self.choices)}, got {shown(word)}")
+            return word
+        _, read, must_be = READ[self.kind]
+        try:
+            return read(word)
+        except ValueError:
+            raise InvalidValue(f"{name} must be {must_be}, got {shown(word)}") from None
 
 
-def print_completion(kinds: Mapping[str, type], words: Sequence[str]) -> None:
-    """Print tyro's completion script of these verbs for a shell; ends with SystemExit."""
-    require_known("shell", "".join(words[1:2]), ("bash", "zsh", "fish"))
-    verbs = [Annotated[kind, conf.subcommand(verb, prefix_name=False)] for verb, kind in kinds.items()]
-    _parsed(Union[tuple(verbs)], "evenroad", words)  # noqa: UP007
+def options_of(kind: type) -> list[Option]:
+    """Return the options of a verb's class, in the order of its fields."""
+    hints = get_type_hints(kind, include_extras=True)
+    return [_option(each.name, hints[each.name], each.default) for each in fields(kind)]
+
+
+def _option(field: str, hint: Any, default: Any) -> Option:
+    marks: tuple[str, ...] = getattr(hint, "__metadata__", ())
+    kind = get_args(hint)[0] if marks else hint
+    if type(None) in get_args(kind):
+        kind, *_ = (each for each in get_args(kind) if each is not type(None))
+    repeatable = "repeatable" in marks
+    depth = 0
+    while get_origin(kind) is tuple:
+        kind, depth = get_args(kind)[0], depth + 1
+    choices = get_args(kind) if get_origin(kind) is Literal else ()
+    short = tuple(mark for mark in marks if mark.startswith("-"))
+    names = () if "positional" in marks else (*short, f"--{field.replace('_', '-')}")
+    return Option(field, names, str if choices else kind, choices, depth > repeatable, repeatable, default)
 
 
 def option_names(kind: type) -> set[str]:
     """Return the long names of a verb's options, such as ``--start``."""
     return {f"--{each.name.replace('_', '-')}" for each in fields(kind) if "Positional" not in str(each.type)}
-
-
-def given_options(words: Sequence[str]) -> set[str]:
-    """Return the long names among the words of a command line."""
-    return {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
-
-
-def current_option(word: str, known: set[str]) -> str:
-    """Return a word with the current name of its option."""
-    name, equals, value = word.partition("=")
-    new = EARLIER.get(name, name)
-    return new + equals + value if new in known and name not in known else word
-
-
-def _with_axes(words: Sequence[str]) -> list[str]:
-    """Return words with axes joined to their options: ``--away -z`` becomes ``--away=-z``."""
-    joined: list[str] = []
-    for word in words:
-        if word in AXES and joined and joined[-1].startswith("--") and "=" not in joined[-1]:
-            joined[-1] += f"={word}"
-        else:
-            joined.append(word)
-    return joined
-
-
-def _parsed(kind: Any, prog: str, words: Sequence[str], about: str = "") -> Any:
-    """Return the options that tyro reads from the words, and the unknown words."""
-    said = StringIO()
-    try:
-        with redirect_stderr(said), RULES:
-            return cli(kind, prog=prog, description=about, args=words, config=MARKS, return_unknown_args=True)
-    except SystemExit as end:
-        if not end.code:
-            raise
-        raise InvalidValue(f"{_in_words(said.getvalue())}; all options: {prog} --help") from None
-
-
-@RULES.struct_rule
-def _verb(info: StructTypeInfo) -> StructConstructorSpec | None:
-    """Make tyro list a verb's own options before shared ones, with our text for defaults."""
-    if _INSIDE or not is_dataclass(info.type):
-        return None
-    _INSIDE.append(info)
-    try:
-        made = ConstructorRegistry.get_struct_spec(info)
-    finally:
-        _INSIDE.pop()
-    assert isinstance(made, StructConstructorSpec)
-    # From the verb's class up to those that it inherits from.
-    declared = [name for each in info.type.__mro__ for name in get_annotations(each)]
-    listed = sorted(made.fields, key=lambda field: declared.index(field.name))
-    return replace(made, fields=tuple(map(_worded, listed)))
-
-
-def _worded(field: StructFieldSpec) -> StructFieldSpec:
-    """Return an option with its text in one piece, and without an empty default."""
-    hint = None
-    if "AppendAction" in str(field.type):
-        hint = "(repeatable)" if field.default == () else "(required, repeatable)"
-    elif any(field.default is each for each in UNSAID):
-        hint = ""
-    kind = field.type if hint is None else Annotated[field.type, conf.arg(help_behavior_hint=hint)]
-    return replace(field, helptext=lambda: _text(field.helptext), type=kind)  # type: ignore[arg-type]
-
-
-def _text(help: str | Callable[[], str | None] | None) -> str:
-    """Return the help of an option in one line."""
-    return " ".join(((help() if callable(help) else help) or "").split())
-
-
-@RULES.primitive_rule
-def _number(info: PrimitiveTypeInfo) -> PrimitiveConstructorSpec[Any] | None:
-    """Make tyro read numbers, with our errors."""
-    kind = next((each for each in NUMBERS if info.type in (each, each | None)), None)
-    if kind is None:
-        return None
-
-    def read(words: list[str]) -> Any:
-        try:
-            return kind(words[0])
-        except ValueError:
-            raise ValueError(f"must be {NUMBERS[kind]}, got {shown(words[0])}") from None
-
-    return PrimitiveConstructorSpec(1, kind.__name__.upper(), read, lambda _: True, lambda each: [str(each)])
-
-
-def _in_words(box: str) -> str:
-    """Return the message in a box of tyro, without title, frame, colours and help."""
-    rule = re.compile("[─-]+").fullmatch
-    lines = [line[2:].rstrip("│ ") for line in re.sub(r"\x1b\[[\d;]*m", "", box).splitlines()[1:]]
-    above = takewhile(lambda line: not rule(line), dropwhile(rule, lines))
-    said = " ".join(line.strip() for line in above if not line.startswith(" " * 8)) or box.strip()
-    said = re.sub(r"^Error parsing (\S+):", r"\1", said).rstrip(".")
-    return said[:1].lower() + said[1:]

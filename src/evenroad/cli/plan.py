@@ -10,9 +10,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
-import tyro
-
-from evenroad.cli.options import HELP, given_options, option_names
+from evenroad.cli.options import Positional, Repeatable, option_names
+from evenroad.cli.read_options import HELP, given_options
 from evenroad.cli.sampler import SamplerOptions, speaks_of_points
 from evenroad.errors import InvalidValue
 
@@ -39,13 +38,13 @@ class PlanOptions(SamplerOptions):
     planner: ClassVar[str]
     """Function that plans, ``module:name``, loaded on call."""
 
-    world: tyro.conf.Positional[Path]
+    world: Positional[Path]
     """The file of the world."""
     start: tuple[str, ...]
     """Where to start."""
-    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
+    goal: Repeatable[tuple[tuple[str, ...], ...]]
     """Where to go."""
-    n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
+    n: Annotated[int | None, "-n"] = None
     """Plan on a roadmap of exactly this many points (PRM); 512 if only other options name points.
     Without -n, plan until a path, a proof that there is none, or the end of the time."""
     time: float | None = None
@@ -54,7 +53,7 @@ class PlanOptions(SamplerOptions):
     """Plan again with other choices until the time is over, and keep the shortest path.  Not with points."""
     certified: bool = False
     """Require a proof that the whole path is free; without one, the answer names the motion."""
-    k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
+    k: Annotated[int | None, "-k"] = None
     """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
@@ -62,7 +61,7 @@ class PlanOptions(SamplerOptions):
     """Seed of everything random; the same command gives the same path."""
     raw: bool = False
     """Leave the path as it was found, without smoothing."""
-    out: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
+    out: Annotated[Path | None, "-o"] = None
     """Files to write: OUT.json, OUT.png and, for an arm, OUT.csv; OUT may end in one of these.
     Default: the world's stem in the current folder, with -plan added where that would overwrite an input."""
     no_picture: bool = False
@@ -95,11 +94,11 @@ class PlanDisk(PlanOptions):
 
     planner = "evenroad.cli.plan_disk:plan_disk"
 
-    world: tyro.conf.Positional[Path]
+    world: Positional[Path]
     """A map: a .png or .pgm image, or a ROS map_server .yaml."""
     start: tuple[str, ...]
     """x y in map units."""
-    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
+    goal: Repeatable[tuple[tuple[str, ...], ...]]
     """As start.  You can give several: the path ends at the first one reached, with points or --improve at the
     cheapest."""
     robot_radius: float
@@ -121,7 +120,7 @@ class RobotOptions:
 
     srdf: Path | None = None
     """Its SRDF, with groups, named states and pairs of links that need no test."""
-    group: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    group: Repeatable[tuple[str, ...]] = ()
     """Groups of the SRDF, or joints, separated by commas, planned for together in this order; you can give several.
     Other joints stay where the named states of start and goal have them, else at 0, or where they do not touch."""
     bodies: Path | None = None
@@ -129,11 +128,11 @@ class RobotOptions:
     `capsules`, those that stand for a link."""
     use_visuals: bool = False
     """Use the visual geometry of links that have no collision geometry."""
-    package: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    package: Repeatable[tuple[str, ...]] = ()
     """NAME=FOLDER: the folder of a ROS package with meshes; you can give several."""
-    xacro: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    xacro: Repeatable[tuple[str, ...]] = ()
     """NAME=VALUE: an argument of a xacro, VALUE may be empty; you can give several."""
-    padding: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    padding: Repeatable[tuple[str, ...]] = ()
     """Clearance of links, beside --clearance: METRES; LINK=METRES, you can give several; or MoveIt's YAML file."""
 
     def options(self) -> dict[str, Any]:
@@ -190,7 +189,7 @@ class PlanArm(PlanOptions, RobotOptions):
 
     planner = "evenroad.cli.plan_arm:plan_arm"
 
-    world: tyro.conf.Positional[Path]
+    world: Positional[Path]
     """A scene (.yaml; shipped: shelf.yaml, box-reach.yaml, box-reach-narrow.yaml, empty.yaml)."""
     start: tuple[str, ...]
     """One number per joint, separated by commas, name=value,..., or a named state."""
@@ -199,10 +198,10 @@ class PlanArm(PlanOptions, RobotOptions):
     roadmap: Path | None = None
     """Plan along this roadmap, made by ``evenroad roadmap``, which holds its arm and its cell; if you give --robot
     too, it has to be that arm."""
-    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    goal: Repeatable[tuple[tuple[str, ...], ...]] = ()
     """As start.  You can give several, also with --goal-pose: the path ends at the nearest if that is soon reached,
     with points or --improve at the cheapest."""
-    goal_pose: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    goal_pose: Repeatable[tuple[tuple[str, ...], ...]] = ()
     """The pose of a link: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z" with any
     rotation.  All configurations found that reach it are goals; you can give several; "LINK: x y z ... & LINK: ..." is
     one goal of both."""
@@ -214,7 +213,7 @@ class PlanArm(PlanOptions, RobotOptions):
     """Axis of the tip about which its rotation is free: x, y, z or "x y z"."""
     tolerance: str | None = None
     """Largest error at goal poses: "0.002" (metres) or "0.002 0.01" (metres and radians)."""
-    via: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    via: Repeatable[tuple[tuple[str, ...], ...]] = ()
     """Where to stop on the way, as start, or "LINK: x y z roll pitch yaw"; several in this order."""
     straight: str | None = None
     """Length of the straight lines in which the tip approaches its goal and leaves its start: "0.1" (metres) or
@@ -226,7 +225,7 @@ class PlanArm(PlanOptions, RobotOptions):
     """Largest tilt of an axis of the tip along the whole path, in radians."""
     upright_axis: str | None = None
     """That axis, in the tip's frame (default: the one that is most upright at the start)."""
-    constraint: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    constraint: Repeatable[tuple[tuple[str, ...], ...]] = ()
     """Kept on the whole path: "orientation 0.01", "plane z", "line y", "box 0,0,0 1,1,1", "circle 0.8,0.3,0 z",
     "together LINK LINK" or "joints NAME=0,2"; then within=0.001, tip=LINK."""
     deg: bool = False
@@ -235,7 +234,7 @@ class PlanArm(PlanOptions, RobotOptions):
     """Largest step of a motion check, > 0, in radians."""
     clearance: float = 0.0
     """Distance to keep from all obstacles, 0 to 1, in metres; not from the arm itself, and not with --roadmap."""
-    trajectory: tyro.conf.UseAppendAction[tuple[Path, ...]] = ()
+    trajectory: Repeatable[tuple[Path, ...]] = ()
     """Write a trajectory: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a bag), .script (URScript,
     by the clock) or .movej.script (waypoint by waypoint).  You can give several."""
     timed: bool = False
@@ -258,9 +257,9 @@ class Demo:
 
     level: int = 3
     """Which maze: 1, 2 or 3, of rising difficulty."""
-    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024
+    n: Annotated[int, "-n"] = 1024
     """Number of points to draw."""
-    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])] = Path("demo")
+    out: Annotated[Path, "-o"] = Path("demo")
     """Files to write: OUT.png and OUT.json."""
 
     def run(self) -> int:

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import tyro
-
 from evenroad._checks import require_known
 from evenroad._files import require_writable_folder
 from evenroad.cli.sampler import SamplerOptions, draw_points
@@ -19,11 +17,11 @@ from evenroad.points.npz import write_points
 class Points(SamplerOptions):
     """Write a point set: shipped or constructed."""
 
-    n: Annotated[int, tyro.conf.arg(aliases=["-n"])]
+    n: Annotated[int, "-n"]
     """Number of points."""
-    d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
+    d: Annotated[int, "-d"]
     """Number of dimensions."""
-    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
+    out: Annotated[Path, "-o"]
     """The file: .npz keeps the origin, .npy and .csv have the plain array."""
 
     def run(self) -> int:

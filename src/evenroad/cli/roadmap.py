@@ -8,11 +8,10 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated
 
-import tyro
-
 from evenroad._checks import counted, require_positive
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table, progress_shown
+from evenroad.cli.options import Positional
 from evenroad.cli.plan import PlanArm, RobotOptions, wants_points
 from evenroad.cli.sampler import require_seed
 from evenroad.errors import InvalidValue
@@ -30,13 +29,13 @@ class MakeRoadmap(RobotOptions):
     It is made once, in some seconds, and serves every scene of that cell: evenroad plan scene.yaml --roadmap FILE.
     """
 
-    robot: tyro.conf.Positional[str]
+    robot: Positional[str]
     """A URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others."""
     cell: Path | None = None
     """A scene (.yaml) of all that never moves: mount, fence, walls; and the ranges to plan in.  Default: nothing."""
-    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024
+    n: Annotated[int, "-n"] = 1024
     """Number of milestones."""
-    k: Annotated[int, tyro.conf.arg(aliases=["-k"])] = 16
+    k: Annotated[int, "-k"] = 16
     """Number of nearest milestones that each is joined to by free motions."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
@@ -44,7 +43,7 @@ class MakeRoadmap(RobotOptions):
     """Distance that the arm keeps from the cell, in metres; plans may keep it from other obstacles, too."""
     seed: int = 0
     """Seed of everything random; the same command gives the same roadmap."""
-    out: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
+    out: Annotated[Path | None, "-o"] = None
     """The file to write.  Default: the robot's name in the current folder, with .roadmap."""
 
     def run(self) -> int:

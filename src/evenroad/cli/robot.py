@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tyro
 
 from evenroad._files import atomic_write, require_writable_folder
 from evenroad._rng import generator
 from evenroad._terminal import print_table
+from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
 from evenroad.robot import ArmWorld, Joint, RobotModel, Scene, held_values, in_scene, load_model, load_scene
 from evenroad.robot import Robot as Arm
@@ -33,7 +33,7 @@ _SECONDS = 0.2
 class Robot(RobotOptions):
     """Show the joints, limits, bodies and self-collision pairs of an arm, and checks per second."""
 
-    robot: tyro.conf.Positional[str]
+    robot: Positional[str]
     """A URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others."""
     scene: Path | None = None
     """Count checks per second in this scene (a file or box-reach.yaml) instead of in empty space."""

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import tyro
-
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
+from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
 from evenroad.errors import InvalidValue
 from evenroad.robot import ArmWorld, Scene, in_scene, load_model
@@ -26,13 +25,13 @@ class RunTask(RobotOptions):
     Example: evenroad run task.yaml --robot ur5 -o task.json
     """
 
-    task: tyro.conf.Positional[Path]
+    task: Positional[Path]
     """The task, a .yaml."""
     robot: str | None = None
     """A URDF, xacro or MJCF file, or a name, in place of the one that the task names."""
     scene: str | None = None
     """A scene's file or name, in place of that of the task."""
-    out: Annotated[tuple[Path, ...], tyro.conf.arg(aliases=["-o"])] = ()
+    out: Annotated[tuple[Path, ...], "-o"] = ()
     """Files for the trajectory: .json, .csv, .yaml (ROS 2), .mcap (a bag), .script or .movej.script (URScript)."""
     speed: float = 1.0
     """Share of the velocity limits, from 0 to 1."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import tyro
-
 from evenroad._checks import require_positive
 from evenroad._files import read_json_file
 from evenroad._terminal import print_table, progress_shown
+from evenroad.cli.options import Positional
 from evenroad.cli.plan_file import PlanFile, read_plan
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory import Trajectory, arm_trajectory, limits_of, load_trajectory
@@ -27,7 +26,7 @@ class Send:
     Example: evenroad send box-reach.json --host 192.168.0.5 --model UR5 --fastest 0.5
     """
 
-    plan: tyro.conf.Positional[Path]
+    plan: Positional[Path]
     """A plan of evenroad plan --robot, or a trajectory of its --trajectory (.json).
     A plan without times, or too fast, is timed for --fastest."""
     host: str | None = None

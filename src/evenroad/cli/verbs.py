@@ -65,7 +65,10 @@ GROUPS = {
 ABOUT = {name: about for name, (_, about) in VERBS.items()} | OF_STUDIES
 """Name of every verb -> its description."""
 
-DESCRIPTION = f"""usage: evenroad [-h] [--version [-v]] [--tyro-print-completion {{bash,zsh,fish}}] VERB ...
+COMPLETION = ("--print-completion", "--tyro-print-completion")
+"""What prints the completions of a shell; by its earlier name, too."""
+
+DESCRIPTION = f"""usage: evenroad [-h] [--version [-v]] [--print-completion {{bash,zsh,fish}}] VERB ...
 
 evenroad {__version__}: paths proved free for robot arms and for disks on maps, and even point sets.
 
@@ -106,14 +109,15 @@ def _run(arguments: list[str]) -> int:
                 print(fill(f"  {name:8} {ABOUT[name]}", table_width(), subsequent_indent=" " * 11))
             print("".join(f"    $ {example}\n" for example in examples), end="")
         return DONE
-    # Imported late: version and help need neither numpy nor tyro.
-    from evenroad._checks import require_known
-    from evenroad.cli.options import print_completion, read_options
+    if verb in COMPLETION:
+        _print_completion(words)
+        return DONE
+    if verb not in ABOUT:
+        raise UnknownName.among("verb", verb, ABOUT)
+    # Imported late: version and help do without.
+    from evenroad.cli.read_options import read_options
 
     try:
-        if verb.startswith("--tyro-"):
-            print_completion({name: _kind(name, ["--help"]) for name in _installed()}, arguments)
-        require_known("verb", verb, ABOUT)
         options = read_options(verb, _kind(verb, words), words)
     except SystemExit:
         return DONE
@@ -134,6 +138,21 @@ def _print_surroundings() -> None:
     }
     for name, value in rows.items():
         print(f"{name:16} {value}")
+
+
+def _print_completion(words: Sequence[str]) -> None:
+    """Print what completes words in a shell."""
+    from evenroad.cli.completion import SHELLS, completion
+    from evenroad.cli.options import option_names
+
+    shell = "".join(words[:1])
+    if shell not in SHELLS:
+        raise UnknownName.among("shell", shell, SHELLS)
+    there = _installed()
+    # A plan has other options for an arm than for a disk.
+    kinds = {verb: (_kind(verb, ["--help"]), _kind(verb, ["--robot", "--help"])) for verb in there}
+    names = {verb: set.union(*map(option_names, each)) for verb, each in kinds.items()}
+    print(completion(shell, {verb: ABOUT[verb] for verb in there}, names), end="")
 
 
 def _installed() -> list[str]:

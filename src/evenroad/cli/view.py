@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-import tyro
 
 from evenroad._arrays import Floats
 from evenroad._files import require_writable_folder
+from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
 from evenroad.cli.plan_file import PlanFile, read_plan
 from evenroad.errors import InvalidValue, NotAvailable
@@ -41,7 +41,7 @@ class View(RobotOptions):
     Examples: evenroad view box-reach.json · evenroad view box-reach.json --html reach.html
     """
 
-    world: tyro.conf.Positional[Path]
+    world: Positional[Path]
     """A plan of evenroad plan (.json); or a scene (.yaml), with --robot."""
     html: Path | None = None
     """Write one file that plays offline: play, pause, speed, joints, clearance; nothing is opened."""
@@ -56,7 +56,7 @@ class View(RobotOptions):
     """With a scene: one number per joint, separated by commas, name=value,..., or a named state."""
     goal: str | None = None
     """As start.  Default: the start."""
-    n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
+    n: Annotated[int | None, "-n"] = None
     """Plan again on this number of points, whose roadmap can be shown; default: with trees."""
     port: int = 8080
     """Port of the page that is served; 0 takes any free one."""

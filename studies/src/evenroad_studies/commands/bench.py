@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tyro
 
 from evenroad._terminal import print_table, progress_shown
+from evenroad.cli.options import Positional
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.bank import has_large_sets
 from evenroad_studies.arms.results import TABLE_HEADER, arm_lines, table_rows
@@ -43,7 +43,7 @@ class Bench:
     Exit code 1 if a run of the suite, now or before, gave no answer: see --retry.
     """
 
-    suite: tyro.conf.Positional[str] = "paper"
+    suite: Positional[str] = "paper"
     """paper: the published experiments. fair: a new random world in every run. apart: the same, start and goal at
     opposite faces. arms: robots, and roadmaps for them."""
     list: bool = False

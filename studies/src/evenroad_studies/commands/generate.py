@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import tyro
-
 from evenroad._checks import counted, require_count, require_extra
 from evenroad._files import require_writable_folder
 from evenroad._terminal import progress_shown
+from evenroad.cli.options import Positional
 from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.robot import load_robot
 from evenroad_studies.bench.schedulers import dask_workers
@@ -25,14 +24,14 @@ from evenroad_studies.workers import interrupt_between_steps, processes
 class Generate:
     """Make a data set of problems of an arm, with paths that are proved free and timed."""
 
-    scenes: Annotated[tuple[str, ...], tyro.conf.Positional]
+    scenes: Positional[tuple[str, ...]]
     """Generators (shelf, clutter, tight, boxes, cage), files of scenes, or folders of these; with --merge the folders
     of shards."""
     robot: str = "ur5"
     """The arm: a name or a file."""
     count: float = 10_000
     """How many problems, such as 1e6."""
-    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
+    out: Annotated[Path, "-o"]
     """The folder of the set; made if its parent exists."""
     seed: int = 0
     """Part i of the set depends on this seed and i alone."""

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import tyro
-
 from evenroad._terminal import WIDTH, print_table, table_width
+from evenroad.cli.options import Positional
 from evenroad_studies import report
 from evenroad_studies.bench.arena import write_arena
 from evenroad_studies.bench.store import rescue_file
@@ -26,9 +25,9 @@ from evenroad_studies.report.tables import difference
 class Report:
     """Write report.html, PNG figures, CSV, Markdown and LaTeX tables of a store of benchmark results."""
 
-    store: tyro.conf.Positional[Path]
+    store: Positional[Path]
     """The store that ``evenroad bench`` wrote; it may still be writing."""
-    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
+    out: Annotated[Path, "-o"]
     """The folder to write into; made where there is none."""
     only: str = ""
     """Names of problems, with commas between them; default: all in the store."""
@@ -114,11 +113,11 @@ def _print_fair(analysis: Analysis) -> None:
 class Export:
     """Write benchmark results for OMPL's Planner Arena (CSV and tables: evenroad report)."""
 
-    store: tyro.conf.Positional[Path]
+    store: Positional[Path]
     """The store that ``evenroad bench`` wrote."""
     arena: bool = False
     """As a Planner Arena database; the one format there is, so it need not be said."""
-    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
+    out: Annotated[Path, "-o"]
     """The file to write."""
 
     def run(self) -> int:

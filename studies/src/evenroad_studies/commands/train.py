@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-import tyro
 
 from evenroad._checks import require_count
 from evenroad._files import require_writable_folder
@@ -29,9 +28,9 @@ if TYPE_CHECKING:
 class Train:
     """Train point sets and write them as OUT/set-0000.npz, ...; the same command goes on where it stopped."""
 
-    n: Annotated[int, tyro.conf.arg(aliases=["-n"])]
+    n: Annotated[int, "-n"]
     """How many points."""
-    d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
+    d: Annotated[int, "-d"]
     """How many dimensions."""
     method: Literal["anneal", "mpmc", "order"] | None = None
     """anneal: noisy Adam on the coordinates. mpmc: the message-passing network. order: d = 2, --objective star alone,
@@ -54,7 +53,7 @@ class Train:
     """Set i depends on this seed and i alone, whatever the number of processes."""
     jobs: int | None = None
     """Processes (default: one a processor)."""
-    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
+    out: Annotated[Path, "-o"]
     """The folder for the sets; made if its parent exists."""
 
     def run(self) -> int:

@@ -1,0 +1,126 @@
+"""Reading the words of a command line as a verb's options; what is wrong becomes one line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import MISSING
+from typing import Any
+
+from evenroad.cli.options import Option, options_of
+from evenroad.errors import InvalidValue, UnknownName, shown
+
+HELP = {"-h", "--help"}
+AXES = ("-x", "-y", "-z")
+"""Values that look like options."""
+EARLIER = {"--family": "--sampler", "--certify": "--guarantees"}
+"""Earlier name of an option -> its name; verbs without an option of the earlier name take it."""
+
+
+def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
+    """Return a verb with the options of a command line; the last of repeated ones counts.
+
+    Raises InvalidValue or UnknownName for wrong or missing options, and SystemExit after printing help.
+    """
+    program, options = f"evenroad {verb}", options_of(kind)
+    if not HELP.isdisjoint(words):
+        # Whoever wants help need not have finished the other options; imported late, since few do.
+        from evenroad.cli.help import help_of
+
+        print(help_of(program, kind, options), end="")
+        raise SystemExit(0)
+    known = {name for option in options for name in option.names if name.startswith("--")}
+    words = [current_option(word, known) for word in words]
+    for name in sorted(given_options(words) - known):
+        raise UnknownName.among(f"option of {program}:", name, known)
+    given, unknown, loose = _sorted(options, words, f"all options: {program} --help")
+    if unknown:
+        raise InvalidValue(f"{program} has no use for the word {shown(unknown[0])}")
+    values: dict[str, Any] = {}
+    for option in options:
+        uses = given.get(option.field, [])
+        if option.kind is bool:
+            values[option.field] = bool(uses)
+        elif uses:
+            read = [option.of(each) for each in uses]
+            values[option.field] = tuple(read) if option.repeatable else read[-1]
+    missing = [each.text for each in options if each.default is MISSING and each.field not in values]
+    if missing:
+        raise InvalidValue(f"missing from {program}: {' and '.join(missing)}; all options: {program} --help")
+    if loose:
+        raise InvalidValue(f"{program} has no use for the word {shown(loose[0])}")
+    return kind(**values)
+
+
+def _sorted(
+    options: Sequence[Option], words: Sequence[str], hint: str
+) -> tuple[dict[str, list[list[str]]], list[str], list[str]]:
+    """Return the words of each use of each option, by field; words like unknown options; and words left over."""
+    named = {name: option for option in options for name in option.names}
+    positional = [option for option in options if not option.names]
+    needed = sum(option.default is MISSING for option in positional)
+    given: dict[str, list[list[str]]] = {}
+    loose: list[str] = []
+    unknown: list[str] = []
+    i = 0
+    while i < len(words):
+        word, i = words[i], i + 1
+        if word == "--":
+            loose += words[i:]
+            break
+        name, equals, value = word.partition("=")
+        if name not in named and word[:2] in named:
+            # `-n3` is `-n 3`.
+            name, equals, value = word[:2], "=", word[2:]
+        option = named.get(name)
+        if option is None:
+            (unknown if _is_like_an_option(word) else loose).append(word)
+            continue
+        taken = [value] if equals else []
+        if option.kind is bool:
+            unknown += taken
+        else:
+            while i < len(words) and (option.several or not taken) and not _stops(words[i], named):
+                # The last words of the line are those that have no name, if these are still to come.
+                if taken and len(words) - i <= needed - len(loose):
+                    break
+                taken.append(words[i])
+                i += 1
+            if not taken:
+                raise InvalidValue(f"{'/'.join(option.names)} needs a value: {option.text}; {hint}")
+        given.setdefault(option.field, []).append(taken)
+    for option in positional:
+        if loose:
+            count = len(loose) if option.several else 1
+            given[option.field] = [loose[:count]]
+            del loose[:count]
+    return given, unknown, loose
+
+
+def _stops(word: str, named: dict[str, Option]) -> bool:
+    name = word.partition("=")[0]
+    return word == "--" or name in named or (_is_like_an_option(word) and word not in AXES)
+
+
+def _is_like_an_option(word: str) -> bool:
+    """Return whether a word is a dash and a letter: numbers and lists of them may begin with a dash, too."""
+    name = word.partition("=")[0]
+    try:
+        float(name)
+    except ValueError:
+        return name.startswith("-") and name.lstrip("-")[:1].isalpha()
+    return False
+
+
+def given_options(words: Sequence[str]) -> set[str]:
+    """Return the long names among the words of a command line."""
+    return {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--") and word != "--"}
+
+
+def current_option(word: str, known: set[str]) -> str:
+    """Return a word with the current name of its option, with hyphens."""
+    if not word.startswith("--") or word == "--":
+        return word
+    name, equals, value = word.partition("=")
+    name = name.replace("_", "-")
+    new = EARLIER.get(name, name)
+    return (new if new in known and name not in known else name) + equals + value
