@@ -25,6 +25,9 @@ def drive(
     t: Floats,
     stride: int,
 ) -> tuple[Floats, Floats, Floats, Floats, float, float]: ...
+def timed(
+    waypoints: Floats, deviation: Floats, most: tuple[Floats, Floats, float], steps: tuple[float, int]
+) -> tuple[Floats, Floats, Floats, Floats, Floats, int, float, float, tuple[float, float]]: ...
 def rounded(waypoints: Floats, deviation: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats]: ...
 def averages(
     path: tuple[Floats, Floats, Floats, Floats, Floats],

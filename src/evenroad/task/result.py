@@ -15,8 +15,8 @@ from evenroad.roadmap import PlanResult, Status
 from evenroad.robot import ArmWorld
 from evenroad.task.motion import Motion
 from evenroad.task.steps import Move, Step, Wait
+from evenroad.trajectory.corners import MOST_STATES
 from evenroad.trajectory.limits import Limits, TipLimits, limits_of
-from evenroad.trajectory.make import MOST_STATES
 from evenroad.trajectory.trajectory import Trajectory
 
 CURVE_DEVIATION = 5e-5

@@ -152,6 +152,11 @@ class Limits:
         """Whether there are limits beside those of joints and of speeds: of a tip's acceleration, or of torques."""
         return self.torque is not None or (self.tip is not None and self.tip.acceleration < math.inf)
 
+    @property
+    def is_plain(self) -> bool:
+        """Whether there are limits of joints and of the speed along the path alone."""
+        return self.torque is None and self.tip is None
+
     def further(self, q: Floats, direction: Floats, bend: Floats) -> tuple[Floats, Floats, Floats]:
         """Return by what such limits are used, as shares, (n, k) each: by the acceleration along a path, by its squared
         speed, and at rest; at configurations with these directions and bends of the path, (n, dim) each.

@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Floats
 from evenroad._checks import as_batch, require_positive
 from evenroad._native.trajectory import distances_to, drive, largest_share
 from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.trajectory.at_rest import driven_at_rest
 from evenroad.trajectory.blends import RoundedPath, rounded
+from evenroad.trajectory.corners import TRIES, drivable, less_at, require_steps
 from evenroad.trajectory.in_motion import InMotion
 from evenroad.trajectory.limits import Limits
 from evenroad.trajectory.timing import TimeLaw, fastest, paused, slowed
@@ -33,15 +35,8 @@ _FINER = 8
 _SAME = 1e-9
 """Distance in every joint below which two waypoints are equal [rad or m]."""
 
-MOST_STATES = 1_000_000
-"""Largest number of states, more than two hours at 125 Hz."""
-
-_HALVINGS = 6
-"""Number of times that a blend in collision is halved; then the robot stops at the corner."""
 _SHARES, _LESS = 8, 0.995
 """Number of times that less of a tip's acceleration and of torques is used, and how much less than would do."""
-_STOPPINGS = 6
-"""Number of times that corners become stops: each moves the times at which states are checked."""
 
 
 class Driven(NamedTuple):
@@ -121,12 +116,16 @@ def make_trajectory(
     waypoints, speeds = moving.led(waypoints, limits)
     window = 0.0 if limits.jerk is None else float(np.max(2.0 * np.divide(limits.acceleration, limits.jerk)))
     cuts = np.full(len(waypoints), deviation)
-    for halved in range(_HALVINGS + _STOPPINGS):
+    said: dict[str, Any] = {"held": dict(held or {}), "controller": tuple(controller)}
+    if window == 0.0 and not any(speeds) and limits.is_plain:
+        at_rest = driven_at_rest(world, waypoints, limits, cuts, step)
+        return Trajectory(names=joints, waypoints=waypoints, limits=limits, **said, **at_rest)
+    for tried in range(TRIES):
         curve = rounded(waypoints, cuts)
         if any(speeds) and (law := fastest(curve, limits, speeds)).is_slower_than(speeds):
             # A corner that is too near to a start or a goal in motion is too round.
             bad = law.times[[0, -1]][[law.is_slower_than((speeds[0], 0.0)), law.is_slower_than((0.0, speeds[1]))]]
-            cuts = _less(cuts, curve.corners, law.length_at(bad), stop=halved >= _HALVINGS - 1)
+            cuts = less_at(cuts, curve.corners, law.length_at(bad), tried)
             continue
         law, fine, driven = _timed(curve, waypoints, limits, (window, step), speeds)
         free, proof = drivable(world, driven.positions)
@@ -136,7 +135,7 @@ def make_trajectory(
         bad = np.concatenate([bad, fine[[0, -1]][late]])
         if len(bad) == 0:
             break
-        cuts = _less(cuts, curve.corners, law.length_at(bad - 0.5 * window), stop=halved >= _HALVINGS - 1)
+        cuts = less_at(cuts, curve.corners, law.length_at(bad - 0.5 * window), tried)
     else:
         raise NotAvailable(
             f"the trajectory is not proved free, too far from its path, or too fast for it, at {bad[0]:.3f} s"
@@ -152,9 +151,8 @@ def make_trajectory(
         deviation=float(np.max(driven.off)),
         stops=len(curve.stops),
         highest=driven.highest,
-        held=dict(held or {}),
-        controller=tuple(controller),
         proof=proof,
+        **said,
     )
 
 
@@ -255,32 +253,3 @@ def _averaged(law: TimeLaw, waypoints: Floats, limits: Limits, window: float, fi
         distances_to(waypoints, positions),
         highest,
     )
-
-
-def require_steps(steps: int, duration: float, step: float) -> None:
-    """Raise InvalidValue for too many steps."""
-    if steps > MOST_STATES:
-        raise InvalidValue(
-            f"the trajectory would take {duration:.4g} s in steps of {step:g} s, more than {MOST_STATES} of them:"
-            " take longer steps, or move faster"
-        )
-
-
-def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:
-    """Return which motions from state to state are free, (n - 1,), and the proof."""
-    if world is None:
-        return np.ones(len(positions) - 1, dtype=bool), "unchecked"
-    # `isinstance` would take as long as the fastest times.
-    if (validate := getattr(world, "validate", None)) is not None:
-        return validate(positions), str(getattr(world, "proof", "resolution"))
-    return world.motion_valid(positions[:-1], positions[1:]), str(getattr(world, "proof", "resolution"))
-
-
-def _less(cuts: Floats, corners: Floats, lengths: Floats, *, stop: bool) -> Floats:
-    """Return `cuts`, (p,), smaller at the corners nearest to the given lengths."""
-    if len(corners) == 0:
-        return cuts
-    near = 1 + np.unique(np.argmin(np.abs(lengths[:, None] - corners), axis=1))
-    cuts = cuts.copy()
-    cuts[near] = 0.0 if stop else 0.5 * cuts[near]
-    return cuts

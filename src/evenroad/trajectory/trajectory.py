@@ -34,11 +34,12 @@ class Trajectory:
     limits : Limits
         Limits that it keeps.
     deviation : float
-        Largest distance from the path, on a fine grid [rad or m].
+        Largest distance from the path [rad or m].
     stops : int
         Number of corners at which the robot stops, since rounding them would collide.
     highest : mapping of str to float
-        ``velocity``, ``acceleration`` and ``jerk``: largest share of the limits used, on a fine grid.
+        ``velocity``, ``acceleration`` and ``jerk``: largest share of the limits used, at most; with a limit of jerk
+        or of a tip, with torques, and in motion on a fine grid.
     held : mapping of str to float
         Joints of the same controller that do not move, and their positions [rad or m].
     controller : tuple of str

@@ -10,7 +10,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
-from evenroad.trajectory.make import drivable
+from evenroad.trajectory.corners import drivable
 from evenroad.trajectory.trajectory import Trajectory
 from evenroad.world import World
 

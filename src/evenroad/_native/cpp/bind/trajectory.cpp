@@ -8,12 +8,15 @@
 #include "trajectory/averages.hpp"
 #include "trajectory/blends.hpp"
 #include "trajectory/time_law.hpp"
+#include "trajectory/timed.hpp"
 
 namespace evenroad::bind {
 
 namespace {
 
 constexpr std::size_t MOST_SAMPLES = 1 << 20;
+
+constexpr std::size_t MOST_TIMES = 1 << 24;
 
 /// No motion takes longer [s].
 constexpr double LONGEST = 1e9;
@@ -136,15 +139,20 @@ nb::tuple largest_shares(nb::tuple path, nb::tuple law, nb::handle velocity, nb:
   return nb::make_tuple(shares.velocity, shares.acceleration);
 }
 
-nb::tuple rounded(nb::handle waypoints, nb::handle deviation) {
-  const FloatRows points(waypoints, "waypoints");
-  const Floats within(deviation, "deviation");
+void require_path(const FloatRows& points) {
   require(points.shape(0) >= 2, "waypoints must be 2 or more");
-  within.of_shape({points.shape(0)});
   const auto rows = points.matrix();
   for (std::size_t i = 1; i < rows.rows; i++) {
     require(!std::ranges::equal(rows[i - 1], rows[i]), "no two waypoints in a row may be equal");
   }
+}
+
+nb::tuple rounded(nb::handle waypoints, nb::handle deviation) {
+  const FloatRows points(waypoints, "waypoints");
+  const Floats within(deviation, "deviation");
+  require_path(points);
+  within.of_shape({points.shape(0)});
+  const auto rows = points.matrix();
   trajectory::Blends path = without_gil([&] { return trajectory::rounded(rows, within.span()); });
   const std::size_t dim = points.shape(1);
   return nb::make_tuple(as_row(std::move(path.starts)), as_rows(std::move(path.origin), dim),
@@ -190,6 +198,37 @@ nb::object distances_to(nb::handle waypoints, nb::handle points) {
   }));
 }
 
+/// Return the states of a whole trajectory at its steps, how far each is along the path, the lengths at corners, the
+/// number of stops, duration, deviation, and the largest shares of velocity and acceleration.
+///
+/// `most` are the largest velocities, accelerations and square of the speed along the path; `steps` the step and the
+/// largest number of steps.
+nb::tuple timed(nb::handle waypoints, nb::handle deviation, nb::tuple most, nb::tuple steps) {
+  const FloatRows way(waypoints, "waypoints");
+  const Floats within(deviation, "deviation"), speeds(PathArrays::column(most, 0, 3), "velocity");
+  const Floats pushes(most[1], "acceleration");
+  const double highest = value_of<double>(most[2], "highest");
+  const double step = value_of<double>(PathArrays::column(steps, 0, 2), "step");
+  const std::int64_t count = value_of<std::int64_t>(steps[1], "steps");
+  const std::size_t dim = way.shape(1);
+  require_path(way);
+  within.of_shape({way.shape(0)}), speeds.of_shape({dim}), pushes.of_shape({dim});
+  for (const auto* each : {&speeds, &pushes}) {
+    for (const double value : each->span()) require(value > 0.0, "velocity and acceleration must be > 0");
+  }
+  require(highest > 0.0, "the square of the speed must be > 0");
+  require(step > 0.0 && step <= LONGEST, "step must be > 0 and at most 1e9");
+  require_below(count - 1, MOST_TIMES, "steps less one");
+  trajectory::Timed made = without_gil([&] {
+    return trajectory::timed(way.matrix(), within.span(), {speeds.span(), pushes.span()}, highest,
+                             {step, static_cast<std::size_t>(count)});
+  });
+  return nb::make_tuple(as_rows(std::move(made.positions)), as_rows(std::move(made.velocities)),
+                        as_rows(std::move(made.accelerations)), as_row(std::move(made.lengths)),
+                        as_row(std::move(made.corners)), made.stops, made.duration, made.deviation,
+                        nb::make_tuple(made.highest.velocity, made.highest.acceleration));
+}
+
 /// Return positions, velocities and accelerations at each `stride`-th time, how far each time's state is off the way
 /// between waypoints, and the largest shares of velocity and acceleration.
 nb::tuple drive(nb::tuple path, nb::tuple law, nb::handle waypoints, nb::tuple most, nb::handle times,
@@ -218,6 +257,7 @@ void add_trajectory(nb::module_& module) {
   part.def("states", &states);
   part.def("largest_shares", &largest_shares);
   part.def("distances_to", &distances_to);
+  part.def("timed", &timed);
   part.def("drive", &drive);
   part.def("rounded", &rounded);
   part.def("averages", &averages);

@@ -41,8 +41,11 @@ struct Most {
 struct Grid {
   std::vector<double> lengths;
   std::vector<std::size_t> pieces;
+  /// Whether each line is one interval, to be cut where the acceleration changes, and arcs have few.
+  bool is_lean = false;
 };
 Grid grid_of(const RoundedPath& path);
+Grid lean_grid_of(const RoundedPath& path);
 
 /// What a law keeps beside velocities and accelerations: squares of speeds along the path, one, or one at each length
 /// of the grid; further limits; and speeds at start and goal.
