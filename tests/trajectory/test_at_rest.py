@@ -6,7 +6,7 @@ import pytest
 from evenroad._native.trajectory import distances_to, timed
 from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.timing import fastest
-from tests.trajectory.test_time_law import curve, limits_from
+from tests.trajectory.curves import curve, limits_from
 
 ANY_SPEED = 1e300
 
