@@ -38,7 +38,7 @@ def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:
 
 
 def less_at(cuts: Floats, corners: Floats, lengths: Floats, tried: int) -> Floats:
-    """Return `cuts`, (p,), smaller at the corners nearest to the given lengths, after so many tries before."""
+    """Return `cuts`, (p,), smaller at the corners nearest to the given lengths; after some tries these are stops."""
     if len(corners) == 0:
         return cuts
     near = 1 + np.unique(np.argmin(np.abs(lengths[:, None] - corners), axis=1))
