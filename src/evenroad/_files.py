@@ -6,7 +6,6 @@ import json
 import os
 import stat
 import sys
-import tempfile
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -84,8 +83,7 @@ def remove_abandoned_parts(folder: str | os.PathLike[str]) -> None:
 def _new_part(folder: Path) -> tuple[int, int | None, str]:
     """Make a temporary file; return its handle, a second handle that holds its lock (or None), and its name."""
     while True:
-        # A short name of its own: the target's may already be as long as the file system takes.
-        handle, name = tempfile.mkstemp(prefix=_PREFIX, suffix=_SUFFIX, dir=folder)
+        handle, name = _created(folder)
         if fcntl is None:
             return handle, None, name
         with suppress(OSError):
@@ -95,6 +93,13 @@ def _new_part(folder: Path) -> tuple[int, int | None, str]:
             return handle, os.dup(handle), name
         # Between the two steps another process removed it as abandoned.
         os.close(handle)
+
+
+def _created(folder: Path) -> tuple[int, str]:
+    """Make a file that nobody else reads; return its handle and its name.  The module `tempfile` loads much."""
+    # A short name of its own: the target's may already be as long as the file system takes.
+    name = os.path.abspath(folder / f"{_PREFIX}{os.urandom(8).hex()}{_SUFFIX}")
+    return os.open(name, os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o600), name
 
 
 def not_a(wanted: str, path: str | os.PathLike[str], why: str = "") -> BrokenFile:
@@ -160,7 +165,9 @@ def require_writable_folder(path: str | os.PathLike[str]) -> None:
     if not stat.S_ISREG(mode):
         raise BrokenFile(f"cannot write {target}: it is a device or a pipe, not a file")
     try:
-        tempfile.TemporaryFile(dir=folder).close()
+        handle, name = _created(folder)
+        os.close(handle)
+        os.unlink(name)
     except OSError as error:
         raise BrokenFile(f"cannot write into the folder {folder}: {error.strerror or error}") from error
 

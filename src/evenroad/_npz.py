@@ -6,11 +6,10 @@ import hashlib
 import json
 import math
 import os
-import zipfile
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from errno import EINVAL
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +17,9 @@ import numpy.typing as npt
 from evenroad._files import atomic_write, not_a
 from evenroad._shared import OwnLock
 from evenroad.errors import BrokenFile, shown
+
+if TYPE_CHECKING:
+    import zipfile
 
 Path = str | os.PathLike[str]
 Arrays = dict[str, npt.NDArray[Any]]
@@ -61,6 +63,9 @@ def reading(path: Path, kind: str, begins: bytes = b"") -> Iterator[None]:
 
 def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
     """Return the arrays of a file of `write_npz` whose names are those of one of the `layouts`, else BrokenFile."""
+    # Imported late: a plan of an arm reads no archive.
+    import zipfile
+
     arrays = {}
     # Opened here, not by NumPy, which leaves the handle open when the archive is broken.
     with reading(path, f".npz {what}", b"PK"), open(path, "rb") as file:

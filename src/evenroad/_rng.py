@@ -8,7 +8,8 @@ import numpy as np
 
 from evenroad.errors import InvalidValue, shown
 
-RngLike: TypeAlias = int | np.integer | np.random.SeedSequence | np.random.Generator
+# As text: NumPy loads its generators where they are first used.
+RngLike: TypeAlias = "int | np.integer | np.random.SeedSequence | np.random.Generator"
 
 
 def generator(rng: RngLike) -> np.random.Generator:

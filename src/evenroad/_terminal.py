@@ -1,23 +1,33 @@
-"""The terminal: tables within its width, and progress of long work. Rich is loaded when it draws."""
+"""The terminal: tables within its width, and progress of long work. Rich is loaded when it draws a bar."""
 
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from time import perf_counter
+from unicodedata import east_asian_width
 
 _KNOWN = 0.05
 """Share of the work after which the remaining time can be estimated."""
 WIDTH = 100
 """Largest width of a table [columns]."""
+_STYLES = {"bold": 1, "italic": 3, "red": 31, "green": 32}
+"""Name of a style -> its number in a terminal."""
 
 
 def table_width() -> int:
     """Return the width of tables in this terminal [columns]."""
-    return min(WIDTH, shutil.get_terminal_size().columns)
+    # As the module `shutil` does, which loads much.
+    columns = os.environ.get("COLUMNS", "")
+    if columns.isdecimal() and int(columns):
+        return min(WIDTH, int(columns))
+    try:
+        return min(WIDTH, os.get_terminal_size(sys.__stdout__.fileno()).columns or 80)  # type: ignore[union-attr]
+    except (AttributeError, ValueError, OSError):
+        # No terminal, or none at all.
+        return min(WIDTH, 80)
 
 
 def print_table(
@@ -33,25 +43,63 @@ def print_table(
 
     Headings are bold; without any the first column is, with the first row's name in the style `first`.
     """
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    table = Table(box=None, pad_edge=False, padding=(0, gap, 0, 0), show_header=bool(headings))
-    for i, heading in enumerate(headings or rows[0]):
-        table.add_column(Text(heading, "bold"), justify="right" if i in right else "left", overflow="fold")
-    for number, row in enumerate(rows):
-        name = Text(row[0], "" if headings else "bold" if number else first)
-        table.add_row(name, *map(Text, row[1:]))
-    console = Console(width=table_width(), markup=False, highlight=False, emoji=False)
-    with console.capture() as captured:
-        if title:
-            console.print(title, style="table.title")
-        console.print(table)
+    count = len(headings or rows[0])
+    cells = [*([headings] if headings else []), *rows]
+    widths = [max(_columns(row[i]) for row in cells) for i in range(count)]
+    while sum(widths) + gap * (count - 1) > table_width() and max(widths) > 1:
+        widths[max(range(count), key=widths.__getitem__)] -= 1
+    lines = [_styled(title, "italic")] if title else []
+    for number, row in enumerate(cells):
+        styles = ["bold"] * count if headings and number == 0 else [""] * count
+        if not headings:
+            styles[0] = "bold" if number else first
+        wrapped = [_wrapped(text, width) for text, width in zip(row, widths, strict=True)]
+        for i in range(max(map(len, wrapped))):
+            line = ""
+            for column, texts in enumerate(wrapped):
+                text = texts[i] if i < len(texts) else ""
+                space = " " * (widths[column] - _columns(text))
+                said = _styled(text, styles[column])
+                line += (space + said if column in right else said + space) + " " * gap
+            lines.append(line.rstrip())
     try:
-        print("\n".join(line.rstrip() for line in captured.get().splitlines()), flush=True)
+        print("\n".join(lines), flush=True)
     except BrokenPipeError:
         leave_output()
+
+
+def _columns(text: str) -> int:
+    """Return how many columns a text takes."""
+    return len(text) if text.isascii() else sum(2 if east_asian_width(each) in "WF" else 1 for each in text)
+
+
+def _wrapped(text: str, width: int) -> list[str]:
+    """Return the lines of a text, wrapped between words, and within those that are too long."""
+    lines: list[str] = []
+    for part in text.split("\n"):
+        line = ""
+        for word in part.split(" "):
+            longer = f"{line} {word}" if line else word
+            if _columns(longer) <= width:
+                line = longer
+                continue
+            lines += [line] if line else []
+            line = ""
+            for each in word:
+                if _columns(line + each) > width and line:
+                    lines.append(line)
+                    line = ""
+                line += each
+        lines.append(line)
+    return lines
+
+
+def _styled(text: str, style: str) -> str:
+    """Return a text in a style on a terminal that knows it, else as it is."""
+    plain = not (text and style and sys.stdout.isatty()) or os.environ.get("TERM", "dumb") in ("dumb", "unknown")
+    if plain or (style in ("red", "green") and os.environ.get("NO_COLOR")):
+        return text
+    return f"\033[{_STYLES[style]}m{text}\033[0m"
 
 
 def leave_output() -> None:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import json
 import os
 import platform
+import sys
 from collections.abc import Sequence
 from dataclasses import asdict
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -186,11 +189,21 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
 
 def versions() -> dict[str, str]:
     """Return the versions of evenroad, Python and the numerical libraries."""
-    # Imported late: a plan of an arm needs SciPy for its version alone.
+    python = platform.python_version()
+    return {"evenroad": __version__, "python": python, "numpy": np.__version__, "scipy": _version_of_scipy()}
+
+
+def _version_of_scipy() -> str:
+    """Return SciPy's version, by the folder that says what is installed: a plan of an arm loads no SciPy."""
+    found = find_spec("scipy")
+    if "scipy" not in sys.modules and found is not None and found.origin is not None:
+        said = list(Path(found.origin).parent.parent.glob("scipy-*.dist-info"))
+        if len(said) == 1:
+            return said[0].stem.partition("-")[2]
     import scipy
 
-    python = platform.python_version()
-    return {"evenroad": __version__, "python": python, "numpy": np.__version__, "scipy": scipy.__version__}
+    version: str = scipy.__version__
+    return version
 
 
 def save_json(path: str | os.PathLike[str], record: dict[str, Any]) -> None:

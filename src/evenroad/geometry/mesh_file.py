@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import zipfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -140,6 +139,9 @@ def require_bounded(file: Path) -> None:
     suffix, size = file.suffix.lower(), file.stat().st_size
     if suffix in _PACKED:
         raise BrokenFile(f"the mesh {file} is packed: unpack it first")
+    # Imported late: a robot of primitives reads no mesh.
+    import zipfile
+
     if zipfile.is_zipfile(file):
         with zipfile.ZipFile(file) as archive:
             require_unpackable(file, archive)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from difflib import get_close_matches
 from typing import Any, Unpack
 
 import numpy as np
@@ -91,6 +90,8 @@ def read_request(
 def _require_known(given: dict[str, Any], known: Sequence[str], what: str) -> None:
     for name in given:
         if name not in known:
+            from difflib import get_close_matches
+
             near = get_close_matches(name, known, 1)
             hint = f"; did you mean {near[0]}?" if near else ""
             raise InvalidValue(f"{name}: unknown argument of plan in {what}{hint}; known: {', '.join(known)}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 from evenroad._checks import as_file
@@ -48,6 +47,9 @@ def example_robots() -> dict[str, Path]:
 
     A name is that of the file: ``panda``, ``ur5_gripper``.
     """
+    # Imported late: it takes longer to load than a shipped robot.
+    from importlib.metadata import PackageNotFoundError, distribution
+
     try:
         folder = Path(str(distribution(WHEEL).locate_file(_FOLDER)))
     except PackageNotFoundError:

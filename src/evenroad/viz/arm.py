@@ -19,7 +19,7 @@ from evenroad.space.path import configuration_at
 from evenroad.viz import style
 from evenroad.viz.bodies import joined, obstacle_part, rgb, robot_parts
 from evenroad.viz.camera import Camera, best_camera
-from evenroad.viz.sheet import Entry, Sheet
+from evenroad.viz.sheet import Entry, Sheet, save_png
 from evenroad.viz.stage import Part, Stage, part_of
 from evenroad.viz.surfaces import tube
 
@@ -132,10 +132,7 @@ def save_arm_picture(
     path: str | os.PathLike[str], result: PlanResult, world: ArmWorld, file: RobotFile | None = None
 ) -> None:
     """Save the picture of :func:`draw_arm_plan` as PNG, atomically."""
-    picture = draw_arm_plan(result, world, file)
-    with atomic_write(path) as out:
-        # Compressing more takes longer than drawing, for a tenth of the bytes.
-        picture.save(out, format="png", compress_level=1)
+    save_png(draw_arm_plan(result, world, file), path)
 
 
 def save_arm_gif(

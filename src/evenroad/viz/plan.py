@@ -10,10 +10,9 @@ import numpy as np
 from PIL import Image, ImageColor
 
 from evenroad._arrays import Floats
-from evenroad._files import atomic_write
 from evenroad.roadmap import PlanResult, Status
 from evenroad.viz import style
-from evenroad.viz.sheet import Entry, Sheet, View
+from evenroad.viz.sheet import Entry, Sheet, View, save_png
 
 if TYPE_CHECKING:
     from evenroad.world.gridmap import DiskWorld
@@ -26,9 +25,7 @@ LEAST_WIDTH = 960
 
 def save_plan_picture(path: str | os.PathLike[str], result: PlanResult, world: DiskWorld) -> None:
     """Save the picture of :func:`draw_plan` as PNG, atomically."""
-    picture = draw_plan(result, world)
-    with atomic_write(path) as file:
-        picture.save(file, format="png", compress_level=1)
+    save_png(draw_plan(result, world), path)
 
 
 def draw_plan(result: PlanResult, world: DiskWorld) -> Image.Image:

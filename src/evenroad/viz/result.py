@@ -9,13 +9,13 @@ import numpy as np
 from PIL import Image
 
 from evenroad._checks import as_file
-from evenroad._files import atomic_write
 from evenroad.constraints.kept_world import KeptWorld
 from evenroad.errors import NotAvailable
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld
 from evenroad.viz.arm import draw_arm_plan
 from evenroad.viz.plan import draw_plan
+from evenroad.viz.sheet import save_png
 from evenroad.world.gridmap import DiskWorld, GridMap
 
 _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 40
@@ -49,6 +49,5 @@ def plot_map(gridmap: GridMap, path: str | os.PathLike[str] | None = None) -> Im
 def _kept(picture: Image.Image, path: str | os.PathLike[str] | None) -> Image.Image:
     """Return a picture, saved where a file is named."""
     if path is not None:
-        with atomic_write(as_file("what a picture is saved to", path)) as out:
-            picture.save(out, format="png", compress_level=1)
+        save_png(picture, as_file("what a picture is saved to", path))
     return picture

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
+from io import BytesIO
 from textwrap import wrap
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from evenroad._arrays import Floats
+from evenroad._files import atomic_write
 
 FINER = 2
 """Factor by which bodies are drawn larger, then shrunk, so that their edges are smooth."""
@@ -19,6 +22,17 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 95, 45, 105, 125
 Colour = tuple[int, int, int] | tuple[int, int, int, int] | str
 Entry = tuple[str, Colour, Colour | None]
 """Name and colour of something in a legend, and that of its edge; without one it is a line."""
+
+
+def save_png(picture: Image.Image, path: str | os.PathLike[str]) -> None:
+    """Save a picture as PNG, atomically."""
+    written = BytesIO()
+    # By a name's end Pillow loads what writes this format alone.
+    written.name = "picture.png"
+    # Compressing more takes longer than drawing, for a tenth of the bytes.
+    picture.save(written, compress_level=1)
+    with atomic_write(path) as file:
+        file.write(written.getvalue())
 
 
 class View:
