@@ -167,7 +167,9 @@ def require_writable_folder(path: str | os.PathLike[str]) -> None:
     try:
         handle, name = _created(folder)
         os.close(handle)
-        os.unlink(name)
+        # Another process may just have removed it as abandoned.
+        with suppress(FileNotFoundError):
+            os.unlink(name)
     except OSError as error:
         raise BrokenFile(f"cannot write into the folder {folder}: {error.strerror or error}") from error
 

@@ -76,18 +76,19 @@ def test_a_finished_file_is_nobodys_prey_on_its_way_to_its_place(tmp_path, monke
 
 
 def test_a_file_that_is_taken_for_an_abandoned_one_before_its_lock_is_made_again(tmp_path, monkeypatch):
-    make, made = _files.tempfile.mkstemp, []
+    make, made = _files._created, []
 
-    def make_and_lose_the_first(**options):
-        made.append(make(**options))
-        if len(made) == 1:
+    def make_and_lose_the_first_two(folder):
+        made.append(make(folder))
+        if len(made) <= 2:
             remove_abandoned_parts(tmp_path)
         return made[-1]
 
-    monkeypatch.setattr(_files.tempfile, "mkstemp", make_and_lose_the_first)
+    monkeypatch.setattr(_files, "_created", make_and_lose_the_first_two)
     with atomic_write(tmp_path / "a.txt") as file:
         file.write(b"x")
-    assert len(made) == 2
+    # The first shows that the folder can be written.
+    assert len(made) == 3
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
 
 
