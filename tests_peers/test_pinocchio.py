@@ -9,7 +9,7 @@ import pytest
 from studies.benchmarks.robots import robots_in
 from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm
 from tests.robot.mesh_arms import write_fork_arm
-from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
+from tests.robot.urdf_texts import LIMIT, SPHERE, joint, link, urdf, write
 
 from evenroad.errors import EvenroadError
 from evenroad.robot import Robot, Scene, link_poses, load_robot
@@ -18,6 +18,7 @@ from evenroad.robot.kinematics import joint_values
 from evenroad.robot.load import find_robot
 from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
 from evenroad.robot.urdf import read_urdf
+from evenroad.trajectory import load_dynamics
 from tests_peers.engines.pinocchio_world import PinocchioWorld, placements
 
 pinocchio = pytest.importorskip("pinocchio")
@@ -35,6 +36,21 @@ BRANCHING = urdf(
     joint("f", "right hand", "finger", inside=LIMIT + "<mimic joint='rh' multiplier='-0.4' offset='0.1'/>"),
     joint("t", "right hand", "thumb", inside=LIMIT + "<mimic joint='l' multiplier='0.5'/>", axis="1 1 0"),
     "<joint name='h' type='fixed'><parent link='torso'/><child link='head'/><origin xyz='0 0 1' rpy='1 2 3'/></joint>",
+)
+
+INERTIA = (
+    "<inertial><origin xyz='0.1 -0.02 {0}' rpy='0.3 -0.2 {0}'/><mass value='{0}'/>"
+    "<inertia ixx='0.05' ixy='0.001' ixz='-0.002' iyy='0.06' iyz='0.0005' izz='0.04'/></inertial>"
+)
+MASSES = urdf(
+    *(
+        link(name, SPHERE + INERTIA.format(mass))
+        for name, mass in (("base", 4.0), ("upper", 2.0), ("rail", 1.5), ("hand", 0.7))
+    ),
+    joint("turn", "base", "upper", inside=LIMIT, axis="0.2 0.3 0.9"),
+    "<joint name='slide' type='prismatic'><parent link='upper'/><child link='rail'/><axis xyz='0 -1 1'/>"
+    f"<origin xyz='0.1 0 0.2' rpy='0 0.5 1'/>{LIMIT}</joint>",
+    joint("bend", "rail", "hand", inside=LIMIT, axis="1 1 0"),
 )
 
 
@@ -67,6 +83,18 @@ def test_links_of_a_shipped_robot_are_where_pinocchio_puts_them(name):
     q = random_configurations(robot)
     theirs = poses_by_pinocchio(find_robot(name)[0].read_text(), robot, q)
     np.testing.assert_allclose(link_poses(robot, q), theirs, rtol=0, atol=1e-9)
+
+
+def test_torques_are_those_of_pinocchio(tmp_path):
+    """Of joints that turn and slide about slanted axes; pinocchio takes the masses from the text alone."""
+    file = write(tmp_path, MASSES)
+    dynamics = load_dynamics(load_robot(file), file)
+    q = random_configurations(dynamics.robot, 50)
+    velocity, acceleration = np.random.default_rng(1).normal(size=(2, *q.shape))
+    model = pinocchio.buildModelFromXML(file.read_text())
+    data = model.createData()
+    theirs = [pinocchio.rnea(model, data, *row) for row in zip(q, velocity, acceleration, strict=True)]
+    np.testing.assert_allclose(dynamics.torques(q, velocity, acceleration), theirs, rtol=1e-12, atol=1e-12)
 
 
 FOREIGN = [Path(folder) for folder in os.environ.get("EVENROAD_ROBOTS", "").split(os.pathsep) if folder]

@@ -1,6 +1,7 @@
 """Torques of joints: against Lagrange's equation with numeric derivatives, and kept by trajectories."""
 
 import math
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ import evenroad as er
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.robot import link_poses
 from evenroad.trajectory import Limits, TipLimits, load_dynamics, make_trajectory
+from tests.trajectory.newton_euler import torques_by_newton
 
 GEOMETRY = '<geometry><sphere radius="0.03"/></geometry>'
 JOINTS = [
@@ -125,13 +127,27 @@ def test_a_mass_that_is_carried_counts(dynamics):
     assert np.abs(loaded.torques(q, still, still) - dynamics.torques(q, still, still)).max() > 1.0
 
 
-def test_torques_along_a_path_are_sums_of_three_parts(dynamics):
+def test_torques_are_those_of_newton_and_euler_to_the_last_digits(dynamics):
     rng = np.random.default_rng(2)
-    q, direction, bend = dynamics.robot.random(rng, 20), *rng.normal(size=(2, 20, 4))
-    slope, rise, rest = dynamics.along(q, direction, bend)
-    for speed, push in ((0.7, -1.3), (2.0, 0.4)):
-        whole = dynamics.shares(q, speed * direction, push * direction + speed**2 * bend)
-        np.testing.assert_allclose(push * slope + speed**2 * rise + rest, whole, atol=1e-12)
+    q, velocity, acceleration = dynamics.robot.random(rng, 61), *rng.normal(size=(2, 61, 4))
+    q[::2] += 2.0 * math.pi * rng.integers(-3, 4, (31, 4)) * [1.0, 1.0, 0.0, 1.0]
+    for each in (
+        dynamics,
+        dynamics.carrying("rail", 2.0, (0.1, 0.2, 0.3)),
+        replace(dynamics, gravity=(3.0, -5.0, 1.0)),
+    ):
+        expected = torques_by_newton(each, q, velocity, acceleration)
+        np.testing.assert_allclose(each.torques(q, velocity, acceleration), expected, rtol=1e-12, atol=1e-12)
+
+
+def test_dynamics_and_limits_of_a_tip_can_be_sent_to_another_process(dynamics):
+    tip = TipLimits(dynamics.robot, "finger", speed=1.0)
+    q, still = np.zeros((1, 4)), np.zeros((1, 4))
+    before = dynamics.torques(q, still, still)
+    assert tip.native is tip.native
+    again, other = pickle.loads(pickle.dumps((dynamics, tip)))
+    assert (again.torques(q, still, still) == before).all()
+    assert other == tip
 
 
 PATH = np.array([[-1.0, 0.5, 0.0, 0.3], [0.2, -0.8, 0.3, -0.5], [1.1, 0.4, -0.2, 0.9], [0.3, 1.2, 0.1, -1.0]])
@@ -145,7 +161,7 @@ def test_a_trajectory_keeps_torques_and_uses_them(dynamics, jerk):
 
     def largest(trajectory):
         rows = trajectory.positions, trajectory.velocities, trajectory.accelerations
-        heavy = np.argsort(-np.abs(dynamics.shares(*rows)).max(axis=1))[:12]
+        heavy = np.argsort(-np.abs(dynamics.torques(*rows) / dynamics.efforts).max(axis=1))[:12]
         some = [*range(0, len(rows[0]), 25), *heavy]
         each = np.array([by_lagrange(dynamics, *(row[i] for row in rows)) for i in some])
         return np.abs(each / dynamics.efforts).max()
@@ -176,6 +192,11 @@ def test_a_trajectory_keeps_the_acceleration_of_a_tip_and_uses_it(dynamics, jerk
     assert largest(free) > 6.0
     assert 3.6 < largest(kept) <= 4.0 + 1e-3
     assert 0.9 < kept.highest["tip acceleration"] <= 1.0
+
+
+def test_a_tip_that_no_joint_moves_is_refused(dynamics):
+    with pytest.raises(InvalidValue, match="no joint of the group, turn,bend,slide,finger, moves the link 'base'"):
+        make_trajectory(PATH, replace(FAST, tip=TipLimits(dynamics.robot, "base", speed=1.0)))
 
 
 def test_an_arm_that_is_too_weak_to_hold_itself_is_refused(dynamics):

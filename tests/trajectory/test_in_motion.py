@@ -77,7 +77,7 @@ def test_what_cannot_be_driven_is_refused(tmp_path):
     with pytest.raises(InvalidValue, match="with limits of jerk the robot must be at rest at the start"):
         make_trajectory(InMotion(PATH, START), replace(LIMITS, jerk=(100.0,) * 3))
     # Along the path, but too fast to stop at its end.
-    with pytest.raises(NotAvailable, match=r"too fast for it, at 0\.000 s"):
+    with pytest.raises(NotAvailable, match="the velocity at the start is too fast for the path"):
         make_trajectory(InMotion([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]], [1.9, 0.0, 0.0]), LIMITS)
     result = er.plan("box-reach", "home", "inside", robot="ur5")
     moving = result.trajectory(start_velocity=[0.2, 0.0, 0.1, 0.0, 0.0, -0.1])

@@ -1,12 +1,26 @@
-from evenroad._arrays import Floats
+from evenroad._arrays import Bools, Floats, Ints
+
+Links = tuple[Ints, Ints, Bools, Floats]
+
+class TorqueLimits:
+    def __init__(self, links: Links, efforts: Floats, gravity: Floats) -> None: ...
+    def torques(self, q: Floats, velocity: Floats, acceleration: Floats) -> Floats: ...
+
+class TipLimits:
+    def __init__(self, links: Links, dim: int, link: int, point: Floats, speed: float, acceleration: float) -> None: ...
+
+Within = tuple[float, float, float, tuple[TorqueLimits | None, TipLimits | None], float]
 
 def fastest(
     path: tuple[Floats, Floats, Floats, Floats, Floats],
     stops: Floats,
     velocity: Floats,
     acceleration: Floats,
-    within: tuple[Floats, float, float, tuple[Floats, Floats, Floats, Floats, Floats, Floats] | None],
-) -> tuple[Floats, Floats, Floats, Floats]: ...
+    within: Within,
+) -> tuple[Floats, Floats, Floats, Floats] | None: ...
+def further_shares(
+    limits: tuple[TorqueLimits | None, TipLimits | None], q: Floats, velocity: Floats, acceleration: Floats
+) -> tuple[float, float, float]: ...
 def states(
     path: tuple[Floats, Floats, Floats, Floats, Floats], law: tuple[Floats, Floats, Floats, Floats], t: Floats
 ) -> tuple[Floats, Floats, Floats]: ...
@@ -17,17 +31,21 @@ def largest_shares(
     acceleration: Floats,
     samples: int,
 ) -> tuple[float, float]: ...
-def drive(
-    path: tuple[Floats, Floats, Floats, Floats, Floats],
-    law: tuple[Floats, Floats, Floats, Floats],
-    waypoints: Floats,
-    most: tuple[Floats, Floats],
-    t: Floats,
-    stride: int,
-) -> tuple[Floats, Floats, Floats, Floats, float, float]: ...
 def timed(
-    waypoints: Floats, deviation: Floats, most: tuple[Floats, Floats, float], steps: tuple[float, int]
-) -> tuple[Floats, Floats, Floats, Floats, Floats, int, float, float, tuple[float, float]]: ...
+    waypoints: Floats, deviation: Floats, most: tuple[Floats, Floats], within: Within, steps: tuple[float, int]
+) -> tuple[
+    str,
+    tuple[Floats, Floats, Floats],
+    Floats,
+    Floats,
+    int,
+    float,
+    float,
+    tuple[float, float],
+    tuple[float, float, float],
+    bool,
+    Floats,
+]: ...
 def rounded(waypoints: Floats, deviation: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats]: ...
 def averages(
     path: tuple[Floats, Floats, Floats, Floats, Floats],

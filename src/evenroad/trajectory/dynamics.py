@@ -11,14 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import as_batch, as_row, require_known, require_positive
+from evenroad._native.trajectory import TorqueLimits
+from evenroad._shared import once_property
 from evenroad.errors import InvalidValue
 from evenroad.robot import Robot
-from evenroad.robot.kinematics import joint_values, poses_at
 from evenroad.robot.masses import Mass, read_masses
+from evenroad.robot.prepared_robots import prepared
 
-_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 EARTH = (0.0, 0.0, -9.81)
 """Acceleration of what falls, in the frame of the root [m/s^2]."""
 
@@ -74,91 +75,54 @@ class Dynamics:
         dim = len(self.robot.group)
         given = (("q", q), ("velocity", velocity), ("acceleration", acceleration))
         here, rates, pushes = (as_batch(name, each, dim) for name, each in given)
-        return self._forces(here, rates, pushes, np.broadcast_to(-np.array(self.gravity), (len(here), 3)))
+        return self.native.torques(here, rates, pushes)
 
-    def shares(self, q: Floats, velocity: Floats, acceleration: Floats) -> Floats:
-        """Return the torques as shares of the efforts, (n, dim)."""
-        return self.torques(q, velocity, acceleration) / np.array(self.efforts)
+    @once_property
+    def native(self) -> TorqueLimits:
+        """The limits of the native kernel."""
+        return TorqueLimits(native_links(self.robot, self.masses), np.array(self.efforts), np.array(self.gravity))
 
-    def along(self, q: Floats, direction: Floats, bend: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return what torques, as shares of efforts, gain by the acceleration along a path and by its squared speed,
-        and what they are at rest: (n, dim) each.
-        """
-        still, n = np.zeros_like(q), len(q)
-        pulled = np.zeros((3 * n, 3))
-        pulled[2 * n :] = -np.array(self.gravity)
-        forces = self._forces(
-            np.concatenate([q, q, q]),
-            np.concatenate([still, direction, still]),
-            np.concatenate([direction, bend, still]),
-            pulled,
-        )
-        slope, rise, rest = forces.reshape(3, n, -1) / np.array(self.efforts)
-        return slope, rise, rest
-
-    def _forces(self, q: Floats, velocity: Floats, acceleration: Floats, pulled: Floats) -> Floats:
-        """Return torques where the root is accelerated by `pulled`, (n, 3): that is as good as gravity."""
-        robot, n = self.robot, len(q)
-        values = joint_values(robot, q)
-        poses = dict(zip(robot.links, np.moveaxis(poses_at(robot, values, n), 1, 0), strict=True))
-        none = {joint.name: np.zeros(n) for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
-        rates = _with_mimics(robot, none | dict(zip(robot.group, velocity.T, strict=True)))
-        pushes = _with_mimics(robot, none | dict(zip(robot.group, acceleration.T, strict=True)))
-        zero = np.zeros((n, 3))
-        # Of each link: how it turns, and is pushed to turn and to move.
-        moves = {robot.links[0]: (zero, zero, pulled)}
-        axes: dict[str, Floats] = {}
-        for joint in robot.joints:
-            turn, turned, pushed = moves[joint.parent]
-            parent, child = poses[joint.parent], poses[joint.child]
-            arm = child[:, :3, 3] - parent[:, :3, 3]
-            pushed = pushed + _cross(turned, arm) + _cross(turn, _cross(turn, arm))
-            if joint.kind != "fixed":
-                # A joint leaves its own axis where it is.
-                axis = child[:, :3, :3] @ np.array(joint.axis)
-                rate, push = rates[joint.name][:, np.newaxis], pushes[joint.name][:, np.newaxis]
-                axes[joint.name] = axis
-                if joint.kind == "prismatic":
-                    pushed = pushed + axis * push + 2.0 * _cross(turn, axis * rate)
-                else:
-                    turned = turned + axis * push + _cross(turn, axis * rate)
-                    turn = turn + axis * rate
-            moves[joint.child] = turn, turned, pushed
-        forces, moments = (dict.fromkeys(robot.links, zero) for _ in range(2))
-        for mass in self.masses:
-            turn, turned, pushed = moves[mass.link]
-            rotation = poses[mass.link][:, :3, :3]
-            centre = rotation @ np.array(mass.centre)
-            force = mass.mass * (pushed + _cross(turned, centre) + _cross(turn, _cross(turn, centre)))
-            inertia = rotation @ np.array(mass.inertia).reshape(3, 3) @ rotation.transpose(0, 2, 1)
-            spin = np.einsum("nij,nj->ni", inertia, turned) + _cross(turn, np.einsum("nij,nj->ni", inertia, turn))
-            forces[mass.link] = forces[mass.link] + force
-            moments[mass.link] = moments[mass.link] + spin + _cross(centre, force)
-        torques = {name: np.zeros(n) for name in robot.group}
-        for joint in reversed(robot.joints):
-            force, moment = forces[joint.child], moments[joint.child]
-            if joint.kind != "fixed":
-                along = force if joint.kind == "prismatic" else moment
-                needed = (axes[joint.name] * along).sum(axis=1)
-                name = joint.name if joint.mimic is None else joint.mimic.joint
-                if name in torques:
-                    torques[name] = torques[name] + needed * (1.0 if joint.mimic is None else joint.mimic.multiplier)
-            arm = poses[joint.child][:, :3, 3] - poses[joint.parent][:, :3, 3]
-            forces[joint.parent] = forces[joint.parent] + force
-            moments[joint.parent] = moments[joint.parent] + moment + _cross(arm, force)
-        return np.stack([torques[name] for name in robot.group], axis=1)
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "native"}
 
 
-def _cross(a: Floats, b: Floats) -> Floats:
-    """Return the cross products of rows, (n, 3) each; NumPy's own takes three times as long."""
-    product: Floats = a[:, _NEXT] * b[:, _LAST] - a[:, _LAST] * b[:, _NEXT]
-    return product
+def native_links(robot: Robot, masses: Iterable[Mass] = ()) -> tuple[Ints, Ints, Bools, Floats]:
+    """Return the links of a robot as the native kernel takes them: of each frame that moves its coordinate, its parent,
+    whether it slides, and its pose, multiplier, offset, mass, centre and inertia, (n, 27).
+    """
+    tree = prepared(robot).tables.tree
+    rows = np.zeros((len(tree.frames), 27))
+    for row, frame in zip(rows, tree.frames, strict=True):
+        row[:14] = *frame.rotation.ravel(), *frame.translation, frame.multiplier, frame.offset
+    # Of each frame its mass, that times the centre, and the inertia about the frame's origin.
+    moments = np.zeros((len(rows), 3, 3))
+    for mass in masses:
+        placement = tree.links[mass.link]
+        if placement.frame == 0:
+            continue
+        row, turn = rows[placement.frame - 1], placement.rotation
+        centre = turn @ np.array(mass.centre) + placement.translation
+        row[14] += mass.mass
+        row[15:18] += mass.mass * centre
+        moments[placement.frame - 1] += turn @ np.array(mass.inertia).reshape(3, 3) @ turn.T
+        moments[placement.frame - 1] += mass.mass * _about(centre)
+    for row, moment in zip(rows, moments, strict=True):
+        if row[14] > 0.0:
+            row[15:18] /= row[14]
+        row[18:] = (moment - row[14] * _about(row[15:18])).ravel()
+    frames = tree.frames
+    return (
+        np.array([frame.coordinate for frame in frames], dtype=np.int64),
+        np.array([frame.parent - 1 for frame in frames], dtype=np.int64),
+        np.array([frame.slides for frame in frames], dtype=np.bool_),
+        rows,
+    )
 
 
-def _with_mimics(robot: Robot, rates: dict[str, Floats]) -> dict[str, Floats]:
-    """Return how fast all movable joints move, joint -> (n,), from those that move by themselves."""
-    mimics = [joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is not None]
-    return rates | {j.name: j.mimic.multiplier * rates[j.mimic.joint] for j in mimics if j.mimic is not None}
+def _about(point: Floats) -> Floats:
+    """Return the inertia of 1 kg at a point, (3, 3)."""
+    inertia: Floats = point @ point * np.eye(3) - np.outer(point, point)
+    return inertia
 
 
 def load_dynamics(robot: Robot, file: str | os.PathLike[str], *, gravity: Iterable[float] = EARTH) -> Dynamics:

@@ -12,17 +12,18 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_row, require_known, require_positive
+from evenroad._native.trajectory import TipLimits as NativeTip
+from evenroad._native.trajectory import TorqueLimits, further_shares
+from evenroad._shared import once_property
 from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.robot import Robot
-from evenroad.robot.chain import chain_of
-from evenroad.trajectory.dynamics import Dynamics
+from evenroad.robot.prepared_robots import prepared
+from evenroad.trajectory.dynamics import Dynamics, native_links
 
 SECONDS_TO_FULL_SPEED = 0.5
 """Default time from rest to full speed [s]: URDF has no acceleration."""
 
-_SIDES = 8
-"""Number of directions in which a tip's acceleration is limited."""
 _KINDS = ("velocity", "acceleration", "jerk")
 
 
@@ -50,43 +51,19 @@ class TipLimits:
             if (most := getattr(self, kind)) != math.inf:
                 require_positive(f"the tip's {kind}", most)
 
-    def along(self, q: Floats, direction: Floats) -> Floats:
-        """Return the largest speeds of the joints together, (n,), at configurations in directions, (n, dim) each."""
-        return self.speed / np.maximum(np.linalg.norm(self._moves(q, direction), axis=1), 1e-9)
+    @once_property
+    def native(self) -> NativeTip:
+        """The limits of the native kernel; InvalidValue if no joint moves the link."""
+        links = prepared(self.robot).tables.tree.links
+        require_known(f"link of {self.robot.name!r}:", self.link, links)
+        fixed = links[self.link]
+        if fixed.frame == 0:
+            raise InvalidValue(f"no joint of the group, {','.join(self.robot.group)}, moves the link {self.link!r}")
+        moving, dim = native_links(self.robot), len(self.robot.group)
+        return NativeTip(moving, dim, fixed.frame - 1, fixed.translation, self.speed, self.acceleration)
 
-    def accelerations(self, q: Floats, direction: Floats, bend: Floats) -> tuple[Floats, Floats]:
-        """Return the link's acceleration, (n, 3) each, by the acceleration along a path and by its squared speed."""
-        chain = chain_of(self.robot, self.link)
-        # How its derivative changes along the path, by central differences of a millionth.
-        step = 1e-6 * direction
-        ahead, behind = (chain.derivatives(q + sign * step)[:, :3] for sign in (1.0, -1.0))
-        turned = np.einsum("nij,nj->ni", ahead - behind, direction) / 2e-6
-        return self._moves(q, direction), self._moves(q, bend) + turned
-
-    def sides(self, q: Floats, direction: Floats, bend: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the acceleration in some directions as shares of the largest, of the two kinds, (n, k) each, and 0.
-
-        The two span a plane.  In it a polygon of 16 sides lies within the circle of what is allowed.
-        """
-        first, second = self.accelerations(q, direction, bend)
-        along = first / np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-12)
-        across = second - along * (second * along).sum(axis=1, keepdims=True)
-        across = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
-        angles = np.arange(_SIDES) * np.pi / _SIDES
-        normals = np.multiply.outer(np.cos(angles), along) + np.multiply.outer(np.sin(angles), across)
-        most = self.acceleration * math.cos(0.5 * np.pi / _SIDES)
-        slope, rise = (np.einsum("knj,nj->nk", normals, each) / most for each in (first, second))
-        return slope, rise, np.zeros_like(slope)
-
-    def share(self, q: Floats, velocity: Floats, acceleration: Floats) -> float:
-        """Return the largest acceleration of the link as a share of what is allowed, of states, (n, dim) each."""
-        pushed, turned = self.accelerations(q, velocity, acceleration)
-        del pushed
-        return float(np.linalg.norm(turned, axis=1).max()) / self.acceleration
-
-    def _moves(self, q: Floats, direction: Floats) -> Floats:
-        derivatives = chain_of(self.robot, self.link).derivatives(q)[:, :3]
-        return np.einsum("nij,nj->ni", derivatives, direction)
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "native"}
 
 
 @dataclass(frozen=True)
@@ -148,31 +125,23 @@ class Limits:
         )
 
     @property
-    def is_further(self) -> bool:
-        """Whether there are limits beside those of joints and of speeds: of a tip's acceleration, or of torques."""
-        return self.torque is not None or (self.tip is not None and self.tip.acceleration < math.inf)
-
-    @property
     def is_plain(self) -> bool:
         """Whether there are limits of joints and of the speed along the path alone."""
         return self.torque is None and self.tip is None
 
-    def further(self, q: Floats, direction: Floats, bend: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return by what such limits are used, as shares, (n, k) each: by the acceleration along a path, by its squared
-        speed, and at rest; at configurations with these directions and bends of the path, (n, dim) each.
-        """
-        kinds = []
-        if self.tip is not None and self.tip.acceleration < math.inf:
-            kinds.append(self.tip.sides(q, direction, bend))
-        if self.torque is not None:
-            kinds.append(self.torque.along(q, direction, bend))
-        slope, rise, rest = (np.ascontiguousarray(np.hstack(each)) for each in zip(*kinds, strict=True))
-        return slope, rise, rest
+    @property
+    def further(self) -> tuple[TorqueLimits | None, NativeTip | None]:
+        """Limits beside those of joints, of torques and of a tip, as the native kernel takes them."""
+        return (
+            None if self.torque is None else self.torque.native,
+            None if self.tip is None else self.tip.native,
+        )
 
     def too_heavy(self, q: Floats) -> NotAvailable:
         """Return the error of a path, (n, dim), along which torques cannot hold the robot, or hardly."""
         assert self.torque is not None, "only torques are needed at rest"
-        shares = np.abs(self.torque.shares(q, np.zeros_like(q), np.zeros_like(q)))
+        still = np.zeros_like(q)
+        shares = np.abs(self.torque.torques(q, still, still)) / np.array(self.torque.efforts)
         row, joint = np.unravel_index(int(shares.argmax()), shares.shape)
         name, effort = self.torque.robot.group[joint], self.torque.efforts[joint]
         return NotAvailable(
@@ -182,12 +151,13 @@ class Limits:
 
     def further_shares(self, q: Floats, velocity: Floats, acceleration: Floats) -> dict[str, float]:
         """Return the largest shares of such limits, by kind, at states, (n, dim) each."""
-        shares = {}
-        if self.tip is not None and self.tip.acceleration < math.inf:
-            shares["tip acceleration"] = self.tip.share(q, velocity, acceleration)
-        if self.torque is not None:
-            shares["torque"] = float(np.abs(self.torque.shares(q, velocity, acceleration)).max())
-        return shares
+        return named_shares(further_shares(self.further, q, velocity, acceleration))
+
+
+def named_shares(used: tuple[float, float, float]) -> dict[str, float]:
+    """Return shares of torque and of a tip's speed and acceleration by their names, without those that are 0."""
+    kinds = dict(zip(("torque", "tip speed", "tip acceleration"), used, strict=True))
+    return {kind: share for kind, share in kinds.items() if share > 0.0}
 
 
 def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limits:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,13 +11,13 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_batch, require_positive
-from evenroad._native.trajectory import distances_to, drive, largest_share
+from evenroad._native.trajectory import distances_to, largest_share
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.trajectory.at_rest import driven_at_rest
 from evenroad.trajectory.blends import RoundedPath, rounded
 from evenroad.trajectory.corners import TRIES, drivable, less_at, require_steps
 from evenroad.trajectory.in_motion import InMotion
 from evenroad.trajectory.limits import Limits
+from evenroad.trajectory.timed import timed_path
 from evenroad.trajectory.timing import TimeLaw, fastest, paused, slowed
 from evenroad.trajectory.trajectory import Trajectory
 from evenroad.world import World
@@ -49,13 +48,6 @@ class Driven(NamedTuple):
     accelerations: Floats
     off: Floats
     highest: dict[str, float]
-
-    @classmethod
-    def along(cls, law: TimeLaw, waypoints: Floats, limits: Limits, fine: Floats) -> Driven:
-        """Return what a law does, at some fine times a step."""
-        most = np.array(limits.velocity), np.array(limits.acceleration)
-        at, velocities, accelerations, off, *used = drive(law.path.columns, law.columns, waypoints, most, fine, _FINER)
-        return cls(at, velocities, accelerations, off, dict(zip(("velocity", "acceleration"), used, strict=True)))
 
 
 def make_trajectory(
@@ -117,29 +109,19 @@ def make_trajectory(
     window = 0.0 if limits.jerk is None else float(np.max(2.0 * np.divide(limits.acceleration, limits.jerk)))
     cuts = np.full(len(waypoints), deviation)
     said: dict[str, Any] = {"held": dict(held or {}), "controller": tuple(controller)}
-    if window == 0.0 and not any(speeds) and limits.is_plain:
-        at_rest = driven_at_rest(world, waypoints, limits, cuts, step)
-        return Trajectory(names=joints, waypoints=waypoints, limits=limits, **said, **at_rest)
+    if window == 0.0:
+        made = timed_path(world, waypoints, limits, cuts, step, speeds)
+        return Trajectory(names=joints, waypoints=waypoints, limits=limits, **said, **made)
     for tried in range(TRIES):
         curve = rounded(waypoints, cuts)
-        if any(speeds) and (law := fastest(curve, limits, speeds)).is_slower_than(speeds):
-            # A corner that is too near to a start or a goal in motion is too round.
-            bad = law.times[[0, -1]][[law.is_slower_than((speeds[0], 0.0)), law.is_slower_than((0.0, speeds[1]))]]
-            cuts = less_at(cuts, curve.corners, law.length_at(bad), tried)
-            continue
-        law, fine, driven = _timed(curve, waypoints, limits, (window, step), speeds)
+        law, fine, driven = _averaged_law(curve, waypoints, limits, window, step)
         free, proof = drivable(world, driven.positions)
         bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[driven.off > deviation + 1e-6]])
-        # The last check may have taken less of the limits.
-        late = [law.is_slower_than((speeds[0], 0.0)), law.is_slower_than((0.0, speeds[1]))]
-        bad = np.concatenate([bad, fine[[0, -1]][late]])
         if len(bad) == 0:
             break
         cuts = less_at(cuts, curve.corners, law.length_at(bad - 0.5 * window), tried)
     else:
-        raise NotAvailable(
-            f"the trajectory is not proved free, too far from its path, or too fast for it, at {bad[0]:.3f} s"
-        )
+        raise NotAvailable(f"the trajectory is not proved free, or too far from its path, at {bad[0]:.3f} s")
     return Trajectory(
         names=joints,
         times=fine[::_FINER],
@@ -169,53 +151,25 @@ def _apart(path: Floats) -> Floats:
     return np.array(kept).reshape(-1, path.shape[1])
 
 
-def _timed(
-    curve: RoundedPath, waypoints: Floats, limits: Limits, times: tuple[float, float], speeds: tuple[float, float]
+def _averaged_law(
+    curve: RoundedPath, waypoints: Floats, limits: Limits, window: float, step: float
 ) -> tuple[TimeLaw, Floats, Driven]:
-    """Return the fastest law that keeps all limits at fine times, these times, and what the robot does then.
+    """Return the fastest law whose average over a window keeps all limits, fine times, and what the robot does then.
 
-    `times` are those over which the motion is averaged, and of a step.
-
-    A tip's acceleration and torques are kept at the law's own grid: less of them is used where more comes between.
+    Limits of a tip and of torques are kept at the law's own grid: less of them is used where more comes between.
     """
-    share, (window, step) = 1.0, times
+    share = 1.0
     for _ in range(_SHARES):
-        if any(speeds):
-            law, fine, driven = _in_motion(curve, waypoints, (limits, share), step, speeds)
-        else:
-            law = paused(fastest(curve, limits, share=share), window)
-            law, fine, driven = _on_steps(law, waypoints, limits, window, step)
-        if window > 0.0:
-            driven = _averaged(law, waypoints, limits, window, fine)
-        if not limits.is_further or law.is_slower_than(speeds):
+        law = paused(fastest(curve, limits, share=share), window)
+        law, fine, driven = _on_steps(law, waypoints, limits, window, step)
+        if limits.is_plain:
             return law, fine, driven
-        further = limits.further_shares(*(law.averages(window, fine) if window > 0.0 else law.at(fine)))
-        if max(further.values()) <= 1.0:
+        further = limits.further_shares(*law.averages(window, fine))
+        if max(further.values(), default=0.0) <= 1.0:
             return law, fine, driven._replace(highest=driven.highest | further)
         share *= _LESS / max(further.values())
     over = ", ".join(f"{100.0 * used:.1f} % of {kind}" for kind, used in further.items())
     raise NotAvailable(f"no times were found that keep all limits: the slowest ones tried need {over}")
-
-
-def _in_motion(
-    curve: RoundedPath, waypoints: Floats, within: tuple[Limits, float], step: float, speeds: tuple[float, float]
-) -> tuple[TimeLaw, Floats, Driven]:
-    """Return the same of a law that is not slowed down, which would change its speeds at start and goal.
-
-    Its steps are a little shorter instead, and less of the limits is used where more comes between grid points.
-    """
-    (limits, share), used = within, 1.0
-    for _ in range(_SHARES):
-        pushes = tuple(used * push for push in limits.acceleration)
-        law = fastest(curve, replace(limits, acceleration=pushes), speeds, share)
-        steps = max(math.ceil(law.duration / step - 1e-9), 1)
-        require_steps(steps, law.duration, step)
-        fine = np.linspace(0.0, law.duration, _FINER * steps + 1)
-        driven = Driven.along(law, waypoints, limits, fine)
-        if driven.highest["acceleration"] <= 1.0 or law.is_slower_than(speeds):
-            break
-        used *= _LESS / driven.highest["acceleration"]
-    return law, fine, driven
 
 
 def _on_steps(
@@ -232,7 +186,7 @@ def _on_steps(
     while True:
         law = slowed(law, (steps * step - window) / law.duration)
         fine = np.linspace(0.0, law.duration + window, _FINER * steps + 1)
-        driven = Driven.along(law, waypoints, limits, fine)
+        driven = _averaged(law, waypoints, limits, window, fine)
         if max(driven.highest.values()) <= 1.0:
             return law, fine, driven
         steps += 1

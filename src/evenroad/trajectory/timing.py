@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,7 @@ from evenroad.trajectory.blends import RoundedPath
 from evenroad.trajectory.limits import Limits
 
 _WITHIN = 1.0 - 1e-3
-"""Share of the acceleration limits used: between two grid points an arc may take a little more."""
+"""Share of the limits used: between two grid points there may be a little more."""
 
 
 _ANY_SPEED = 1e300
@@ -78,30 +77,16 @@ def fastest(path: RoundedPath, limits: Limits, speeds: tuple[float, float] = (0.
     """Return the fastest law with these speeds along the path at start and goal (the two passes of Pham and Pham 2018,
     TOPP-RA, algorithm 1).
 
-    About 600 intervals make a whole path.  Of limits of a tip's acceleration and of torques a share is used.  The law
-    is slower at the start where these limits do not let it be as fast.
+    About 400 intervals make a whole path.  Of limits of a tip and of torques a share is used.  The law is slower at the
+    start where these limits do not let it be as fast.
     """
     most = np.array(limits.velocity), _WITHIN * np.array(limits.acceleration)
-    ceiling = np.array([_ANY_SPEED if limits.along_path is None else limits.along_path**2])
-    law = TimeLaw(path, *native_fastest(path.columns, path.stops, *most, (ceiling, *speeds, None)))
-    if (limits.tip is None and limits.torque is None) or law.is_slower_than(speeds):
-        return law
-    # At speed 1 times are lengths, velocities directions, and accelerations bends; an interval ends with its own.
-    grid = law.lengths
-    steady = TimeLaw(path, grid, grid, np.ones(len(grid)), np.zeros(len(grid) - 1))
-    sides = [steady.at(s) for s in (grid[:-1], np.nextafter(grid[1:], 0.0))]
-    if limits.tip is not None and limits.tip.speed < math.inf:
-        first, last = ((_WITHIN * limits.tip.along(*side[:2])) ** 2 for side in sides)
-        ceiling = np.full(len(grid), ceiling[0])
-        ceiling[:-1] = np.minimum(ceiling[:-1], first)
-        ceiling[1:] = np.minimum(ceiling[1:], last)
-    further = None
-    if limits.is_further:
-        used = [np.ascontiguousarray(each) / share for side in sides for each in limits.further(*side)]
-        if np.abs(used[2]).max() >= 1.0 or np.abs(used[5]).max() >= 1.0:
-            raise limits.too_heavy(steady.at(grid)[0])
-        further = used[0], used[1], used[2], used[3], used[4], used[5]
-    return TimeLaw(path, *native_fastest(path.columns, path.stops, *most, (ceiling, *speeds, further)))
+    highest = _ANY_SPEED if limits.along_path is None else limits.along_path**2
+    found = native_fastest(path.columns, path.stops, *most, (highest, *speeds, limits.further, _WITHIN * share))
+    if found is None:
+        steady = TimeLaw(path, path.starts, path.starts, np.ones(len(path.starts)), np.zeros(len(path.bend)))
+        raise limits.too_heavy(steady.at(np.linspace(0.0, path.length, 600))[0])
+    return TimeLaw(path, *found)
 
 
 def slowed(law: TimeLaw, factor: float) -> TimeLaw:

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
 
 #include "bind/arrays.hpp"
 #include "trajectory/averages.hpp"
 #include "trajectory/blends.hpp"
+#include "trajectory/further_limits.hpp"
 #include "trajectory/time_law.hpp"
 #include "trajectory/timed.hpp"
 
@@ -67,48 +67,54 @@ struct LawArrays {
   TimeLaw law() const { return {times.span(), lengths.span(), speeds.span(), accelerations.span()}; }
 };
 
-/// Further limits in arrays of Python: slope, rise and rest at the beginnings of intervals, and at their ends.
-struct FurtherArrays {
-  FloatRows slope, rise, rest, end_slope, end_rise, end_rest;
+/// Return further limits of a pair: of torques and of a tip, either may be None; they are its own.
+trajectory::FurtherLimits further_of(nb::handle given, std::size_t dim) {
+  const auto pair = value_of<nb::tuple>(given, "further limits");
+  require(pair.size() == 2, "further limits must be two");
+  trajectory::FurtherLimits limits;
+  if (!pair[0].is_none()) limits.torque = value_of<const trajectory::TorqueLimits*>(pair[0], "torque");
+  if (!pair[1].is_none()) limits.tip = value_of<const trajectory::TipLimits*>(pair[1], "tip");
+  require((!limits.torque || limits.torque->links.dim == dim) && (!limits.tip || limits.tip->links.dim == dim),
+          "further limits must be those of the path's coordinates");
+  return limits;
+}
 
-  explicit FurtherArrays(nb::tuple given, std::size_t intervals)
-      : slope(PathArrays::column(given, 0, 6), "slope"),
-        rise(given[1], "rise"),
-        rest(given[2], "rest"),
-        end_slope(given[3], "end_slope"),
-        end_rise(given[4], "end_rise"),
-        end_rest(given[5], "end_rest") {
-    for (const auto* each : {&slope, &rise, &rest, &end_slope, &end_rise, &end_rest}) {
-      each->of_shape({intervals, slope.shape(1)});
-    }
-    for (const auto* each : {&rest, &end_rest}) {
-      for (const double share : each->span()) require(std::abs(share) < 1.0, "rest must be less than 1");
-    }
-  }
+/// Return what a law keeps beside velocities and accelerations: the square of the largest speed, speeds at start and
+/// goal, and further limits and their share.
+trajectory::Within within_of(nb::tuple given, std::size_t dim) {
+  const auto highest = value_of<double>(PathArrays::column(given, 0, 5), "the square of a speed");
+  const auto start = value_of<double>(given[1], "start"), goal = value_of<double>(given[2], "goal");
+  const auto share = value_of<double>(given[4], "share");
+  require(highest > 0.0, "the square of a speed must be > 0");
+  require(start >= 0.0 && start < LONGEST && goal >= 0.0 && goal < LONGEST, "speeds must be >= 0 and below 1e9");
+  require(share > 0.0 && share <= 1.0, "share must be > 0 and at most 1");
+  return {highest, start, goal, further_of(given[3], dim), share};
+}
 
-  trajectory::Further further() const {
-    return {slope.matrix(), rise.matrix(), rest.matrix(), end_slope.matrix(), end_rise.matrix(), end_rest.matrix()};
-  }
-};
-
-/// Return the fastest law; `within` are the squares of speeds, those at start and goal, and further limits or None.
-nb::tuple fastest(nb::tuple path, nb::handle stops, nb::handle velocity, nb::handle acceleration, nb::tuple within) {
+/// Return the fastest law, None where torques cannot hold the robot.
+nb::object fastest(nb::tuple path, nb::handle stops, nb::handle velocity, nb::handle acceleration, nb::tuple within) {
   const PathArrays arrays(path);
   const Floats at(stops, "stops"), speeds(velocity, "velocity"), pushes(acceleration, "acceleration");
-  const Floats ceiling(PathArrays::column(within, 0, 4), "ceiling");
-  speeds.of_shape({arrays.path().dim()}), pushes.of_shape({arrays.path().dim()});
-  trajectory::Grid grid = trajectory::grid_of(arrays.path());
-  if (ceiling.size() != 1) ceiling.of_shape({grid.lengths.size()});
-  const double start = value_of<double>(within[1], "start"), goal = value_of<double>(within[2], "goal");
-  require(start >= 0.0 && start < LONGEST && goal >= 0.0 && goal < LONGEST, "speeds must be >= 0 and below 1e9");
-  std::optional<FurtherArrays> further;
-  if (!within[3].is_none()) further.emplace(value_of<nb::tuple>(within[3], "further"), grid.pieces.size());
+  const std::size_t dim = arrays.path().dim();
+  speeds.of_shape({dim}), pushes.of_shape({dim});
+  const trajectory::Within kept = within_of(within, dim);
   trajectory::OwnTimeLaw law = without_gil([&] {
-    return trajectory::fastest(arrays.path(), std::move(grid), at.span(), {speeds.span(), pushes.span()},
-                               {ceiling.span(), further ? further->further() : trajectory::Further{}, start, goal});
+    return trajectory::fastest(arrays.path(), trajectory::grid_of(arrays.path()), at.span(),
+                               {speeds.span(), pushes.span()}, kept);
   });
+  if (law.times.empty()) return nb::none();
   return nb::make_tuple(as_row(std::move(law.times)), as_row(std::move(law.lengths)), as_row(std::move(law.speeds)),
                         as_row(std::move(law.accelerations)));
+}
+
+/// Return the largest shares of further limits that states use: of torque, and of a tip's speed and acceleration.
+nb::tuple further_shares(nb::handle limits, nb::handle q, nb::handle velocity, nb::handle acceleration) {
+  const FloatRows here(q, "q"), rates(velocity, "velocity"), pushes(acceleration, "acceleration");
+  for (const auto* each : {&here, &rates, &pushes}) each->of_shape({here.shape(0), here.shape(1)});
+  const trajectory::FurtherLimits further = further_of(limits, here.shape(1));
+  const trajectory::FurtherShares shares =
+      without_gil([&] { return trajectory::further_shares(further, here.matrix(), rates.matrix(), pushes.matrix()); });
+  return nb::make_tuple(shares.torque, shares.speed, shares.acceleration);
 }
 
 nb::tuple states(nb::tuple path, nb::tuple law, nb::handle times) {
@@ -198,67 +204,67 @@ nb::object distances_to(nb::handle waypoints, nb::handle points) {
   }));
 }
 
-/// Return the states of a whole trajectory at its steps, how far each is along the path, the lengths at corners, the
-/// number of stops, duration, deviation, and the largest shares of velocity and acceleration.
+const char* name_of(trajectory::Outcome outcome) {
+  switch (outcome) {
+    case trajectory::Outcome::TOO_LONG:
+      return "too long";
+    case trajectory::Outcome::TOO_HEAVY:
+      return "too heavy";
+    case trajectory::Outcome::TOO_FAST:
+      return "too fast";
+    case trajectory::Outcome::NOT_WITHIN:
+      return "not within";
+    default:
+      return "made";
+  }
+}
+
+/// Return what became of a whole trajectory, its states at its steps, how far each is along the path, the lengths at
+/// corners, the number of stops, duration, deviation, the largest shares of velocity and acceleration, those of torque
+/// and of a tip's speed and acceleration, whether it is slower than asked for at the start, and how far each corner is
+/// rounded.
 ///
-/// `most` are the largest velocities, accelerations and square of the speed along the path; `steps` the step and the
-/// largest number of steps.
-nb::tuple timed(nb::handle waypoints, nb::handle deviation, nb::tuple most, nb::tuple steps) {
+/// `most` are the largest velocities and accelerations; `steps` the step and the largest number of steps.
+nb::tuple timed(nb::handle waypoints, nb::handle deviation, nb::tuple most, nb::tuple within, nb::tuple steps) {
   const FloatRows way(waypoints, "waypoints");
-  const Floats within(deviation, "deviation"), speeds(PathArrays::column(most, 0, 3), "velocity");
+  const Floats cuts(deviation, "deviation"), speeds(PathArrays::column(most, 0, 2), "velocity");
   const Floats pushes(most[1], "acceleration");
-  const double highest = value_of<double>(most[2], "highest");
   const double step = value_of<double>(PathArrays::column(steps, 0, 2), "step");
   const std::int64_t count = value_of<std::int64_t>(steps[1], "steps");
   const std::size_t dim = way.shape(1);
   require_path(way);
-  within.of_shape({way.shape(0)}), speeds.of_shape({dim}), pushes.of_shape({dim});
+  cuts.of_shape({way.shape(0)}), speeds.of_shape({dim}), pushes.of_shape({dim});
   for (const auto* each : {&speeds, &pushes}) {
     for (const double value : each->span()) require(value > 0.0, "velocity and acceleration must be > 0");
   }
-  require(highest > 0.0, "the square of the speed must be > 0");
   require(step > 0.0 && step <= LONGEST, "step must be > 0 and at most 1e9");
   require_below(count - 1, MOST_TIMES, "steps less one");
+  const trajectory::Within kept = within_of(within, dim);
   trajectory::Timed made = without_gil([&] {
-    return trajectory::timed(way.matrix(), within.span(), {speeds.span(), pushes.span()}, highest,
+    return trajectory::timed(way.matrix(), cuts.span(), {speeds.span(), pushes.span()}, kept,
                              {step, static_cast<std::size_t>(count)});
   });
-  return nb::make_tuple(as_rows(std::move(made.positions)), as_rows(std::move(made.velocities)),
-                        as_rows(std::move(made.accelerations)), as_row(std::move(made.lengths)),
-                        as_row(std::move(made.corners)), made.stops, made.duration, made.deviation,
-                        nb::make_tuple(made.highest.velocity, made.highest.acceleration));
-}
-
-/// Return positions, velocities and accelerations at each `stride`-th time, how far each time's state is off the way
-/// between waypoints, and the largest shares of velocity and acceleration.
-nb::tuple drive(nb::tuple path, nb::tuple law, nb::handle waypoints, nb::tuple most, nb::handle times,
-                std::int64_t stride) {
-  const PathArrays arrays(path);
-  const LawArrays when(law);
-  const FloatRows way(waypoints, "waypoints");
-  const Floats t(times, "t"), speeds(PathArrays::column(most, 0, 2), "velocity"), pushes(most[1], "acceleration");
-  const std::size_t dim = arrays.path().dim();
-  way.of_shape({way.shape(0), dim}), speeds.of_shape({dim}), pushes.of_shape({dim});
-  require(stride >= 1, "stride must be 1 or more");
-  trajectory::Driven driven = without_gil([&] {
-    return trajectory::drive(arrays.path(), when.law(), way.matrix(), {speeds.span(), pushes.span()}, t.span(),
-                             static_cast<std::size_t>(stride));
-  });
-  return nb::make_tuple(as_rows(std::move(driven.positions)), as_rows(std::move(driven.velocities)),
-                        as_rows(std::move(driven.accelerations)), as_row(std::move(driven.off)),
-                        driven.highest.velocity, driven.highest.acceleration);
+  const auto& [torque, speed, acceleration] = made.further;
+  return nb::make_tuple(name_of(made.outcome),
+                        nb::make_tuple(as_rows(std::move(made.positions)), as_rows(std::move(made.velocities)),
+                                       as_rows(std::move(made.accelerations))),
+                        as_row(std::move(made.lengths)), as_row(std::move(made.corners)), made.stops, made.duration,
+                        made.deviation, nb::make_tuple(made.highest.velocity, made.highest.acceleration),
+                        nb::make_tuple(torque, speed, acceleration), made.is_slower_at_start,
+                        as_row(std::move(made.deviations)));
 }
 
 }  // namespace
 
 void add_trajectory(nb::module_& module) {
   nb::module_ part = module.def_submodule("trajectory", "Times along a path.");
+  add_further_limits(part);
   part.def("fastest", &fastest);
+  part.def("further_shares", &further_shares);
   part.def("states", &states);
   part.def("largest_shares", &largest_shares);
   part.def("distances_to", &distances_to);
   part.def("timed", &timed);
-  part.def("drive", &drive);
   part.def("rounded", &rounded);
   part.def("averages", &averages);
   part.def("largest_share", &largest_share, nb::arg("rows"), nb::arg("most"), nb::arg("of_steps") = false);

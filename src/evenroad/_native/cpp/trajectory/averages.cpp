@@ -11,9 +11,6 @@ namespace {
 /// So many rows are looked at beside each other.
 constexpr std::size_t ROWS = 16;
 
-/// So many states are kept at once.
-constexpr std::size_t SOME = 128;
-
 /// Positions and velocities at equal steps of time, cubics between them, and the integrals of these.
 class Travelled {
  public:
@@ -91,30 +88,6 @@ void write_averages(const RoundedPath& path, const TimeLaw& law, double window, 
       if (!is_end) positions(row, k) = (here[k] - there[k]) / window;
     }
   }
-}
-
-Driven drive(const RoundedPath& path, const TimeLaw& law, Matrix<const double> waypoints, const Most& most,
-             std::span<const double> t, std::size_t stride) {
-  const std::size_t dim = path.dim(), kept = t.empty() ? 0 : (t.size() - 1) / stride + 1;
-  Driven driven{{kept, dim}, {kept, dim}, {kept, dim}, std::vector<double>(t.size()), {}};
-  OwnMatrix<double> positions(SOME, dim), velocities(SOME, dim), accelerations(SOME, dim);
-  const StatesAt states(path, law);
-  for (std::size_t first = 0; first < t.size(); first += SOME) {
-    const std::size_t count = std::min(SOME, t.size() - first);
-    const auto some = [&](OwnMatrix<double>& all) { return Matrix<double>{all.values.data(), count, dim}; };
-    states.write(t.subspan(first, count), some(positions), some(velocities), some(accelerations));
-    write_distances(waypoints, some(positions), {driven.off.data() + first, count});
-    driven.highest.velocity = std::max(driven.highest.velocity, largest_share(some(velocities), most.velocity));
-    driven.highest.acceleration =
-        std::max(driven.highest.acceleration, largest_share(some(accelerations), most.acceleration));
-    for (std::size_t row = (stride - first % stride) % stride; row < count; row += stride) {
-      const std::size_t at = (first + row) / stride;
-      std::ranges::copy(positions[row], driven.positions[at].begin());
-      std::ranges::copy(velocities[row], driven.velocities[at].begin());
-      std::ranges::copy(accelerations[row], driven.accelerations[at].begin());
-    }
-  }
-  return driven;
 }
 
 double largest_share(Matrix<const double> rows, std::span<const double> most) {

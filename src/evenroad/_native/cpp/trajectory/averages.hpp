@@ -14,18 +14,6 @@ namespace evenroad::trajectory {
 void write_averages(const RoundedPath& path, const TimeLaw& law, double window, std::span<const double> t,
                     Matrix<double> positions, Matrix<double> velocities, Matrix<double> accelerations);
 
-/// States at every so many of the times, how far all of them are from the path, and the largest shares that they use.
-struct Driven {
-  OwnMatrix<double> positions, velocities, accelerations;
-  std::vector<double> off;
-  Shares highest;
-};
-
-/// Return the states at each `stride`-th time, the first among them; what all of them use and how far they are off
-/// straight motions between waypoints.
-Driven drive(const RoundedPath& path, const TimeLaw& law, Matrix<const double> waypoints, const Most& most,
-             std::span<const double> t, std::size_t stride);
-
 /// Return the largest entry of rows by its column's limit, in absolute value, and that of the differences of rows.
 double largest_share(Matrix<const double> rows, std::span<const double> most);
 double largest_step_share(Matrix<const double> rows, std::span<const double> most);

@@ -37,9 +37,10 @@ class Limits {
     for (std::size_t i = 0; further.size() > 0 && i < curve.row.size(); i++) {
       further_.push_back({between_.size(), between_.size(), NO_LIMIT});
       for (std::size_t k = 0; k < further.size(); k++) {
-        add_between(further.slope(i, k), further.rise(i, k), further.rest(i, k));
-        const double rise = further.end_rise(i, k);
-        add_between(further.end_slope(i, k) + rise * (2.0 * curve.steps[i]), rise, further.end_rest(i, k));
+        const std::size_t begin = further.row[i], end = begin + 1;
+        add_between(further.slope(begin, k), further.rise(begin, k), further.rest(begin, k));
+        const double rise = further.rise(end, k);
+        add_between(further.slope(end, k) + rise * (2.0 * curve.steps[i]), rise, further.rest(end, k));
       }
     }
     std::size_t row = NO_ROW;

@@ -19,11 +19,12 @@ struct Curve {
   std::span<const double> steps;
 };
 
-/// Further limits of each interval, of a torque or of a tip: |slope * push + rise * square + rest| is at most 1.
+/// Further limits, of a torque or of a tip: |slope * push + rise * square + rest| is at most 1, (states, limits) each.
 ///
-/// They hold at the beginning and, by a row of their own, at the end of an interval: (intervals, limits) each.
+/// Interval i begins in the state `row[i]`, and ends in the next one.
 struct Further {
-  Matrix<const double> slope, rise, rest, end_slope, end_rise, end_rest;
+  Matrix<const double> slope, rise, rest;
+  std::span<const std::size_t> row;
 
   std::size_t size() const { return slope.columns; }
 };

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "trajectory/places.hpp"
@@ -14,10 +15,10 @@ namespace evenroad::trajectory {
 namespace {
 
 /// Number of intervals of a whole path, about, and the least number of an arc and of a line.
-constexpr double INTERVALS = 600.0, PER_ARC = 8.0, PER_LINE = 4.0;
+constexpr double INTERVALS = 400.0, PER_ARC = 12.0, PER_LINE = 4.0;
 
-/// The largest angle of an interval of an arc in a lean grid [rad], and the least number of these.
-constexpr double ANGLE = 0.05, PER_LEAN_ARC = 12.0;
+/// The largest angle of an interval of an arc [rad].
+constexpr double ANGLE = 0.05;
 
 /// Intervals of a line that are shorter than this share of it are none.
 constexpr double NO_INTERVAL = 1e-9;
@@ -65,13 +66,35 @@ struct Speeds {
   }
 };
 
+/// Return the states at both ends of all intervals: where pieces meet there are two.
+PathStates states_of(const RoundedPath& path, const Grid& grid) {
+  PathStates states(grid.pieces.size() + path.pieces(), path.dim());
+  for (std::size_t i = 0; i < grid.lengths.size(); i++) {
+    const bool begins = i < grid.pieces.size(), ends = i > 0 && (!begins || grid.pieces[i] != grid.pieces[i - 1]);
+    const auto write = [&](std::size_t row, std::size_t piece) {
+      const Turn turn(path, piece, grid.lengths[i]);
+      for (std::size_t k = 0; k < path.dim(); k++) {
+        states.positions(row, k) = turn.position(path, k);
+        states.directions(row, k) = turn.direction(path, k);
+        states.bends(row, k) = turn.curve(path, k);
+      }
+    };
+    if (ends) write(i + grid.pieces[i - 1], grid.pieces[i - 1]);
+    if (begins) write(i + grid.pieces[i], grid.pieces[i]);
+  }
+  return states;
+}
+
+/// Return the least number of intervals of an arc by its angle.
+double intervals_of_arc(double angle) { return std::max(std::ceil(angle / ANGLE), PER_ARC); }
+
 }  // namespace
 
 Grid lean_grid_of(const RoundedPath& path) {
   Grid grid{{0.0}, {}, true};
   for (std::size_t piece = 0; piece < path.pieces(); piece++) {
     const double begin = path.starts[piece], end = path.starts[piece + 1], bend = path.bend[piece];
-    const double count = bend > 0.0 ? std::max(std::ceil((end - begin) * bend / ANGLE), PER_LEAN_ARC) : 1.0;
+    const double count = bend > 0.0 ? intervals_of_arc((end - begin) * bend) : 1.0;
     for (std::int64_t i = 1; static_cast<double>(i) < count; i++)
       grid.lengths.push_back(begin + static_cast<double>(i) * ((end - begin) / count));
     grid.lengths.push_back(end);
@@ -85,7 +108,8 @@ Grid grid_of(const RoundedPath& path) {
   for (std::size_t piece = 0; piece < path.pieces(); piece++) {
     const double begin = path.starts[piece], end = path.starts[piece + 1];
     const double share = (end - begin) / path.starts.back();
-    const double count = std::max(std::ceil(INTERVALS * share), path.bend[piece] > 0.0 ? PER_ARC : PER_LINE);
+    const double bend = path.bend[piece], least = bend > 0.0 ? intervals_of_arc((end - begin) * bend) : PER_LINE;
+    const double count = std::max(std::ceil(INTERVALS * share), least);
     for (std::int64_t i = 1; static_cast<double>(i) < count; i++)
       grid.lengths.push_back(begin + static_cast<double>(i) * ((end - begin) / count));
     grid.lengths.push_back(end);
@@ -96,6 +120,15 @@ Grid grid_of(const RoundedPath& path) {
 
 OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> stops, const Most& most,
                    const Within& within) {
+  std::vector<std::size_t> state(grid.pieces.size());
+  for (std::size_t i = 0; i < state.size(); i++) state[i] = i + grid.pieces[i];
+  std::optional<Used> used;
+  if (within.further.torque || within.further.tip) {
+    used = used_by(within.further, states_of(path, grid), within.share);
+    for (const double share : used->rest.values) {
+      if (!(std::abs(share) < 1.0)) return {};
+    }
+  }
   OwnTimeLaw law;
   law.lengths = std::move(grid.lengths);
   const std::vector<std::size_t>& pieces = grid.pieces;
@@ -110,8 +143,7 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
   }
   const auto is_line = std::make_unique<bool[]>(rows);
   Sides sides(rows, path.dim());
-  std::vector<double> steps(intervals), ceiling(within.highest.begin(), within.highest.end());
-  ceiling.resize(intervals + 1, within.highest[0]);
+  std::vector<double> steps(intervals), ceiling(intervals + 1, within.highest);
   double before = 0.0, after = 0.0;
   for (std::size_t i = 0; i < intervals; i++) {
     steps[i] = law.lengths[i + 1] - law.lengths[i];
@@ -123,6 +155,9 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
     }
     ceiling[i] = std::min(ceiling[i], before);
     ceiling[i + 1] = std::min(ceiling[i + 1], after);
+    if (!used) continue;
+    ceiling[i] = std::min(ceiling[i], used->squares[state[i]]);
+    ceiling[i + 1] = std::min(ceiling[i + 1], used->squares[state[i] + 1]);
   }
   ceiling.front() = std::min(ceiling.front(), within.start * within.start);
   ceiling.back() = std::min(ceiling.back(), within.goal * within.goal);
@@ -131,7 +166,8 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
     if (at != law.lengths.end() && *at == stop) ceiling[static_cast<std::size_t>(at - law.lengths.begin())] = 0.0;
   }
   const Curve curve{sides.ahead, sides.ahead_bend, sides.behind, sides.behind_bend, row, {is_line.get(), rows}, steps};
-  std::vector<double> squares = squared_speeds(curve, within.further, ceiling, most.acceleration);
+  const Further further = used ? used->further(state) : Further{};
+  std::vector<double> squares = squared_speeds(curve, further, ceiling, most.acceleration);
   if (is_lean) {
     Speeds all;
     all.add(0.0, squares[0]);
@@ -146,7 +182,7 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
         push = std::min(push, most.acceleration[j] / std::abs(sides.ahead(k, j)));
       }
       const double square =
-          std::min(within.highest[0], square_within(path, Turn(path, pieces[i], law.lengths[i]), most.velocity));
+          std::min(within.highest, square_within(path, Turn(path, pieces[i], law.lengths[i]), most.velocity));
       all.add_line(law.lengths[i + 1], squares[i + 1], square, push);
     }
     law.lengths = std::move(all.lengths), squares = std::move(all.squares);

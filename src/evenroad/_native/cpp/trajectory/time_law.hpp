@@ -7,6 +7,7 @@
 
 #include "common/matrix.hpp"
 #include "trajectory/fastest_speeds.hpp"
+#include "trajectory/further_limits.hpp"
 
 namespace evenroad::trajectory {
 
@@ -47,15 +48,17 @@ struct Grid {
 Grid grid_of(const RoundedPath& path);
 Grid lean_grid_of(const RoundedPath& path);
 
-/// What a law keeps beside velocities and accelerations: squares of speeds along the path, one, or one at each length
-/// of the grid; further limits; and speeds at start and goal.
+/// What a law keeps beside velocities and accelerations: the largest square of the speed along the path, speeds at
+/// start and goal, and a share of further limits.
 struct Within {
-  std::span<const double> highest;
-  Further further;
-  double start = 0.0, goal = 0.0;
+  double highest, start = 0.0, goal = 0.0;
+  FurtherLimits further;
+  double share = 1.0;
 };
 
 /// Return the fastest law, at rest at `stops`: lengths at which the direction jumps.
+///
+/// It is empty where further limits exclude rest.
 OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> stops, const Most& most,
                    const Within& within);
 

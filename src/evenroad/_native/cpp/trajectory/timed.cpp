@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "trajectory/blends.hpp"
 #include "trajectory/places.hpp"
@@ -12,6 +13,24 @@ namespace {
 
 /// Share of the acceleration limits used: between two grid points an arc may take a little more.
 constexpr double WITHIN = 1.0 - 5e-4;
+
+/// The same of further limits at first, and the share of what would do that is used where there is more.
+constexpr double WITHIN_FURTHER = 1.0 - 1e-3, LESS = 1.0 - 1e-3;
+
+/// Number of times that less is used.
+constexpr int TRIES = 8;
+
+/// Number of times that a corner near a start or a goal in motion is halved; then the robot stops there.
+constexpr int HALVINGS = 5;
+
+/// Squares of speeds that a corner allows, as multiples of an estimate from below, that are tried.
+constexpr double PROBABLY = 2.0;
+
+/// Number of times in a step at which further limits are looked at.
+constexpr std::size_t PER_STEP = 4;
+
+/// Shares by which a speed may be less than asked for, and a bound more than is allowed.
+constexpr double NO_SLOWER = 1e-9, NO_MORE = 1e-12;
 
 /// Number of parts of an interval at whose ends is looked what an arc uses.
 constexpr int PARTS = 2;
@@ -100,35 +119,182 @@ std::vector<double> lengths_at(const TimeLaw& law, std::span<const double> times
   return lengths;
 }
 
-}  // namespace
+/// A law with the limits that it was made within, of which less is used where it takes more between grid points.
+class Tried {
+ public:
+  Tried(const RoundedPath& path, std::span<const double> stops, const Most& most, const Within& within)
+      : path_(path),
+        stops_(stops),
+        most_(most),
+        within_(within),
+        velocity_(most.velocity.begin(), most.velocity.end()) {
+    within_.share *= WITHIN_FURTHER;
+    for (const double each : most.acceleration) acceleration_.push_back(each * WITHIN);
+  }
 
-Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, const Most& most, double highest,
-            const Steps& steps) {
+  /// Make the law; it is empty where torques cannot hold the robot.
+  void make() {
+    const bool is_lean = !within_.further.torque && !within_.further.tip;
+    law_ = fastest(path_, is_lean ? lean_grid_of(path_) : grid_of(path_), stops_, {velocity_, acceleration_}, within_);
+  }
+
+  OwnTimeLaw& law() { return law_; }
+  TimeLaw view() const { return {law_.times, law_.lengths, law_.speeds, law_.accelerations}; }
+
+  /// Return bounds of the shares that it uses at any time.
+  Shares used() const { return used_at_all_times(path_, view(), most_); }
+
+  /// Use less of velocities and accelerations, or of further limits, than was used by these shares.
+  void use_less(const Shares& used) {
+    for (double& each : velocity_) each *= LESS / std::max(used.velocity, 1.0);
+    for (double& each : acceleration_) each *= LESS / std::max(used.acceleration, 1.0);
+  }
+  void use_less(const FurtherShares& used) { within_.share *= LESS / worst(used); }
+
+  static double worst(const FurtherShares& used) { return std::max({used.torque, used.speed, used.acceleration}); }
+
+ private:
+  const RoundedPath& path_;
+  std::span<const double> stops_;
+  const Most& most_;
+  Within within_;
+  std::vector<double> velocity_, acceleration_;
+  OwnTimeLaw law_;
+};
+
+/// Return the largest shares of further limits, at `PER_STEP` times in each step.
+FurtherShares further_in(const RoundedPath& path, const TimeLaw& law, const FurtherLimits& limits, double count) {
+  const std::size_t states = static_cast<std::size_t>(count) * PER_STEP + 1;
+  std::vector<double> times(states);
+  for (std::size_t i = 0; i < states; i++) times[i] = law.times.back() * (static_cast<double>(i) / (count * PER_STEP));
+  OwnMatrix<double> positions(states, path.dim()), velocities(states, path.dim()), accelerations(states, path.dim());
+  StatesAt(path, law).write(times, positions, velocities, accelerations);
+  const Matrix<double> q = positions, rates = velocities, pushes = accelerations;
+  return further_shares(limits, q, rates, pushes);
+}
+
+/// Return the fastest trajectory with corners rounded so.
+Timed timed_once(Matrix<const double> waypoints, std::span<const double> deviation, const Most& most,
+                 const Within& within, const Steps& steps) {
   Blends blends = rounded(waypoints, deviation);
   const std::size_t dim = waypoints.columns, pieces = blends.bend.size();
   const auto rows = [&](const std::vector<double>& values) { return Matrix<const double>{values.data(), pieces, dim}; };
   const RoundedPath path{blends.starts, rows(blends.origin), rows(blends.out), rows(blends.along), blends.bend};
-  std::vector<double> less(most.acceleration.begin(), most.acceleration.end());
-  for (double& each : less) each *= WITHIN;
-  OwnTimeLaw law = fastest(path, lean_grid_of(path), blends.stops, {most.velocity, less}, {{&highest, 1}, {}});
-  const auto view = [&] { return TimeLaw{law.times, law.lengths, law.speeds, law.accelerations}; };
-  const Shares used = used_at_all_times(path, view(), most);
-  const double least = law.times.back() * std::max({1.0, used.velocity, std::sqrt(used.acceleration)});
-  const double count = std::max(std::ceil(least / steps.step - SAME), 1.0);
-  Timed made{{0, dim}, {0, dim}, {0, dim}, {}, std::move(blends.corners), blends.stops.size(), {}, least, 0.0};
-  if (!(count <= static_cast<double>(steps.most))) return made;
-  made.duration = count * steps.step;
-  const double factor = made.duration / law.times.back();
-  slow(law, factor);
-  made.highest = {used.velocity / factor, used.acceleration / (factor * factor)};
-  made.deviation = deviation_of(path);
+  Timed made{Outcome::NOT_WITHIN, {0, dim}, {0, dim},           {0, dim}, {}, std::move(blends.corners),
+             blends.stops.size(), 0.0,      deviation_of(path), {},       {}};
+  const bool is_moving = within.start > 0.0 || within.goal > 0.0;
+  Tried tried(path, blends.stops, most, within);
+  double count = 0.0;
+  for (int tries = 0; made.outcome == Outcome::NOT_WITHIN && tries < TRIES; tries++) {
+    tried.make();
+    OwnTimeLaw& law = tried.law();
+    if (law.times.empty()) {
+      made.outcome = Outcome::TOO_HEAVY;
+      return made;
+    }
+    made.is_slower_at_start = law.speeds.front() < (1.0 - NO_SLOWER) * within.start;
+    made.is_slower_at_goal = law.speeds.back() < (1.0 - NO_SLOWER) * within.goal;
+    if (made.is_slower_at_start || made.is_slower_at_goal) {
+      made.outcome = Outcome::TOO_FAST;
+      return made;
+    }
+    made.highest = tried.used();
+    const double over = std::max(made.highest.velocity, std::sqrt(made.highest.acceleration));
+    if (is_moving && over > 1.0 + NO_MORE) {
+      tried.use_less(made.highest);
+      continue;
+    }
+    made.duration = law.times.back() * (is_moving ? 1.0 : std::max(1.0, over));
+    count = std::max(std::ceil(made.duration / steps.step - SAME), 1.0);
+    if (!(count <= static_cast<double>(steps.most))) {
+      made.outcome = Outcome::TOO_LONG;
+      return made;
+    }
+    if (!is_moving) {
+      made.duration = count * steps.step;
+      const double factor = made.duration / law.times.back();
+      slow(law, factor);
+      made.highest.velocity /= factor, made.highest.acceleration /= factor * factor;
+    }
+    made.highest = {std::min(made.highest.velocity, 1.0), std::min(made.highest.acceleration, 1.0)};
+    if (within.further.torque || within.further.tip) {
+      made.further = further_in(path, tried.view(), within.further, count);
+      if (Tried::worst(made.further) > 1.0) {
+        tried.use_less(made.further);
+        continue;
+      }
+    }
+    made.outcome = Outcome::MADE;
+  }
+  if (made.outcome != Outcome::MADE) return made;
+  const OwnTimeLaw& law = tried.law();
   const std::size_t states = static_cast<std::size_t>(count) + 1;
   std::vector<double> times(states);
   for (std::size_t i = 0; i < states; i++) times[i] = law.times.back() * (static_cast<double>(i) / count);
   made.positions = made.velocities = made.accelerations = OwnMatrix<double>(states, dim);
-  StatesAt(path, view()).write(times, made.positions, made.velocities, made.accelerations);
-  made.lengths = lengths_at(view(), times);
+  StatesAt(path, tried.view()).write(times, made.positions, made.velocities, made.accelerations);
+  made.lengths = lengths_at(tried.view(), times);
   return made;
+}
+
+/// Return whether a robot with this speed along the first of two lines probably gets slow enough for a corner.
+bool is_slow_enough(Matrix<const double> lines, double deviation, double speed, std::span<const double> acceleration) {
+  const double within[] = {0.0, deviation, 0.0};
+  const Blends blends = rounded(lines, within);
+  const std::size_t dim = lines.columns, arc = blends.bend[0] > 0.0 ? 0 : 1;
+  if (arc >= blends.bend.size() || blends.bend[arc] <= 0.0) return true;
+  const double* along = &blends.along[arc * dim];
+  const double* out = &blends.out[arc * dim];
+  double brakes = std::numeric_limits<double>::infinity(), allowed = brakes;
+  for (std::size_t k = 0; k < dim; k++) {
+    brakes = std::min(brakes, acceleration[k] / std::abs(along[k]));
+    allowed = std::min(allowed, acceleration[k] / (blends.bend[arc] * std::hypot(along[k], out[k])));
+  }
+  return speed * speed - 2.0 * brakes * blends.starts[arc] <= PROBABLY * allowed;
+}
+
+/// Round a corner next to a start or a goal in motion less, until it probably can be driven; then see how often it was
+/// halved.
+int rounded_less(Matrix<const double> waypoints, bool from_goal, double speed, std::span<const double> acceleration,
+                 double& deviation) {
+  OwnMatrix<double> lines(3, waypoints.columns);
+  for (std::size_t i = 0; i < 3; i++) {
+    std::ranges::copy(waypoints[from_goal ? waypoints.rows - 1 - i : i], lines[i].begin());
+  }
+  const Matrix<double> three = lines;
+  int halved = 0;
+  while (halved < HALVINGS && !is_slow_enough(three, deviation, speed, acceleration)) {
+    deviation *= 0.5;
+    halved++;
+  }
+  return halved;
+}
+
+}  // namespace
+
+Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, const Most& most, const Within& within,
+            const Steps& steps) {
+  std::vector<double> deviations(deviation.begin(), deviation.end());
+  int at_start = 0, at_goal = 0;
+  if (waypoints.rows >= 3 && within.start > 0.0) {
+    at_start = rounded_less(waypoints, false, within.start, most.acceleration, deviations[1]);
+  }
+  if (waypoints.rows >= 3 && within.goal > 0.0) {
+    at_goal = rounded_less(waypoints, true, within.goal, most.acceleration, deviations[waypoints.rows - 2]);
+  }
+  while (true) {
+    Timed made = timed_once(waypoints, deviations, most, within, steps);
+    const bool start = made.is_slower_at_start && at_start <= HALVINGS;
+    const bool goal = made.is_slower_at_goal && at_goal <= HALVINGS;
+    if (made.outcome != Outcome::TOO_FAST || !(start || goal) || waypoints.rows < 3) {
+      made.deviations = std::move(deviations);
+      return made;
+    }
+    // A corner that is too near to a start or a goal in motion is too round; at last the robot stops there.
+    const auto halve = [](double& own, int& halved) { own *= halved++ < HALVINGS ? 0.5 : 0.0; };
+    if (start) halve(deviations[1], at_start);
+    if (goal) halve(deviations[waypoints.rows - 2], at_goal);
+  }
 }
 
 }  // namespace evenroad::trajectory

@@ -1,7 +1,8 @@
-// A whole trajectory from rest to rest, in one call: rounded corners, the fastest law, whole steps of time.
+// A whole trajectory in one call: rounded corners, the fastest law, whole steps of time.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,24 +17,41 @@ struct Steps {
   std::size_t most;
 };
 
-/// States at all steps, and how far along the path each is; none where there are too many.
+/// What became of a trajectory.
+enum class Outcome : std::uint8_t {
+  MADE,
+  TOO_LONG,    // it takes too many steps
+  TOO_HEAVY,   // torques cannot hold the robot still
+  TOO_FAST,    // at start or goal it is asked to be faster than the limits let it be
+  NOT_WITHIN,  // no share of the limits was found with which all are kept
+};
+
+/// States at all steps, and how far along the path each is; none where it was not made.
 struct Timed {
+  Outcome outcome;
   OwnMatrix<double> positions, velocities, accelerations;
   std::vector<double> lengths;
   /// Lengths at inner waypoints.
   std::vector<double> corners;
   std::size_t stops;
-  /// Largest shares of the limits that it uses, at all times.
-  Shares highest;
   double duration;
   /// Largest distance of an arc from its path.
   double deviation;
+  /// Bounds of the shares of the limits that it uses at any time.
+  Shares highest;
+  /// Largest shares of further limits, at some times in each step.
+  FurtherShares further;
+  /// Whether it is slower than asked for at start and goal.
+  bool is_slower_at_start = false, is_slower_at_goal = false;
+  /// Within which its corners are rounded.
+  std::vector<double> deviations{};
 };
 
-/// Return the fastest trajectory along a path whose corners are rounded within deviations.
+/// Return the fastest trajectory along a path whose corners are rounded within deviations, or less near start and goal
+/// where it is too fast there.
 ///
-/// The square of its speed along the path is at most `highest`; it ends on a whole step.
-Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, const Most& most, double highest,
+/// From rest to rest it ends on a whole step; else its steps are a little shorter, since it may not be slowed down.
+Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, const Most& most, const Within& within,
             const Steps& steps);
 
 }  // namespace evenroad::trajectory

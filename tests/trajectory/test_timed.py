@@ -11,13 +11,22 @@ from tests.trajectory.curves import curve, limits_from
 ANY_SPEED = 1e300
 
 
+NOTHING = None, None
+
+
+def made(path, deviation, most, steps, highest=ANY_SPEED):
+    """What one call makes: positions, velocities, accelerations, and the rest of what it says."""
+    said = timed(path, deviation, most, (highest, 0.0, 0.0, NOTHING, 1.0), steps)
+    return *said[1], *said[2:8]
+
+
 def dense(seed, step=2e-4):
     """A path, its deviations, limits, and what one call makes of them in short steps."""
     path, limits = curve(seed)[0], limits_from(seed)
     deviation = np.where(np.random.default_rng(seed).random(len(path)) < 0.3 * (seed % 2), 0.0, 0.08)
     highest = ANY_SPEED if limits.along_path is None else limits.along_path**2
-    most = np.array(limits.velocity), np.array(limits.acceleration), highest
-    return path, deviation, limits, timed(path, deviation, most, (step, 1_000_000))
+    most = np.array(limits.velocity), np.array(limits.acceleration)
+    return path, deviation, limits, made(path, deviation, most, (step, 1_000_000), highest)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -68,8 +77,8 @@ def test_lengths_and_the_deviation_are_those_of_the_rounded_path(seed):
 
 @pytest.mark.parametrize(("way", "velocity"), [(4.0, 1.0), (0.3, 5.0)])
 def test_a_line_is_driven_as_by_hand(way, velocity):
-    most = np.array([velocity]), np.array([2.0]), ANY_SPEED
-    *_, duration, off, used = timed(np.array([[0.0], [way]]), np.zeros(2), most, (1e-5, 1_000_000))
+    most = np.array([velocity]), np.array([2.0])
+    *_, duration, off, used = made(np.array([[0.0], [way]]), np.zeros(2), most, (1e-5, 1_000_000))
     by_hand = 2.0 * np.sqrt(way / 2.0) if way <= velocity**2 / 2.0 else way / velocity + velocity / 2.0
     assert duration == pytest.approx(by_hand, rel=5e-4)
     assert off == 0.0
@@ -77,15 +86,17 @@ def test_a_line_is_driven_as_by_hand(way, velocity):
 
 
 def test_too_many_steps_are_none_and_senseless_numbers_are_refused():
-    path, most = np.array([[0.0], [1.0]]), (np.ones(1), np.ones(1), ANY_SPEED)
-    positions, *_, duration, _, _ = timed(path, np.zeros(2), most, (0.1, 10))
+    path, most = np.array([[0.0], [1.0]]), (np.ones(1), np.ones(1))
+    positions, *_, duration, _, _ = made(path, np.zeros(2), most, (0.1, 10))
     assert len(positions) == 0
     assert duration == pytest.approx(2.0, rel=1e-3)
-    assert len(timed(path, np.zeros(2), most, (0.1, 21))[0]) in (21, 22)
+    assert len(made(path, np.zeros(2), most, (0.1, 21))[0]) in (21, 22)
     zero = np.zeros(1)
-    for wrong in ((zero, most[1], 1.0), (most[0], zero, 1.0), (*most[:2], 0.0), (most[0], np.ones(2), 1.0)):
+    for wrong in ((zero, most[1]), (most[0], zero), (most[0], np.ones(2))):
         with pytest.raises(ValueError, match="must"):
-            timed(path, np.zeros(2), wrong, (0.1, 10))
+            made(path, np.zeros(2), wrong, (0.1, 10))
+    with pytest.raises(ValueError, match="must"):
+        made(path, np.zeros(2), most, (0.1, 10), 0.0)
     for steps in ((0.0, 10), (0.1, 0), (np.nan, 10)):
         with pytest.raises(ValueError, match="must"):
-            timed(path, np.zeros(2), most, steps)
+            made(path, np.zeros(2), most, steps)

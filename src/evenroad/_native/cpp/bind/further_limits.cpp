@@ -1,0 +1,93 @@
+// evenroad._native.trajectory.TorqueLimits and TipLimits: what a trajectory keeps beside velocities and accelerations.
+#include "trajectory/further_limits.hpp"
+
+#include <algorithm>
+
+#include "bind/arrays.hpp"
+
+namespace evenroad::bind {
+
+using namespace nb::literals;
+
+namespace {
+
+using trajectory::TipLimits;
+using trajectory::TorqueLimits;
+
+constexpr std::size_t LINK = POSE + 2 + 4 + 9, MOST_DIM = 65536;
+
+/// Return links of the coordinates of their joints, of their parents, which of them slide, and of each a row: its pose,
+/// multiplier, offset, mass, centre and inertia.
+robot::MovingLinks links_of(nb::tuple given, std::size_t dim) {
+  require(given.size() == 4, "links must be four arrays");
+  const Array<const std::int64_t, 1> coordinates(given[0], "coordinates"), parents(given[1], "parents");
+  const Array<const bool, 1> slides(given[2], "slides");
+  const FloatRows rows(given[3], "rows");
+  require(dim <= MOST_DIM, "dim must be at most 65536");
+  parents.of_shape({coordinates.size()}), slides.of_shape({coordinates.size()});
+  rows.of_shape({coordinates.size(), LINK});
+  require_below(coordinates.span(), dim, "coordinates");
+  robot::MovingLinks links{dim, {}};
+  for (std::size_t i = 0; i < coordinates.size(); i++) {
+    const double* row = rows.matrix()[i].data();
+    const std::int64_t parent = parents.span()[i];
+    require(parent >= -1 && parent < static_cast<std::int64_t>(i), "parents must come first");
+    robot::MovingLink link{};
+    std::copy_n(row, 9, link.joint.before.rotation.begin());
+    std::copy_n(row + 9, 3, link.joint.before.origin.begin());
+    link.joint.coordinate = static_cast<int>(coordinates.span()[i]);
+    link.joint.slides = slides.span()[i];
+    link.joint.multiplier = row[POSE], link.joint.offset = row[POSE + 1];
+    link.parent = static_cast<int>(parent);
+    link.mass = row[POSE + 2];
+    std::copy_n(row + POSE + 3, 3, link.centre.begin());
+    std::copy_n(row + POSE + 6, 9, link.inertia.begin());
+    links.links.push_back(link);
+  }
+  return links;
+}
+
+robot::Point point_of(nb::handle given, const char* name) {
+  const Floats numbers(given, name);
+  numbers.of_shape({3});
+  robot::Point point;
+  std::ranges::copy(numbers.span(), point.begin());
+  return point;
+}
+
+void make_torques(TorqueLimits* self, nb::tuple links, nb::handle efforts, nb::handle gravity) {
+  const Floats most(efforts, "efforts", Entries::ANY);
+  for (const double effort : most.span()) require(effort > 0.0, "efforts must be > 0");
+  new (self) TorqueLimits{
+      links_of(links, most.size()), {most.span().begin(), most.span().end()}, point_of(gravity, "gravity")};
+}
+
+void make_tip(TipLimits* self, nb::tuple links, std::size_t dim, std::size_t link, nb::handle point, double speed,
+              double acceleration) {
+  robot::MovingLinks moving = links_of(links, dim);
+  require_below(static_cast<std::int64_t>(link), moving.links.size(), "link");
+  require(speed > 0.0 && acceleration > 0.0, "speed and acceleration must be > 0");
+  new (self) TipLimits{std::move(moving), link, point_of(point, "point"), speed, acceleration};
+}
+
+nb::object torques(const TorqueLimits& limits, nb::handle q, nb::handle velocity, nb::handle acceleration) {
+  const FloatRows here(q, "q"), rates(velocity, "velocity"), pushes(acceleration, "acceleration");
+  for (const auto* each : {&here, &rates, &pushes}) each->of_shape({here.shape(0), limits.links.dim});
+  OwnMatrix<double> needed(here.shape(0), limits.links.dim);
+  without_gil([&] {
+    robot::write_torques(limits.links, here.matrix(), rates.matrix(), pushes.matrix(), limits.upwards(), needed);
+  });
+  return as_rows(std::move(needed));
+}
+
+}  // namespace
+
+void add_further_limits(nb::module_& trajectory) {
+  nb::class_<TorqueLimits>(trajectory, "TorqueLimits")
+      .def("__init__", &make_torques, "links"_a, "efforts"_a, "gravity"_a)
+      .def("torques", &torques, "q"_a, "velocity"_a, "acceleration"_a);
+  nb::class_<TipLimits>(trajectory, "TipLimits")
+      .def("__init__", &make_tip, "links"_a, "dim"_a, "link"_a, "point"_a, "speed"_a, "acceleration"_a);
+}
+
+}  // namespace evenroad::bind

@@ -1,0 +1,81 @@
+// How the links of a robot move, and which torques move them: Newton and Euler's equations, eight states at once.
+//
+// Forces are summed up from the tips to the root (Luh, Walker and Paul 1980).  Each vector is written along the axes of
+// its own frame, so that a step from frame to frame is one turn about z and one that never changes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "common/lanes.hpp"
+#include "common/matrix.hpp"
+#include "robot/chain.hpp"
+
+namespace evenroad::robot {
+
+/// A frame that a joint moves, `before` in its parent's frame, and the mass that is fixed to it.
+struct MovingLink {
+  ChainJoint joint;
+  int parent;  // below its own number; -1 is the root, which stands still
+  double mass;
+  Point centre;                   // of the mass
+  std::array<double, 9> inertia;  // about the centre, row by row
+};
+
+/// Parents come first.
+struct MovingLinks {
+  std::size_t dim;  // of a configuration
+  std::vector<MovingLink> links;
+};
+
+/// So many states are computed at once.
+constexpr std::size_t STATES = 8;
+using States = Lanes<double, STATES>;
+
+struct Vectors {
+  States x{}, y{}, z{};
+};
+
+/// Eight states of a robot's links.
+class MovingStates {
+ public:
+  explicit MovingStates(const MovingLinks& links);
+
+  /// Take configurations, (dim,).
+  void place(std::span<const States> q);
+
+  /// Take velocities, none for links that stand still, and accelerations, (dim,); the root is accelerated by `pulled`.
+  void move(std::span<const States> velocity, std::span<const States> acceleration, const Point& pulled);
+
+  /// Return how a point of a link is accelerated, along the link's axes.
+  Vectors acceleration(std::size_t link, const Point& point) const;
+
+  /// Write the torques, (dim,), that this motion needs.
+  void write_torques(std::span<States> torques);
+
+ private:
+  /// How a frame turns, and is pushed to turn and to move.
+  struct Motion {
+    Vectors turn, turned, pushed;
+  };
+  struct Load {
+    Vectors force, moment;
+  };
+
+  const MovingLinks& links_;
+  /// Of each joint: its angle, or how far it slides.
+  std::vector<States> sines_, cosines_, slides_;
+  std::vector<Motion> motions_;
+  std::vector<Load> loads_;
+};
+
+/// Read up to eight rows from `first` on, coordinate by coordinate; the last row is repeated.
+void read_rows(Matrix<const double> rows, std::size_t first, std::span<States> columns);
+
+/// Write the torques of states, (n, dim) each, where the root is accelerated by `pulled`.
+void write_torques(const MovingLinks& links, Matrix<const double> q, Matrix<const double> velocity,
+                   Matrix<const double> acceleration, const Point& pulled, Matrix<double> torques);
+
+}  // namespace evenroad::robot

@@ -1,0 +1,71 @@
+"""Trajectories without limits of jerk: each try is one compiled call."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad._native.trajectory import timed
+from evenroad.errors import NotAvailable
+from evenroad.trajectory.corners import MOST_STATES, TRIES, drivable, less_at, require_steps
+from evenroad.trajectory.limits import Limits, named_shares
+from evenroad.world import World
+
+_ANY_SPEED = 1e300
+"""Square of a speed that nothing reaches."""
+
+
+def timed_path(
+    world: World | None,
+    waypoints: Floats,
+    limits: Limits,
+    cuts: Floats,
+    step: float,
+    speeds: tuple[float, float] = (0.0, 0.0),
+) -> dict[str, Any]:
+    """Return states, proof and measures of the fastest trajectory, with corners within `cuts`, (p,), or less.
+
+    It has these speeds along the path at start and goal.  Raises as :func:`evenroad.trajectory.make_trajectory`.
+    """
+    highest = _ANY_SPEED if limits.along_path is None else limits.along_path**2
+    most = np.array(limits.velocity), np.array(limits.acceleration)
+    within = highest, *speeds, limits.further, 1.0
+    for tried in range(TRIES):
+        outcome, states, lengths, corners, stops, duration, deviation, used, further, is_slower_at_start, cuts = timed(
+            waypoints, cuts, most, within, (step, MOST_STATES)
+        )
+        shares = dict(zip(("velocity", "acceleration"), used, strict=True)) | named_shares(further)
+        if outcome == "too long":
+            require_steps(MOST_STATES + 1, duration, step)
+        if outcome != "made":
+            raise _refused(outcome, waypoints, limits, shares, "start" if is_slower_at_start else "goal")
+        positions, velocities, accelerations = states
+        free, proof = drivable(world, positions)
+        if free.all():
+            return {
+                "times": (duration / (len(positions) - 1) if any(speeds) else step) * np.arange(len(positions)),
+                "positions": positions,
+                "velocities": velocities,
+                "accelerations": accelerations,
+                "deviation": deviation,
+                "stops": stops,
+                "highest": shares,
+                "proof": proof,
+            }
+        cuts = less_at(cuts, corners, lengths[:-1][~free], tried)
+    raise NotAvailable(f"the trajectory is not proved free at {duration * np.argmin(free) / len(free):.3f} s")
+
+
+def _refused(outcome: str, waypoints: Floats, limits: Limits, shares: dict[str, float], end: str) -> NotAvailable:
+    """Return the error of what was not made, which uses these shares or is too fast at this end."""
+    if outcome == "too heavy":
+        shares_between = np.linspace(0.0, 1.0, 60)[:, np.newaxis]
+        return limits.too_heavy(np.concatenate([a + shares_between * (b - a) for a, b in pairwise(waypoints)]))
+    if outcome == "too fast":
+        text = f"the velocity at the {end} is too fast for the path: within the limits the robot cannot stop on it"
+        return NotAvailable(text)
+    over = ", ".join(f"{100.0 * share:.1f} % of {kind}" for kind, share in shares.items())
+    return NotAvailable(f"no times were found that keep all limits: the slowest ones tried need {over}")
