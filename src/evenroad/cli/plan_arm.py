@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, replace
 from functools import reduce
 from operator import and_
@@ -20,9 +19,6 @@ from evenroad.cli.plan_parts import (
 )
 from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
-from evenroad.constraints.kept_world import keeps_of
-from evenroad.constraints.text import constraints_of
-from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.planning.plan import Options, finished, solve
@@ -30,7 +26,6 @@ from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Goal, Reading, Request
 from evenroad.roadmap import PlanResult
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
-from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.constraint import Constraint
 from evenroad.robot.pose_goal import as_axis, as_numbers, pose_goal_of
 
@@ -70,7 +65,7 @@ def plan_arm(plan: PlanArm) -> int:
 
     options = Options(budget, not plan.raw, plan.seed, plan.certified, constraints)
     # An orientation constraint has a world of its own kind, with its own planner.
-    by = None if not wants_points(plan) and kept is None and keeps_of(constraints) else planner
+    by = None if not wants_points(plan) and kept is None and _keeps(constraints) else planner
     make = None
     if plan.via:
         from evenroad.cli.plan_via import plan_through
@@ -158,21 +153,18 @@ def _goals(plan: PlanArm) -> list[Goal]:
 
 
 def _constraints(plan: PlanArm) -> Constraint | None:
-    """Return the constraints of the tip."""
-    straight, keeps = None, constraints_of([" ".join(words) for words in plan.constraint], degrees=plan.deg)
-    if plan.straight is not None:
-        approach, retreat, *_ = (*as_numbers("--straight", plan.straight, (1, 2)), 0.0)
-        straight = CartesianLine(approach, retreat, plan.away or "-z", plan.tip)
-    elif plan.away is not None:
-        raise InvalidValue("--away goes with --straight")
-    if plan.upright is not None:
-        if plan.roadmap is not None:
-            raise InvalidValue("--upright goes without --roadmap: the roadmap's motions are not upright")
-        within = math.radians(plan.upright) if plan.deg else plan.upright
-        keeps.append(KeepUpright(within, plan.upright_axis, plan.tip))
-    elif plan.upright_axis is not None:
-        raise InvalidValue("--upright-axis goes with --upright")
-    if keeps and plan.roadmap is not None:
-        raise InvalidValue("--constraint goes without --roadmap: the roadmap's motions do not keep it")
-    every: list[Constraint] = [*([straight] if straight else []), *keeps]
-    return reduce(and_, every) if every else None
+    if not plan.constraint and {plan.straight, plan.away, plan.upright, plan.upright_axis} == {None}:
+        return None
+    # Imported late, as below: most plans have no constraints.
+    from evenroad.cli.plan_constraints import given_constraints
+
+    return given_constraints(plan)
+
+
+def _keeps(constraints: Constraint | None) -> bool:
+    """Return whether some of the constraints hold along the whole path."""
+    if constraints is None:
+        return False
+    from evenroad.constraints.kept_world import keeps_of
+
+    return bool(keeps_of(constraints))

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import count
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._native.planning import Answer, Drivers, Improver, Points, answer
 from evenroad.planning import arm_trees
-from evenroad.planning.plain_trees import grow_trees
 from evenroad.roadmap.attempt import NO_LIMIT
 from evenroad.roadmap.connector import Connection, Connector, Search, Smooth
 from evenroad.roadmap.shortcut import shortcut
@@ -20,7 +19,9 @@ from evenroad.robot import ArmWorld
 from evenroad.robot.tree_sequences import cube_points, drivers, drivers_by, native_points, shifted_cube_points
 from evenroad.space.batch import as_batch
 from evenroad.world import World
-from evenroad.world.gridmap.gridmap import DiskWorld
+
+if TYPE_CHECKING:
+    from evenroad.world.gridmap.gridmap import DiskWorld
 
 RESTART = 4_000
 """Number of motions of the first search, after which trees begin again, elsewhere: most queries need fewer."""
@@ -204,6 +205,9 @@ class PlainTrees:
         self, world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float
     ) -> Connection:
         """See :func:`evenroad.planning.plain_trees.grow_trees`."""
+        # Imported late: an arm has compiled trees.
+        from evenroad.planning.plain_trees import grow_trees
+
         return grow_trees(world, start, goals, variant=variant, most_motions=most_motions, seconds=seconds)
 
     def smooth(self, world: World, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
@@ -218,6 +222,9 @@ def connector_of(world: Any) -> Connector | None:
     """Return the compiled connector for this kind of world, or None where there is none."""
     if isinstance(world, ArmWorld):
         return ARM_TREES
+    # Imported late: a plan of an arm has no map.
+    from evenroad.world.gridmap.gridmap import DiskWorld
+
     return CELLS if isinstance(world, DiskWorld) else None
 
 

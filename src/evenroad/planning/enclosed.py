@@ -30,7 +30,11 @@ def with_reasons(world: World, result: PlanResult) -> PlanResult:
     """
     if result.path is not None or result.status not in (Status.NOT_CONNECTED, Status.BUDGET_SPENT):
         return result
-    if result.message.startswith("proved"):
+    # Imported late: most plans have no constraints.
+    from evenroad.constraints.kept_world import KeptWorld
+
+    # Under constraints most short motions leave them: that says nothing.
+    if result.message.startswith("proved") or isinstance(world, KeptWorld):
         return result
     several = len(result.goals) > 1
     named = [("the start", result.start)] + [

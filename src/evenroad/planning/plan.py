@@ -5,20 +5,18 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from evenroad._above import above
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad._shared import once
-from evenroad.constraints.kept_world import KeptWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.enclosed import with_reasons
 from evenroad.planning.prm import FMT, PRM
 from evenroad.planning.read_request import mesh_check, read_request
-from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request
-from evenroad.planning.tip_motion import TipMotion, unreached
+from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request, unreached
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import require_certified
@@ -32,6 +30,9 @@ from evenroad.robot.constraint import Constraint
 from evenroad.robot.reference.validate import MeshCheck
 from evenroad.robot.scan import allowed_everywhere
 from evenroad.world import ShowsApart, World
+
+if TYPE_CHECKING:
+    from evenroad.planning.tip_motion import TipMotion
 
 PLANNERS: dict[str, Callable[[], Planner]] = {"rrtconnect": RRTConnect, "prm": PRM, "fmt": FMT}
 """Planners by name."""
@@ -184,7 +185,7 @@ def _default_budget(seconds: float) -> Budget:
 
 def solve(request: Request, planner: Planner | None, options: Options) -> PlanResult:
     """Plan a request; the path is free in its world."""
-    given, motion = request.given, None if options.constraints is None else TipMotion.of(options.constraints)
+    given, motion = request.given, None if options.constraints is None else _motion_of(options.constraints)
     if (result := unreached(request)) is not None:
         return result
     straight = motion is not None and motion.line is not None
@@ -202,12 +203,18 @@ def solve(request: Request, planner: Planner | None, options: Options) -> PlanRe
             connector=connector_of(world),
         )
         found = (default_planner(world) if planner is None else planner).solve(problem)
-        # Under constraints most short motions leave them: that says nothing.
-        return found if isinstance(world, KeptWorld) else with_reasons(world, found)
+        return found if found.solved else with_reasons(world, found)
 
     if motion is None:
         return plan_once(request.world, request.start, request.goals, options.smooth)
     return motion.plan(request, plan_once, options.smooth)
+
+
+def _motion_of(constraints: Constraint) -> TipMotion:
+    # Imported late: most plans have no constraints.
+    from evenroad.planning.tip_motion import TipMotion
+
+    return TipMotion.of(constraints)
 
 
 def finished(request: Request, result: PlanResult, *, certified: bool = False) -> tuple[PlanResult, MeshCheck | None]:

@@ -12,7 +12,6 @@ from evenroad.planning.connectors import connector_of
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt
-from evenroad.roadmap.certify import certify_graph
 from evenroad.roadmap.points_of import as_points
 from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.query import LINKS, EdgeCost, Query
@@ -208,6 +207,9 @@ def _on_points(planner: _OnPoints, problem: Problem, query: Query, name: str, fi
     certificate = None
     if planner.certify:
         terminals = 1 + len(attempt.goals)
+        # Imported late: few plans have a certificate.
+        from evenroad.roadmap.certify import certify_graph
+
         certificate = certify_graph(points, world.space, states.configurations, states.edges, terminals)
     result = answer(attempt, attempt.search(find, states), points.n)
     if certificate is not None and result.status in (Status.SOLVED, Status.NOT_CONNECTED):

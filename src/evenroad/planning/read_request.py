@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any, TypeGuard, Unpack
 
 import numpy as np
 
@@ -34,7 +34,9 @@ from evenroad.robot.reference.validate import MeshCheck, has_meshes, unseen_pair
 from evenroad.robot.robot import with_group
 from evenroad.robot.scan import allowed_near_ends, open_everywhere
 from evenroad.robot.states import as_configuration
-from evenroad.world import GridMap
+
+if TYPE_CHECKING:
+    from evenroad.world import GridMap
 
 OF_MAP = ("radius", "clearance", "unknown_is_free")
 OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
@@ -62,7 +64,7 @@ def read_request(
             raise InvalidValue(
                 f"{os.fspath(world)!r} needs radius=, of a disk on this map, or robot=, the arm in this scene"
             )
-    if isinstance(world, GridMap):
+    if _is_map(world):
         _require_known(of_world, OF_MAP, "a map")
         if "radius" not in of_world:
             raise InvalidValue("a map goes with radius=, that of the disk that moves on it, in map units")
@@ -85,6 +87,15 @@ def read_request(
             f" {shown(world)}"
         )
     return Request(world, *as_start_and_goals(start, goal, world.space))  # type: ignore[arg-type]
+
+
+def _is_map(world: object) -> TypeGuard[GridMap]:
+    if isinstance(world, Scene | ArmWorld | str | os.PathLike):
+        return False
+    # Imported late: a plan of an arm has no map.
+    from evenroad.world import GridMap
+
+    return isinstance(world, GridMap)
 
 
 def _require_known(given: dict[str, Any], known: Sequence[str], what: str) -> None:

@@ -20,8 +20,7 @@ from evenroad.geometry.pose import Pose
 from evenroad.planning.arm_trees import checks_of
 from evenroad.planning.connectors import drivers_of
 from evenroad.planning.read_request import request_in
-from evenroad.planning.request import ConfigurationLike, Reading
-from evenroad.planning.tip_motion import unreached
+from evenroad.planning.request import ConfigurationLike, Reading, unreached
 from evenroad.planning.trees import variant_of
 from evenroad.roadmap.answer import path_message, refusal
 from evenroad.roadmap.attempt import Attempt

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
+from evenroad.roadmap.result import PlanResult, Status, make_result
 from evenroad.robot import RobotModel
 from evenroad.robot.goals import Goals
 from evenroad.robot.pose_goal import PoseGoal
@@ -69,3 +70,17 @@ class Request:
     def tip(self) -> str:
         """The link that goal poses place, or nothing."""
         return self.given.poses[0][0].tip if self.given is not None and self.given.poses else ""
+
+
+def refused(request: Request, status: Status, message: str) -> PlanResult:
+    """Return the result of a plan that was not made."""
+    return make_result(request.world, request.start, request.goals, status, message)
+
+
+def unreached(request: Request) -> PlanResult | None:
+    """Return the result where no posture reaches a pose among the goals; else None."""
+    given = request.given
+    if given is None or not given.unreached:
+        return None
+    status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
+    return replace(refused(request, status, given.unreached), timings={"goals": given.seconds})

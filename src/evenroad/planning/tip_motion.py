@@ -13,7 +13,7 @@ from evenroad.constraints.driven_world import DifferentialDrive, driven_world
 from evenroad.constraints.keep import Keep
 from evenroad.constraints.kept_world import KeptWorld, keeps_of, kept_line, kept_world
 from evenroad.errors import InvalidValue
-from evenroad.planning.request import Request
+from evenroad.planning.request import Request, refused
 from evenroad.roadmap import PlanResult, Status
 from evenroad.roadmap.connector import Smooth
 from evenroad.roadmap.result import make_result, require_start_and_goal
@@ -33,20 +33,6 @@ _TRIED = 0, 1, 4, 16
 
 PlanOnce = Callable[[World, Floats, Floats, Smooth], PlanResult]
 """A function that plans in a world from a start, (dim,), to goals, (g, dim), and shortens the path or not."""
-
-
-def refused(request: Request, status: Status, message: str) -> PlanResult:
-    """Return the result of a plan that was not made."""
-    return make_result(request.world, request.start, request.goals, status, message)
-
-
-def unreached(request: Request) -> PlanResult | None:
-    """Return the result where no posture reaches a pose among the goals; else None."""
-    given = request.given
-    if given is None or not given.unreached:
-        return None
-    status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
-    return replace(refused(request, status, given.unreached), timings={"goals": given.seconds})
 
 
 def _chain(request: Request, tip: str) -> Chain:

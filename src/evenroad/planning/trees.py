@@ -14,11 +14,8 @@ from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._native.planning import Answer
 from evenroad._rng import RngLike, generator, seed_of
-from evenroad.constraints.kept_world import KeptWorld
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import CELLS, RESTART, ArmTrees, connector_of, trees_for
-from evenroad.planning.growing import GrowingPRM
-from evenroad.planning.improve import improved, rest_of
 from evenroad.roadmap.answer import connected, gave_up, path_message, proof_of, refusal, shown_apart
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.connector import Connection, Connector, require_smooth
@@ -26,7 +23,6 @@ from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.query import Query
 from evenroad.roadmap.result import NO_POINTS, PlanResult, Status, make_result
 from evenroad.space.path import path_length
-from evenroad.world.gridmap.gridmap import DiskWorld
 
 _NOTHING = Connection(np.empty((0, 0)), -1, 0, 0, 0)
 """What searches found before the first."""
@@ -87,6 +83,9 @@ class GridSearch:
 
     def solve(self, problem: Problem) -> PlanResult:
         """Return a path, or the proof that there is none; see :class:`GridSearch`."""
+        # Imported late, as other planners and worlds here: a plan of an arm needs none of them.
+        from evenroad.world.gridmap.gridmap import DiskWorld
+
         if not isinstance(problem.world, DiskWorld):
             raise InvalidValue(f"GridSearch plans for disks on maps, got {problem.world!r}")
         return solve_by(problem, CELLS, improve=self.improve)
@@ -96,6 +95,8 @@ def default_planner(world: Any, *, improve: bool = False) -> Planner:
     """Return the default planner of this kind of world."""
     connector = connector_of(world)
     if connector is None:
+        from evenroad.constraints.kept_world import KeptWorld
+
         return RRTConnect(improve) if isinstance(world, KeptWorld) else _growing(improve)
     if connector is CELLS:
         return GridSearch(improve)
@@ -105,7 +106,9 @@ def default_planner(world: Any, *, improve: bool = False) -> Planner:
 _TREES = RRTConnect()
 
 
-def _growing(improve: bool) -> GrowingPRM:
+def _growing(improve: bool) -> Planner:
+    from evenroad.planning.growing import GrowingPRM
+
     return GrowingPRM(until="budget", informed=True) if improve else GrowingPRM(until="solved")
 
 
@@ -130,9 +133,14 @@ def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -
     connection = _first_path(attempt, connector, variant, first)
     if isinstance(connection, PlanResult):
         return connection
+    if connection.goal >= 0 and not improve:
+        return connected(attempt, connection)
+    # Imported late: most searches end before.
+    from evenroad.planning.improve import improved, rest_of
+
     if connection.goal >= 0:
         result = connected(attempt, connection)
-        return improved(attempt, connector, result, variant) if improve else result
+        return improved(attempt, connector, result, variant)
     if (left := attempt.left()) is None:
         return gave_up(attempt, connection)
     return _growing(improve).solve(rest_of(attempt, left))

@@ -10,8 +10,6 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.errors import EvenroadError
-from evenroad.points.measures.rank_one import least_neighbours
-from evenroad.points.measures.short_vectors import MOST_AXES, lattice_basis
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.connector import Connection
 from evenroad.roadmap.neighbours import flat_metric
@@ -192,6 +190,10 @@ def _few_directions(attempt: Attempt, points: int) -> str:
     k, scale = int(rule[1]), _axis_scales(space)
     if scale is None:
         return ""
+    # Imported late: most plans are not on lattices.
+    from evenroad.points.measures.rank_one import least_neighbours
+    from evenroad.points.measures.short_vectors import MOST_AXES, lattice_basis
+
     # Nearest points come in opposite pairs: at least this number is needed.
     least, advice = 2 * d - 1, f"at least {2 * d - 1} are needed"
     if d <= MOST_AXES and not ("permuted" in method and np.ptp(scale) > 1e-9 * scale[0]):

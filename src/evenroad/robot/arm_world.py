@@ -28,7 +28,6 @@ from evenroad.robot.planes import with_planes
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot, within_scene
 from evenroad.robot.scene import Scene, limits_in_words, smaller_scene
-from evenroad.robot.separated import apart
 from evenroad.robot.states import as_configuration
 from evenroad.robot.world_changes import WorldChanges
 from evenroad.space import JointSpace
@@ -225,6 +224,9 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
         bodies inside the robot's true shapes, see :mod:`evenroad.robot.separated`.
         """
         terminals = as_batch("start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim)
+        # Imported late: few plans need the proof.
+        from evenroad.robot.separated import apart
+
         return apart(self, terminals[0], terminals[1:], quickly=quickly)
 
     @property

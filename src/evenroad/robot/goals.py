@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter as now
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,8 +15,10 @@ from evenroad.robot.chain import chain_of, default_tip, frame_pose
 from evenroad.robot.inverse_kinematics import Checks, Reached, reach, reach_quickly, task_of
 from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
 from evenroad.robot.robot import Robot
-from evenroad.robot.separated import InScene, apart
 from evenroad.world.protocol import Apart
+
+if TYPE_CHECKING:
+    from evenroad.robot.separated import InScene
 
 MANY = 8
 """Number of goal poses from which on those that are hard to reach count only where no other is reached."""
@@ -60,6 +62,9 @@ class Goals:
         poses = [] if straight else [goal for goal, _ in self.poses]
 
         def prove(start: Floats, goals: Floats, quickly: bool) -> Apart | None:
+            # Imported late: few plans need the proof.
+            from evenroad.robot.separated import apart
+
             return apart(world, start, goals, poses, quickly=quickly, whole=self.whole and not straight)
 
         return prove

@@ -24,7 +24,6 @@ from evenroad.robot.cache import cached, keep, key_of, know, known, stamps
 from evenroad.robot.find import find_robot
 from evenroad.robot.free_joints import without_moved
 from evenroad.robot.groups import choose_group, chosen_states, group_notes, held_states
-from evenroad.robot.mjcf import read_mjcf
 from evenroad.robot.pairs import pairs_of, self_pairs
 from evenroad.robot.robot import Robot
 from evenroad.robot.robot_methods import Padding
@@ -185,7 +184,12 @@ def _padded(model: RobotModel, padding: Padding | None) -> RobotModel:
 def read_robot(file: RobotFile) -> Urdf:
     """Return what the file of a robot says: an MJCF with the suffix ``.xml`` or ``.mjcf``, else a URDF or xacro."""
     is_mjcf = file.path.suffix in (".xml", ".mjcf") and outermost(file.path) != "robot"
-    return read_mjcf(file) if is_mjcf else read_urdf(file)
+    if not is_mjcf:
+        return read_urdf(file)
+    # Imported late: most robots are URDFs.
+    from evenroad.robot.mjcf import read_mjcf
+
+    return read_mjcf(file)
 
 
 def _build(

@@ -16,8 +16,7 @@ from evenroad.planning import arm_trees
 from evenroad.planning.arm_trees import checks_of
 from evenroad.planning.connectors import ArmTrees
 from evenroad.planning.read_request import request_in
-from evenroad.planning.request import ConfigurationLike, Goal, Reading
-from evenroad.planning.tip_motion import unreached
+from evenroad.planning.request import ConfigurationLike, Goal, Reading, unreached
 from evenroad.planning.trees import RRTConnect
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal

@@ -11,8 +11,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.constraints.kept_world import keeps_of, kept_line, kept_world
-from evenroad.planning.request import Request
-from evenroad.planning.tip_motion import refused, unreached
+from evenroad.planning.request import Request, refused, unreached
 from evenroad.roadmap import PlanResult, Status
 from evenroad.roadmap.result import make_result
 from evenroad.robot import ArmWorld

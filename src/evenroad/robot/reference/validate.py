@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -14,12 +14,14 @@ from evenroad._rng import generator
 from evenroad.errors import NotAvailable
 from evenroad.geometry.shapes import PointCloud
 from evenroad.robot.pairs import HELD_TOUCHING, TOUCHING
-from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
 from evenroad.robot.robot import Robot
 from evenroad.robot.robot_model import RobotModel
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import resample
+
+if TYPE_CHECKING:
+    from evenroad.robot.reference.coal_world import CoalWorld
 
 MeshStatus = Literal["free", "in collision", "not checked"]
 FINER = 10
@@ -83,6 +85,9 @@ def validate(
     the robot's own, as of `unseen_pairs`; left out are those whose shapes touch whatever the joints do.  Raises
     BrokenFile or InvalidValue if the URDF or a mesh is missing, broken or empty by now.
     """
+    # Imported late: shipped robots have no meshes.
+    from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
+
     clouds = [obstacle.name for obstacle in scene.obstacles if isinstance(obstacle.body, PointCloud)]
     scene = scene.without(*clouds)
     every = replace(robot, pairs=(*robot.pairs, *unseen))
