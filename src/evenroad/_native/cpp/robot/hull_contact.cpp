@@ -178,7 +178,8 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
   const auto leaves_meet = [&](int a, int b, int lane, PlaneNormal& plane) {
     if ((placed >> lane & 1) == 0) poses[lane] = relative_pose(first.frame, second.frame, lane), placed |= 1U << lane;
     Vec3 point;
-    const bool near = leaves_near(tree, a, other, b, poses[lane], margin, plane, point);
+    Ended* ended = kept != nullptr ? &kept->end_of(a, b) : nullptr;
+    const bool near = leaves_near(tree, a, other, b, poses[lane], margin, plane, point, ended);
     if (kept == nullptr) return near;
     if (!near) {
       const double* at = plane.at;

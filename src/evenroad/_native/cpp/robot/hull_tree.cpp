@@ -19,6 +19,7 @@ namespace {
 
 constexpr int MOST_STEPS = 40;
 constexpr double SAME = 1e-9;     // lengths that differ by less are one [m]
+constexpr double SURE = 2e-6;     // where a search begins with what is kept it decides by more, in parts of a margin
 constexpr double THICKER = 1e-4;  // half extents of boxes are taken for so much more [m]
 constexpr int FEW_POINTS = 4;     // so few are looked at one by one, in double precision
 
@@ -119,6 +120,114 @@ Vector first_way(const HullNode<T>& a, const HullNode<T>& b, const RelativePose&
   return way;
 }
 
+enum class Answer : std::uint8_t { APART, NEAR, OPEN };
+
+/// A search for a plane between two leaves.
+template <class T>
+struct Search {
+  const HullTree<T>& tree;
+  const HullNode<T>& a;
+  const HullTree<T>& other;
+  const HullNode<T>& b;
+  const RelativePose& pose;
+  PlaneNormal& plane;
+  Vec3& point;
+  Simplex simplex;
+  Vector way;
+  double length = 0.0;
+  int count = 0;  // of points that corners are made of, which are not written before they are known
+  Vector places[MOST_STEPS + 4], others[MOST_STEPS + 4];
+
+  Search(const HullTree<T>& tree, const HullNode<T>& a, const HullTree<T>& other, const HullNode<T>& b,
+         const RelativePose& pose, PlaneNormal& plane, Vec3& point)
+      : tree(tree), a(a), other(other), b(b), pose(pose), plane(plane), point(point) {}
+
+  /// Add a corner: a point of the first less one of the second.
+  void add(const Vector& p, const Vector& q) {
+    places[count] = p, others[count] = q;
+    simplex.numbers[simplex.size] = count++;
+    Vector& apart = simplex.corners[simplex.size++];
+    for (int axis = 0; axis < 3; axis++) {
+      const double* row = pose.rotation + 3 * axis;
+      const double turned = row[0] * q[0] + row[1] * q[1] + row[2] * q[2];
+      apart[axis] = p[axis] - turned - pose.translation[axis];
+    }
+  }
+
+  /// Take the way from what of the corners is nearest; return whether they are around where the two would touch.
+  bool turn() {
+    nearest(simplex, way);
+    length = std::sqrt(squared_length(way));
+    return simplex.size <= 0;
+  }
+
+  void write(Ended* ended, int size) const {
+    if (ended == nullptr || size == 0) return;
+    ended->size = size;
+    for (int i = 0; i < size; i++) {
+      ended->first[i] = places[simplex.numbers[i]], ended->second[i] = others[simplex.numbers[i]];
+    }
+  }
+
+  /// What is farthest along the way, and by how much a plane across it has the two apart.
+  struct Across {
+    Farthest p, q;
+    double gap;
+    Vector normal;  // in the frame of the second
+  };
+
+  Across look() const {
+    const double *m = pose.rotation, *shift = pose.translation;
+    const double x = way[0] / length, y = way[1] / length, z = way[2] / length;
+    const Vector turned_back = {m[0] * x + m[3] * y + m[6] * z, m[1] * x + m[4] * y + m[7] * z,
+                                m[2] * x + m[5] * y + m[8] * z};
+    const Farthest p = farthest(tree, a, {-x, -y, -z}), q = farthest(other, b, turned_back);
+    return {p, q, -p.along - q.along - (shift[0] * x + shift[1] * y + shift[2] * z), turned_back};
+  }
+
+  Answer apart(const Across& seen) {
+    for (int axis = 0; axis < 3; axis++) plane.at[axis] = seen.normal[axis];
+    return Answer::APART;
+  }
+
+  /// Go on from where another search ended, but first with the plane that is given, if there is one.
+  Answer go_on(double apart_by, double near_by, Ended& ended) {
+    if (plane.at[0] != 0 || plane.at[1] != 0 || plane.at[2] != 0) {
+      way = first_way(a, b, pose, plane), length = std::sqrt(squared_length(way));
+      const Across seen = look();
+      if (seen.gap > apart_by) return apart(seen);
+    }
+    for (int i = 0; i < ended.size; i++) add(ended.first[i], ended.second[i]);
+    point = {static_cast<float>(places[0][0]), static_cast<float>(places[0][1]), static_cast<float>(places[0][2])};
+    return turn() || length <= near_by ? Answer::NEAR : steps(apart_by, near_by, &ended);
+  }
+
+  Answer go(double apart_by, double near_by, Ended* ended) {
+    simplex.size = count = 0;
+    way = first_way(a, b, pose, plane), length = std::sqrt(squared_length(way));
+    return length == 0.0 ? Answer::NEAR : steps(apart_by, near_by, ended);
+  }
+
+  Answer steps(double apart_by, double near_by, Ended* ended) {
+    for (int step = 0; step < MOST_STEPS; step++) {
+      const Across seen = look();
+      if (seen.gap > apart_by) {
+        write(ended, simplex.size);
+        return apart(seen);
+      }
+      const Vector &p = seen.p.place, &q = seen.q.place;
+      point = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+      if (simplex.size > 0 && length - seen.gap < 1e-6 * length + SAME) return Answer::OPEN;
+      add(p, q);
+      if (turn() || length <= near_by) {
+        write(ended, simplex.size <= 0 ? 4 : simplex.size);
+        return Answer::NEAR;
+      }
+    }
+    return Answer::OPEN;
+  }
+};
+
 }  // namespace
 
 template <class T>
@@ -176,44 +285,21 @@ HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, co
 
 template <class T>
 bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, int second, const RelativePose& pose,
-                 double margin, PlaneNormal& plane, Vec3& point) {
+                 double margin, PlaneNormal& plane, Vec3& point, Ended* ended) {
   const HullNode<T>&a = tree.nodes[first], &b = other.nodes[second];
-  const double* m = pose.rotation;
-  Simplex simplex;
-  Vector way = first_way(a, b, pose, plane);
-  double length = std::sqrt(squared_length(way));
-  if (length == 0.0) return true;
   margin += a.width + b.width + slack_of(a) + slack_of(b);
-  for (int step = 0; step < MOST_STEPS; step++) {
-    const double x = way[0] / length, y = way[1] / length, z = way[2] / length;
-    const Vector turned_back = {m[0] * x + m[3] * y + m[6] * z, m[1] * x + m[4] * y + m[7] * z,
-                                m[2] * x + m[5] * y + m[8] * z};
-    const Farthest p = farthest(tree, a, {-x, -y, -z}), q = farthest(other, b, turned_back);
-    const double gap =
-        -p.along - q.along - (pose.translation[0] * x + pose.translation[1] * y + pose.translation[2] * z);
-    if (gap > margin) {
-      for (int axis = 0; axis < 3; axis++) plane.at[axis] = turned_back[axis];
-      return false;
-    }
-    point = {static_cast<float>(p.place[0]), static_cast<float>(p.place[1]), static_cast<float>(p.place[2])};
-    if (simplex.size > 0 && length - gap < 1e-6 * length + SAME) return true;
-    Vector& apart = simplex.corners[simplex.size++];
-    for (int axis = 0; axis < 3; axis++) {
-      const double* row = m + 3 * axis;
-      const double turned = row[0] * q.place[0] + row[1] * q.place[1] + row[2] * q.place[2];
-      apart[axis] = p.place[axis] - turned - pose.translation[axis];
-    }
-    nearest(simplex, way);
-    length = std::sqrt(squared_length(way));
-    if (simplex.size <= 0 || length <= std::max(margin, SAME)) return true;
+  Search<T> search{tree, a, other, b, pose, plane, point};
+  if (ended != nullptr && ended->size > 0 && margin > 4.0 * SAME) {
+    const Answer answer = search.go_on(margin * (1.0 + SURE) + 2.0 * SAME, margin - SAME, *ended);
+    if (answer != Answer::OPEN) return answer == Answer::NEAR;
   }
-  return true;
+  return search.go(margin, std::max(margin, SAME), ended) != Answer::APART;
 }
 
 #define EVENROAD_HULLS_OF(T)                                                                               \
   template HullContact find_hull_contact(const HullTree<T>&, int, int, const RelativePose&, double);       \
   template bool leaves_near(const HullTree<T>&, int, const HullTree<T>&, int, const RelativePose&, double, \
-                            PlaneNormal&, Vec3&);
+                            PlaneNormal&, Vec3&, Ended*);
 EVENROAD_HULLS_OF(float)
 EVENROAD_HULLS_OF(double)
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/float16.hpp"
+#include "robot/simplex.hpp"
 
 namespace evenroad::robot {
 
@@ -102,9 +103,10 @@ struct PlaneNormal {
 
 /// Return whether two leaves, each of a tree, come within a margin; apart is only what a plane separates.  The search
 /// begins with a plane, if one is given, and writes the one that separates them, or else a point of the first that is
-/// about nearest to the second.
+/// about nearest to the second.  It goes on from where another one of these leaves ended, if that is given, and writes
+/// where it ends; what that decides by less than rounding is sought anew.
 template <class T>
 bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, int second, const RelativePose& pose,
-                 double margin, PlaneNormal& plane, Vec3& point);
+                 double margin, PlaneNormal& plane, Vec3& point, Ended* ended = nullptr);
 
 }  // namespace evenroad::robot

@@ -36,8 +36,21 @@ struct Kept {
   bool has_point = false;
 };
 
+/// Where the last search for a plane between two leaves ended.
+struct KeptEnd {
+  int first = -1, second = -1;
+  Ended ended;
+};
+
 class KeptOfPairs {
  public:
+  /// Return the same of the end of a search between two leaves.
+  Ended& end_of(int first, int second) {
+    KeptEnd& kept = ends_[static_cast<std::size_t>(37 * first + second) % ends_.size()];
+    if (kept.first != first || kept.second != second) kept.first = first, kept.second = second, kept.ended.size = 0;
+    return kept.ended;
+  }
+
   /// Return where that of two nodes is kept; what is there of others is forgotten.
   Kept& of(int first, int second) {
     Kept& kept = kept_[static_cast<std::size_t>(37 * first + second) % kept_.size()];
@@ -47,6 +60,7 @@ class KeptOfPairs {
 
  private:
   std::array<Kept, 512> kept_;
+  std::array<KeptEnd, 64> ends_;
 };
 
 struct Places {

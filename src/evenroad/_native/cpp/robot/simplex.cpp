@@ -77,7 +77,9 @@ void nearest(Simplex& s, Vector& v) {
   }
   int count = 0;
   for (int i = 0; i < s.size; i++) {
-    if ((found.between >> i & 1) != 0) s.corners[count++] = s.corners[i];
+    if ((found.between >> i & 1) == 0) continue;
+    s.numbers[count] = s.numbers[i];
+    s.corners[count++] = s.corners[i];
   }
   s.size = count, v = found.place;
 }

@@ -24,6 +24,13 @@ inline double squared_length(const Vector& v) { return dot(v, v); }
 /// Up to four points of the difference of two hulls.
 struct Simplex {
   Vector corners[4];
+  int numbers[4];  // that go with the corners
+  int size = 0;
+};
+
+/// Up to four points of each of two hulls, in their own frames: corners of the simplex at which a search ended.
+struct Ended {
+  Vector first[4], second[4];
   int size = 0;
 };
 
