@@ -10,7 +10,6 @@ least `ARM` joints, none of them another's), and the processor's seconds.
 
 from __future__ import annotations
 
-import csv
 import json
 import os
 import resource
@@ -21,7 +20,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from studies.benchmarks.rows import parser_of, row_per_robot
+from studies.benchmarks.rows import given_or_table, parser_of, row_per_robot
 
 from evenroad.robot import load_robot
 from evenroad.robot.groups import chains
@@ -96,15 +95,7 @@ def table(rows: Sequence[dict[str, str]]) -> str:
 
 def main() -> None:
     """Write a row for each robot as soon as it is there, or print the table of a file's rows."""
-    parser = parser_of(__doc__)
-    parser.add_argument("out", type=Path)
-    parser.add_argument("robots", type=Path, nargs="*")
-    parser.add_argument("--table", action="store_true")
-    given = parser.parse_args()
-    if given.table:
-        with given.out.open(newline="") as stream:
-            print(table(list(csv.DictReader(stream))))
-        return
+    given = given_or_table(parser_of(__doc__), table)
     row_per_robot(FIELDS, "*.urdf", measured, lambda file: file.stem, [given.out, *given.robots])
 
 

@@ -178,16 +178,22 @@ def is_on_curve(problem: Kept, goals: np.ndarray) -> bool:
     return bool(np.linalg.norm(curve[:, np.newaxis] - goals, axis=2).min() < 2.0 * FINE)
 
 
-def main() -> None:
-    """Plan all, print a row a kind."""
-    parser = parser_of(__doc__)
-    parser.add_argument("--count", type=int, default=50, help="problems of each kind")
+def given_options(doc: str | None, count: int) -> tuple[list[str], int, int]:
+    """Return the kinds of problems, how many of each, and their seed, of a command line with this help."""
+    parser = parser_of(doc)
+    parser.add_argument("--count", type=int, default=count, help="problems of each kind")
     parser.add_argument("--only", choices=[*KINDS], help="one kind alone")
     parser.add_argument("--tuning", action="store_true", help="the seeds that constants were chosen on")
-    options = parser.parse_args()
-    for kind in [options.only] if options.only else KINDS:
+    given = parser.parse_args()
+    return [given.only] if given.only else [*KINDS], given.count, TUNING if given.tuning else REPORTING
+
+
+def main() -> None:
+    """Plan all, print a row a kind."""
+    kinds, count, seed = given_options(__doc__, 50)
+    for kind in kinds:
         times, solved, solvable, off = [], [], [], 0.0
-        for problem in problems(kind, options.count, TUNING if options.tuning else REPORTING):
+        for problem in problems(kind, count, seed):
 
             def planned(motions: int, problem: Kept = problem) -> er.PlanResult:
                 limits = {"motions": motions}

@@ -25,9 +25,8 @@ from ompl import util as ou
 from roboplan.core import JointConfiguration
 from roboplan.rrt import RRT, ConstraintProjectorOptions, PoseConstraint, RRTOptions
 from studies.benchmarks.arm_problems import Problem
-from studies.benchmarks.kept import FORWARD, KINDS, REPORTING, TUNING, Kept, problems
+from studies.benchmarks.kept import FORWARD, TUNING, Kept, given_options, problems
 from studies.benchmarks.roboplan_arm import GROUP, MOST_NODES, STEP, scene_of
-from studies.benchmarks.rows import parser_of
 
 import evenroad as er
 from evenroad.constraints.kept_world import KeptWorld, keeps_of, kept_world
@@ -137,20 +136,16 @@ def by_roboplan(kind: str, problem: Kept, kept: KeptWorld, goal: Path_) -> Path_
 
 def main() -> None:
     """Plan all, print a row a kind and a planner."""
-    parser = parser_of(__doc__)
-    parser.add_argument("--count", type=int, default=20, help="problems of each kind")
-    parser.add_argument("--only", choices=[*KINDS], help="one kind alone")
-    parser.add_argument("--tuning", action="store_true", help="the seeds that constants were chosen on")
-    options = parser.parse_args()
+    kinds, count, seed = given_options(__doc__, 20)
     ou.setLogLevel(ou.LOG_ERROR)
-    for kind in [options.only] if options.only else KINDS:
+    for kind in kinds:
         asked: dict[str, Callable[..., Path_ | None]] = {"OMPL": by_ompl}
         if kind in ("tray", "line"):
             asked["RoboPlan"] = by_roboplan
         rows: dict[str, list[tuple[float, bool, bool, bool]]] = {name: [] for name in ("evenroad", *asked)}
         first = next(problems(kind, 1, TUNING))
         er.plan(first.world, first.start, first.goal, constraints=first.constraints)
-        for problem in problems(kind, options.count, TUNING if options.tuning else REPORTING):
+        for problem in problems(kind, count, seed):
             begin = time.process_time()
             result = er.plan(problem.world, problem.start, problem.goal, constraints=problem.constraints, seconds=60)
             spent = time.process_time() - begin

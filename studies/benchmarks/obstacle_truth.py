@@ -12,7 +12,6 @@ them.
 
 from __future__ import annotations
 
-import csv
 import os
 import time
 from collections.abc import Sequence
@@ -20,7 +19,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from studies.benchmarks.rows import parser_of, row_per_robot
+from studies.benchmarks.rows import given_or_table, parser_of, row_per_robot
 
 from evenroad.geometry import rotation_from_rpy
 from evenroad.robot import ArmWorld, Robot, Scene, load_model
@@ -262,15 +261,8 @@ def table(rows: Sequence[dict[str, str]]) -> str:
 def main() -> None:
     """Write a row for each robot as soon as it is there, or print the table of a file's rows."""
     parser = parser_of(__doc__)
-    parser.add_argument("out", type=Path)
-    parser.add_argument("robots", type=Path, nargs="*")
     parser.add_argument("--count", type=int, default=2000)
-    parser.add_argument("--table", action="store_true")
-    given = parser.parse_args()
-    if given.table:
-        with given.out.open(newline="") as stream:
-            print(table(list(csv.DictReader(stream))))
-        return
+    given = given_or_table(parser, table)
     os.nice(5)
     paths = [given.out, *given.robots]
     row_per_robot(FIELDS, "*.urdf", lambda file: measured(file, given.count), lambda file: file.stem, paths)

@@ -20,6 +20,21 @@ def parser_of(doc: str | None) -> argparse.ArgumentParser:
     return argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
+def given_or_table(
+    parser: argparse.ArgumentParser, table: Callable[[Sequence[dict[str, str]]], str]
+) -> argparse.Namespace:
+    """Return the options of a benchmark of robots; with `--table`, print the table of a file's rows and end."""
+    parser.add_argument("out", type=Path)
+    parser.add_argument("robots", type=Path, nargs="*")
+    parser.add_argument("--table", action="store_true")
+    given = parser.parse_args()
+    if given.table:
+        with given.out.open(newline="") as stream:
+            print(table(list(csv.DictReader(stream))))
+        raise SystemExit
+    return given
+
+
 def write_rows(out: Path | None, columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> None:
     """Write rows to a CSV file, in place of what it holds; to none if there is none."""
     if out is not None:

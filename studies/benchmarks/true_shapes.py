@@ -16,7 +16,6 @@ search.  ``motions`` is how many more motions a plan with shapes looks at.  The 
 
 from __future__ import annotations
 
-import csv
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -25,7 +24,7 @@ from pathlib import Path
 import numpy as np
 from studies.benchmarks.obstacle_truth import CLEAR, DEEP, held_joints, touching
 from studies.benchmarks.robot_truth import Truth
-from studies.benchmarks.rows import parser_of, write_rows
+from studies.benchmarks.rows import given_or_table, parser_of, write_rows
 
 import evenroad as er
 from evenroad.planning.arm_trees import grown_trees
@@ -228,15 +227,8 @@ def table(rows: list[dict[str, str]]) -> str:
 def main() -> None:
     """Write a row for each robot and family as soon as it is there, or print the table of a file's rows."""
     parser = parser_of(__doc__)
-    parser.add_argument("out", type=Path)
-    parser.add_argument("robots", type=Path, nargs="*")
     parser.add_argument("--each", type=int, default=25)
-    parser.add_argument("--table", action="store_true")
-    given = parser.parse_args()
-    if given.table:
-        with given.out.open(newline="") as stream:
-            print(table(list(csv.DictReader(stream))))
-        return
+    given = given_or_table(parser, table)
     done: list[dict[str, object]] = []
     problems_of_all: list[np.ndarray] = []
     for file in given.robots:

@@ -77,6 +77,20 @@ def test_the_same_command_gives_the_same_path_and_another_seed_another(answer):
     assert a != c
 
 
+def test_a_plan_of_an_arm_loads_what_it_needs_alone(tmp_path):
+    """Half of a plan's time is loading: what is loaded for nothing is felt."""
+    unneeded = {
+        *("scipy", "rich", "email", "asyncio", "zipfile", "tempfile", "PIL.JpegImagePlugin"),
+        *("evenroad.constraints.keep", "evenroad.world.gridmap.gridmap", "evenroad.planning.growing"),
+        *("evenroad.robot.separated", "evenroad.robot.mjcf", "evenroad.points.measures.l2", "evenroad.trajectory"),
+    }
+    code = f"import sys; from evenroad.cli import main; main(sys.argv[1:]); print({unneeded!r} & set(sys.modules))"
+    words = "plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside"
+    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "set()"
+    assert (tmp_path / "box-reach.png").exists()
+
+
 def test_without_a_picture_nothing_is_drawn_and_what_draws_is_not_even_loaded(tmp_path):
     code = "import sys; from evenroad.cli import main; main(sys.argv[1:]); print('evenroad.viz' in sys.modules)"
     line = [sys.executable, "-c", code, *map(str, plan_arguments(out="a")), "--no-picture"]

@@ -139,8 +139,10 @@ def print_plan(result: PlanResult, files: Iterable[str], more: Sequence[tuple[st
     if result.proof is not None:
         rows.append(("proved", PROOFS[result.proof].format(result.bodies)))
     if result.clearance is not None:
-        between = "" if result.nearest is None else ", between {!r} and {!r}".format(*result.nearest)
-        rows.append(("clearance", f"{result.clearance:.6g} at least{between}"))
+        # An arm's is in metres, a disk's in units of its map.
+        pair = result.nearest
+        least = " at least" if pair is None else f" m at least, between {pair[0]!r} and {pair[1]!r}"
+        rows.append(("clearance", f"{result.clearance:.6g}{least}"))
     # Few digits, so that all phases fit into one line.
     times = {phase: 1e3 * seconds for phase, seconds in result.timings.items()}
     if times:
