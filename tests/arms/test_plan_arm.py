@@ -111,7 +111,7 @@ def test_a_motion_that_cannot_be_proved_is_named(monkeypatch):
     monkeypatch.setattr(er.ArmWorld, "validate", lambda self, path: doubt[: len(path) - 1])
     result = er.plan("box-reach", "home", "inside", robot="ur5", certified=True)
     assert result.status == "not_certified"
-    assert "motion 2 of 7 is not proved free, from (" in result.message
+    assert "motion 2 of 8 is not proved free, from (" in result.message
     assert not result.solved
     assert result.proof == "resolution"
 

@@ -24,7 +24,7 @@ class Answer:
     length: float
     counts: tuple[int, int, int, int]
     seconds: tuple[float, float]
-    def keep_apart(self, roomier: Checker, drivers: Drivers) -> None: ...
+    def smooth_apart(self, checker: Checker, roomier: Checker, drivers: Drivers) -> None: ...
 
 class Trees:
     path: Floats
@@ -88,7 +88,7 @@ def shorten(checks: Checks, path: Floats, pairs: Points, most_shortcuts: int) ->
 def smooth(
     checks: Checks, path: Floats, pairs: Points, directions: Points, most_batches: int, proved: bool
 ) -> tuple[Floats | None, int]: ...
-def draw_apart(
-    roomier: Checks, path: Floats, shortest: float, pairs: Points, directions: Points
-) -> tuple[Floats | None, int]: ...
+def smooth_apart(
+    checks: Checks, roomier: Checks, path: Floats, pairs: Points, directions: Points, most_batches: int
+) -> tuple[Floats, int]: ...
 def prove_or_bend(checks: Checks, path: Floats, margin: float, directions: Points) -> Floats | None: ...

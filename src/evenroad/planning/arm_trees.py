@@ -18,7 +18,6 @@ from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.tree_sequences import PAIRS, ball_points, cube_points, native_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
-from evenroad.space.path import path_length
 
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
@@ -136,16 +135,14 @@ def smooth(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: 
 def smooth_apart(world: ArmWorld, path: Floats, *, batches: int) -> tuple[Floats, int]:
     """Return a path smoothed as by `smooth`, 5 mm away from obstacles where that costs at most 2 % of its length.
 
-    The shortest paths touch what they pass.  So the path is smoothed once more, in the same world with that much more
-    clearance, where all its motions must be proved.  Where an end is nearer to an obstacle it stays as it is.
+    The shortest paths touch what they pass.  So the given path, whose motions are proved, is smoothed in the same world
+    with that much more clearance, where all motions must be proved.  From there it is drawn tighter in this world, to
+    see what the clearance costs.  Where an end is nearer to an obstacle the path is smoothed in this world alone.
     """
-    shortest, motions = smooth(world, path, batches=batches)
     if len(path) < 3 or world.roomier.fixed_contact is not None:
-        return shortest, motions
+        return smooth(world, path, batches=batches)
     guides = native_points(share_pairs, PAIRS), native_points(sphere_points, world.space.dim)
-    length = path_length(shortest, world.space)
-    apart, more = planning.draw_apart(checks_of(world.roomier), path, length, *guides)
-    return shortest if apart is None else apart, motions + more
+    return planning.smooth_apart(checks_of(world), checks_of(world.roomier), _as_path(world, path), *guides, batches)
 
 
 def improver(

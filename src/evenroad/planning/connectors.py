@@ -124,7 +124,7 @@ class ArmTrees:
         found = answer(inside.checker, start, goal, by, most_motions, seconds, smoothing)
         # Where a world is new, one with more room takes as long as a short plan.
         if smoothing == "apart" and found.ended == "solved" and found.counts[0] > 2:
-            found.keep_apart(inside.roomier.checker, by)
+            found.smooth_apart(inside.checker, inside.roomier.checker, by)
         return found
 
     def improver(

@@ -98,19 +98,21 @@ nb::tuple smooth(NativeChecks& checks, nb::handle path, const Points& pairs, con
   const planning::Guides by{pairs.of(2, true, "pairs"), directions.of(checks.joints.size(), false, "directions")};
   require_budget(most_batches, "most_batches");
   Path smoothed = path_from(points, checks);
-  const bool is_proved = without_gil([&] { return planning::smooth(smoothed, by, most_batches, proved, checks); });
+  const bool is_proved = without_gil([&] { return planning::smooth(smoothed, by, {most_batches}, proved, checks); });
   const nb::object found = is_proved ? points_of(smoothed) : nb::none();
   return nb::make_tuple(found, checks.counts.motions);
 }
 
-nb::tuple draw_apart(NativeChecks& roomier, nb::handle path, double shortest, const Points& pairs,
-                     const Points& directions) {
+nb::tuple smooth_apart(NativeChecks& checks, NativeChecks& roomier, nb::handle path, const Points& pairs,
+                       const Points& directions, std::int64_t most_batches) {
   const FloatRows points(path, "path");
-  const planning::Guides by{pairs.of(2, true, "pairs"), directions.of(roomier.joints.size(), false, "directions")};
-  Path apart = path_from(points, roomier);
-  const bool is_apart = without_gil([&] { return planning::draw_apart(apart, shortest, by, roomier); });
-  const nb::object found = is_apart ? points_of(apart) : nb::none();
-  return nb::make_tuple(found, roomier.counts.motions);
+  const std::size_t dim = checks.joints.size();
+  require(roomier.joints.size() == dim, "roomier must have the joints of the checks");
+  const planning::Guides by{pairs.of(2, true, "pairs"), directions.of(dim, false, "directions")};
+  require_budget(most_batches, "most_batches");
+  Path apart = path_from(points, checks);
+  without_gil([&] { planning::smooth_apart(apart, by, most_batches, checks, roomier); });
+  return nb::make_tuple(points_of(apart), checks.counts.motions + roomier.counts.motions);
 }
 
 nb::object prove_or_bend(NativeChecks& checks, nb::handle path, double margin, const Points& directions) {
@@ -233,7 +235,7 @@ void add_planning(nb::module_& module) {
       });
   part.def("shorten", &shorten);
   part.def("smooth", &smooth);
-  part.def("draw_apart", &draw_apart);
+  part.def("smooth_apart", &smooth_apart);
   part.def("prove_or_bend", &prove_or_bend);
   part.attr("CLEARANCES") = nb::make_tuple(planning::CLEARANCES[0], planning::CLEARANCES[1]);
   add_tree(part);

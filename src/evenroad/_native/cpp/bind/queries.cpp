@@ -64,11 +64,13 @@ Answer answer(std::shared_ptr<Checker> checker, nb::handle start, nb::handle goa
   });
 }
 
-void keep_apart(Answer& answer, std::shared_ptr<Checker> roomier, const Drivers& drivers) {
+void smooth_answer(Answer& answer, std::shared_ptr<Checker> checker, std::shared_ptr<Checker> roomier,
+                   const Drivers& drivers) {
+  require(checker->dim() == answer.dim, "checker must have the joints of the answer");
   require(roomier->dim() == answer.dim, "roomier must have the joints of the answer");
   require(!answer.found.raw.empty(), "the answer must have a path");
   const planning::Drivers by = drivers.of(answer.dim);
-  without_gil([&] { planning::keep_apart(answer.found, std::move(roomier), by); });
+  without_gil([&] { planning::smooth_apart(answer.found, std::move(checker), std::move(roomier), by); });
 }
 
 /// Many queries with the arrays that they read.
@@ -144,7 +146,7 @@ void add_queries(nb::module_& part) {
                    [](const Answer& answer) {
                      return nb::make_tuple(answer.found.search_seconds, answer.found.smoothing_seconds);
                    })
-      .def("keep_apart", &keep_apart);
+      .def("smooth_apart", &smooth_answer);
   part.def("answer", &answer);
   nb::class_<ManyQueries>(part, "ManyQueries")
       .def("__init__", &make_many_queries, nb::keep_alive<1, 6>())

@@ -1,5 +1,7 @@
-// The shortest paths touch what they pass, so this smoothing begins again from what the trees found.
+// The shortest paths touch what they pass.  From a path that does not, it is not far to one that does.
 #include "planning/apart.hpp"
+
+#include <utility>
 
 #include "space/all_distances.hpp"
 
@@ -7,8 +9,10 @@ namespace evenroad::planning {
 
 namespace {
 
-/// After so many batches no waypoint slides any more.
-constexpr std::int64_t SLIDING_APART = 200;
+/// Paths that are looked for twice are not drawn as tight as can be: half of the time for .2 % of the length.  The
+/// second time begins where the first ended.
+Sliding first_time(std::int64_t most_batches) { return {most_batches, 8, 3}; }
+Sliding second_time(std::int64_t most_batches) { return {most_batches, 8, 2}; }
 
 /// By this share a path may be longer that keeps away from obstacles.
 constexpr double LONGER = 0.02;
@@ -35,9 +39,19 @@ double length_of(const std::vector<double>& points, const Joints& joints) {
   return length;
 }
 
-bool draw_apart(Path& path, double shortest, const Guides& guides, MotionChecks& checks) {
-  return are_ends_free(path, checks) && smooth(path, guides, SLIDING_APART, false, checks) &&
-         length_of(path.points(), checks.joints) <= (1.0 + LONGER) * shortest;
+bool smooth_apart(Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks,
+                  MotionChecks& roomier) {
+  const Sliding sliding = first_time(most_batches);
+  Path apart = path;
+  if (path.size() < 3 || !are_ends_free(path, roomier) || !smooth(apart, guides, sliding, false, roomier)) {
+    smooth(path, guides, sliding, true, checks);
+    return false;
+  }
+  path = std::move(apart);
+  const double longest = length_of(path.points(), checks.joints) / (1.0 + LONGER);
+  std::vector<double> way(checks.joints.size());
+  const double straight = write_direction(path[0], path[path.size() - 1], checks.joints, way);
+  return straight >= longest || !tighten(path, guides, second_time(most_batches), longest, checks);
 }
 
 }  // namespace evenroad::planning

@@ -1,6 +1,7 @@
 // The one rule by which a path keeps away from obstacles: where that is hardly longer.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "planning/joints.hpp"
@@ -13,10 +14,12 @@ namespace evenroad::planning {
 /// Return the length of a path as the space of the joints measures it.
 double length_of(const std::vector<double>& points, const Joints& joints);
 
-/// Smooth a path in a world with more room around obstacles; return whether all its motions are proved there, and it is
-/// at most 2 % longer than the shortest that is known.
+/// Draw a path tight, all motions of which are proved: first in a world with more room around obstacles, and from there
+/// on in its own.  This second path is kept where it is shorter by so much that keeping away costs more than 2 %.
 ///
-/// Where an end is not free there is no such path.
-bool draw_apart(Path& path, double shortest, const Guides& guides, MotionChecks& checks);
+/// Where an end has not that much room, or the first path is not proved there, the path is smoothed in its own world.
+/// Return whether it keeps away.
+bool smooth_apart(Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks,
+                  MotionChecks& roomier);
 
 }  // namespace evenroad::planning

@@ -124,7 +124,7 @@ Growth Improver::grow(TreePlanner& trees, Effort most, std::int64_t pause) {
 /// Take a path of the trees if it is the best once it is drawn tight.
 void Improver::take(const std::vector<double>& points, std::int64_t goal) {
   Path path{points, checks_.joints};
-  if (is_smoothing_) smooth(path, guides_, SMOOTHING, true, checks_);
+  if (is_smoothing_) smooth(path, guides_, {SMOOTHING}, true, checks_);
   path.measure();
   if (is_smoothing_ && path.length() < (1.0 + PROMISING) * length() && path.length() >= length()) {
     polish(path, guides_, 0, checks_);

@@ -43,7 +43,7 @@ Answer ManyQueries::answered(std::size_t query) const {
   const QueryWorld& world = worlds_[static_cast<std::size_t>(of_[query])];
   const Matrix<const double> ends{ends_[2 * query].data(), 2, ends_.columns};
   Answer found = answer(world.checker, ends, drivers_, limits_, smoothing_);
-  if (world.roomier && found.growth == Growth::SOLVED) keep_apart(found, world.roomier, drivers_);
+  if (world.roomier && found.growth == Growth::SOLVED) smooth_apart(found, world.checker, world.roomier, drivers_);
   found.raw = {};
   return found;
 }

@@ -54,12 +54,13 @@ Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double
   found.search_seconds = clock.seconds();
   if (found.growth != Growth::SOLVED) return found;
   found.raw_length = found.length = length_of(found.raw, checks.joints);
-  if (smoothing == Smoothing::NONE || found.raw.size() <= 2 * ends.columns) return found;
+  const bool is_smoothed = smoothing == Smoothing::QUICK || smoothing == Smoothing::TIGHT;
+  if (!is_smoothed || found.raw.size() <= 2 * ends.columns) return found;
   Path path(found.raw, checks.joints);
   if (smoothing == Smoothing::QUICK) {
     shorten(path, drivers.guides.pairs, MOST_SHORTCUTS, checks);
   } else {
-    smooth(path, drivers.guides, SLIDING, true, checks);
+    smooth(path, drivers.guides, {SLIDING}, true, checks);
   }
   found.path = path.points();
   found.length = length_of(found.path, checks.joints);
@@ -68,19 +69,29 @@ Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double
   return found;
 }
 
-void keep_apart(Answer& answer, std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
-  if (roomier->is_never_free()) return;
+void smooth_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
+                  std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
+  // One step of a tree is short: it stays as it is.
+  if (answer.nodes <= 2) return;
   const Clock clock;
-  NativeChecks checks(std::move(roomier));
+  NativeChecks checks(std::move(checker));
   Path path(answer.raw, checks.joints);
   const bool is_straight = path.size() == 2;
-  // One step of a tree is short: it stays as it is.
-  if (answer.nodes > 2 && !(is_straight && is_proved(path, 0, 2, checks))) {
-    if (is_straight) divide(path, answer.nodes - 1, checks.joints);
-    if (draw_apart(path, answer.length, drivers.guides, checks)) {
-      answer.path = path.points();
-      answer.length = length_of(answer.path, checks.joints);
+  bool is_new = !is_straight;
+  if (roomier->is_never_free()) {
+    smooth(path, drivers.guides, {SLIDING}, true, checks);
+  } else {
+    NativeChecks wider(std::move(roomier));
+    if (!is_straight || !is_proved(path, 0, 2, wider)) {
+      if (is_straight) divide(path, answer.nodes - 1, checks.joints);
+      // A straight path is as short as can be: it stays unless another keeps away.
+      is_new |= smooth_apart(path, drivers.guides, SLIDING, checks, wider);
     }
+    answer.smoothing_motions += wider.counts.motions;
+  }
+  if (is_new) {
+    answer.path = path.points();
+    answer.length = length_of(answer.path, checks.joints);
   }
   answer.smoothing_motions += checks.counts.motions;
   answer.smoothing_seconds += clock.seconds();

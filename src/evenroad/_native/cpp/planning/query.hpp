@@ -38,12 +38,13 @@ struct Answer {
   double search_seconds = 0.0, smoothing_seconds = 0.0;
 };
 
-/// Answer a query from the first row of `ends` to the second.  It is smoothed as far as this world alone allows.
+/// Answer a query from the first row of `ends` to the second.  A path that is to keep apart from obstacles is left to
+/// `smooth_apart`.
 Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double> ends, const Drivers& drivers,
               QueryLimits limits, Smoothing smoothing);
 
-/// Smooth the path of an answer once more, in the same world with more room around obstacles; keep that path where all
-/// its motions are proved there, and it is at most 2 % longer.
-void keep_apart(Answer& answer, std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers);
+/// Smooth the path of an answer in its world, and in the same one with more room around obstacles.
+void smooth_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
+                  std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers);
 
 }  // namespace evenroad::planning

@@ -2,6 +2,7 @@
 // proved.
 #include "planning/smoother.hpp"
 
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -12,11 +13,10 @@ namespace evenroad::planning {
 
 namespace {
 
-/// After so many slides so many pairs of places are joined: a round.
-constexpr std::size_t SLIDES = 12, PAIRS = 2;
+/// In each round so many pairs of places are joined.
+constexpr std::size_t PAIRS = 2;
 
-/// Rounds end when so many in a row make the path shorter by less than this share, or after the most.
-constexpr int IN_A_ROW = 4;
+/// Rounds that make the path shorter by less than this share gain little; they end after the most in any case.
 constexpr double LEAST_GAIN = 2e-3;
 constexpr std::size_t MOST_ROUNDS = 64;
 
@@ -80,8 +80,9 @@ std::optional<Middle> between_ends(const Path& path, MotionChecks& checks) {
   return middle;
 }
 
-/// Let waypoints slide, and join places of the path, while that gains anything.
-void slide_and_shorten(Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks) {
+/// Let waypoints slide, and join places of the path, while that gains anything; not beyond so many batches in all.
+void slide_and_shorten(Path& path, const Guides& guides, const Sliding& sliding, std::int64_t most_batches,
+                       MotionChecks& checks) {
   Shortcuts shortcuts(path, checks, Demand::FREE);
   Slides slides(path, checks, guides.directions);
   const auto is_work_left = [&] {
@@ -90,9 +91,10 @@ void slide_and_shorten(Path& path, const Guides& guides, std::int64_t most_batch
   shortcuts.pass_by();
   int little = 0;
   std::size_t pair = 0;
-  for (std::size_t turn = 0; turn < MOST_ROUNDS && path.size() > 2 && little < IN_A_ROW && is_work_left(); turn++) {
+  for (std::size_t turn = 0; turn < MOST_ROUNDS && path.size() > 2 && little < sliding.in_a_row && is_work_left();
+       turn++) {
     const double length = path.length();
-    for (std::size_t number = SLIDES * turn; number < SLIDES * (turn + 1); number++) {
+    for (std::size_t number = sliding.a_round * turn; number < sliding.a_round * (turn + 1); number++) {
       if (is_work_left()) slides.slide(1 + number % (path.size() - 2), number);
     }
     path.measure();
@@ -131,9 +133,10 @@ void slide_finely(Path& path, const Guides& guides, std::size_t turn, MotionChec
   Shortcuts(path, checks, Demand::FREE).pass_by();
 }
 
-/// Return the path drawn tight and proved; nothing where it is not.
+/// Return the path drawn tight, shorter than the longest and proved; nothing where it is not.
 template <class Draw>
-std::optional<Path> drawn(const Path& path, const Guides& guides, Draw draw, MotionChecks& checks) {
+std::optional<Path> drawn(const Path& path, const Guides& guides, Draw draw, MotionChecks& checks,
+                          double longest = std::numeric_limits<double>::infinity()) {
   std::optional<Middle> middle;
   double margin = 0.0;
   for (const double each : CLEARANCES) {
@@ -146,6 +149,9 @@ std::optional<Path> drawn(const Path& path, const Guides& guides, Draw draw, Mot
   checks.keep_away(0.0);
   if (!middle) return {};
   Path shorter = std::move(*middle).whole();
+  shorter.measure();
+  // The proof takes as long as some slides.
+  if (shorter.length() >= longest) return {};
   if (!prove_or_bend(shorter, margin, guides.directions, checks)) return {};
   return shorter;
 }
@@ -174,15 +180,23 @@ void shorten(Path& path, Matrix<const double> pairs, std::int64_t most_shortcuts
   shortcuts.pass_by_one();
 }
 
-bool smooth(Path& path, const Guides& guides, std::int64_t most_batches, bool is_given_proved, MotionChecks& checks) {
+bool smooth(Path& path, const Guides& guides, const Sliding& sliding, bool is_given_proved, MotionChecks& checks) {
   if (path.size() < 3) return true;
-  const std::int64_t most = checks.counts.batches + most_batches;
-  const auto slide = [&](Path& middle) { slide_and_shorten(middle, guides, most, checks); };
+  const std::int64_t most = checks.counts.batches + sliding.most_batches;
+  const auto slide = [&](Path& middle) { slide_and_shorten(middle, guides, sliding, most, checks); };
   if (std::optional<Path> shorter = drawn(path, guides, slide, checks)) {
     path = std::move(*shorter);
     return true;
   }
-  return shorten_as_given(path, guides, most_batches, is_given_proved, checks);
+  return shorten_as_given(path, guides, sliding.most_batches, is_given_proved, checks);
+}
+
+bool tighten(Path& path, const Guides& guides, const Sliding& sliding, double longest, MotionChecks& checks) {
+  const std::int64_t most = checks.counts.batches + sliding.most_batches;
+  const auto slide = [&](Path& middle) { slide_and_shorten(middle, guides, sliding, most, checks); };
+  std::optional<Path> shorter = drawn(path, guides, slide, checks, longest);
+  if (shorter) path = std::move(*shorter);
+  return shorter.has_value();
 }
 
 bool polish(Path& path, const Guides& guides, std::size_t turn, MotionChecks& checks) {

@@ -21,15 +21,26 @@ struct Guides {
   Matrix<const double> pairs, directions;
 };
 
+/// How long waypoints slide: after about so many batches of sixteen checks none does any more; so many slides are a
+/// round, after which places are joined; and rounds end when so many in a row gain little.
+struct Sliding {
+  std::int64_t most_batches;
+  std::size_t a_round = 12;
+  int in_a_row = 4;
+};
+
 /// Make a path shorter by straight motions, each proved free before it is put in.
 void shorten(Path& path, Matrix<const double> pairs, std::int64_t most_shortcuts, MotionChecks& checks);
 
 /// Draw a path tight: waypoints slide along what they touch, judged at states alone, and the last path is proved.
 ///
-/// After about so many batches of sixteen checks no waypoint slides any more; shortcuts of corners and the proof
-/// follow. Where that is not proved, the path is shortened as it was given.  Return false, and leave no path, where
-/// that is not proved either, and `is_given_proved` does not say that it was.
-bool smooth(Path& path, const Guides& guides, std::int64_t most_batches, bool is_given_proved, MotionChecks& checks);
+/// Shortcuts of corners and the proof follow.  Where that is not proved, the path is shortened as it was given.  Return
+/// false, and leave no path, where that is not proved either, and `is_given_proved` does not say that it was.
+bool smooth(Path& path, const Guides& guides, const Sliding& sliding, bool is_given_proved, MotionChecks& checks);
+
+/// Draw a path tighter that was drawn tight in a world with more room around obstacles.  It is changed only where it
+/// gets shorter than the longest, and is proved; return whether that is so.
+bool tighten(Path& path, const Guides& guides, const Sliding& sliding, double longest, MotionChecks& checks);
 
 /// Draw a path of proved motions tighter, by waypoints that slide ever less far; return whether it became shorter, and
 /// is proved.  The turn says which directions come first.
