@@ -45,7 +45,7 @@ def print_table(
     """
     count = len(headings or rows[0])
     cells = [*([headings] if headings else []), *rows]
-    widths = [max(_columns(row[i]) for row in cells) for i in range(count)]
+    widths = [max(_columns(line) for row in cells for line in row[i].split("\n")) for i in range(count)]
     while sum(widths) + gap * (count - 1) > table_width() and max(widths) > 1:
         widths[max(range(count), key=widths.__getitem__)] -= 1
     lines = [_styled(title, "italic")] if title else []

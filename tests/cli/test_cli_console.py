@@ -32,6 +32,11 @@ def test_the_widest_column_is_wrapped_and_nothing_of_it_is_lost(capsys, monkeypa
     assert lines[0].endswith("   3")
 
 
+def test_a_heading_of_two_lines_takes_no_more_width_than_its_longer_one(capsys):
+    print_table([("a", "1")], ("name", "number of\nruns"), right=(1,))
+    assert capsys.readouterr().out.splitlines() == ["name  number of", "           runs", "a             1"]
+
+
 def test_names_are_bold_on_a_terminal_alone(capsys, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     for terminal, shown in ((False, "a  b\n"), (True, "\033[1ma\033[0m  b\n")):
