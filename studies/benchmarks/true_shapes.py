@@ -210,7 +210,7 @@ def measured(file: Path, each: int) -> Iterator[tuple[dict[str, object], np.ndar
         yield {"robot": file.stem, "family": family, **count, **shares_of(both)}, both
 
 
-def table(rows: list[dict[str, str]]) -> str:
+def printed(rows: list[dict[str, str]]) -> str:
     """Return the rows as a table of a page."""
     head = ("robot", "family", "problems", "solved", "by capsules", "touching", "ms", "ratio", "same", "back")
     lines = [f"| {' | '.join(head)} |", "|" + "---|" * len(head)]
@@ -228,7 +228,7 @@ def main() -> None:
     """Write a row for each robot and family as soon as it is there, or print the table of a file's rows."""
     parser = parser_of(__doc__)
     parser.add_argument("--each", type=int, default=25)
-    given = given_or_table(parser, table)
+    given = given_or_table(parser, printed)
     done: list[dict[str, object]] = []
     problems_of_all: list[np.ndarray] = []
     for file in given.robots:
