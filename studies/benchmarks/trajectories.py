@@ -29,7 +29,8 @@ from evenroad.planning.arm_trees import shorten
 from evenroad.planning.read_request import arm_request
 from evenroad.robot import Scene
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.trajectory import InMotion, Limits, TipLimits, arm_trajectory, limits_of
+from evenroad.robot.masses import Mass
+from evenroad.trajectory import Dynamics, InMotion, Limits, TipLimits, arm_trajectory, limits_of
 from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.make import DEVIATION
 from evenroad.trajectory.timing import TimeLaw
@@ -39,6 +40,13 @@ INTERVALS = 600
 """Of the grid along a path, about as many as evenroad takes."""
 JERK = 20.0
 """Jerk that joints may have, as a multiple of their acceleration [1/s]."""
+UR5_MASSES = (
+    *(("shoulder_link", 3.7, 0.0), ("upper_arm_link", 8.393, 0.28), ("forearm_link", 2.275, 0.25)),
+    *(("wrist_1_link", 1.219, 0.0), ("wrist_2_link", 1.219, 0.0), ("wrist_3_link", 0.1879, 0.0)),
+)
+"""Of links: masses [kg] about as Universal Robots states them, and centres along z [m]; the shipped URDF has none."""
+EFFORTS, WEAK = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0), (40.0, 72.0, 28.0, 6.0, 6.0, 6.0)
+"""Torques of the UR5's joints [N m], and less, which limits the motions."""
 Path = npt.NDArray[np.float64]
 
 
@@ -159,16 +167,19 @@ def ten_waypoints() -> None:
     world, rng = ArmWorld("ur5", Scene([])), np.random.default_rng(0)
     limits = limits_of(world.robot)
     tip = replace(limits, tip=TipLimits(world.robot, "tool0", speed=1.0, acceleration=5.0))
+    masses = tuple(Mass(link, mass, (0.0, 0.0, along)) for link, mass, along in UR5_MASSES)
+    dynamics = Dynamics(world.robot, masses, EFFORTS)
+    heavy = replace(limits, torque=dynamics), replace(limits, torque=replace(dynamics, efforts=WEAK))
     moving = 0.2 * np.array(limits.velocity)
-    rows: dict[str, list[float]] = {"plain": [], "in motion": [], "limits of the tip": []}
-    while len(rows["plain"]) < 20:
+    rows: dict[str, list[float]] = {}
+    while len(rows.get("plain", [])) < 20:
         path = np.array([0.0, -1.5, 1.2, -1.2, -1.5, 0.0]) + np.cumsum(rng.uniform(-0.3, 0.3, (10, 6)), axis=0)
         with suppress(NotAvailable):
             asked = {"plain": (path, limits), "in motion": (InMotion(path, moving, moving), limits)}
-            asked["limits of the tip"] = path, tip
+            asked |= {"limits of the tip": (path, tip), "torques": (path, heavy[0]), "small torques": (path, heavy[1])}
             times = {name: best_ms(lambda each=each: arm_trajectory(world, *each)) for name, each in asked.items()}
             for name, value in times.items():
-                rows[name].append(value)
+                rows.setdefault(name, []).append(value)
     for name, each in rows.items():
         print(f"ten waypoints, {name}: {np.median(each):.2f} ms in the median, {np.max(each):.2f} at most")
 

@@ -30,7 +30,10 @@ class PlanOptions(SamplerOptions):
         "points, in place of trees or cells": (
             *("n", "sampler", "k", "connect_radius", "guarantees", "plain", "skip", "allow_fewer"),
         ),
-        "times": ("timed", "trajectory", "speed", "limits", "deviation", "step", "controller_joints"),
+        "times": (
+            *("timed", "trajectory", "speed", "limits", "torque", "tip_speed", "tip_acceleration"),
+            *("start_velocity", "goal_velocity", "deviation", "step", "controller_joints"),
+        ),
         "the robot's files": ("srdf", "group", "bodies", "use_visuals", "package", "xacro", "padding"),
         "results": ("out", "no_picture", "csv"),
     }
@@ -206,7 +209,7 @@ class PlanArm(PlanOptions, RobotOptions):
     rotation.  All configurations found that reach it are goals; you can give several; "LINK: x y z ... & LINK: ..." is
     one goal of both."""
     tip: str = ""
-    """The link of goal poses, --straight and --upright (default: the last one)."""
+    """The link of goal poses, --straight, --upright and --tip-speed (default: the last one)."""
     frame: str = ""
     """The frame of goal poses: a link that does not move (default: the root)."""
     free_axis: str | None = None
@@ -227,7 +230,8 @@ class PlanArm(PlanOptions, RobotOptions):
     """That axis, in the tip's frame (default: the one that is most upright at the start)."""
     constraint: Repeatable[tuple[tuple[str, ...], ...]] = ()
     """Kept on the whole path: "orientation 0.01", "plane z", "line y", "box 0,0,0 1,1,1", "circle 0.8,0.3,0 z",
-    "together LINK LINK" or "joints NAME=0,2"; then within=0.001, tip=LINK."""
+    "together LINK LINK" or "joints NAME=0,2"; then within=0.001, tip=LINK.  Or "differential-drive": a base that
+    drives along its heading alone; x=, y= and heading= name its joints (default: base/x, base/y, base/theta)."""
     deg: bool = False
     """Read angles in degrees: of start, goal, "roll pitch yaw" and --upright."""
     resolution: float = 0.05
@@ -243,6 +247,17 @@ class PlanArm(PlanOptions, RobotOptions):
     """With times: share of full speed, > 0 and at most 1."""
     limits: Path | None = None
     """With times: a MoveIt joint_limits.yaml.  Default: velocities of the URDF, full speed after 0.5 s."""
+    torque: bool = False
+    """With times: no joint needs more than its effort, by the masses and efforts of the robot's URDF."""
+    tip_speed: float | None = None
+    """With times: largest speed of the tip, > 0, in metres per second."""
+    tip_acceleration: float | None = None
+    """With times: largest acceleration of the tip, > 0, in metres per second squared."""
+    start_velocity: str | None = None
+    """With times: how fast the joints move at the start, one number per joint or name=value,..., in radians (metres)
+    per second (default: at rest)."""
+    goal_velocity: str | None = None
+    """The same at the goal."""
     deviation: float = 0.05
     """With times: largest deviation at a rounded corner, >= 0, in radians."""
     step: float = 0.008

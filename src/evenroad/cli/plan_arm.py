@@ -18,7 +18,7 @@ from evenroad.cli.plan_parts import (
     output_files,
 )
 from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
-from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
+from evenroad.cli.trajectory import limits_of_tip, require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.planning.plan import Options, finished, solve
@@ -26,7 +26,7 @@ from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Goal, Reading, Request
 from evenroad.roadmap import PlanResult
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
-from evenroad.robot.constraint import Constraint
+from evenroad.robot.constraint import Constraint, part_of
 from evenroad.robot.pose_goal import as_axis, as_numbers, pose_goal_of
 
 
@@ -64,7 +64,7 @@ def plan_arm(plan: PlanArm) -> int:
     planner = chosen_planner(plan, request) if kept is None else kept.within(world)
 
     options = Options(budget, not plan.raw, plan.seed, plan.certified, constraints)
-    # An orientation constraint has a world of its own kind, with its own planner.
+    # Constraints have a world of their own kind, with its own planner.
     by = None if not wants_points(plan) and kept is None and _keeps(constraints) else planner
     make = None
     if plan.via:
@@ -135,8 +135,9 @@ def _goals(plan: PlanArm) -> list[Goal]:
     for option in ("frame", "free_axis", "tolerance"):
         if getattr(plan, option) and not plan.goal_pose:
             raise InvalidValue(f"--{option.replace('_', '-')} goes with --goal-pose")
-    if plan.tip and not (plan.goal_pose or plan.straight or plan.upright or plan.constraint or plan.via):
-        raise InvalidValue("--tip goes with --goal-pose, --via, --straight, --upright or --constraint")
+    of_tip = (plan.goal_pose, plan.straight, plan.upright, plan.constraint, plan.via, *limits_of_tip(plan))
+    if plan.tip and not any(of_tip):
+        raise InvalidValue("--tip goes with --goal-pose, --via, --straight, --upright, --constraint or --tip-speed")
     near, tilt = 0.0, 0.0
     if plan.tolerance is not None:
         near, tilt, *_ = (*as_numbers("--tolerance", plan.tolerance, (1, 2)), 0.0)
@@ -165,6 +166,7 @@ def _keeps(constraints: Constraint | None) -> bool:
     """Return whether some of the constraints hold along the whole path."""
     if constraints is None:
         return False
+    from evenroad.constraints.driven_world import DifferentialDrive
     from evenroad.constraints.kept_world import keeps_of
 
-    return bool(keeps_of(constraints))
+    return bool(keeps_of(constraints)) or part_of(constraints, DifferentialDrive) is not None

@@ -2,31 +2,47 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from evenroad._checks import require_positive
+from evenroad._arrays import Floats
+from evenroad._checks import require_known, require_positive
 from evenroad._files import require_writable_folder
 from evenroad.cli.plan import PlanArm
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.planning.read_request import mesh_check
 from evenroad.planning.request import Request
 from evenroad.roadmap import PlanResult
-from evenroad.robot.constraint import Constraint, with_tip
+from evenroad.robot import Robot
+from evenroad.robot.constraint import Constraint, part_of, with_tip
+from evenroad.robot.pose_goal import as_numbers
 
 if TYPE_CHECKING:
-    from evenroad.trajectory import Trajectory
+    from evenroad.trajectory import Limits, Trajectory
 
 _MOVEJ = ".movej.script"
+_TIMES = (
+    *("speed", "limits", "torque", "tip_speed", "tip_acceleration", "start_velocity", "goal_velocity"),
+    *("deviation", "step", "controller_joints"),
+)
+_PAIR = re.compile(r"\s*([^=]+?)\s*=\s*([^=]+)")
+
+
+def limits_of_tip(plan: PlanArm) -> tuple[float | None, float | None]:
+    """Return the largest speed and acceleration of the tip, where the command says so."""
+    return plan.tip_speed, plan.tip_acceleration
 
 
 def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
     """Raise InvalidValue for options that would fail after planning, or overwrite an input or another result."""
     if not (plan.trajectory or plan.timed):
-        for option in ("speed", "limits", "deviation", "step", "controller_joints"):
+        for option in _TIMES:
             if getattr(plan, option) != type(plan).__dataclass_fields__[option].default:
                 raise InvalidValue(f"--{option.replace('_', '-')} goes with --trajectory or --timed only")
         return
@@ -36,6 +52,16 @@ def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path], outputs: I
     require_positive("speed", plan.speed, at_most=1.0)
     require_positive("deviation", plan.deviation, or_zero=True)
     require_positive("step", plan.step)
+    for name, most in zip(("tip-speed", "tip-acceleration"), limits_of_tip(plan), strict=True):
+        if most is not None:
+            require_positive(f"--{name}", most)
+    if plan.torque and plan.robot is None:
+        raise InvalidValue("--torque needs --robot: its file says what the links weigh")
+    for end in ("start", "goal"):
+        if plan.via and getattr(plan, f"{end}_velocity") is not None:
+            raise InvalidValue(
+                f"--{end}-velocity goes without --via: a plan of several motions begins and ends at rest"
+            )
     taken = {source.resolve() for source in inputs} | ({plan.limits.resolve()} if plan.limits else set())
     results = {output.resolve() for output in outputs}
     for file in plan.trajectory:
@@ -56,6 +82,43 @@ def _remove_earlier(plan: PlanArm) -> None:
         file.unlink(missing_ok=True)
 
 
+def _drives(constraints: Constraint) -> bool:
+    from evenroad.constraints.driven_world import DifferentialDrive
+
+    return part_of(constraints, DifferentialDrive) is not None
+
+
+def _limits(plan: PlanArm, request: Request) -> Limits:
+    """Return the limits that the command says."""
+    from evenroad.robot import find_robot
+    from evenroad.robot.chain import default_tip
+    from evenroad.trajectory import TipLimits, limits_of, load_dynamics
+
+    robot, limits = request.world.robot, limits_of(request.world.robot, plan.limits)
+    if plan.torque:
+        assert plan.robot is not None, "refused before"
+        limits = replace(limits, torque=load_dynamics(robot, find_robot(plan.robot)[0]))
+    if any(limits_of_tip(plan)):
+        speed, push = (math.inf if most is None else most for most in limits_of_tip(plan))
+        limits = replace(limits, tip=TipLimits(robot, request.tip or default_tip(robot), speed, push))
+    return limits
+
+
+def _velocity(robot: Robot, option: str, text: str | None) -> Floats | None:
+    """Return velocities of the planned joints: one number each, or some by their names; InvalidValue for others."""
+    if text is None:
+        return None
+    if "=" not in text:
+        return np.array(as_numbers(f"--{option}", text, (len(robot.group),)))
+    values = dict.fromkeys(robot.group, 0.0)
+    for word in text.split(","):
+        if (pair := _PAIR.fullmatch(word)) is None:
+            raise InvalidValue(f"--{option} must be numbers or name=value,..., got {text!r}")
+        require_known(f"joint in --{option}:", pair[1], values)
+        (values[pair[1]],) = as_numbers(f"--{option} of {pair[1]!r}", pair[2], (1,))
+    return np.array([*values.values()])
+
+
 def trajectory_rows(
     plan: PlanArm,
     request: Request,
@@ -73,18 +136,20 @@ def trajectory_rows(
     if not result.solved or result.path is None or stays:
         _remove_earlier(plan)
         return [("trajectory", "none: the start is the goal")] if stays else [], None
-    from evenroad.trajectory import arm_trajectory, limits_of
+    from evenroad.trajectory import InMotion, arm_trajectory
     from evenroad.trajectory.files import save_trajectories, trajectory_record
 
     world = request.world
     joints = plan.controller_joints
     order = None if joints is None else [*map(str.strip, joints.split(","))]
-    limits = limits_of(world.robot, plan.limits)
+    drives = constraints is not None and _drives(constraints)
+    is_default = plan.deviation == type(plan).__dataclass_fields__["deviation"].default
     try:
         options: dict[str, Any] = {
-            "limits": limits,
+            "limits": _limits(plan, request),
             "speed": plan.speed,
-            "deviation": plan.deviation,
+            # A rounded corner would take the base sideways.
+            "deviation": 0.0 if drives and is_default else plan.deviation,
             "step": plan.step,
         }
         by_controller = any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory)
@@ -92,8 +157,13 @@ def trajectory_rows(
             trajectory = make(**options)
         else:
             kept = with_tip(constraints, request.tip)
+            ends = [_velocity(world.robot, f"{e}-velocity", getattr(plan, f"{e}_velocity")) for e in ("start", "goal")]
             trajectory = arm_trajectory(
-                world, result.path, rounded_by_controller=by_controller, constraints=kept, **options
+                world,
+                InMotion(result.path, *ends),
+                rounded_by_controller=by_controller,
+                constraints=kept,
+                **options,
             )
         meshes = mesh_check(request, trajectory.positions)
         if meshes is not None and meshes.verdict == "in collision":

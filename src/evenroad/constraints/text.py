@@ -6,13 +6,14 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from evenroad.constraints.keep import Keep
+from evenroad.constraints.driven_world import DifferentialDrive
 from evenroad.constraints.linked import KeepJoints, KeepOnCircle, KeepTogether
 from evenroad.constraints.tip import KeepInBox, KeepInPlane, KeepOnLine, KeepOrientation, KeepUpright
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.robot.constraint import Constraint
 from evenroad.robot.pose_goal import as_numbers
 
-KINDS: dict[str, tuple[Callable[..., Keep], tuple[str, ...], int, tuple[str, ...]]] = {
+KINDS: dict[str, tuple[Callable[..., Constraint], tuple[str, ...], int, tuple[str, ...]]] = {
     "upright": (KeepUpright, ("within",), 1, ("axis", "tip")),
     "orientation": (KeepOrientation, ("within",), 0, ("tip",)),
     "plane": (KeepInPlane, ("normal",), 1, ("through", "within", "tip")),
@@ -20,14 +21,15 @@ KINDS: dict[str, tuple[Callable[..., Keep], tuple[str, ...], int, tuple[str, ...
     "box": (KeepInBox, ("low", "high"), 2, ("within", "tip")),
     "circle": (KeepOnCircle, ("centre", "axis"), 1, ("within", "tip")),
     "together": (KeepTogether, ("first", "second"), 2, ("within",)),
+    "differential-drive": (DifferentialDrive, (), 0, ("x", "y", "heading")),
 }
 """First word -> the constraint, what its next words are, how many of these it needs, and what it has by name."""
 
 _POINTS = ("through", "low", "high", "centre")
-_NAMES = ("tip", "first", "second")
+_NAMES = ("tip", "first", "second", "x", "y", "heading")
 
 
-def constraint_of(text: str, *, degrees: bool = False) -> Keep:
+def constraint_of(text: str, *, degrees: bool = False) -> Constraint:
     """Return a constraint from its text: a kind, what it needs, and ``name=value`` for what it may have.
 
     ::
@@ -39,6 +41,7 @@ def constraint_of(text: str, *, degrees: bool = False) -> Keep:
         box 0,-0.5,0.2 0.6,0.5,0.8
         circle 0.8,0.3,0 z
         together tool0 left_tool0
+        differential-drive x=base/x y=base/y heading=base/theta
         joints elbow_joint=0,2.5
 
     Points are of metres with commas between; angles are in radians, or in degrees.
@@ -63,7 +66,7 @@ def constraint_of(text: str, *, degrees: bool = False) -> Keep:
         if not equals:
             name, value = (next((each for each in names if each not in values), ""), word)
         if name not in (*names, *options) or name in values:
-            said = f"{kind} {' '.join(name.upper() for name in names)}"
+            said = " ".join([kind, *(name.upper() for name in names)])
             raise InvalidValue(
                 f"{word!r} says nothing of the constraint {text!r}: it is {said}, then {', '.join(options)}=..."
             )
@@ -73,7 +76,7 @@ def constraint_of(text: str, *, degrees: bool = False) -> Keep:
     return make(**values)
 
 
-def constraints_of(texts: Sequence[str], *, degrees: bool = False) -> list[Keep]:
+def constraints_of(texts: Sequence[str], *, degrees: bool = False) -> list[Constraint]:
     """Return the constraints of several texts; raises as :func:`constraint_of`."""
     return [constraint_of(text, degrees=degrees) for text in texts]
 

@@ -151,5 +151,5 @@ def load_dynamics(robot: Robot, file: str | os.PathLike[str], *, gravity: Iterab
     masses, efforts = read_masses(Path(file))
     masses = tuple(mass for mass in masses if mass.link in robot.links)
     if not any(mass.mass > 0.0 for mass in masses):
-        raise InvalidValue(f"no link of {robot.name!r} has a mass in {file}")
+        raise InvalidValue(f"no link of {robot.name!r} has a mass in {file}: torques need its <inertial> elements")
     return Dynamics(robot, masses, tuple(efforts.get(name) or math.inf for name in robot.group), tuple(gravity))
