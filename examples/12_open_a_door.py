@@ -18,15 +18,19 @@ def handle(angle):
     return er.Pose(at, turn.rotation_matrix)
 
 
-# The walls beside the door; the door itself moves with the handle, so it is no obstacle here.
+# The walls beside the door.
 walls = er.Scene(
     [
         er.Box((0.04, 0.6, 1.2), xyz=(0.8, 0.68, 0.6), name="left wall"),
-        er.Box((0.04, 0.6, 1.2), xyz=(0.8, -0.6, 0.6), name="right wall"),
+        er.Box((0.04, 0.6, 1.2), xyz=(0.8, -0.45, 0.6), name="right wall"),
     ],
     name="door",
 )
-world = er.ArmWorld("ur5", walls)
+# The door moves with the flange that holds its handle, as something held does.
+closed = er.Pose(HINGE + np.array([0.06, -0.235, 0.6]))
+door = er.Box((0.02, 0.45, 1.1), pose=handle(0.0).inverse() @ closed, name="door")
+robot = er.load_robot("ur5").holding(door, "tool0", name="door")
+world = er.ArmWorld(robot, walls)
 circle = er.constraints.KeepOnCircle(HINGE, "z")
 for start in reach(world, er.PoseGoal(handle(0.0)), np.zeros(6)).configurations:
     result = er.plan(world, start, handle(math.pi / 3), constraints=circle, seconds=1.0)

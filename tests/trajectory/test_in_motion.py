@@ -60,6 +60,18 @@ def test_it_keeps_the_acceleration_of_a_tip():
     np.testing.assert_allclose(trajectory.velocities[0], [0.3, 0.2, -0.1, 0.0, 0.0, 0.1], atol=1e-9)
 
 
+def test_it_goes_on_farther_where_a_tip_lets_it_stop_more_slowly():
+    robot = er.load_robot("ur5")
+    path = np.array([[0.0, -1.5, 1.0, -1.0, 0.5, 0.0], [0.0, -1.0, 0.5, -1.5, 0.8, 0.4]])
+    plain = limits_of(robot)
+    slow = replace(plain, tip=TipLimits(robot, "tool0", acceleration=0.3))
+    velocity = [0.4, 0.0, 0.0, 0.0, 0.0, 0.0]
+    ways = [make_trajectory(InMotion(path, velocity), each) for each in (plain, slow)]
+    assert ways[1].waypoints[1, 0] > 2.0 * ways[0].waypoints[1, 0] > 0.0
+    assert ways[1].highest["tip acceleration"] <= 1.0
+    np.testing.assert_allclose(ways[1].velocities[0], velocity, atol=1e-9)
+
+
 def test_a_plan_is_driven_from_a_moving_start():
     result = er.plan("box-reach", "home", "inside", robot="ur5")
     velocity = [0.2, 0.0, 0.1, 0.0, 0.0, -0.1]

@@ -5,6 +5,7 @@ import pytest
 import trimesh
 from PIL import Image
 
+import evenroad as er
 from evenroad.planning import PRM, plan
 from evenroad.points import draw
 from evenroad.robot import ArmWorld, Obstacle, Scene, configuration, in_scene, load_model, load_robot, load_scene
@@ -114,3 +115,13 @@ def test_an_empty_scene_and_a_huge_floor_are_drawn_too(tmp_path):
         goal = np.full(7, 0.5)
         save_arm_picture(tmp_path / "a.png", plan(world, np.zeros(7), goal, PRM(draw("halton", 8, 7))), world)
         assert (tmp_path / "a.png").exists()
+
+
+def test_what_a_robot_holds_is_drawn_as_its_own_shape_in_every_way():
+    box = er.Box((0.3, 0.2, 0.1), xyz=(0.0, 0.0, 0.1))
+    model = load_model("ur5")
+    robot = model.robot.holding(box, "tool0", name="can")
+    for links in (robot_parts(robot), robot_parts(robot, model.file), robot_sets(robot, model.file)["collision"]):
+        corners = links["can"].corners.reshape(-1, 3)
+        np.testing.assert_allclose(np.ptp(corners, axis=0), box.size, atol=1e-9)
+        assert len(links["can"].corners) == 12

@@ -157,10 +157,11 @@ def trajectory_rows(
             trajectory = make(**options)
         else:
             kept = with_tip(constraints, request.tip)
-            ends = [_velocity(world.robot, f"{e}-velocity", getattr(plan, f"{e}_velocity")) for e in ("start", "goal")]
+            start = _velocity(world.robot, "start-velocity", plan.start_velocity)
+            goal = _velocity(world.robot, "goal-velocity", plan.goal_velocity)
             trajectory = arm_trajectory(
                 world,
-                InMotion(result.path, *ends),
+                InMotion(result.path, start, goal),
                 rounded_by_controller=by_controller,
                 constraints=kept,
                 **options,

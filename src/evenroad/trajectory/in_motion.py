@@ -13,8 +13,10 @@ from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 from evenroad.trajectory.limits import Limits
 
-_FARTHER = 1.1
-"""Length of the straight way on, as a share of that on which the robot can stop."""
+FARTHER = (1.1, 2.5, 6.0, 15.0)
+"""Lengths of the straight way on that are tried, as multiples of that on which limits of the joints let it stop; limits
+of torques and of a tip may need more.
+"""
 _ALONG = 1e-9
 """Largest sine of an angle between a velocity and a path that begins along it."""
 
@@ -38,7 +40,7 @@ class InMotion:
     start: npt.ArrayLike | None = None
     goal: npt.ArrayLike | None = None
 
-    def led(self, waypoints: Floats, limits: Limits) -> tuple[Floats, tuple[float, float]]:
+    def led(self, waypoints: Floats, limits: Limits, farther: float = FARTHER[0]) -> tuple[Floats, tuple[float, float]]:
         """Return waypoints, (p, dim), with those that lead in and out, and the speeds along the path at both ends.
 
         Raises InvalidValue for velocities that are no such rows, or over the limits.
@@ -56,7 +58,7 @@ class InMotion:
             off = first / np.linalg.norm(first) - sign * direction
             if np.linalg.norm(off) > _ALONG:
                 push = np.min(np.array(limits.acceleration) / np.maximum(np.abs(direction), 1e-12))
-                turning = path[0] + sign * direction * (_FARTHER * speed**2 / (2.0 * push))
+                turning = path[0] + sign * direction * (farther * speed**2 / (2.0 * push))
                 path = np.concatenate([path[:1], turning[np.newaxis], path[1:]])
             waypoints = path if sign > 0.0 else path[::-1]
         return np.ascontiguousarray(waypoints), (speeds[0], speeds[1])

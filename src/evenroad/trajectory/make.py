@@ -15,9 +15,9 @@ from evenroad._native.trajectory import distances_to, largest_share
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import RoundedPath, rounded
 from evenroad.trajectory.corners import TRIES, drivable, less_at, require_steps
-from evenroad.trajectory.in_motion import InMotion
+from evenroad.trajectory.in_motion import FARTHER, InMotion
 from evenroad.trajectory.limits import Limits
-from evenroad.trajectory.timed import timed_path
+from evenroad.trajectory.timed import TooFast, timed_path
 from evenroad.trajectory.timing import TimeLaw, fastest, paused, slowed
 from evenroad.trajectory.trajectory import Trajectory
 from evenroad.world import World
@@ -105,13 +105,24 @@ def make_trajectory(
     joints = tuple(names) if names is not None else tuple(f"joint_{i + 1}" for i in range(waypoints.shape[1]))
     if len(joints) != waypoints.shape[1]:
         raise InvalidValue(f"names must be {waypoints.shape[1]}, one a joint, got {len(joints)}")
-    waypoints, speeds = moving.led(waypoints, limits)
+    said: dict[str, Any] = {
+        "names": joints,
+        "limits": limits,
+        "held": dict(held or {}),
+        "controller": tuple(controller),
+    }
     window = 0.0 if limits.jerk is None else float(np.max(2.0 * np.divide(limits.acceleration, limits.jerk)))
+    for farther in FARTHER:
+        led, speeds = moving.led(waypoints, limits, farther)
+        if window > 0.0:
+            break
+        cuts = np.full(len(led), deviation)
+        try:
+            return Trajectory(waypoints=led, **said, **timed_path(world, led, limits, cuts, step, speeds))
+        except TooFast:
+            if limits.is_plain or farther == FARTHER[-1]:
+                raise
     cuts = np.full(len(waypoints), deviation)
-    said: dict[str, Any] = {"held": dict(held or {}), "controller": tuple(controller)}
-    if window == 0.0:
-        made = timed_path(world, waypoints, limits, cuts, step, speeds)
-        return Trajectory(names=joints, waypoints=waypoints, limits=limits, **said, **made)
     for tried in range(TRIES):
         curve = rounded(waypoints, cuts)
         law, fine, driven = _averaged_law(curve, waypoints, limits, window, step)
@@ -123,13 +134,11 @@ def make_trajectory(
     else:
         raise NotAvailable(f"the trajectory is not proved free, or too far from its path, at {bad[0]:.3f} s")
     return Trajectory(
-        names=joints,
         times=fine[::_FINER],
         positions=driven.positions,
         velocities=driven.velocities,
         accelerations=driven.accelerations,
         waypoints=waypoints,
-        limits=limits,
         deviation=float(np.max(driven.off)),
         stops=len(curve.stops),
         highest=driven.highest,

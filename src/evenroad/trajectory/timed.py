@@ -18,6 +18,10 @@ _ANY_SPEED = 1e300
 """Square of a speed that nothing reaches."""
 
 
+class TooFast(NotAvailable):
+    """A velocity at the start or the goal is too fast for the path."""
+
+
 def timed_path(
     world: World | None,
     waypoints: Floats,
@@ -66,6 +70,6 @@ def _refused(outcome: str, waypoints: Floats, limits: Limits, shares: dict[str, 
         return limits.too_heavy(np.concatenate([a + shares_between * (b - a) for a, b in pairwise(waypoints)]))
     if outcome == "too fast":
         text = f"the velocity at the {end} is too fast for the path: within the limits the robot cannot stop on it"
-        return NotAvailable(text)
+        return TooFast(text)
     over = ", ".join(f"{100.0 * share:.1f} % of {kind}" for kind, share in shares.items())
     return NotAvailable(f"no times were found that keep all limits: the slowest ones tried need {over}")

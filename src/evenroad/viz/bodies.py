@@ -15,6 +15,7 @@ from evenroad._arrays import Floats, Ints, unique_rows
 from evenroad._files import atomic_write, cache_folder
 from evenroad._seal import read_sealed, sealed
 from evenroad.errors import EvenroadError
+from evenroad.geometry.mesh import convex_hull
 from evenroad.geometry.shapes import Capsule, Mesh, Shape, Sphere
 from evenroad.robot import Robot
 from evenroad.robot.cache import file_of, key_of
@@ -38,23 +39,28 @@ _SAME = 2e-3
 
 
 def robot_parts(robot: Robot, file: RobotFile | None = None) -> dict[str, Part]:
-    """Return link -> what is drawn of it, in the link's frame: as its file draws it, else its capsules.
+    """Return link -> what is drawn of it, in the link's frame: as its file draws it, else as its shapes.
 
     Without a file it is that of which the robot was loaded in this process.  A drawing that cannot be read is no reason
     to show nothing.
     """
     file = file_of(robot) if file is None else file
     drawn = {} if file is None else _drawn(robot, file, as_drawn=True)
-    rest = _by_link(each for each in robot.capsules if each.link not in drawn)
-    return _numbered(robot, drawn | rest)
+    return _numbered(robot, _shapes(robot) | drawn)
 
 
 def robot_sets(robot: Robot, file: RobotFile | None) -> dict[str, dict[str, Part]]:
     """Return all that a robot can be shown as, by its name: each that differs from those before it."""
-    sets = {CAPSULES: _numbered(robot, _by_link(robot.capsules))}
+    sets, shapes = {CAPSULES: _numbered(robot, _by_link(robot.capsules))}, _shapes(robot)
+    if file is None and not _equal(own := _numbered(robot, shapes), sets[CAPSULES]):
+        sets[COLLISION] = own
     for name, as_drawn in ((COLLISION, False), (VISUAL, True)) if file is not None else ():
         assert file is not None
         drawn = _drawn(robot, file, as_drawn=as_drawn)
+        if drawn:
+            # What the robot holds is not in its file.
+            held = {link: part for link, part in shapes.items() if link in robot.holds}
+            drawn = _numbered(robot, held | drawn)
         if drawn and not any(_equal(drawn, other) for other in sets.values()):
             sets[name] = drawn
     return sets
@@ -97,6 +103,18 @@ def joined(parts: Sequence[Part]) -> Part:
     """Return several bodies as one, which looks as the first of them."""
     corners, normals = (np.concatenate([getattr(part, name) for part in parts]) for name in ("corners", "normals"))
     return replace(parts[0], corners=corners, normals=normals, closed=all(part.closed for part in parts))
+
+
+def _shapes(robot: Robot) -> dict[str, Part]:
+    """Return link -> its convex shapes with flat sides, which capsules only cover; else its capsules."""
+    of_link: dict[str, list[Part]] = {}
+    round_ones = {each.link for each in robot.shapes if each.of not in ("box", "hull") or each.radius or any(each.disc)}
+    for each in robot.shapes:
+        for corners in each.corners if each.link not in round_ones else ():
+            hull = convex_hull(corners)
+            part = part_of((hull.vertices, hull.triangles), style.ARM[0], closed=True)
+            of_link.setdefault(each.link, []).append(part)
+    return _by_link(robot.capsules) | {link: joined(parts) for link, parts in of_link.items()}
 
 
 def _by_link(shapes: Iterable[Shape]) -> dict[str, Part]:
