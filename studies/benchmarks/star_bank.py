@@ -35,7 +35,7 @@ PUBLISHED = {
 }
 """N in the plane -> least published value, and whose."""
 SEED, FINDER = 20261124, f"evenroad {__version__}"
-FEW, TRIES, HEATS = 21, 4, (0.003, 0.02)
+FEW, TRIES, HEATS = 21, 12, (0.003, 0.008, 0.02)
 """Number of points up to which more is tried: optimal sets are published so far."""
 FOLDER = Path(evenroad_studies.__file__).parent / "sets" / "star"
 
@@ -45,7 +45,7 @@ def searched(n: int, d: int, seed: int) -> PointSet:
     rng = np.random.SeedSequence([SEED, seed, d, n])
     if d == 2 and n <= FEW:
         tries = zip(rng.spawn(TRIES), HEATS * TRIES, strict=False)
-        each = (search_orders(n, steps=20_000, heat=heat, rng=own) for own, heat in tries)
+        each = (search_orders(n, steps=40_000, heat=heat, rng=own) for own, heat in tries)
         made = min(each, key=lambda found: found.value)
     elif d == 2:
         made = search_orders(n, steps=8000 if n <= 100 else 4000 if n <= 260 else 2000, rng=rng)
