@@ -19,7 +19,7 @@ namespace {
 
 constexpr int MOST_STEPS = 40;
 constexpr double SAME = 1e-9;     // lengths that differ by less are one [m]
-constexpr double SURE = 2e-6;     // where a search begins with what is kept it decides by more, in parts of a margin
+constexpr double SURER = 2e-6;    // where a search begins with what is kept it decides by more, in parts of a margin
 constexpr double THICKER = 1e-4;  // half extents of boxes are taken for so much more [m]
 constexpr int FEW_POINTS = 4;     // so few are looked at one by one, in double precision
 
@@ -290,7 +290,7 @@ bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, i
   margin += a.width + b.width + slack_of(a) + slack_of(b);
   Search<T> search{tree, a, other, b, pose, plane, point};
   if (ended != nullptr && ended->size > 0 && margin > 4.0 * SAME) {
-    const Answer answer = search.go_on(margin * (1.0 + SURE) + 2.0 * SAME, margin - SAME, *ended);
+    const Answer answer = search.go_on(margin * (1.0 + SURER) + 2.0 * SAME, margin - SAME, *ended);
     if (answer != Answer::OPEN) return answer == Answer::NEAR;
   }
   return search.go(margin, std::max(margin, SAME), ended) != Answer::APART;
