@@ -60,9 +60,9 @@ def test_without_a_number_of_points_trees_plan_and_say_what_is_proved(answer, tm
     assert (loaded.bodies, loaded.nearest) == ("capsules", tuple(record["nearest"]))
     assert "certified (capsules)" in repr(loaded)
     assert "milestones" not in shown
-    # More time gives a path that is no longer, the same command the same files.
+    # More time gives a path that is no longer, the same command the same files. Its first path takes more effort.
     best, shown = answer(*arm_arguments(time=0.2), "--improve", out="best")
-    assert best["cost"] <= record["cost"] == best["stages"][0]["cost"]
+    assert best["cost"] <= best["stages"][0]["cost"] <= record["cost"]
     assert best["stages"][-1]["cost"] == best["cost"]
     assert best["counts"]["rounds"] >= 1
     assert f"in {best['counts']['rounds']} rounds" in shown

@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from evenroad.robot import load_robot
-from evenroad.robot.reference import validate
+from evenroad.robot.reference import coal_world
 from tests.robot.mesh_arms import write_fork_arm
 
 ENDS = ("--start", "home", "--goal", "away", "-n", 128)
@@ -29,7 +29,7 @@ def test_without_coal_a_path_among_meshes_is_said_to_be_unchecked(answer, tmp_pa
 @pytest.mark.parametrize("robot", ["ur5", "arm7"])
 def test_a_robot_without_meshes_pays_nothing_for_those_of_others(answer, tmp_path, monkeypatch, robot):
     for name in ("CoalWorld", "original_shapes"):
-        monkeypatch.setattr(validate, name, lambda *_: pytest.fail("nothing is to be read again"))
+        monkeypatch.setattr(coal_world, name, lambda *_: pytest.fail("nothing is to be read again"))
     home, away = (dict.fromkeys(load_robot(robot).group, at) for at in (0.0, 0.2))
     states = f"states: {{home: {home}, away: {away}}}\n".replace("'", "")
     (tmp_path / "desk.yaml").write_text(f"obstacles: {{}}\n{states}")

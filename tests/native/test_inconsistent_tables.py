@@ -314,7 +314,7 @@ def recording(name, calls):
 @pytest.mark.parametrize("seed", range(4))
 def test_whatever_it_is_given_the_kernel_answers_or_refuses(seed, recorded):
     fuzzer = Fuzzer(seed, recorded)
-    for turn in range(ROUNDS + 60):
+    for turn in range(ROUNDS + 120):
         # In the end what took nothing is tried until it does.
         left = [each for each in CALLABLES if turn < ROUNDS or each.name not in fuzzer.accepted]
         for called in left:

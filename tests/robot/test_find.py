@@ -28,7 +28,7 @@ def wheel(tmp_path, monkeypatch):
     srdf.mkdir()
     state = '<group_state name="ready" group="arm"><joint name="a" value="0.5"/></group_state>'
     write(srdf, f'<robot name="two"><group name="arm"><joint name="a"/></group>{state}</robot>', "other.srdf")
-    monkeypatch.setattr(find, "distribution", lambda name: Wheel(tmp_path / "wheel"))
+    monkeypatch.setattr("importlib.metadata.distribution", lambda name: Wheel(tmp_path / "wheel"))
     monkeypatch.chdir(tmp_path)
 
 
@@ -56,6 +56,6 @@ def test_without_the_wheel_the_error_names_the_extra_that_brings_it(monkeypatch)
     def missing(name):
         raise importlib.metadata.PackageNotFoundError(name)
 
-    monkeypatch.setattr(find, "distribution", missing)
+    monkeypatch.setattr("importlib.metadata.distribution", missing)
     with pytest.raises(UnknownName, match=r"shipped: arm7, ur5; panda.* pip install 'evenroad\[robots\]'"):
         find_robot("panda")
