@@ -35,7 +35,7 @@ CALLS = {
     # --- maps
     "er.load_map(np.zeros((3, 3)))": "compared, as cells > 0",
     "er.load_map(None)": "file",
-    "er.load_map('ofice.yaml')": "the shipped 'office'?",
+    "er.load_map('ofice.yaml')": "did you mean 'office'?",
     "er.GridMap('office.yaml')": "load_map",
     "er.GridMap(np.zeros((20, 30)))": "boolean",
     "er.GridMap([[0, 1], [0, 0]])": "boolean",
@@ -119,7 +119,7 @@ CALLS = {
     "er.load_scene('box-rech')": "box-reach",
     "er.Scene('box-reach')": "load_scene",
     "er.Scene(7)": "list of shapes",
-    "er.Scene([box], obstacle=1)": "states; did you mean 'obstacles'",
+    "er.Scene([box], obstacle=1)": "'obstacle'; did you mean 'obstacles'",
     "er.Scene([box], obstacles=[box])": "Scene is called as Scene(obstacles, *, name, allowed",
     "er.Scene('cell', [box])": "Scene is called as Scene(obstacles, *, name, allowed",
     "er.Scene([np.zeros(3)])": "er.Box((x, y, z), xyz=...)",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Container, Sequence
+from collections.abc import Collection, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -56,7 +56,7 @@ def require_positive(name: str, value: object, *, or_zero: bool = False, at_most
     return number
 
 
-def require_known(what: str, name: object, known: Container[object]) -> None:
+def require_known(what: str, name: object, known: Collection[object]) -> None:
     """Raise UnknownName, which lists the known ones, unless this is a known name of something (`sampler`, ...)."""
     if name not in known:
         raise UnknownName.among(what, name, known)

@@ -19,11 +19,10 @@ def names_on_use(package: str, file: str) -> tuple[list[str], Callable[[str], An
 
     def load(name: str) -> Any:
         if name not in homes:
-            from difflib import get_close_matches
+            from evenroad.errors import near
 
-            near = get_close_matches(name, homes, 1)
-            hint = f"; did you mean {near[0]}?" if near else ""
-            raise AttributeError(f"module {package!r} has no attribute {name!r}{hint}")
+            hint = near(name, homes)
+            raise AttributeError(f"module {package!r} has no attribute {name!r}{hint and '; '}{hint}")
         home, there = homes[name]
         if home == package:
             return importlib.import_module(f"{package}.{there}")

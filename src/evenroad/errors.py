@@ -5,11 +5,14 @@ bad value and says what is allowed.  "No path" is a result, not an error: see ``
 """
 
 import reprlib
+from collections.abc import Iterable
 
 SHOWN = 80
 """Largest number of characters of a value in an error's text."""
 LONGEST = 600
 """Largest number of characters of an error's text."""
+LISTED = 300
+"""Largest number of characters of a list of names in an error's text."""
 _MOST_PARTS = 1000
 """Largest number of parts of a value that is formatted as a whole."""
 
@@ -40,6 +43,45 @@ def in_one_line(text: str) -> str:
     return f"{line[:half]}{_GAP}{line[-half:]}"
 
 
+def near(name: object, known: Iterable[str]) -> str:
+    """Return ``did you mean 'even'?`` for the known names that may be meant, at most three, or "".
+
+    A name may be meant that begins with what was given, that differs from it in numbers alone, or in few letters.
+    Capitals, underscores and leading dashes make no difference.
+    """
+    from difflib import get_close_matches
+
+    if not isinstance(name, str) or len(name) >= SHOWN:
+        return ""
+    word, names = _plain(name), {_plain(each): each for each in known}
+    letters = _without_digits(word)
+    meant = [each for each in names if len(word) > 2 and (each.startswith(word) or _without_digits(each) == letters)]
+    if word in names:
+        meant = [word]
+    elif not meant:
+        meant = get_close_matches(word, names, 1, _NEAR)
+    return f"did you mean {' or '.join(repr(names[each]) for each in meant)}?" if 1 <= len(meant) <= 3 else ""
+
+
+def listed(names: Iterable[str]) -> str:
+    """Return names with commas between them; of a long list the first ones, and how many there are."""
+    every = list(names)
+    text = ", ".join(every)
+    if len(text) <= LISTED:
+        return text
+    return f"{text[:LISTED].rpartition(', ')[0]}, ... ({len(every)} in all)"
+
+
+def _plain(name: str) -> str:
+    return name.lstrip("-").replace("_", "-").casefold()
+
+
+def _without_digits(word: str) -> str:
+    return "".join(each for each in word if not each.isdigit())
+
+
+_NEAR = 0.65
+"""Least share of letters in common, in their order, of names that may be meant for each other."""
 _GAP = " ... "
 _BRIEF = reprlib.Repr()
 _BRIEF.maxlevel, _BRIEF.maxstring, _BRIEF.maxother = 2, SHOWN, SHOWN
@@ -71,17 +113,13 @@ class InvalidValue(EvenroadError, ValueError):
 
 
 class UnknownName(EvenroadError, ValueError):
-    """A name (sampler, family, rule, file key) is unknown; the text lists the known ones."""
+    """A name (sampler, family, rule, file key) is unknown; the text suggests a near one, or lists the known ones."""
 
     @classmethod
-    def among(cls, what: str, name: object, known: object) -> "UnknownName":
-        """Return the error ``unknown sampler 'evn'; known: even, halton; did you mean 'even'?``."""
-        from difflib import get_close_matches
-
-        names = [str(each) for each in sorted(known)]  # type: ignore[call-overload]
-        near = get_close_matches(name, names, 1) if isinstance(name, str) and len(name) < SHOWN else []
-        hint = f"; did you mean {near[0]!r}?" if near else ""
-        return cls(f"unknown {what} {shown(name)}; known: {', '.join(names)}{hint}")
+    def among(cls, what: str, name: object, known: Iterable[object]) -> "UnknownName":
+        """Return ``unknown sampler 'evn'; did you mean 'even'?``, or the known names where none is near."""
+        names = [str(each) for each in sorted(known)]  # type: ignore[type-var]
+        return cls(f"unknown {what} {shown(name)}; {near(name, names) or f'known: {listed(names)}'}")
 
 
 class NotAvailable(EvenroadError, LookupError):

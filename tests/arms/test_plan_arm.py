@@ -133,7 +133,7 @@ def test_joint_values_within_five_decimals_of_a_limit_stay_what_they_are():
 
 
 def test_what_is_of_no_world_is_named():
-    with pytest.raises(er.errors.InvalidValue, match="resolutoin: .* did you mean resolution?"):
+    with pytest.raises(er.errors.InvalidValue, match="resolutoin: .* did you mean 'resolution'?"):
         er.plan("box-reach", "home", "inside", robot="ur5", resolutoin=0.1)
     with pytest.raises(er.errors.InvalidValue, match="needs radius=, of a disk on this map, or robot="):
         er.plan("box-reach", "home", "inside")

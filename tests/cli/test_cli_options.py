@@ -79,8 +79,11 @@ def test_of_an_option_given_twice_the_last_one_counts():
     ("a --oven sun", "--oven must be one of gas, wood, got 'sun'"),
     ("a --heat", "--heat needs a value: --heat FLOAT; all options: evenroad bake --help"),
     ("a --glazed-twice=yes", "evenroad bake has no use for the word 'yes'"),
-    ("a --nuts 3", "unknown option of evenroad bake: '--nuts'; known: --fruit, --glazed-twice"),
-    ("--nuts 3", "unknown option of evenroad bake: '--nuts'; known: --fruit, --glazed-twice"),
+    ("a --nuts 3", "unknown option of evenroad bake: '--nuts'; all options: evenroad bake --help"),
+    ("--nuts 3", "unknown option of evenroad bake: '--nuts'; all options: evenroad bake --help"),
+    ("a --friut plum", "unknown option of evenroad bake: '--friut'; did you mean '--fruit'?"),
+    ("a --glazed", "unknown option of evenroad bake: '--glazed'; did you mean '--glazed-twice'?"),
+    ("a -fruit plum", "evenroad bake has no use for the word '-fruit'; did you mean '--fruit'?"),
     ("--fruit a b --", "missing from evenroad bake: RECIPE"),
     ("a --fruit", "--fruit needs a value: --fruit STR ...; all options: evenroad bake --help"),
     ("-x", "evenroad bake has no use for the word '-x'"),
@@ -164,6 +167,9 @@ def test_bash_completes_words(run, words, wanted):
     ("measure", "missing from evenroad measure: SET"),
     ("train -n 16 -d 2 -o a --method sgd", "--method must be one of anneal, mpmc, order, got 'sgd'"),
     ("plot", "unknown verb 'plot'; known: bench, certify, demo, export"),
+    ("mesure set.npy", "unknown verb 'mesure'; did you mean 'measure'?"),
+    ("plan a.yaml --robto ur5 --start home --goal up", "unknown option of evenroad plan: '--robto'; did you mean"),
+    ("plan a.yaml --robot ur5 --start home --gaol up", "unknown option of evenroad plan: '--gaol'; did you mean"),
 ])  # fmt: skip
 def test_a_wrong_word_is_one_line_and_exit_code_2(refuse, words, says):
     assert refuse(*words.split()).startswith(f"evenroad: error: {says}")

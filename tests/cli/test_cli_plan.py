@@ -246,7 +246,7 @@ BAD = [
     ({"connect_radius": 0}, "connection radius"),
     ({"connect_radius": 5, "k": 5}, "not both"),
     ({"seed": -1}, "--seed must be an integer >= 0, got -1"),
-    ({"sampler": "sobel"}, "known: cover, even, .*halton.*sobol"),
+    ({"sampler": "best"}, "known: cover, even, .*halton.*sobol"),
     ({"sampler": "mpmc", "n": 9000}, "it has n = 32, 64, 128, 256"),
     ({"sampler": "sukharev", "n": 100_000}, "the nearest are 99856 and 100489"),
     ({"sampler": "uniform", "skip": 5}, "--skip does not go with"),

@@ -53,7 +53,7 @@ def test_the_name_that_the_sampler_once_had_is_still_taken(run, tmp_path):
     (("-n", 8, "-d", 0, "-o", "a.npy"), "d must be an integer >= 1, got 0"),
     (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.csv, \.npy, \.npz"),
     (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
-    (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
+    (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'; did you mean 'even'"),
     (("-n", 8, "-d", 2, "--plain", "-o", "a.npy"), "--plain does not go .* 'even', only with halton and sobol"),
     (("-n", 8, "-d", 2, "--sampler", "sobol", "--skip", -1, "-o", "a.npy"), "--skip must be an integer >= 0"),
     (("-n", 8, "-d", 2, "--sampler", "sukharev", "-o", "a.npy"), r"are 4 and 9 \(or allow_fewer\)"),

@@ -66,7 +66,8 @@ def test_a_joint_that_is_not_named_stays_within_its_limits(tmp_path):
     ("elbow_joint=1,2", InvalidValue, "'2' is not of the form name=value"),
     ("knee=1", UnknownName, "joint of 'ur5': 'knee'; known: elbow_joint"),
     ("hom", UnknownName,
-        "unknown state 'hom'; known: home, zero; did you mean 'home'.; or give 6 numbers: shoulder_pan_joint,"),
+        "unknown state 'hom'; did you mean 'home'"),
+    ("there", UnknownName, "unknown state 'there'; known: home, zero; or give 6 numbers: shoulder_pan_joint,"),
     ("", InvalidValue, "must not be empty"),
 ])  # fmt: skip
 def test_what_is_no_configuration_is_refused_in_one_line(ur5, text, kind, says):

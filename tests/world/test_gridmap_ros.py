@@ -156,12 +156,13 @@ def test_a_missing_key_is_named(tmp_path, key):
     assert f"map.yaml lacks {key};" in text
 
 
-def test_an_unknown_key_or_mode_is_named_with_the_known_ones(tmp_path):
+def test_an_unknown_key_or_mode_is_named_with_what_was_meant_or_is_known(tmp_path):
     text = refusal(written(tmp_path, row(0), ocupied_thresh=0.7), UnknownName)
-    assert "'ocupied_thresh'" in text
-    assert "free_thresh, image, mode, negate, occupied_thresh, origin, resolution" in text
+    assert "'ocupied_thresh'; did you mean 'occupied_thresh'?" in text
     text = refusal(written(tmp_path, row(0), mode="Trinary"), UnknownName)
-    assert "'Trinary'; known: raw, scale, trinary" in text
+    assert "'Trinary'; did you mean 'trinary'?" in text
+    text = refusal(written(tmp_path, row(0), mode="all"), UnknownName)
+    assert "'all'; known: raw, scale, trinary" in text
 
 
 def test_keys_of_newer_map_servers_are_passed_over_and_named(tmp_path):

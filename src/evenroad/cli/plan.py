@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from evenroad.cli.options import Positional, Repeatable, option_names
-from evenroad.cli.read_options import HELP, given_options
+from evenroad.cli.read_options import HELP, given_options, require_known_options
 from evenroad.cli.sampler import SamplerOptions, speaks_of_points
 from evenroad.errors import InvalidValue
 
@@ -299,6 +299,7 @@ def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
     chosen: type[PlanDisk] | type[PlanArm] = PlanArm if for_arm else PlanDisk
     if not HELP.isdisjoint(words):
         return chosen
+    require_known_options("evenroad plan", words, option_names(PlanDisk) | option_names(PlanArm))
     if for_arm == ("--robot-radius" in given):
         text = "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not"
         raise InvalidValue(f"{text} {'both' if for_arm else 'neither'}; all options: evenroad plan --help")

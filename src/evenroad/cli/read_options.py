@@ -7,7 +7,7 @@ from dataclasses import MISSING
 from typing import Any
 
 from evenroad.cli.options import Option, options_of
-from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.errors import InvalidValue, UnknownName, near, shown
 
 HELP = {"-h", "--help"}
 AXES = ("-x", "-y", "-z")
@@ -30,11 +30,11 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
         raise SystemExit(0)
     known = {name for option in options for name in option.names if name.startswith("--")}
     words = [current_option(word, known) for word in words]
-    for name in sorted(given_options(words) - known):
-        raise UnknownName.among(f"option of {program}:", name, known)
+    require_known_options(program, words, known)
     given, unknown, loose = _sorted(options, words, f"all options: {program} --help")
     if unknown:
-        raise InvalidValue(f"{program} has no use for the word {shown(unknown[0])}")
+        meant = near(unknown[0], known)
+        raise InvalidValue(f"{program} has no use for the word {shown(unknown[0])}{meant and '; '}{meant}")
     values: dict[str, Any] = {}
     for option in options:
         uses = given.get(option.field, [])
@@ -109,6 +109,15 @@ def _is_like_an_option(word: str) -> bool:
     except ValueError:
         return name.startswith("-") and name.lstrip("-")[:1].isalpha()
     return False
+
+
+def require_known_options(program: str, words: Sequence[str], known: set[str]) -> None:
+    """Raise UnknownName, which suggests a near one, if an option among the words is none of the long names known."""
+    for name in sorted(given_options([current_option(word, known) for word in words]) - known):
+        # All of them would fill half a screen.
+        raise UnknownName(
+            f"unknown option of {program}: {shown(name)}; {near(name, known) or f'all options: {program} --help'}"
+        )
 
 
 def given_options(words: Sequence[str]) -> set[str]:

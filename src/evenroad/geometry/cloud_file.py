@@ -40,9 +40,9 @@ def load_cloud(path: str | os.PathLike[str]) -> Floats:
     file = Path(path)
     readers = {".ply": _read_ply, ".pcd": _read_pcd, ".xyz": _read_xyz, ".npy": _read_npy}
     if file.suffix.lower() not in readers:
-        error = UnknownName.among(f"format of the cloud {file}:", file.suffix, readers)
-        of_boxes = "; an OctoMap is included as boxes: include: FILE.bt"
-        raise UnknownName(f"{error}{of_boxes}") if file.suffix.lower() == ".bt" else error
+        if file.suffix.lower() == ".bt":
+            raise UnknownName(f"the cloud {file} is an OctoMap, which is included as boxes: include: FILE.bt")
+        raise UnknownName.among(f"format of the cloud {file}:", file.suffix, readers)
     with reading(file, "cloud of points"):
         points = np.asarray(readers[file.suffix.lower()](file), dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 3:

@@ -74,7 +74,9 @@ class Shape:
     def _set_pose(self, placed: Placed) -> None:
         """Set pose, link and name; UnknownName for another keyword, InvalidValue for two poses."""
         if strange := sorted(set(placed) - Placed.__annotations__.keys()):
-            raise UnknownName.among(f"keyword of a {self.kind}:", strange[0], Placed.__annotations__)
+            # All are listed: what others call `pos` is nearly `pose`, and means `xyz`.
+            known = ", ".join(sorted(Placed.__annotations__))
+            raise UnknownName(f"unknown keyword of a {self.kind}: {shown(strange[0])}; known: {known}")
         turned = {key: placed[key] for key in ("xyz", "rpy", "xyzw") if key in placed}
         pose = placed.get("pose", IDENTITY)
         if not isinstance(pose, Pose):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, Unpack
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad.errors import InvalidValue, shown
+from evenroad.errors import InvalidValue, listed, near, shown
 from evenroad.geometry.pose import Pose
 from evenroad.planning.request import ConfigurationLike, Goal, PathLike, Reading, Request
 from evenroad.roadmap.point_roadmap import Roadmap
@@ -101,11 +101,8 @@ def _is_map(world: object) -> TypeGuard[GridMap]:
 def _require_known(given: dict[str, Any], known: Sequence[str], what: str) -> None:
     for name in given:
         if name not in known:
-            from difflib import get_close_matches
-
-            near = get_close_matches(name, known, 1)
-            hint = f"; did you mean {near[0]}?" if near else ""
-            raise InvalidValue(f"{name}: unknown argument of plan in {what}{hint}; known: {', '.join(known)}")
+            hint = near(name, known) or f"known: {listed(known)}"
+            raise InvalidValue(f"{name}: unknown argument of plan in {what}; {hint}")
 
 
 RESOLUTION = 0.05

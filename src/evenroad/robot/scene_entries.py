@@ -64,8 +64,9 @@ def obstacle_of(name: str, entry: dict[str, Any], path: Path, where: str = "") -
     shape = entry.get("shape")
     kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind, PLANE, HEIGHTS)
     if not isinstance(shape, str) or shape not in kinds:
-        error = UnknownName.among(f"shape of {where}:", shape, kinds)
-        raise UnknownName(f"{error}; {_MEANT[shape]}") if isinstance(shape, str) and shape in _MEANT else error
+        if isinstance(shape, str) and shape in _MEANT:
+            raise UnknownName(f"unknown shape of {where}: {shown(shape)}; {_MEANT[shape]}")
+        raise UnknownName.among(f"shape of {where}:", shape, kinds)
     cell = _yes("cell", entry, where)
     if shape == PointCloud.kind:
         return _cloud(name, entry, path, cell)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_row, require_known
-from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.errors import InvalidValue, UnknownName, listed, near, shown
 from evenroad.robot.joint import Joint, require_within
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.robot import Robot, require_robot, with_group
@@ -188,7 +188,8 @@ def _from_list(robot: Robot, text: str, states: Mapping[str, object], degrees: b
                 f"unknown state {shown(text.strip())}: {robot.name!r} has no named states, as it has no SRDF: name some"
                 f" under `states:` of the scene, or give {numbers}"
             )
-        raise UnknownName(f"{UnknownName.among('state', text.strip(), states)}; or give {numbers}")
+        meant = near(text.strip(), states) or f"known: {listed(sorted(states))}; or give {numbers}"
+        raise UnknownName(f"unknown state {shown(text.strip())}; {meant}")
     if len(words) != len(robot.group):
         raise InvalidValue(
             f"a configuration of {robot.name!r} has {len(robot.group)} numbers, {','.join(robot.group)};"

@@ -117,7 +117,8 @@ class TestLattice(SamplerContract):
 
 
 def test_an_unknown_sampler_and_an_option_that_it_does_not_have_are_refused_with_the_list():
-    refused(UnknownName, "unknown sampler 'sobel'; known: .*halton.*sobol", draw, "sobel", 8, 2)
+    refused(UnknownName, "unknown sampler 'sobel'; did you mean 'sobol'", draw, "sobel", 8, 2)
+    refused(UnknownName, "unknown sampler 'best'; known: .*halton.*sobol", draw, "best", 8, 2)
     refused(UnknownName, "option of sampler 'uniform'", make_sampler, "uniform", scramble=True)
 
 

@@ -63,7 +63,7 @@ def test_only_some_problems_may_be_asked_for(run, tmp_path):
     (("text.db", "-o", "out"), "text.db"),
     (("results.db", "-o", "no/such/folder"), "no/such does not exist"),
     (("results.db", "-o", "out", "--only", "m" * 5000), "unknown problem in results.db: 'mmm"),
-    (("results.db", "-o", "out", "--only", "maze-7"), "unknown problem in results.db: 'maze-7'; known: maze-1"),
+    (("results.db", "-o", "out", "--only", "maze-7"), "unknown problem in results.db: 'maze-7'; did you mean 'maze-1'"),
 ])  # fmt: skip
 def test_bad_input_is_one_line_and_exit_code_2(run, tmp_path, arguments, text):
     write_store(tmp_path / "results.db", [(task(), solved())])

@@ -9,7 +9,6 @@ import json
 import os
 import warnings
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
@@ -22,7 +21,7 @@ from evenroad._call import explains_calls
 from evenroad._checks import as_file, require_known, require_positive
 from evenroad._files import looks_like, not_a
 from evenroad._yaml import numbers, read_mapping, require_keys
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName, near
 from evenroad.world.gridmap.frame import MapFrame
 from evenroad.world.gridmap.gridmap import DiskWorld, GridMap
 
@@ -84,10 +83,10 @@ def load_map(path: str | os.PathLike[str] | Bools, *, unknown_is_free: bool = Fa
     if isinstance(path, np.ndarray):
         return GridMap(path)
     file = find_map(path)
-    near = get_close_matches(str(path), [Path(name).stem for name in SHIPPED], 1)
-    if near and not file.exists():
+    meant = near(file.stem, [Path(name).stem for name in SHIPPED]) if len(file.parts) == 1 else ""
+    if meant and not file.exists():
         kind = BrokenFile if file.suffix else UnknownName
-        raise kind(f"there is no map {path}; did you mean the shipped {near[0]!r}?")
+        raise kind(f"there is no map {path}; {meant}")
     suffix = file.suffix.lower()
     if suffix in _IMAGES:
         return load_image(file)
@@ -149,7 +148,7 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     document = read_mapping(file, "map")
     known = (*_REQUIRED, "mode")
     # Newer map servers write more; what looks like a slip of the pen is no newer key.
-    strange = [key for key in document if key not in known and not get_close_matches(str(key), known)]
+    strange = [key for key in document if key not in known and not near(str(key), known)]
     require_keys([key for key in document if key not in strange], _REQUIRED, ("mode",), str(file))
     image, mode, negate = document["image"], document.get("mode", "trinary"), document["negate"]
     if not isinstance(image, str) or not image:

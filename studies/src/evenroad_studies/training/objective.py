@@ -221,6 +221,6 @@ class _Reader:
     def _take_name(self) -> str:
         known, name = known_names(), ALIASES.get(self.word, self.word)
         if self.kind == "name" and name not in known:
-            raise UnknownName(f"{self._place}: unknown name {shown(self.word)}; known: {', '.join(known)}")
+            raise UnknownName(f"{self._place}: {UnknownName.among('name', self.word, known)}")
         self.take("name", f"a name ({', '.join(known)})")
         return name
