@@ -141,6 +141,18 @@ def test_what_is_inside_of_a_link_or_has_it_inside_is_not_free(tmp_path):
     assert not ArmWorld(robot, Scene((around,))).valid(np.array([[0.0], [2.0]])).any()
 
 
+def test_of_a_mesh_in_many_parts_the_one_inside_of_a_link_is_found(tmp_path):
+    robot = hollow_arm(tmp_path)
+    places = [(0.0, 0.0, z) for z in np.linspace(0.5, 0.9, 20)]
+    balls = [trimesh.creation.icosphere(1, 0.01).apply_translation(place) for place in (*places, (0.4, 0.0, 0.0))]
+    for order in (balls, balls[::-1]):
+        whole = trimesh.util.concatenate(order)
+        sheet = trimesh.Trimesh(whole.vertices, whole.faces[whole.triangles_center[:, 0] < 0.4])
+        for mesh in (whole, sheet):
+            world = ArmWorld(robot, Scene((Obstacle("balls", Mesh(from_trimesh(mesh))),)))
+            assert list(world.valid(np.array([[0.0], [0.5]]))) == [False, True]
+
+
 @pytest.mark.parametrize(("high", "is_free"), [(0.0, True), (1e-6, True), (1e-4, False)])
 def test_a_base_may_stand_on_a_table_but_not_in_it(tmp_path, high, is_free):
     text = urdf(

@@ -41,7 +41,7 @@ def surface_of(
     """Return what a robot of this reach can touch of a body that is larger by a clearance, None where that is nothing;
     kept for the next scene.
 
-    It says whether true shapes of the robot are to be tested: without them a mesh takes a tenth of the memory.
+    It says whether true shapes of the robot are to be tested: without them a mesh is made in two thirds of the time.
     """
     is_frame = isinstance(body, PointCloud) and len(body.points) > FRAME
     return (_frames if is_frame else _surfaces)(body, reach, clearance, shaped)

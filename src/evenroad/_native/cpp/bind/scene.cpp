@@ -129,7 +129,8 @@ void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle t
     const Array<const bool, 1> capsules(part[2], "tested");
     capsules.of_shape({of.capsules.size()});
     auto surface = value_of<std::shared_ptr<Surface>>(part[0], "surface");
-    require(!surface->hulls.nodes.empty() || !is_shaped(of), "surface must be made for true shapes");
+    require(surface->triangles.empty() || !surface->firsts.empty() || !is_shaped(of),
+            "surface must be made for true shapes");
     require(!surface->tree.levels.empty(), "a grid around surfaces is no surface");
     scene.surfaces.push_back(
         {std::move(surface), value_of<int>(part[1], "number"), {capsules.span().begin(), capsules.span().end()}});

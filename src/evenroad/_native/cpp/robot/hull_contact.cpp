@@ -4,17 +4,12 @@
 #include "robot/hull_contact.hpp"
 
 #include <bit>
-#include <cmath>
+
+#include "robot/hull_planes.hpp"
 
 namespace evenroad::robot {
 
 namespace {
-
-constexpr int PLANES = 3;  // so many are tried for each two hulls before they are left to double precision
-/// Planes for all lanes at once cost as much as a search in one lane for each so many corners, and so many more.
-constexpr int CORNERS_OF_A_LANE = 12, CORNERS_OF_PLANES = 32;
-/// Half extents of boxes [m], and squares of sines in triangles, are taken for at least that: so all stays finite.
-constexpr float THIN = 1e-4F, FLAT = 1e-7F;
 
 using Node = HullNode<float>;
 
@@ -23,9 +18,8 @@ struct RelativePose16 {
   Vec3x16 rows[3], translation;
 
   /// Return a place in the second body's frame as the first sees it.
-  EVENROAD_INLINE Vec3x16 seen(Vec3x16 place) const {
-    return translation + Vec3x16{dot(rows[0], place), dot(rows[1], place), dot(rows[2], place)};
-  }
+  EVENROAD_INLINE Vec3x16 seen(Vec3x16 place) const { return translation + turned(place); }
+  EVENROAD_INLINE Vec3x16 turned(Vec3x16 v) const { return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)}; }
   /// Return a direction in the first body's frame as the second sees it.
   EVENROAD_INLINE Vec3x16 turned_back(Vec3x16 v) const { return combine(rows[0], v.x, rows[1], v.y, rows[2], v.z); }
 };
@@ -80,83 +74,16 @@ Mask boxes_near(const RelativePose16& pose, const Node& a, const Node& b, Floats
   return below_zero(max(largest(gap), largest(other)) - near);
 }
 
-struct Farthest16 {
-  Floats16 along;
-  Vec3x16 corner;
-};
-
-/// Return how far a leaf's hull and disc reach along unit directions, and their farthest points.
-EVENROAD_INLINE Farthest16 farthest(Vec3x16 direction, const HullTree<float>& tree, const Node& leaf) {
-  Farthest16 most{spread(-FAR), {Floats16{}, Floats16{}, Floats16{}}};
-  for (int i = leaf.points.first; i < leaf.points.end; i++) {
-    const auto& [x, y, z] = tree.points[i];
-    const Vec3x16 point = spread(Vec3{x, y, z});
-    const Floats16 here = dot(direction, point);
-    most.corner = where_less(most.along, here, point, most.corner);
-    most.along = max(here, most.along);
-  }
-  const auto& [x, y, z] = leaf.extents;
-  const Vec3x16 side = {with_sign_of(spread(x), direction.x), with_sign_of(spread(y), direction.y),
-                        with_sign_of(spread(z), direction.z)};
-  most.corner = most.corner + side;
-  most.along = most.along + dot(side, direction);
-  if (leaf.disc > 0) {
-    const Vec3x16 axis = spread3(leaf.axis), aside = minus(direction, axis, dot(direction, axis));
-    const Floats16 squared = dot(aside, aside), length = sqrt(squared);
-    most.corner = plus(most.corner, aside, leaf.disc / max(length, spread(LEAST_SQUARE)));
-    most.along = fma(length, spread(leaf.disc), most.along);
-  }
-  return most;
-}
-
-/// Return the points of segments that are nearest to the origin.
-EVENROAD_INLINE Vec3x16 nearest_of_two(Vec3x16 a, Vec3x16 b) {
-  const Vec3x16 edge = a - b;
-  const Floats16 share = dot(a, edge) / max(dot(edge, edge), spread(LEAST_SQUARE));
-  return minus(a, edge, clamp(share, Floats16{}, spread(1)));
-}
-
-/// Return what of triangles is nearest to the origin, but for what is between the first two corners.
-EVENROAD_INLINE Vec3x16 nearest_of_three(Vec3x16 a, Vec3x16 b, Vec3x16 c) {
-  const Vec3x16 first = nearest_of_two(a, c), second = nearest_of_two(b, c);
-  const Vec3x16 nearest = where_less(dot(second, second), dot(first, first), second, first);
-  const Vec3x16 e = b - a, f = c - a;
-  const Floats16 ee = dot(e, e), ef = dot(e, f), ff = dot(f, f), ae = dot(a, e), af = dot(a, f);
-  const Floats16 square = ee * ff;
-  const Floats16 one_by = 1.0F / max(max(fma(-ef, ef, square), square * FLAT), spread(LEAST_SQUARE));
-  const Floats16 s = fma(af, ef, -(ae * ff)) * one_by, t = fma(ae, ef, -(af * ee)) * one_by;
-  const Floats16 inside = min(min(s, t), 1.0F - s - t);
-  return where_less(Floats16{}, inside, a + plus(f * t, e, s), nearest);
-}
-
 /// Return the mask of those lanes asked for in which none of some planes separates two leaves.
 Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const Node& a, const HullTree<float>& other,
                const Node& b, Floats16 near, Mask asked) {
-  near = near + (a.width + b.width);
-  const Floats16 near_squared = near * near;
   const TwoBoxes boxes = boxes_of(pose, a, b);
-  // First across where the boxes are thin; no step leaves the range of single precision.
-  const Vec3x16 thick = {max(boxes.sizes.x, spread(THIN)), max(boxes.sizes.y, spread(THIN)),
-                         max(boxes.sizes.z, spread(THIN))};
-  Vec3x16 v = {boxes.way.x / thick.x, boxes.way.y / thick.y, boxes.way.z / thick.z};
-  v = v / max(max(abs(v.x), abs(v.y)), max(abs(v.z), spread(LEAST_SQUARE)));
-  Vec3x16 way = {v.x * v.x * v.x / thick.x, v.y * v.y * v.y / thick.y, v.z * v.z * v.z / thick.z}, last = way;
-  Mask meeting = 0;
-  for (int step = 0; step < PLANES; step++) {
-    const Vec3x16 along = way * (1.0F / sqrt(max(dot(way, way), spread(LEAST_SQUARE))));
-    const Farthest16 back = farthest(-along, tree, a), on = farthest(pose.turned_back(along), other, b);
-    asked &= ~below_zero(near + (back.along + on.along + dot(along, pose.translation)));
-    if (asked == 0) break;
-    // On from the way between these corners; then from what of the last two and the way so far is nearest to 0.
-    const Vec3x16 corner = back.corner - pose.seen(on.corner);
-    way = step == 0 ? corner : nearest_of_three(way, last, corner);
-    last = corner;
-    const Mask touching = asked & below_zero(dot(way, way) - near_squared);
-    meeting |= touching;
-    asked &= ~touching;
-    if (asked == 0) break;
-  }
-  return asked | meeting;
+  const auto first = [&](Vec3x16 along) { return farthest(along, tree, a); };
+  const auto second = [&](Vec3x16 along) {
+    const Farthest16 on = farthest(pose.turned_back(along), other, b);
+    return Farthest16{on.along, pose.turned(on.corner)};
+  };
+  return unseparated(boxes.way, boxes.sizes, pose.translation, first, second, near + (a.width + b.width), asked);
 }
 
 }  // namespace

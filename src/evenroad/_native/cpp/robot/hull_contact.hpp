@@ -43,6 +43,12 @@ struct Told {
   Mask apart, near;
 };
 
+/// By how much, of the lengths that they come of, single precision may have distances wrong: thirty roundings.
+constexpr float SLACK = 2e-6F;
+
+/// Return how far a body, below this root, reaches from the origin of its frame, at most.
+float reach_of(const HullNode<float>& root);
+
 /// Return by how much single precision may have distances of two bodies wrong: of the lengths that they come of.
 Floats16 lost(const PlacedHulls& first, const PlacedHulls& second);
 

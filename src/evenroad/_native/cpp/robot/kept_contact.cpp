@@ -8,17 +8,10 @@ namespace evenroad::robot {
 
 namespace {
 
-/// By how much, of the lengths that they come of, single precision may have distances wrong: thirty roundings.
-constexpr float SLACK = 2e-6F;
 /// A plane is tested for all lanes at once where more of them are asked for.
 constexpr int LANES_OF_A_PLANE = 5;
 
 using Node = HullNode<float>;
-
-/// Return how far a body reaches from the origin of its frame, at most.
-float reach_of(const Node& root) {
-  return std::abs(root.centre[0]) + std::abs(root.centre[1]) + std::abs(root.centre[2]) + root.radius;
-}
 
 /// Return how far a leaf reaches along unit directions.
 Floats16 reach_along(Vec3x16 direction, const HullTree<float>& tree, const Node& leaf) {
@@ -45,6 +38,10 @@ float reach_along(Vec3 direction, const HullTree<float>& tree, const Node& leaf)
 }
 
 }  // namespace
+
+float reach_of(const Node& root) {
+  return std::abs(root.centre[0]) + std::abs(root.centre[1]) + std::abs(root.centre[2]) + root.radius;
+}
 
 Floats16 lost(const PlacedHulls& first, const PlacedHulls& second) {
   const Vec3x16 apart = abs(second.frame.origin - first.frame.origin);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "robot/triangles.hpp"
+
 namespace evenroad::robot {
 
 namespace {
@@ -62,19 +64,6 @@ void add_grid(Surface& surface, const GivenSurface& given) {
   surface.grid = make_grid(place, told, distances_to(place, marked));
 }
 
-/// Add the tree of a mesh's triangles, or of a cloud one point at its origin.
-void add_hulls(Surface& surface, const GivenSurface& given) {
-  const std::size_t count = given.triangles ? given.corners.size() / 9 : 1;
-  std::vector<std::int64_t> first(count + 1);
-  for (std::size_t i = 0; i <= count; i++) first[i] = static_cast<std::int64_t>(given.triangles ? 3 * i : i);
-  const std::vector<double> widths(count, given.radius), discs(3 * count);
-  const auto enclosing = std::make_unique<bool[]>(count);
-  const double origin[3] = {0, 0, 0};
-  const std::span<const double> points = given.triangles ? given.corners : std::span<const double>(origin);
-  add_parts(surface.hulls, {first, points, widths, discs, {enclosing.get(), count}}, {0, static_cast<int>(count)});
-  surface.parts = points_of_parts(surface.hulls, 0);
-}
-
 }  // namespace
 
 Surface make_surface(const GivenSurface& given) {
@@ -93,7 +82,8 @@ Surface make_surface(const GivenSurface& given) {
   Surface surface;
   surface.radius = static_cast<float>(given.radius);
   add_grid(surface, given);
-  if (given.shaped) add_hulls(surface, given);
+  std::vector<std::uint8_t> firsts;
+  if (given.shaped && given.triangles) firsts = first_of_parts(given.corners);
   std::vector<Place> middles(count);
   double largest = 0;
   for (std::size_t i = 0; i < count; i++) {
@@ -125,9 +115,11 @@ Surface make_surface(const GivenSurface& given) {
     PointLeaf points{far};
     TriangleLeaf triangles{far, none, none, none};
     corners.clear();
+    std::uint16_t first_here = 0;
     for (std::size_t i = first; i < std::min(first + LANES, count); i++) {
       const double* here = given.corners.data() + 3 * static_cast<std::size_t>(each * order[i]);
       const int lane = static_cast<int>(i - first);
+      if (!firsts.empty()) first_here = static_cast<std::uint16_t>(first_here | firsts[order[i]] << lane);
       if (given.triangles)
         put(triangles, lane, here);
       else
@@ -140,6 +132,7 @@ Surface make_surface(const GivenSurface& given) {
       surface.triangles.push_back(triangles);
     else
       surface.points.push_back(points);
+    if (!firsts.empty()) surface.firsts.push_back(first_here);
     around.push_back(around_places(corners));
   }
   // Nodes are full: their places to spare are far away, and so are the leaves below.

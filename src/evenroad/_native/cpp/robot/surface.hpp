@@ -9,7 +9,6 @@
 
 #include "common/float16.hpp"
 #include "robot/box_tree.hpp"
-#include "robot/hull_tree.hpp"
 #include "robot/surface_grid.hpp"
 
 namespace evenroad::robot {
@@ -31,8 +30,7 @@ struct Surface {
   float radius = 0;               // by which points, or triangles, are widened
   std::vector<PointLeaf> points;  // of a cloud
   std::vector<TriangleLeaf> triangles;  // of a mesh
-  HullTree<float> hulls;                // of a mesh its triangles again, one by one; of a cloud a point
-  std::vector<Vec3> parts;              // of a mesh a corner of each part that hangs together
+  std::vector<std::uint16_t> firsts;    // of a mesh for true shapes: the first of those that hang together
   BoxTree tree;                         // over the leaves
 };
 
@@ -44,7 +42,7 @@ struct GivenSurface {
   std::span<const double> solid;  // (m, 3, 3): triangles of closed surfaces, however far
   bool turned;                    // whether the sides of these tell inside from outside
   double reach;                   // the grid ends at that distance from the origin along each axis
-  bool shaped = true;             // whether true shapes of a robot are to be tested against it
+  bool shaped = true;             // whether true shapes of a robot are to be tested against it: needs its firsts
 };
 
 /// Return a surface; std::invalid_argument if sizes do not fit.

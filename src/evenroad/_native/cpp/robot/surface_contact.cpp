@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "robot/grid_contact.hpp"
+#include "robot/leaf_contact.hpp"
 
 namespace evenroad::robot {
 
@@ -72,37 +73,21 @@ bool touches(const Surface& surface, const CapsuleAt& capsule) {
   return false;
 }
 
-Vec3x16 all_lanes(const Vec3x16& v, int lane) { return spread(lane_of(v, lane)); }
-
-/// Where points of the scene, one a lane, have their frames.
-PlacedFrame placed_at(Vec3x16 origins) {
-  const Floats16 one = spread(1.0F), zero{};
-  return {{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}, origins};
-}
-
-/// Return whether a point of a cloud that is near a capsule touches the body: sixteen points at one configuration.
-bool cloud_touches(const ShapeNear& of, const Surface& cloud, const CapsuleAt& capsule, int lane) {
-  const PlacedFrame& frame = of.places.frames[of.body.frame];
-  const PlacedFrame here = {
-      {all_lanes(frame.rows[0], lane), all_lanes(frame.rows[1], lane), all_lanes(frame.rows[2], lane)},
-      all_lanes(frame.origin, lane)};
-  Walk walk(cloud.tree);
-  for (int leaf = 0; (leaf = walk.next([&](const BoxNode& node) { return near_nodes(node, capsule); })) >= 0;) {
-    const Vec3x16 points = cloud.points[leaf].points;
-    const Mask near = near_points(points, capsule);
+/// Return whether the true shape of a body touches what of a surface is near a capsule, or has it inside.
+bool shape_touches(const ShapeNear& of, const Surface& surface, const CapsuleAt& capsule, int lane) {
+  ShapeAt shape(of.robot.shapes, of.body.shape, of.places.frames[of.body.frame], lane, surface.radius, of.near);
+  const bool is_mesh = !surface.triangles.empty();
+  // A point is a triangle without size, and hangs together with no other one.
+  TriangleLeaf points{};
+  Walk walk(surface.tree);
+  const auto ask = [&](const BoxNode& node) { return near_nodes(node, capsule) & shape.near(node); };
+  for (int leaf = 0; (leaf = walk.next(ask)) >= 0;) {
+    if (!is_mesh) points.corner = surface.points[leaf].points;
+    const TriangleLeaf& all = is_mesh ? surface.triangles[leaf] : points;
+    const Mask near = is_mesh ? near_triangles(all, capsule) : near_points(all.corner, capsule);
     if (near == 0) continue;
-    const PlacedFrame there = placed_at(points);
-    if (hulls_meeting({of.robot.shapes, of.body.shape, here}, {cloud.hulls, 0, there}, of.near, near, Wanted::FIRST)) {
-      return true;
-    }
-    if (of.body.encloses) {
-      const Vec3x16 from = points - here.origin;
-      const Vec3x16 seen = combine(here.rows[0], from.x, here.rows[1], from.y, here.rows[2], from.z);
-      for (Mask left = near; left != 0; left &= left - 1) {
-        const int k = std::countr_zero(left);
-        if (encloses(of.robot.shapes, of.body.shape, {seen.x[k], seen.y[k], seen.z[k]})) return true;
-      }
-    }
+    if (shape.meets(all, near)) return true;
+    if (of.body.encloses && shape.encloses_corner(all, is_mesh ? near & surface.firsts[leaf] : near)) return true;
   }
   return false;
 }
@@ -130,24 +115,15 @@ Mask touching_lanes(const Surface& surface, const Asked& of, float one_by_square
 
 Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Mask asked) {
   Mask meeting = 0;
-  if (surface.triangles.empty()) {
-    const Capsule& capsule = of.robot.capsules[of.capsule];
-    const PlacedCapsule& there = of.places.capsules[of.capsule];
-    for (; asked != 0; asked &= asked - 1) {
-      const int lane = std::countr_zero(asked);
-      const CapsuleAt at{lane_of(there.centre, lane), lane_of(there.half, lane), capsule.one_by_squared, reach};
-      if (cloud_touches(of, surface, at, lane)) meeting |= 1U << lane;
-    }
-    return meeting;
-  }
-  const PlacedFrame &frame = of.places.frames[of.body.frame], there = placed_at({Floats16{}, Floats16{}, Floats16{}});
-  meeting =
-      hulls_meeting({of.robot.shapes, of.body.shape, frame}, {surface.hulls, 0, there}, of.near, asked, Wanted::ALL);
-  // What touches no triangle may be inside of the other as a whole.
-  for (const Vec3& part : surface.parts) {
-    meeting |= shape_enclosing(of.robot, of.places, of.body, spread(part), asked & ~meeting);
+  const Capsule& capsule = of.robot.capsules[of.capsule];
+  const PlacedCapsule& there = of.places.capsules[of.capsule];
+  for (Mask left = asked; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
+    const CapsuleAt at{lane_of(there.centre, lane), lane_of(there.half, lane), capsule.one_by_squared, reach};
+    if (shape_touches(of, surface, at, lane)) meeting |= 1U << lane;
   }
   if (surface.windings.empty()) return meeting;
+  const PlacedFrame& frame = of.places.frames[of.body.frame];
   for (const Vec3& point : of.body.points) {
     const Vec3x16 p = spread(point);
     const Vec3x16 place = frame.origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};

@@ -119,6 +119,20 @@ ClosedParts closed_parts(std::span<const double> vertices, std::span<const std::
   return made;
 }
 
+std::vector<std::uint8_t> first_of_parts(std::span<const double> triangles) {
+  const std::vector<Number> first = first_at_place(triangles);
+  Sets parts(first.size());
+  for (std::size_t i = 0; i < first.size(); i += 3) {
+    parts.join(first[i], first[i + 1]), parts.join(first[i + 1], first[i + 2]);
+  }
+  std::vector<std::uint8_t> known(first.size()), found(first.size() / 3);
+  for (std::size_t i = 0; i < found.size(); i++) {
+    std::uint8_t& part = known[parts.root(first[3 * i])];
+    found[i] = part == 0 ? 1 : 0, part = 1;
+  }
+  return found;
+}
+
 std::vector<double> pieces_within(std::span<const double> triangles, double reach, double longest) {
   std::vector<double> pieces, large, halves;
   pieces.reserve(triangles.size());

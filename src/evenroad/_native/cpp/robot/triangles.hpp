@@ -17,6 +17,10 @@ struct ClosedParts {
 };
 ClosedParts closed_parts(std::span<const double> vertices, std::span<const std::int64_t> triangles);
 
+/// Return for each of some triangles, nine numbers each, whether it is the first of those that hang together by
+/// corners.
+std::vector<std::uint8_t> first_of_parts(std::span<const double> triangles);
+
 /// Return the pieces of triangles, nine numbers each, that come within reach along each axis: they are halved until no
 /// side is longer than `longest`.
 std::vector<double> pieces_within(std::span<const double> triangles, double reach, double longest);

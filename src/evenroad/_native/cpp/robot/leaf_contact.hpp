@@ -1,0 +1,39 @@
+// A true shape at one configuration against sixteen points or triangles of a surface at once.
+#pragma once
+
+#include "robot/hull_contact.hpp"
+#include "robot/surface.hpp"
+
+namespace evenroad::robot {
+
+/// Hulls of a body at one configuration, and what of a surface comes near them: leaf after leaf.
+///
+/// A triangle is made of what its leaf holds: its corner, and the ways to the others.  Single precision rounds each of
+/// them, and their sums by less than surfaces are wider for that reason.
+class ShapeAt {
+ public:
+  /// Triangles, wide as they are said to be, touch from nearer than the margin on.
+  ShapeAt(const HullTree<float>& tree, int root, const PlacedFrame& frames, int lane, float wide, float margin);
+
+  /// Return which boxes of a node come near the box around the body.
+  Mask near(const BoxNode& node) const;
+
+  /// Return whether one of those triangles of a leaf that are asked for touches a hull.
+  bool meets(const TriangleLeaf& leaf, Mask asked);
+
+  /// Return whether closed surfaces of the body go around a corner of those triangles.
+  bool encloses_corner(const TriangleLeaf& leaf, Mask asked) const;
+
+ private:
+  bool meets(int hull, const TriangleLeaf& leaf, int lane);
+
+  const HullTree<float>& tree_;
+  int root_;
+  PlacedFrame frame_;   // the same in all lanes
+  double rotation_[9];  // of the scene's directions to the body's
+  float reach_, margin_;
+  HullTree<float> triangle_;  // one, as a hull
+  PlaneNormal plane_;         // that has separated the last two: often it separates the next ones, too
+};
+
+}  // namespace evenroad::robot
