@@ -1,4 +1,4 @@
-"""The terminal: tables within its width, and progress of long work. Rich is loaded when it draws a bar."""
+"""The terminal: tables within its width, and progress of long work."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from time import perf_counter
+from typing import TextIO
 from unicodedata import east_asian_width
 
 _KNOWN = 0.05
@@ -96,10 +97,15 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 def _styled(text: str, style: str) -> str:
     """Return a text in a style on a terminal that knows it, else as it is."""
-    plain = not (text and style and sys.stdout.isatty()) or os.environ.get("TERM", "dumb") in ("dumb", "unknown")
+    plain = not (text and style and _moves_cursor(sys.stdout))
     if plain or (style in ("red", "green") and os.environ.get("NO_COLOR")):
         return text
     return f"\033[{_STYLES[style]}m{text}\033[0m"
+
+
+def _moves_cursor(stream: TextIO) -> bool:
+    """Return whether a stream is a terminal that knows ANSI's codes for the cursor and for styles."""
+    return stream.isatty() and os.environ.get("TERM", "dumb") not in ("dumb", "unknown")
 
 
 def leave_output() -> None:
@@ -132,25 +138,18 @@ class LineProgress:
 
 
 @contextmanager
-def progress_shown(title: str) -> Iterator[Callable[..., None]]:
-    """Yield a ``callback(step, steps[, best])`` that shows a bar on standard error, or lines in a log."""
-    if not sys.stderr.isatty():
+def progress_shown(title: str) -> Iterator[LineProgress]:
+    """Yield a ``callback(step, steps[, best])`` that renews one line on a terminal, or writes lines in a log."""
+    if not _moves_cursor(sys.stderr):
         yield LineProgress(title, lambda line: print(line, file=sys.stderr, flush=True))
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TextColumn("{task.percentage:3.0f} %{task.fields[best]}, left"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(file=sys.stderr), transient=True) as bar:
-        task = bar.add_task(title, total=None, best="")
+    def show(line: str) -> None:
+        # A line that wraps could not be cleared.
+        print(f"\r\033[2K{line[: table_width() - 1]}", end="", file=sys.stderr, flush=True)
 
-        def advance(step: int, steps: int, best: float | None = None) -> None:
-            value = "" if best is None else f", best {best:.5g}"
-            bar.update(task, total=steps, completed=step, best=value)
-
-        yield advance
+    show(f"{title} ...")
+    try:
+        yield LineProgress(title, show, every=0.1)
+    finally:
+        show("")

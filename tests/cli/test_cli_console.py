@@ -1,7 +1,7 @@
 """What reaches the terminal is what was said: brackets and colons are no markup."""
 
-import re
 import sys
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -45,15 +45,31 @@ def test_names_are_bold_on_a_terminal_alone(capsys, monkeypatch):
         assert capsys.readouterr().out == shown
 
 
-def test_progress_is_a_bar_on_a_terminal_and_gone_at_the_end(capsys, monkeypatch):
+def test_progress_is_one_line_on_a_terminal_and_gone_at_the_end(capsys, monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr("evenroad._terminal.perf_counter", lambda: now[0])
     monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "40")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with progress_shown("work [ms]") as report:
-        report(0, 4)
-        report(1, 4, 0.5)
-    said = re.sub(r"\033\[[\d;]*m", "", capsys.readouterr().err)
-    assert re.search(r"work \[ms\] .* 25 %, best 0.5, left ", said)
-    assert said.endswith("\033[1A\033[2K")
+    with suppress(KeyboardInterrupt), progress_shown("work [ms]") as report:
+        for now[0], step in ((1.0, 0), (2.0, 1), (2.05, 2)):
+            report(step, 4, 0.5)
+        raise KeyboardInterrupt
+    said = capsys.readouterr().err
+    assert "\n" not in said
+    assert said.split("\r\033[2K") == ["", "work [ms] ...", "work [ms]: 25 %, 6 s left, best 0.5", ""]
+
+
+@pytest.mark.parametrize(("terminal", "kind"), [(False, "xterm"), (True, "dumb")])
+def test_progress_is_lines_where_the_cursor_cannot_go_back(capsys, monkeypatch, terminal, kind):
+    monkeypatch.setenv("TERM", kind)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    now = [0.0]
+    monkeypatch.setattr("evenroad._terminal.perf_counter", lambda: now[0])
+    with progress_shown("work") as report:
+        for now[0], step in ((1.0, 0), (20.0, 1)):
+            report(step, 4)
+    assert capsys.readouterr().err == "work: 25 %, 60 s left\n"
 
 
 @pytest.mark.parametrize("name", ["set[red].npz", "[bold]", "a:key:b"])

@@ -80,7 +80,7 @@ def test_the_same_command_gives_the_same_path_and_another_seed_another(answer):
 def test_a_plan_of_an_arm_loads_what_it_needs_alone(tmp_path):
     """Half of a plan's time is loading: what is loaded for nothing is felt."""
     unneeded = {
-        *("scipy", "rich", "email", "asyncio", "zipfile", "tempfile", "PIL.JpegImagePlugin"),
+        *("scipy", "email", "asyncio", "zipfile", "tempfile", "PIL.JpegImagePlugin"),
         *("evenroad.constraints.keep", "evenroad.world.gridmap.gridmap", "evenroad.planning.growing"),
         *("evenroad.robot.separated", "evenroad.robot.mjcf", "evenroad.points.measures.l2", "evenroad.trajectory"),
     }
