@@ -24,26 +24,29 @@ FACTORS = (3.0, 2.0, 1.5, 1.2)
 
 @dataclass(frozen=True, kw_only=True)
 class Certify:
-    """Print what shortest paths along a roadmap guarantee in every world, from the largest hole between its points.
+    """Print what a roadmap of these points (PRM, in a box) guarantees, whatever the obstacles.
 
-    A path has clearance C if all points nearer to it than C are free.  A point set stands for a roadmap in a box.
-    Exit code 1 if nothing is guaranteed for the given clearance.
+    It says from which clearance on a path is found if one exists, and how much longer than the best one that path is at
+    most.  A path has clearance C if all points nearer to it than C are free.  Exit code 1 if nothing is guaranteed for
+    the given clearance.
+
+    Example: evenroad certify set.npy -k 511
     """
 
     set: Positional[Path]
     """A .npy array of shape (n, d), or a .npz point set."""
     k: Annotated[int | None, "-k"] = None
-    """Each milestone is joined to its k nearest, symmetrised (default 10; 20 from six dimensions on)."""
+    """Each milestone is joined to its k nearest, in both directions (default 10; 20 from six coordinates on)."""
     connect_radius: float | None = None
     """Milestones are joined up to this distance instead."""
     sides: str | None = None
-    """Sides of the box, d numbers with commas between them.  Default: 1 each."""
+    """Lengths of the box's sides, d numbers with commas between them.  Default: 1 each."""
     goals: int = 1
-    """Largest number of goals of a query."""
+    """Largest number of goals that a plan is given."""
     clearance: float | None = None
-    """Clearance of paths, > 0, in units of the box."""
+    """Say what is guaranteed where the best path has this clearance, > 0, in units of the box."""
     length: float | None = None
-    """Length of paths, > 0."""
+    """Length of that best path, > 0."""
     json: bool = False
     """Print JSON instead of a table."""
 

@@ -27,7 +27,7 @@ def help_of(program: str, kind: type, options: Sequence[Option]) -> str:
     declared = [name for each in kind.__mro__ for name in get_annotations(each)]
     listed = sorted(options, key=lambda option: declared.index(option.field))
     positional, named = [each for each in listed if not each.names], [each for each in listed if each.names]
-    about = [fill(" ".join(text.split()), table_width(), subsequent_indent="  ") for text in _paragraphs(kind)]
+    about = [fill(" ".join(text.split()), table_width(), break_on_hyphens=False) for text in _paragraphs(kind)]
     texts = _texts(kind)
     entries = {each.field: (each.text, _with_default(each, texts.get(each.field, ""))) for each in positional}
     entries["help"] = ("-h, --help", "show this help message and exit")
@@ -56,11 +56,11 @@ def _paragraphs(kind: type) -> list[str]:
 
 
 def _grouped(names: Iterable[str], groups: Mapping[str, Iterable[str]]) -> list[tuple[str, list[str]]]:
-    """Return each group's title and those of its names that there are; the rest comes last."""
+    """Return each group's title and those of its names that there are; what is in none comes first."""
     there = list(names)
     found = [(title, [each for each in group if each in there]) for title, group in groups.items()]
     in_groups = {each for _, group in found for each in group}
-    found.append(("more" if groups else "options", [each for each in there if each not in in_groups]))
+    found.insert(0, ("options", [each for each in there if each not in in_groups]))
     return [(title, group) for title, group in found if group]
 
 
@@ -92,6 +92,6 @@ def _entry(name: str, about: str) -> list[str]:
     width = table_width()
     indent = min(_INDENT, width // 3)
     name = f"  {name}"
-    texts = wrap(about, max(width - indent, 20)) or [""]
+    texts = wrap(about, max(width - indent, 20), break_on_hyphens=False) or [""]
     first = [name.ljust(indent) + texts.pop(0)] if len(name) < indent else wrap(name, width, subsequent_indent="    ")
     return [*(line.rstrip() for line in first), *(" " * indent + line for line in texts)]

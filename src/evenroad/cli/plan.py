@@ -15,6 +15,11 @@ from evenroad.cli.read_options import HELP, given_options, require_known_options
 from evenroad.cli.sampler import SamplerOptions, speaks_of_points
 from evenroad.errors import InvalidValue
 
+OF_ROBOTS: dict[str, tuple[str, ...]] = {
+    "the robot's files": ("srdf", "group", "bodies", "use_visuals", "package", "xacro", "padding")
+}
+"""Title of the group of options of a robot's file -> these options."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class PlanOptions(SamplerOptions):
@@ -27,14 +32,14 @@ class PlanOptions(SamplerOptions):
         ),
         "on the way": ("via", "straight", "away", "upright", "upright_axis", "constraint"),
         "search": ("time", "improve", "certified", "resolution", "seed", "raw"),
-        "points, in place of trees or cells": (
+        "a roadmap of points (PRM), in place of the default search": (
             *("n", "sampler", "k", "connect_radius", "guarantees", "plain", "skip", "allow_fewer"),
         ),
         "times": (
             *("timed", "trajectory", "speed", "limits", "torque", "tip_speed", "tip_acceleration"),
             *("start_velocity", "goal_velocity", "deviation", "step", "controller_joints"),
         ),
-        "the robot's files": ("srdf", "group", "bodies", "use_visuals", "package", "xacro", "padding"),
+        **OF_ROBOTS,
         "results": ("out", "no_picture", "csv"),
     }
     """Title of a group of the help -> its options."""
@@ -48,16 +53,16 @@ class PlanOptions(SamplerOptions):
     goal: Repeatable[tuple[tuple[str, ...], ...]]
     """Where to go."""
     n: Annotated[int | None, "-n"] = None
-    """Plan on a roadmap of exactly this many points (PRM); 512 if only other options name points.
-    Without -n, plan until a path, a proof that there is none, or the end of the time."""
+    """Plan with PRM on exactly this many points; 512 if only other options of a roadmap are given.  Default: no
+    roadmap; search until a path, a proof that there is none, or the end of the time."""
     time: float | None = None
-    """Time limit in seconds, > 0 (default 5; with points 60)."""
+    """Time limit in seconds, > 0 (default 5; with PRM 60)."""
     improve: bool = False
-    """Plan again with other choices until the time is over, and keep the shortest path.  Not with points."""
+    """Use all of the time: plan again with other seeds, and keep the shortest path.  Not with PRM."""
     certified: bool = False
-    """Require a proof that the whole path is free; without one, the answer names the motion."""
+    """Require a proof that the whole path is free; if a motion has none, the answer names it."""
     k: Annotated[int | None, "-k"] = None
-    """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
+    """Connect each milestone with its k nearest, in both directions (default 10; 20 from six joints on)."""
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
     seed: int = 0
@@ -66,7 +71,7 @@ class PlanOptions(SamplerOptions):
     """Leave the path as it was found, without smoothing."""
     out: Annotated[Path | None, "-o"] = None
     """Files to write: OUT.json, OUT.png and, for an arm, OUT.csv; OUT may end in one of these.
-    Default: the world's stem in the current folder, with -plan added where that would overwrite an input."""
+    Default: the name of WORLD in the current folder, with -plan added where that would overwrite an input."""
     no_picture: bool = False
     """Draw no picture."""
 
@@ -100,35 +105,37 @@ class PlanDisk(PlanOptions):
     world: Positional[Path]
     """A map: a .png or .pgm image, or a ROS map_server .yaml."""
     start: tuple[str, ...]
-    """x y in map units."""
+    """Where to start: x y in map units."""
     goal: Repeatable[tuple[tuple[str, ...], ...]]
-    """As start.  You can give several: the path ends at the first one reached, with points or --improve at the
-    cheapest."""
+    """Where to go: x y in map units.  You can give several: the path ends at the first one reached, with PRM or
+    --improve at the one with the shortest path."""
     robot_radius: float
     """Plan for a disk of this radius, > 0, in map units."""
     clearance: float = 0.0
-    """Margin to keep from every obstacle, added to the radius, >= 0."""
+    """Distance to keep from every obstacle, beside the radius, >= 0, in map units."""
     unknown_is_free: bool = False
     """Treat unknown cells of a ROS map as free."""
     csv: bool = False
     """Also write the path as OUT.csv."""
     guarantees: bool = False
-    """Print the roadmap's certificate: the clearance from which it has a path if one exists, and the largest
-    length of its path.  With points; the sampler cover guarantees most."""
+    """Print what the roadmap guarantees: from which clearance on it has a path if one exists, and how long that path
+    is at most.  With PRM; the sampler cover guarantees most."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RobotOptions:
     """The options of a robot's file."""
 
+    groups: ClassVar[dict[str, tuple[str, ...]]] = OF_ROBOTS
+
     srdf: Path | None = None
-    """Its SRDF, with groups, named states and pairs of links that need no test."""
+    """The robot's SRDF, with groups, named states and pairs of links that need no test."""
     group: Repeatable[tuple[str, ...]] = ()
-    """Groups of the SRDF, or joints, separated by commas, planned for together in this order; you can give several.
-    Other joints stay where the named states of start and goal have them, else at 0, or where they do not touch."""
+    """What to plan for: a group of the SRDF, or joints separated by commas; you can give several, in this order.  Other
+    joints stay where the named states of start and goal have them, else at 0, or where nothing touches."""
     bodies: Path | None = None
-    """A YAML file of capsules and spheres in place of the robot's collision geometry.  Default: its shapes; or
-    `capsules`, those that stand for a link."""
+    """What stands for the links: shapes, as the file has them (default); capsules, fitted around these; or a YAML file
+    of capsules and spheres."""
     use_visuals: bool = False
     """Use the visual geometry of links that have no collision geometry."""
     package: Repeatable[tuple[str, ...]] = ()
@@ -136,7 +143,7 @@ class RobotOptions:
     xacro: Repeatable[tuple[str, ...]] = ()
     """NAME=VALUE: an argument of a xacro, VALUE may be empty; you can give several."""
     padding: Repeatable[tuple[str, ...]] = ()
-    """Clearance of links, beside --clearance: METRES; LINK=METRES, you can give several; or MoveIt's YAML file."""
+    """Extra distance of links to obstacles: METRES; LINK=METRES, you can give several; or MoveIt's YAML file."""
 
     def options(self) -> dict[str, Any]:
         """Return the arguments of `load_model`; fitting reports on standard error."""
@@ -195,21 +202,21 @@ class PlanArm(PlanOptions, RobotOptions):
     world: Positional[Path]
     """A scene (.yaml; shipped: shelf.yaml, box-reach.yaml, box-reach-narrow.yaml, empty.yaml)."""
     start: tuple[str, ...]
-    """One number per joint, separated by commas, name=value,..., or a named state."""
+    """Where to start: one number per joint, separated by commas, name=value,..., or a named state."""
     robot: str | None = None
     """Plan for this arm: a URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others."""
     roadmap: Path | None = None
-    """Plan along this roadmap, made by ``evenroad roadmap``, which holds its arm and its cell; if you give --robot
+    """Plan along this roadmap, made by evenroad roadmap, which holds its arm and its cell; if you give --robot
     too, it has to be that arm."""
     goal: Repeatable[tuple[tuple[str, ...], ...]] = ()
-    """As start.  You can give several, also with --goal-pose: the path ends at the nearest if that is soon reached,
-    with points or --improve at the cheapest."""
+    """Where to go, as start.  You can give several, also with --goal-pose: the path ends at the nearest if that is soon
+    reached, with PRM or --improve at the one with the shortest path."""
     goal_pose: Repeatable[tuple[tuple[str, ...], ...]] = ()
     """The pose of a link: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z" with any
     rotation.  All configurations found that reach it are goals; you can give several; "LINK: x y z ... & LINK: ..." is
     one goal of both."""
     tip: str = ""
-    """The link of goal poses, --straight, --upright and --tip-speed (default: the last one)."""
+    """The link of goal poses, --straight, --upright and --tip-speed (default: the last link)."""
     frame: str = ""
     """The frame of goal poses: a link that does not move (default: the root)."""
     free_axis: str | None = None
@@ -229,7 +236,7 @@ class PlanArm(PlanOptions, RobotOptions):
     upright_axis: str | None = None
     """That axis, in the tip's frame (default: the one that is most upright at the start)."""
     constraint: Repeatable[tuple[tuple[str, ...], ...]] = ()
-    """Kept on the whole path: "orientation 0.01", "plane z", "line y", "box 0,0,0 1,1,1", "circle 0.8,0.3,0 z",
+    """What the whole path keeps: "orientation 0.01", "plane z", "line y", "box 0,0,0 1,1,1", "circle 0.8,0.3,0 z",
     "together LINK LINK" or "joints NAME=0,2"; then within=0.001, tip=LINK.  Or "differential-drive": a base that
     drives along its heading alone; x=, y= and heading= name its joints (default: base/x, base/y, base/theta)."""
     deg: bool = False
@@ -271,9 +278,9 @@ class Demo:
     """Plan through a maze that ships with evenroad."""
 
     level: int = 3
-    """Which maze: 1, 2 or 3, of rising difficulty."""
+    """Which maze: 1, 2 or 3; 3 is the hardest."""
     n: Annotated[int, "-n"] = 1024
-    """Number of points to draw."""
+    """Number of points of the roadmap."""
     out: Annotated[Path, "-o"] = Path("demo")
     """Files to write: OUT.png and OUT.json."""
 

@@ -15,14 +15,17 @@ from evenroad.points.npz import write_points
 
 @dataclass(frozen=True, kw_only=True)
 class Points(SamplerOptions):
-    """Write a point set: shipped or constructed."""
+    """Write points that fill the unit cube evenly, as samples for a planner such as PRM.
+
+    Example: evenroad points -n 512 -d 6 -o set.npy
+    """
 
     n: Annotated[int, "-n"]
     """Number of points."""
     d: Annotated[int, "-d"]
-    """Number of dimensions."""
+    """Number of coordinates of each point, such as the joints of an arm."""
     out: Annotated[Path, "-o"]
-    """The file: .npz keeps the origin, .npy and .csv have the plain array."""
+    """The file to write: .npy and .csv hold the array, .npz also says how it was made."""
 
     def run(self) -> int:
         """Find or make the set, and write it."""

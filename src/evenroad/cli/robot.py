@@ -31,12 +31,15 @@ _SECONDS = 0.2
 
 @dataclass(frozen=True, kw_only=True)
 class Robot(RobotOptions):
-    """Show the joints, limits, bodies and self-collision pairs of an arm, and checks per second."""
+    """Show the joints, limits, shapes and self-collision pairs of an arm, and how many checks a second it allows.
+
+    Example: evenroad robot ur5
+    """
 
     robot: Positional[str]
     """A URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others."""
     scene: Path | None = None
-    """Count checks per second in this scene (a file or box-reach.yaml) instead of in empty space."""
+    """Count checks a second in this scene, such as box-reach.yaml, instead of in empty space."""
     write_srdf: Path | None = None
     """Write an SRDF to start from: groups, named states, and the pairs of links that are not tested, with reasons."""
     json: bool = False

@@ -20,13 +20,14 @@ from evenroad.robot.given import as_scene
 class RunTask(RobotOptions):
     """Plan a task: motions, and what a gripper does between them; write one trajectory.
 
-    The file names the robot, the scene, a start and steps; see evenroad.task.load_task.
+    The file names the robot, the scene, a start and the steps: move_to, move_linear, attach, detach and others.
+    All are described at evenroad.task.load_task.
 
     Example: evenroad run task.yaml --robot ur5 -o task.json
     """
 
     task: Positional[Path]
-    """The task, a .yaml."""
+    """The file of the task, a .yaml."""
     robot: str | None = None
     """A URDF, xacro or MJCF file, or a name, in place of the one that the task names."""
     scene: str | None = None
@@ -34,11 +35,11 @@ class RunTask(RobotOptions):
     out: Annotated[tuple[Path, ...], "-o"] = ()
     """Files for the trajectory: .json, .csv, .yaml (ROS 2), .mcap (a bag), .script or .movej.script (URScript)."""
     speed: float = 1.0
-    """Share of the velocity limits, from 0 to 1."""
+    """Share of the velocity limits, > 0 and at most 1."""
     time: float | None = None
-    """Time limit of the whole task, in seconds: by default 5."""
+    """Time limit of the whole task in seconds, > 0 (default 5)."""
     seed: int = 0
-    """Seed of everything random."""
+    """Seed of everything random; the same command gives the same motions."""
 
     def run(self) -> int:
         """Plan, write, report; return 0 if all steps can be done, else 1."""

@@ -21,16 +21,16 @@ class SamplerOptions:
     """The options of a point set."""
 
     sampler: str | None = None
-    """even, growing, hickernell, mpmc, korobov, lattice, cover, halton, sobol, star, sukharev or uniform
-    (default: even)."""
+    """How points are drawn: even, growing, hickernell, mpmc, korobov, lattice, cover, halton, sobol, star, sukharev or
+    uniform (default: even)."""
     plain: bool = False
-    """halton and sobol: the plain sequence instead of the scrambled one."""
+    """With halton and sobol: the plain sequence instead of the scrambled one."""
     skip: int = 0
-    """halton and sobol: index of the first point of the sequence."""
+    """With halton and sobol: index of the first point of the sequence."""
     allow_fewer: bool = False
-    """sukharev: take the largest grid with at most n points."""
+    """With sukharev: take the largest grid with at most n points."""
     seed: int = 0
-    """Seed of the sampler's set, and of every other random choice."""
+    """Seed of everything random; the same command gives the same points."""
 
 
 def speaks_of_points(options: SamplerOptions) -> bool:

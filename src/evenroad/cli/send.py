@@ -19,9 +19,9 @@ from evenroad.trajectory.send import checked_states, send_trajectory
 class Send:
     """Send a plan or a trajectory to a UR arm, state by state; nothing moves without --go.
 
-    Without --host there is no arm: the states are checked as they would be sent.  With it, it is refused if the arm is
-    another model, not ready or not at the start, or faster than allowed.  Ctrl-C stops the arm; so does a lost
-    connection.
+    Without --host there is no arm: the states are checked as they would be sent.  With --host a plan is refused if the
+    arm is another model, not ready or not at the start, or if the plan is faster than allowed.  Ctrl-C stops the arm;
+    so does a lost connection.
 
     Example: evenroad send box-reach.json --host 192.168.0.5 --model UR5 --fastest 0.5
     """

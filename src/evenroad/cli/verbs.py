@@ -19,25 +19,28 @@ DONE = 0
 BAD_INPUT = 2
 
 VERBS = {
-    "plan": ("evenroad.cli.plan:PlanDisk", "a path for a disk on a map, or for an arm in a scene (--robot)"),
-    "run": ("evenroad.cli.run:RunTask", "a task of several motions from its file, as one trajectory"),
-    "roadmap": ("evenroad.cli.roadmap:MakeRoadmap", "a roadmap for one arm in its cell, good for every scene"),
-    "view": ("evenroad.cli.view:View", "a plan in the browser, as one HTML file that plays offline, as PNG or GIF"),
-    "send": ("evenroad.cli.send:Send", "a plan to a UR arm, checked; a dry run without --go"),
-    "points": ("evenroad.cli.points:Points", "write a point set: shipped or constructed"),
-    "measure": ("evenroad.cli.measure:Measure", "print every measure of a point set"),
-    "certify": ("evenroad.cli.certify:Certify", "what a roadmap guarantees in every world, in every dimension"),
-    "robot": ("evenroad.cli.robot:Robot", "what an arm is made of, and how fast it is checked"),
+    "plan": ("evenroad.cli.plan:PlanDisk", "plan a path, for a disk on a map or for an arm in a scene (--robot)"),
+    "run": ("evenroad.cli.run:RunTask", "plan a task of several motions from its file, as one trajectory"),
+    "roadmap": ("evenroad.cli.roadmap:MakeRoadmap", "build a roadmap for an arm in its cell, for many plans"),
+    "view": ("evenroad.cli.view:View", "show a plan in the browser, or write it as HTML, PNG or GIF"),
+    "send": ("evenroad.cli.send:Send", "send a plan to a UR arm, checked; a dry run without --go"),
+    "points": ("evenroad.cli.points:Points", "write evenly spread points, for sampling-based planners"),
+    "measure": ("evenroad.cli.measure:Measure", "show how evenly the points of a file are spread"),
+    "certify": (
+        "evenroad.cli.certify:Certify",
+        "show what a roadmap of points guarantees, whatever the obstacles",
+    ),
+    "robot": ("evenroad.cli.robot:Robot", "show an arm's joints, limits and shapes, and how fast it is checked"),
     "demo": ("evenroad.cli.plan:Demo", "plan through a maze that ships with evenroad"),
 }
 """Name of a verb -> its class, loaded on use, and its description."""
 
 OF_STUDIES = {
-    "train": "train point sets for any objective",
-    "bench": "run benchmarks into a store",
-    "generate": "data sets of problems with timed paths, for learning",
-    "report": "page, figures and tables of a store",
-    "export": "a store for OMPL's Planner Arena",
+    "train": "train point sets for an objective of your own",
+    "bench": "run benchmarks; one file, the store, takes the results",
+    "generate": "make a data set of problems with timed paths, for learning",
+    "report": "write a page, figures and tables of a store",
+    "export": "write a store for OMPL's Planner Arena",
 }
 """Name of a verb of the package evenroad-studies -> its description."""
 ENTRY_POINTS = "evenroad.verbs"

@@ -57,7 +57,7 @@ class View(RobotOptions):
     goal: str | None = None
     """As start.  Default: the start."""
     n: Annotated[int | None, "-n"] = None
-    """Plan again on this number of points, whose roadmap can be shown; default: with trees."""
+    """Plan again with PRM on this number of points, and show its roadmap.  Default: as evenroad plan without -n."""
     port: int = 8080
     """Port of the page that is served; 0 takes any free one."""
 

@@ -41,6 +41,8 @@ class Bench:
     """Run benchmarks; what the store has is not run again, so the same command goes on after Ctrl-C.
 
     Exit code 1 if a run of the suite, now or before, gave no answer: see --retry.
+
+    Example: evenroad bench paper --quick --only maze-1 --store results.db
     """
 
     suite: Positional[str] = "paper"
@@ -49,32 +51,32 @@ class Bench:
     list: bool = False
     """Show suites, problems and samplers, and run nothing."""
     runs: int | None = None
-    """Runs of every cell, by default 400; of arms the problems of each robot and generator, by default 40."""
+    """Runs of every cell (default 400); suite arms: problems of each robot and generator (default 40)."""
     quick: bool = False
     """A taste in minutes; its rows are part of the whole suite's."""
     only: str = ""
-    """Names of problems, with commas between them; empty: all of the suite.  Of arms also robots and generators."""
+    """Names of problems, separated by commas; suite arms: also of robots and generators.  Default: all of the suite."""
     draws: int | None = None
-    """Of arms: sets of each sampler, by default 2."""
+    """Suite arms: number of sets of each sampler (default 2)."""
     counts: str = ""
-    """Of arms: numbers of points, with commas; by default 64,256."""
+    """Suite arms: numbers of points, separated by commas (default 64,256)."""
     neighbours: str = ""
-    """Of arms: how many neighbours milestones are joined to, with commas; by default 10."""
+    """Suite arms: to how many neighbours a milestone is joined, separated by commas (default 10)."""
     samplers: str = ""
-    """Of arms: names of samplers, with commas; empty: all, and trees."""
+    """Suite arms: names of samplers, separated by commas (default: all, and trees)."""
     store: Path = Path("results.db")
     """The SQLite file for the rows, made where there is none; rows that it cannot take are left in STORE.rescue.
 
     A name that ends with .parts is a folder of Parquet files, which several benchmarks may write at once.
     """
     jobs: int | None = None
-    """Processes; by default one a processor."""
+    """Number of processes (default: one a processor)."""
     scheduler: str | None = None
     """Address of a Dask scheduler whose workers run the tasks, tcp://host:port (needs the extra [dask])."""
     seed: int = 1
-    """Root of the random numbers that draw the sets (paper-blocks have none: run i is always the same set)."""
+    """Seed of the point sets (paper-blocks have none: run i always has the same set)."""
     limit: float | None = None
-    """Seconds for one task, after which its row says timeout; by default 600, and no limit with --scheduler."""
+    """Seconds for one task, after which its row says timeout (default 600; with --scheduler no limit)."""
     retry: bool = False
     """Run those tasks again whose row is a failure (failed, timeout, lost)."""
 

@@ -22,11 +22,16 @@ from evenroad_studies.workers import interrupt_between_steps, processes
 
 @dataclass(frozen=True, kw_only=True)
 class Generate:
-    """Make a data set of problems of an arm, with paths that are proved free and timed."""
+    """Make a data set of problems of an arm, with paths that are proved free and timed, for learning.
+
+    A problem is a scene, a start and a goal.  The same command goes on where it stopped.
+
+    Example: evenroad generate shelf boxes --robot ur5 --count 1000 -o problems
+    """
 
     scenes: Positional[tuple[str, ...]]
-    """Generators (shelf, clutter, tight, boxes, cage), files of scenes, or folders of these; with --merge the folders
-    of shards."""
+    """Generators of random scenes (shelf, clutter, tight, boxes, cage), files of scenes, or folders of these; with
+    --merge the folders of shards."""
     robot: str = "ur5"
     """The arm: a name or a file."""
     count: float = 10_000
@@ -34,19 +39,19 @@ class Generate:
     out: Annotated[Path, "-o"]
     """The folder of the set; made if its parent exists."""
     seed: int = 0
-    """Part i of the set depends on this seed and i alone."""
+    """Seed of everything random; file i depends on it and on i alone."""
     rows: int = 1000
     """How many problems a file has."""
     per_scene: int = 16
     """How many problems a scene has."""
     format: Format = "parquet"
-    """parquet (extra [parquet]) or hdf5 (extra [hdf5])."""
+    """Kind of the files; each needs the extra of its name."""
     shard: str = "0/1"
-    """i/n: of all files number i, i + n, i + 2 n ...: n machines make a set, each with a number from 0 to n - 1."""
+    """i/n: make the files number i, i + n, i + 2 n ... alone.  So n machines share a set, i from 0 to n - 1."""
     merge: bool = False
-    """Gather the files of shards, and write the card."""
+    """Gather the files of shards into one set, with a card.json that describes it."""
     jobs: int | None = None
-    """Processes (default: one a processor)."""
+    """Number of processes (default: one a processor)."""
     scheduler: str | None = None
     """Address of a Dask scheduler whose workers make the files, tcp://host:port (extra [dask])."""
 

@@ -23,10 +23,13 @@ from evenroad_studies.report.tables import difference
 
 @dataclass(frozen=True, kw_only=True)
 class Report:
-    """Write report.html, PNG figures, CSV, Markdown and LaTeX tables of a store of benchmark results."""
+    """Write report.html, PNG figures, CSV, Markdown and LaTeX tables of a store of benchmark results.
+
+    Example: evenroad report results.db -o report
+    """
 
     store: Positional[Path]
-    """The store that ``evenroad bench`` wrote; it may still be writing."""
+    """The store that evenroad bench wrote; it may still be writing."""
     out: Annotated[Path, "-o"]
     """The folder to write into; made where there is none."""
     only: str = ""
@@ -114,7 +117,7 @@ class Export:
     """Write benchmark results for OMPL's Planner Arena (CSV and tables: evenroad report)."""
 
     store: Positional[Path]
-    """The store that ``evenroad bench`` wrote."""
+    """The store that evenroad bench wrote."""
     arena: bool = False
     """As a Planner Arena database; the one format there is, so it need not be said."""
     out: Annotated[Path, "-o"]

@@ -26,12 +26,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Train:
-    """Train point sets and write them as OUT/set-0000.npz, ...; the same command goes on where it stopped."""
+    """Train point sets and write them as OUT/set-0000.npz, ...; the same command goes on where it stopped.
+
+    Example: evenroad train -n 32 -d 2 --sets 2 -o trained
+    """
 
     n: Annotated[int, "-n"]
-    """How many points."""
+    """How many points a set has."""
     d: Annotated[int, "-d"]
-    """How many dimensions."""
+    """How many coordinates a point has."""
     method: Literal["anneal", "mpmc", "order"] | None = None
     """anneal: noisy Adam on the coordinates. mpmc: the message-passing network. order: d = 2, --objective star alone,
     and this the exact star discrepancy: orders of the points are tried, each with its best places.  Default: order for
@@ -52,7 +55,7 @@ class Train:
     seed: int = 0
     """Set i depends on this seed and i alone, whatever the number of processes."""
     jobs: int | None = None
-    """Processes (default: one a processor)."""
+    """Number of processes (default: one a processor)."""
     out: Annotated[Path, "-o"]
     """The folder for the sets; made if its parent exists."""
 
