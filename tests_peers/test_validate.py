@@ -171,7 +171,7 @@ def test_a_plan_says_that_its_path_is_free_for_the_meshes(arm, tmp_path, capsys,
     assert record["status"] == "solved"
     assert record["meshes"]["verdict"] == "free"
     assert record["meshes"]["states"] > 30
-    assert f"meshes free ({record['meshes']['states']} states)" in out
+    assert f"second check free ({record['meshes']['states']} states)" in out
 
 
 def test_bodies_that_leave_a_mesh_out_are_found_out_and_no_path_is_written(arm, tmp_path, capsys):
@@ -183,7 +183,7 @@ def test_bodies_that_leave_a_mesh_out_are_found_out_and_no_path_is_written(arm, 
     assert record["status"] == "mesh_collision"
     assert record["meshes"]["verdict"] == "in collision"
     assert "'fork' touches 'post'" in record["message"]
-    assert "meshes in collision at (" in out
+    assert "second check in collision at (" in out
     assert "mesh_collision" in out
     assert len(record["path"]) >= 2, "what was found, to look at"
     assert not (tmp_path / "a.csv").exists(), "a table of numbers cannot say that it is not to be driven"

@@ -242,7 +242,7 @@ ON_A_MAP = ("plan", "a.png", "--robot-radius", 1, "--start", 1, 1, "--goal", 2, 
         for option in (("--deg",), ("--srdf", "a.srdf"), ("--group", "g"), ("--resolution", 0.1))
     ),
     (("robot", "cycle.urdf"), "form a cycle"),
-    (("robot", "arm.urdf", "--package", "parts"), "--package must be of the form NAME=VALUE, got 'parts'"),
+    (("robot", "arm.urdf", "--package", "parts"), "--package must be of the form NAME=FOLDER, got 'parts'"),
     (("robot", "arm.urdf", "--xacro", "=1"), "--xacro must be of the form NAME=VALUE, got '=1'"),
     (
         ("robot", "arm.urdf", "--group", "a", "--group", "a", "--write-srdf", "arm.srdf"),
@@ -307,7 +307,8 @@ def test_robot_measures_in_bounded_time_between_limits_of_a_million_radians(robo
 
 
 def test_robot_writes_an_srdf_that_plan_takes(robot, answer, desk):
-    robot("arm.urdf", "--write-srdf", "arm.srdf")
+    shown, _ = robot("arm.urdf", "--write-srdf", "arm.srdf")
+    assert shown.endswith("files arm.srdf")
     answer(*on_desk(srdf="arm.srdf", group="lower", start="home", goal="right"))
 
 

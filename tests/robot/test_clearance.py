@@ -129,6 +129,22 @@ def test_a_plan_keeps_the_clearance_it_is_asked_for():
     assert world.validate(result.path).all()
 
 
+def test_the_clearance_of_a_path_is_that_of_its_links_with_all_that_they_were_to_keep():
+    scene, robot = load_scene("box-reach"), load_robot("ur5")
+    path = plan(scene, "home", "inside", robot=robot, clearance=0.01).path
+    bare = ArmWorld(robot, scene)
+    kept = (
+        ArmWorld(robot, scene.with_clearance(dict.fromkeys(scene.names, 0.008))),
+        ArmWorld(robot.with_padding(0.008), scene),
+        ArmWorld(robot, scene, clearance=0.008),
+    )
+    for world in kept:
+        assert world.validate(path).all()
+        assert world.path_clearance(path) == pytest.approx(bare.path_clearance(path), abs=2e-4)
+        assert world.path_clearance(path) > 0.0099
+        assert world.nearest_along(path) == bare.nearest_along(path)
+
+
 def test_a_path_tells_a_clearance_that_it_keeps_and_hardly_more():
     world = ArmWorld(load_robot("ur5"), load_scene("box-reach"))
     scene = load_scene("box-reach")

@@ -72,7 +72,7 @@ def test_a_scene_has_clouds_from_files_beside_it(tmp_path):
 
 
 @pytest.mark.parametrize(("entry", "error", "says"), [
-    (dict(file="no.ply"), BrokenFile, "no such file: .*no.ply"),
+    (dict(file="no.ply"), BrokenFile, "file .*no.ply of obstacle 'scan' in .* is missing"),
     (dict(file="scan.las"), UnknownName, "'.las'; known"),
     (dict(file=7), InvalidValue, "file of obstacle 'scan' .* got 7"),
     (dict(radius=0), InvalidValue, "radius of obstacle 'scan' .* > 0, got 0"),
@@ -84,6 +84,7 @@ def test_a_scene_has_clouds_from_files_beside_it(tmp_path):
 ])  # fmt: skip
 def test_a_scan_that_is_not_sound_is_refused(tmp_path, capsys, entry, error, says):
     np.save(tmp_path / "a.npy", table(10))
+    (tmp_path / "scan.las").touch()
     file = write_scene(tmp_path, dict(shape="cloud", file="a.npy", radius=0.01) | entry)
     refused(error, says, load_scene, file)
     assert main(["plan", str(file), "--robot", "ur5", "--start", UPRIGHT, "--goal", UPRIGHT]) == 2
@@ -208,7 +209,7 @@ def test_meshes_of_every_format_are_the_box_that_they_are(tmp_path, ur5, suffix)
 
 
 @pytest.mark.parametrize(("entry", "error", "says"), [
-    (dict(file="no.stl"), BrokenFile, "mesh .*no.stl is missing"),
+    (dict(file="no.stl"), BrokenFile, "file .*no.stl of obstacle 'scan' in .* is missing"),
     (dict(file="empty.obj"), BrokenFile, "empty.obj"),
     (dict(scale=0), InvalidValue, "scale of mesh board.stl must not be 0"),
     (dict(scale=[1, 2]), InvalidValue, "scale of obstacle 'scan'"),

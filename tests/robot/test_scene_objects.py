@@ -82,7 +82,7 @@ def test_a_hollow_mesh_is_filled_by_its_convex_hull(tmp_path):
         ("{include: cabinet.urdf, joints: {lid: 1}}", "unknown joint of .*'lid'; known: hinge"),
         ("{include: room.stl, joints: {lid: 1}}", "unknown joint of .*room.stl: 'lid'"),
         ("{include: cabinet.urdf, convex: true}", "convex goes with a mesh's file"),
-        ("{include: none.glb}", "none.glb is missing"),
+        ("{include: none.glb}", "none.glb of obstacle 'it' in .* is missing"),
         ("{include: cabinet.urdf, scale: 2}", "scale"),
         ("{include: cabinet.urdf, convex: 1}", "convex of obstacle 'it' in .* must be true or false, got 1"),
         ("{shape: height_map, file: room.stl, spacing: 1}", "room.stl is no text, not a .npy of heights"),

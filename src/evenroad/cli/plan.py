@@ -152,8 +152,8 @@ class RobotOptions:
             "group": ",".join(self.group) if self.group else None,
             "bodies": self.bodies,
             "use_visuals": self.use_visuals,
-            "packages": _pairs("package", self.package),
-            "arguments": _pairs("xacro", self.xacro, may_be_empty=True),
+            "packages": _pairs("--package", "NAME=FOLDER", self.package),
+            "arguments": _pairs("--xacro", "NAME=VALUE", self.xacro, may_be_empty=True),
             "progress": say_fitting,
             "padding": self._padding(),
         }
@@ -165,7 +165,8 @@ class RobotOptions:
                 return float(self.padding[0])
             return self.padding[0]
         try:
-            return {link: float(metres) for link, metres in _pairs("padding", self.padding).items()} or None
+            pairs = _pairs("--padding", "LINK=METRES", self.padding)
+            return {link: float(metres) for link, metres in pairs.items()} or None
         except ValueError:
             raise InvalidValue(f"--padding must be numbers, got {' '.join(self.padding)!r}") from None
 
@@ -179,11 +180,11 @@ def say_fitting(step: int, steps: int, what: str) -> None:
         print(line, file=sys.stderr, flush=True)
 
 
-def _pairs(option: str, texts: Iterable[str], may_be_empty: bool = False) -> dict[str, str]:
+def _pairs(option: str, form: str, texts: Iterable[str], may_be_empty: bool = False) -> dict[str, str]:
     pairs = [text.partition("=") for text in texts]
     for name, separator, value in pairs:
         if not (name and separator and (value or may_be_empty)):
-            raise InvalidValue(f"--{option} must be of the form NAME=VALUE, got {name + separator + value!r}")
+            raise InvalidValue(f"{option} must be of the form {form}, got {name + separator + value!r}")
     return {name: value for name, _, value in pairs}
 
 

@@ -82,7 +82,7 @@ def plan_arm(plan: PlanArm) -> int:
         "made_of": made_of(world, robot=plan.robot, scene=str(plan.world)),
         "meshes": None if meshes is None else asdict(meshes),
     }
-    rows = [*_rows(request), *([] if meshes is None else [("meshes", str(meshes))]), *more_rows]
+    rows = [*_rows(request), *([] if meshes is None else [("second check", str(meshes))]), *more_rows]
 
     def draw(file: Path) -> None:
         from evenroad.viz.arm import save_arm_picture

@@ -18,6 +18,7 @@ from evenroad.planning.request import Request
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.problem import Planner
+from evenroad.world import NamesNearest
 
 DEFAULT_N = 512
 
@@ -140,8 +141,9 @@ def print_plan(result: PlanResult, files: Iterable[str], more: Sequence[tuple[st
         rows.append(("proved", PROOFS[result.proof].format(result.bodies)))
     if result.clearance is not None:
         # An arm's is in metres, a disk's in units of its map.
-        pair = result.nearest
-        least = " at least" if pair is None else f" m at least, between {pair[0]!r} and {pair[1]!r}"
+        pair, of_arm = result.nearest, isinstance(result.world, NamesNearest)
+        least = " m at least" if of_arm else " at least"
+        least += "" if pair is None else f", between {pair[0]!r} and {pair[1]!r}"
         rows.append(("clearance", f"{result.clearance:.6g}{least}"))
     # Few digits, so that all phases fit into one line.
     times = {phase: 1e3 * seconds for phase, seconds in result.timings.items()}

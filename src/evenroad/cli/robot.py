@@ -64,7 +64,8 @@ class Robot(RobotOptions):
         print()
         print_table(_bodies(model), ("link", "given as", "capsules", "volume added"))
         print()
-        print_table(_summary(model, world))
+        written = [] if self.write_srdf is None else [("files", str(self.write_srdf))]
+        print_table([*_summary(model, world), *written])
         return 0
 
 

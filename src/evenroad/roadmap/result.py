@@ -161,7 +161,8 @@ class PlanResult(ResultMethods):
         """Lower bound of the path's distance from all obstacles; None where the world cannot measure it.
 
         For a disk in map units, exact within 1e-3 pixels; for an arm in metres, proved for its `bodies`, within 0.1 mm,
-        and 1 m at most.  It is computed on first use: for an arm in some milliseconds.
+        and 1 m at most.  The clearances of the query and of obstacles and the padding of links are part of it.  It is
+        computed on first use: for an arm in some milliseconds.
         """
         if self.path is None or not isinstance(self.world, MeasuresPaths):
             return None

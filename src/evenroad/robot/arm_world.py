@@ -272,9 +272,7 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
         if bodies is None:
             return "it is free"
         if any(self._kept_from(*bodies)):
-            obstacles = dict.fromkeys((each.name for each in self.scene.obstacles if each.clearance), 0.0)
-            scene, robot = self.scene.with_clearance(obstacles), replace(self.robot, padding=())
-            plain = replace(self, scene=scene, clearance=0.0, robot=robot)
+            plain = self._unpadded
             if not plain.valid(batch)[0]:
                 return plain.explain(q)
             apart, (nearest, *_) = plain._distances(batch, to_itself=False)

@@ -67,6 +67,16 @@ class ArmDistances:
         scene = native_scene(made.native, made.tables, self.robot.links, self.scene, MOST)
         return Checker(made.native, scene, self.resolution, 0.0, False)
 
+    @once_property
+    def _unpadded(self) -> Any:
+        """The same world without what is kept away beside contact: no clearance of it or of an obstacle, no padding."""
+        kept = {each.name: 0.0 for each in self.scene.obstacles if each.clearance}
+        if not (kept or self.robot.padding or self.clearance):
+            return self
+        world: Any = self
+        bare = replace(self.robot, padding=())
+        return replace(world, robot=bare, scene=self.scene.with_clearance(kept), clearance=0.0)
+
     def distance(self, q: Any) -> Distance:
         """Return how far the robot is from contact, and which two bodies are nearest.
 
@@ -110,15 +120,17 @@ class ArmDistances:
 
     def nearest_along(self, path: Floats) -> tuple[str, str] | None:
         """Return the link and the obstacle that come nearest to each other along a path, (p, dim); None beyond 1 m."""
-        metres, pairs = self._distances(resample(path, self.space, self.resolution / 4.0)[0], to_itself=False)
+        metres, pairs = self._unpadded._distances(resample(path, self.space, self.resolution / 4.0)[0], to_itself=False)
         pair: tuple[str, str] | None = pairs[int(metres.argmin())]
         return pair
 
     def path_clearance(self, path: Floats) -> float | None:
-        """Return the distance from obstacles that a path, (p, dim), is proved to keep, to 0.1 mm; None if none [m]."""
+        """Return the distance from obstacles that a path, (p, dim), is proved to keep, to 0.1 mm; None if none [m].
+
+        The clearances of obstacles and the padding of links are part of it.
+        """
 
         def keeps(distance: float) -> bool:
-            world: Any = self
-            return bool(replace(world, clearance=distance).validate(path).all())
+            return bool(replace(self._unpadded, clearance=distance).validate(path).all())
 
         return largest_kept(keeps, self.clearance, MOST_CLEARANCE, 1e-4)

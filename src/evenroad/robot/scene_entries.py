@@ -20,7 +20,8 @@ from evenroad.robot.scan import without_shapes
 from evenroad.robot.scene import MARGIN, Cut, Obstacle, Seen
 from evenroad.robot.scene_objects import objects_of
 
-_OPTIONAL = ("xyz", "rpy", "xyzw", "cell", "clearance")
+POSE = ("xyz", "rpy", "xyzw")
+_OPTIONAL = (*POSE, "cell", "clearance")
 _OF_A_CLOUD = ("seen_at", "margin", "cut")
 PLANE, HEIGHTS = "plane", "height_map"
 _MEANT = {
@@ -56,13 +57,17 @@ def _included(name: str, entry: dict[str, Any], path: Path, where: str) -> tuple
     )
 
 
-def obstacle_of(name: str, entry: dict[str, Any], path: Path, where: str = "") -> Obstacle:
-    """Return the obstacle of an entry; `where` names it in errors."""
+def obstacle_of(
+    name: str, entry: dict[str, Any], path: Path, where: str = "", optional: tuple[str, ...] = _OPTIONAL
+) -> Obstacle:
+    """Return the obstacle of an entry; `where` names it in errors, and `optional` are keys that any shape may have."""
     where = where or f"obstacle {name!r} in {path}"
     if "quaternion" in entry:
         raise UnknownName(f"{where} must have its quaternion as xyzw: [x, y, z, w], in this order, not as quaternion")
     shape = entry.get("shape")
     kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind, PLANE, HEIGHTS)
+    if "shape" not in entry:
+        raise BrokenFile(f"{where} lacks its shape, one of {', '.join(sorted(kinds))}")
     if not isinstance(shape, str) or shape not in kinds:
         if isinstance(shape, str) and shape in _MEANT:
             raise UnknownName(f"unknown shape of {where}: {shown(shape)}; {_MEANT[shape]}")
@@ -71,16 +76,16 @@ def obstacle_of(name: str, entry: dict[str, Any], path: Path, where: str = "") -
     if shape == PointCloud.kind:
         return _cloud(name, entry, path, cell)
     if shape == PLANE:
-        require_keys(entry, ("shape",), _OPTIONAL, where)
+        require_keys(entry, ("shape",), optional, where)
         pose = _pose(entry, where)
         return replace(Plane(name, pose.xyz, pose.rotation).obstacle, cell=cell)
     if shape == HEIGHTS:
-        require_keys(entry, ("shape", "file", "spacing"), _OPTIONAL, where)
+        require_keys(entry, ("shape", "file", "spacing"), optional, where)
         (spacing,) = numbers(entry["spacing"], 1, f"spacing of {where}")
         heights = _heights(_file(entry, path, where), require_positive(f"spacing of {where}", spacing))
         return Obstacle(name, Mesh(heights, pose=_pose(entry, where)), cell)
     if shape == Mesh.kind:
-        require_keys(entry, ("shape", "file"), (*_OPTIONAL, "scale", "convex"), where)
+        require_keys(entry, ("shape", "file"), (*optional, "scale", "convex"), where)
         scale = entry.get("scale", 1)
         x, y, z = numbers(scale if isinstance(scale, list) else [scale] * 3, 3, f"scale of {where}")
         mesh = Mesh(_file(entry, path, where), (x, y, z), pose=_pose(entry, where))
@@ -88,7 +93,7 @@ def obstacle_of(name: str, entry: dict[str, Any], path: Path, where: str = "") -
             mesh = Mesh(convex_hull(mesh.triangles.vertices, mesh.source.name), pose=mesh.pose)
         return Obstacle(name, mesh, cell)
     dimensions = PRIMITIVES[shape].dimensions
-    require_keys(entry, ("shape", *(key for key, _ in dimensions)), _OPTIONAL, where)
+    require_keys(entry, ("shape", *(key for key, _ in dimensions)), optional, where)
     size: tuple[float, ...] = ()
     for key, count in dimensions:
         size += numbers(entry[key], count, f"{key} of {where}")
@@ -161,7 +166,10 @@ def _file(entry: dict[str, Any], path: Path, where: str) -> Path:
     """Return the file that an entry names, beside the scene."""
     if not isinstance(entry["file"], str):
         raise InvalidValue(f"file of {where} must be the name of a file, got {entry['file']!r}")
-    return path.parent / entry["file"]
+    file = path.parent / entry["file"]
+    if not file.is_file():
+        raise BrokenFile(f"the file {file} of {where} is missing")
+    return file
 
 
 def _yes(key: str, entry: dict[str, Any], where: str) -> bool:

@@ -18,7 +18,7 @@ from evenroad.robot.held import HeldObject
 from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
 from evenroad.robot.scan import allowed_within
 from evenroad.robot.scene import Obstacle, Scene
-from evenroad.robot.scene_entries import mapping_of, obstacle_of, obstacles_of, region_of
+from evenroad.robot.scene_entries import POSE, mapping_of, obstacle_of, obstacles_of, region_of
 from evenroad.robot.scene_objects import OBJECT_FILES, objects_of
 
 SCENES = ("box-reach", "box-reach-narrow", "empty", "shelf")
@@ -229,7 +229,7 @@ def _attached(name: str, entry: dict[str, Any], path: Path, obstacles: Collectio
         raise InvalidValue(f"{where} must have the link that carries it, got link: {link!r}")
     if not isinstance(touches, list) or not all(isinstance(each, str) for each in touches):
         raise InvalidValue(f"touches of {where} must be a list of links and obstacles, got {touches!r}")
-    body = obstacle_of(name, entry, path, where).body
+    body = obstacle_of(name, entry, path, where, (*POSE, "link", "touches")).body
     links = tuple(each for each in touches if each not in obstacles)
     return HeldObject(name, body, link, links), [each for each in touches if each in obstacles]
 

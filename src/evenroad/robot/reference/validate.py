@@ -48,7 +48,7 @@ class MeshCheck:
 
     def __str__(self) -> str:
         if self.verdict == "not checked":
-            return f"not checked ({self.message})"
+            return f"none ({self.message})"
         text = f"free ({self.states} states)" if self.verdict == "free" else f"in collision {self.message}"
         if self.always_touching:
             text += f"; left out, for they always touch: {_named(self.always_touching)}"
