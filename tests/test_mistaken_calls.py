@@ -30,7 +30,7 @@ CALLS = {
     "points.save()": "save(path)",
     "points.save(np.zeros(3))": "file",
     "points.discrepancy('star')": "did you mean 'L2-star'?",
-    "er.qmc.Even(2)": "n",
+    "er.qmc.Even(2)": "Even is called as Even(d, *, n, optimization, rng, seed): missing 1 required",
     "er.qmc.Even(d=2, n=16, rgn=0)": "rng",
     # --- maps
     "er.load_map(np.zeros((3, 3)))": "compared, as cells > 0",

@@ -33,18 +33,22 @@ def explains_calls(called: Called) -> Called:
             # An error from within the function has a frame of its own.
             if error.__traceback__ is None or error.__traceback__.tb_next is not None:
                 raise
-            raise _explained(called, named, str(error)) from None
+            raise _explained(called, given, named, str(error)) from None
 
     return explained  # type: ignore[return-value]
 
 
-def _explained(function: Callable[..., Any], named: dict[str, Any], text: str) -> EvenroadError:
+def _explained(function: Callable[..., Any], given: tuple[Any, ...], named: dict[str, Any], text: str) -> EvenroadError:
     """Return the error of a call; `text` is Python's message."""
-    name = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
-    taken = {key: each for key, each in signature(function).parameters.items() if key != "self"}
+    name = function.__qualname__.rpartition(".")[2]
+    if name == "__init__":
+        # The class that was called may have its __init__ from another.
+        name = type(given[0]).__name__
+    every = {key: each for key, each in signature(function).parameters.items() if key != "self"}
+    taken = {key: each for key, each in every.items() if each.kind is not Parameter.VAR_KEYWORD}
     keywords = [key for key, each in taken.items() if each.kind is not Parameter.POSITIONAL_ONLY]
     strange = [key for key in named if key not in keywords]
-    if strange:
+    if strange and len(taken) == len(every):
         return UnknownName.among(f"keyword of {name}:", strange[0], keywords)
     alone = [key for key, each in taken.items() if each.kind is Parameter.KEYWORD_ONLY]
     first = [key for key in taken if key not in alone]

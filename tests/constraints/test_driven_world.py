@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 import evenroad as er
+from evenroad.cli import main
 from evenroad.constraints.driven_world import driven_world
 from evenroad.errors import EvenroadError, InvalidValue
 from evenroad.robot import with_group
 from evenroad.task import MoveTo
-from evenroad.trajectory import Limits, arm_trajectory
+from evenroad.trajectory import Limits, arm_trajectory, load_trajectory
 
 PLATFORM = """
 <robot name="platform">
@@ -60,6 +61,12 @@ def test_a_path_through_a_door_never_goes_sideways_nor_does_its_trajectory(world
     assert world.validate(result.path).all()
     assert result.path[[0, -1]].tolist() == [start, goal]
     assert sideways(dense(result.path)) < 1e-9
+    assert result.bodies == world.bodies
+    assert result.clearance == world.path_clearance(result.path) > 0.0
+    assert result.nearest[1].startswith("wall")
+    # One turn in a place is enough.
+    turns = (np.delete(np.diff(result.path, axis=0), 2, axis=1) == 0.0).all(axis=1)
+    assert not (turns[1:] & turns[:-1]).any()
     free = er.plan(world, start, goal)
     assert sideways(dense(free.path)) > 1e-4
     limits = Limits((0.5, 0.5, 1.0, *[1.0] * 6), (1.0, 1.0, 2.0, *[2.0] * 6))
@@ -98,6 +105,37 @@ def test_backwards_where_that_needs_less_turning(world):
     driven = driven_world(world, DRIVE)
     a, b = np.array([0.5, 0.0, 0.0, *ARM]), np.array([-0.5, 0.0, 0.0, *ARM])
     assert driven.along(a, b).tolist() == [a.tolist(), b.tolist()]
+
+
+def test_turns_that_follow_each_other_are_made_one_and_one_that_comes_back_is_none(world):
+    driven = driven_world(world, DRIVE)
+    path = np.array(
+        [[x, 0.0, turn, *ARM] for x, turn in ((0.0, 0.0), (0.0, 0.4), (0.0, 0.0), (-0.3, 0.0), (-0.3, 0.2))]
+    )
+    path = np.vstack([path, [-0.3, 0.0, 0.1, *ARM]])
+    assert driven.shortened(path)[:, :3].tolist() == [[0.0, 0.0, 0.0], [-0.3, 0.0, 0.0], [-0.3, 0.0, 0.1]]
+    assert driven.shortened(path[:3])[:, :3].tolist() == [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
+
+
+def test_a_task_from_its_file_drives_such_a_base_within_limits_of_a_file(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "platform.urdf").write_text(PLATFORM)
+    (tmp_path / "task.yaml").write_text(
+        "robot: platform.urdf\nstart: '0 0.8 0'\nscene:\n"
+        "  obstacles: {post: {shape: box, size: [0.2, 0.2, 1], xyz: [1.5, 0.8, 0.5]}}\n"
+        "  limits: {base/x: [-1, 4], base/y: [-2, 2], base/theta: [-3.2, 3.2]}\n"
+        "steps:\n  - move_to: {goals: ['3 0.8 0'], constraints: [differential-drive]}\n"
+    )
+    limit = "{has_velocity_limits: true, max_velocity: 0.5}"
+    (tmp_path / "limits.yaml").write_text("joint_limits: {" + ", ".join(f"{name}: {limit}" for name in BASE) + "}")
+    command = ["run", "task.yaml", "--group", "base", "-o", "out.json"]
+    assert main([*command, "--limits", "limits.yaml"]) == 0
+    assert sideways(load_trajectory("out.json").positions) < 1e-6
+    capsys.readouterr()
+    assert main(command) == 2
+    assert "has no velocity limit" in capsys.readouterr().err
+    assert main(["run", "task.yaml", "--limits", "limits.yaml", "-o", "limits.yaml"]) == 2
+    assert "would overwrite what is read" in capsys.readouterr().err
 
 
 def test_what_does_not_go_with_such_a_base_is_refused(world):

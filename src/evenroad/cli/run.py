@@ -36,6 +36,8 @@ class RunTask(RobotOptions):
     """Files for the trajectory: .json, .csv, .yaml (ROS 2), .mcap (a bag), .script or .movej.script (URScript)."""
     speed: float = 1.0
     """Share of the velocity limits, > 0 and at most 1."""
+    limits: Path | None = None
+    """A MoveIt joint_limits.yaml.  Default: velocities of the URDF, full speed after 0.5 s."""
     time: float | None = None
     """Time limit of the whole task in seconds, > 0 (default 5)."""
     seed: int = 0
@@ -44,13 +46,14 @@ class RunTask(RobotOptions):
     def run(self) -> int:
         """Plan, write, report; return 0 if all steps can be done, else 1."""
         from evenroad.task.task_file import load_task
+        from evenroad.trajectory import limits_of
         from evenroad.trajectory.files import format_of, save_trajectories
 
         require_positive("speed", self.speed, at_most=1.0)
         for file in self.out:
             format_of(file)
-            if file.resolve() == self.task.resolve():
-                raise InvalidValue(f"--out {file} would overwrite the task")
+            if file.resolve() in {each.resolve() for each in (self.task, self.limits) if each is not None}:
+                raise InvalidValue(f"--out {file} would overwrite what is read")
             require_writable_folder(file)
         said = load_task(self.task)
         source = said.robot if self.robot is None else self.robot
@@ -64,7 +67,7 @@ class RunTask(RobotOptions):
             file.unlink(missing_ok=True)
         rows = [("status", f"{done.status}: {done.message}"), ("time", f"{1e3 * done.timings['task']:.0f} ms")]
         if done.solved:
-            trajectory = done.trajectory(speed=self.speed)
+            trajectory = done.trajectory(speed=self.speed, limits=limits_of(world.robot, self.limits))
             save_trajectories(self.out, trajectory)
             rows.append(
                 ("trajectory", f"{trajectory.duration:.3f} s, {len(trajectory.times)} states, {trajectory.proof}")

@@ -86,6 +86,22 @@ class DrivenWorld(KeptWorld):
         rows[1:] &= (flat[1:] != flat[:-1]).any(axis=1) | (motion[1:] != motion[:-1])
         return good, *turned_round(motion[rows], flat[rows], back)
 
+    def shortened(self, path: Floats) -> Floats:
+        """Return a path, (p, dim), made shorter as by `KeptWorld`, with turns that follow each other made one."""
+        path = super().shortened(path)
+        others = np.delete(path, self.base[2], axis=1)
+        turns = (others[1:] == others[:-1]).all(axis=1)
+        kept = np.ones(len(path), dtype=np.bool_)
+        kept[1:-1] = ~(turns[:-1] & turns[1:])
+        rows = np.flatnonzero(kept)
+        # In a joint without limits one turn may go round the other way, which is not known to be free.
+        free = self.world.motion_certified(path[rows[:-1]], path[rows[1:]], _TOLERANCE)
+        for first, last in zip(rows[:-1][~free], rows[1:][~free], strict=True):
+            kept[first:last] = True
+        path = path[kept]
+        moved = (path[1:] != path[:-1]).any(axis=1)
+        return path[np.concatenate([moved, [True]])] if moved.any() else path
+
     def _headings(self, a: Floats, b: Floats) -> Floats:
         """Return the headings, (m,), of drives from rows of `a` to those of `b`, of the least turning; infinite where
         limits leave none.

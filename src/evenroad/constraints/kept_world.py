@@ -123,6 +123,19 @@ class KeptWorld:
         return "certified"
 
     @property
+    def bodies(self) -> str:
+        """The kinds of bodies that the robot touches obstacles with, see `Robot.bodies`."""
+        return self.world.bodies
+
+    def path_clearance(self, path: Floats) -> float | None:
+        """Return the distance from obstacles that a path, (p, dim), is proved to keep [m], as `ArmWorld`."""
+        return self.world.path_clearance(path)
+
+    def nearest_along(self, path: Floats) -> tuple[str, str] | None:
+        """Return the link and the obstacle that come nearest to each other along a path, (p, dim)."""
+        return self.world.nearest_along(path)
+
+    @property
     def limits(self) -> Floats:
         """Limits of the joints, (2, dim); infinite for those that wrap."""
         ranges = np.array([self.world.space.low, self.world.space.high])
