@@ -12,6 +12,7 @@ HELPERS = {
     "mjcf_truth",
     "robot_truth",
     "rows",
+    "sizes",
 }
 ASKED = {"arm_tables"}
 """They want to be told what to do, or what to read; the pages say how."""

@@ -12,8 +12,6 @@ the files in the end.  Networks, disks, and what is loaded once are not simulate
 
 from __future__ import annotations
 
-import argparse
-import csv
 import heapq
 import os
 import pickle
@@ -24,7 +22,8 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from studies.benchmarks.rows import draw_costs, parser_of
+from studies.benchmarks.rows import parser_of
+from studies.benchmarks.sizes import draw_costs, most_held, shown, write_table
 
 from evenroad_studies.datasets.folder import write
 from evenroad_studies.datasets.part import Request, make_part
@@ -37,13 +36,12 @@ CORES = (1, 2, 4, 8, 16, 64, 256, 1000)
 COLUMNS = ("cores", "one process writes [h]", "shards [h]", "of the best [%]", "memory of all [GB]")
 
 
-def timed_part(request: Request, part: int) -> tuple[float, bytes, int]:
-    """Return the processor time of a part [s], the part, and the most memory that the process has held [kB]."""
+def timed_part(request: Request, part: int) -> tuple[float, bytes, float]:
+    """Return the processor time of a part [s], the part, and the most memory that the process has held [MB]."""
     begin = time.process_time()
     made = make_part(request, part)
     took = time.process_time() - begin
-    status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
-    return took, made, int(status["VmHWM"].split()[0])
+    return took, made, most_held()
 
 
 def measured(request: Request, executor: Executor) -> tuple[Floats, Floats, float]:
@@ -61,7 +59,7 @@ def measured(request: Request, executor: Executor) -> tuple[Floats, Floats, floa
             took.append(seconds)
             written.append(time.process_time() - begin)
             most = max(most, held)
-    return np.array(took), np.array(written), most / 1e6
+    return np.array(took), np.array(written), most / 1e3
 
 
 def by_one_writer(parts: Floats, writes: Floats, cores: int) -> float:
@@ -87,7 +85,6 @@ def by_shards(parts: Floats, writes: Floats, cores: int) -> float:
 
 def main() -> None:
     parser = parser_of(__doc__)
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument("table", type=Path)
     parser.add_argument("picture", type=Path)
     parser.add_argument("--robot", default="ur5")
@@ -117,12 +114,8 @@ def main() -> None:
     for cores in CORES:
         one, shards = by_one_writer(parts, writes, cores) / 3600, by_shards(parts, writes, cores) / 3600
         best = float(parts.sum()) / cores / 3600
-        rows.append((cores, one, shards, 100 * best / min(one, shards), memory * cores))
-        print(*(f"{value:.4g}" for value in rows[-1]), flush=True)
-    with args.table.open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(COLUMNS)
-        table.writerows([f"{value:.4g}" for value in row] for row in rows)
+        rows.append(shown((cores, one, shards, 100 * best / min(one, shards), memory * cores)))
+    write_table(args.table, COLUMNS, rows)
     curves = {
         "one process writes": [(cores, one, memory) for cores, one, _, _, memory in rows],
         "shards": [(cores, shards, memory) for cores, _, shards, _, memory in rows],

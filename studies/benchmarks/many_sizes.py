@@ -9,16 +9,12 @@ processor, with the default smoothing; memory is what the process holds at most 
 
 from __future__ import annotations
 
-import argparse
-import csv
-import multiprocessing
 import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from studies.benchmarks.plan_call import BOXES, boxes_around
-from studies.benchmarks.rows import draw_costs
+from studies.benchmarks.sizes import alone, draw_costs, most_held, shown, sizes_parser, write_table
 
 import evenroad as er
 
@@ -28,12 +24,6 @@ MOST_PLANS, MOST_WORLDS = 1000, 10_000
 """No more queries for the loop, and where each has its world."""
 COLUMNS = ("what", "queries", "solved", "all [s]", "a query [us]", "memory [MB]")
 Row = tuple[str, int, float, float, float, float]
-
-
-def most_held() -> float:
-    """Return the most memory that the process has held [MB]."""
-    status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
-    return int(status["VmHWM"].split()[0]) / 1e3
 
 
 def measured(kind: str, count: int) -> Row:
@@ -64,23 +54,11 @@ def measured(kind: str, count: int) -> Row:
 
 def main() -> None:
     """Measure, write and draw."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("table", type=Path)
-    parser.add_argument("picture", type=Path)
-    parser.add_argument("--most", type=float, default=1e5, help="no more queries")
-    args = parser.parse_args()
+    args = sizes_parser(__doc__, SIZES[-1]).parse_args()
     limits = dict(zip(KINDS, (args.most, args.most, MOST_WORLDS, MOST_PLANS), strict=True))
-    rows: list[Row] = []
-    for kind in KINDS:
-        for size in SIZES:
-            if size <= min(limits[kind], args.most):
-                with multiprocessing.get_context("spawn").Pool(1) as pool:
-                    rows.append(pool.apply(measured, (kind, size)))
-                print(*(f"{value:.4g}" if isinstance(value, float) else value for value in rows[-1]), flush=True)
-    with args.table.open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(COLUMNS)
-        table.writerows([kind, size, *(f"{value:.4g}" for value in values)] for kind, size, *values in rows)
+    asked = [(kind, size) for kind in KINDS for size in SIZES if size <= min(limits[kind], args.most)]
+    rows: list[Row] = [shown(alone(measured, *each)) for each in asked]
+    write_table(args.table, COLUMNS, rows)
     curves = {kind: [(row[1], row[4], row[5]) for row in rows if row[0] == kind] for kind in KINDS}
     draw_costs(args.picture, "queries", ("a query [us]", "memory [MB]"), curves)
 

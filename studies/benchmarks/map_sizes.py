@@ -12,16 +12,12 @@ pixels, with the cells that are surely free as its map.
 
 from __future__ import annotations
 
-import argparse
-import csv
-import multiprocessing
-import resource
 import time
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from studies.benchmarks.rows import draw_costs
+from studies.benchmarks.sizes import alone, draw_costs, held, shown, sizes_parser, write_table
 
 from evenroad.planning import plan
 from evenroad.world import GridMap
@@ -67,11 +63,6 @@ def ends(occupied: npt.NDArray[np.bool_], apart: float) -> tuple[Floats, Floats]
         assert free is not None
         found.append(free + corner)
     return found[0], found[1]
-
-
-def held() -> float:
-    """Return how much memory the process holds [MB]."""
-    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 1e6
 
 
 def measured(way: str, size: int) -> Row:
@@ -124,25 +115,13 @@ def draw(rows: list[Row], file: Path) -> None:
 
 def main() -> None:
     """Measure, write and draw."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("table", type=Path)
-    parser.add_argument("picture", type=Path)
-    parser.add_argument("--most", type=int, default=16_000, help="no larger sizes")
+    parser = sizes_parser(__doc__, SIZES[-1])
     parser.add_argument("--peer", type=int, default=0, help="queries beside pyastar2d")
     args = parser.parse_args()
     if args.peer:
         beside(args.peer)
-    rows = []
-    for way in WAYS:
-        for size in SIZES:
-            if size <= args.most:
-                with multiprocessing.get_context("spawn").Pool(1) as pool:
-                    rows.append(pool.apply(measured, (way, size)))
-                print(*(f"{value:.4g}" if isinstance(value, float) else value for value in rows[-1]), flush=True)
-    with args.table.open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(COLUMNS)
-        table.writerows([way, size, *(f"{value:.4g}" for value in values)] for way, size, *values in rows)
+    rows = [shown(alone(measured, way, size)) for way in WAYS for size in SIZES if size <= args.most]
+    write_table(args.table, COLUMNS, rows)
     draw(rows, args.picture)
 
 

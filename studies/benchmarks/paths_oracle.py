@@ -10,7 +10,6 @@ rigid bodies state by state, as a user's function is: their paths are looked at 
 
 from __future__ import annotations
 
-import csv
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -18,7 +17,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from studies.benchmarks.rows import parser_of
+from studies.benchmarks.rows import parser_of, write_rows
 from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm, ur5
 from tests.studies.free_paths import (
     PLANNERS,
@@ -142,8 +141,7 @@ def main() -> None:
         table += compare(kind, options.count, options.seconds)
         if options.csv:
             # After each kind: all of them take a quarter of an hour.
-            with options.csv.open("w", newline="") as file:
-                csv.writer(file, lineterminator="\n").writerows([HEADER, *table])
+            write_rows(options.csv, HEADER, [dict(zip(HEADER, row, strict=True)) for row in table])
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What benchmarks share: their command line, the CSV of their rows, one row for each robot's file, cost by size."""
+"""What benchmarks share: their command line, the CSV of their rows, one row for each robot's file."""
 
 from __future__ import annotations
 
@@ -8,11 +8,6 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
-
-import numpy as np
-
-LEAST = 1e-2
-"""Costs below this are drawn as this."""
 
 
 def parser_of(doc: str | None) -> argparse.ArgumentParser:
@@ -70,24 +65,3 @@ def row_per_robot(
             writer.writerow(row)
             stream.flush()
             print(row, flush=True)
-
-
-def draw_costs(file: Path, along: str, titles: Sequence[str], curves: Mapping[str, Sequence[Sequence[float]]]) -> None:
-    """Draw costs against sizes, both in powers of ten: a panel for each title.
-
-    A curve has rows of a size, and its cost for each title; of a cost that is NaN nothing is drawn.
-    """
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, len(titles), figsize=(4 * len(titles), 3.8), constrained_layout=True)
-    for label, rows in curves.items():
-        if len(rows) == 0:
-            continue
-        sizes, *costs = np.asarray(rows, dtype=float).T
-        for axis, cost in zip(axes, costs, strict=True):
-            axis.loglog(sizes, np.maximum(cost, LEAST), marker="o", label=label)
-    for axis, title in zip(axes, titles, strict=True):
-        axis.set(xlabel=along, title=title)
-        axis.grid(alpha=0.3)
-    axes[0].legend()
-    figure.savefig(file, dpi=110)

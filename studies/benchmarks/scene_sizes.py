@@ -9,10 +9,6 @@ processor, the least of several; memory is what the process holds more when the 
 
 from __future__ import annotations
 
-import argparse
-import csv
-import multiprocessing
-import resource
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -20,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 from studies.benchmarks.arm_speed import random_boxes
-from studies.benchmarks.rows import draw_costs
+from studies.benchmarks.sizes import alone, draw_costs, held, shown, sizes_parser, write_table
 
 from evenroad.geometry import Mesh, PointCloud, TriangleMesh
 from evenroad.robot.arm_world import ArmWorld
@@ -89,11 +85,6 @@ def least(task: Callable[[], object], repeats: int = 9) -> float:
     return min(times)
 
 
-def held() -> int:
-    """Return how much memory the process holds [B]."""
-    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
-
-
 def measured(what: str, size: int) -> tuple[str, int, float, float, float, float, float]:
     """Return a row of the table."""
     robot, scene = load_robot("ur5"), scene_of(what, size)
@@ -107,7 +98,7 @@ def measured(what: str, size: int) -> tuple[str, int, float, float, float, float
     free = q[world.valid(q)]
     a, b = free[:500], free[500:1000]
     rates = len(q) / least(lambda: world.valid(q)), len(a) / least(lambda: world.motion_valid(a, b))
-    return what, size, len(free) / len(q), 1e3 * made, memory / 1e6, *rates
+    return what, size, len(free) / len(q), 1e3 * made, memory, *rates
 
 
 def draw(rows: list[tuple[str, int, float, float, float, float, float]], file: Path) -> None:
@@ -122,22 +113,9 @@ def draw(rows: list[tuple[str, int, float, float, float, float, float]], file: P
 
 def main() -> None:
     """Measure, write and draw."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("table", type=Path)
-    parser.add_argument("picture", type=Path)
-    parser.add_argument("--most", type=float, default=1e7, help="no larger sizes")
-    args = parser.parse_args()
-    rows = []
-    for what, sizes in SIZES.items():
-        for size in sizes:
-            if size <= args.most:
-                with multiprocessing.get_context("spawn").Pool(1) as pool:
-                    rows.append(pool.apply(measured, (what, size)))
-                print(*(f"{value:.4g}" if isinstance(value, float) else value for value in rows[-1]), flush=True)
-    with args.table.open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(COLUMNS)
-        table.writerows([what, size, *(f"{value:.4g}" for value in values)] for what, size, *values in rows)
+    args = sizes_parser(__doc__, 1e7).parse_args()
+    rows = [shown(alone(measured, what, size)) for what, sizes in SIZES.items() for size in sizes if size <= args.most]
+    write_table(args.table, COLUMNS, rows)
     draw(rows, args.picture)
 
 

@@ -10,16 +10,13 @@ its libraries take (the first row shows how much that is; Linux alone).  Beside 
 
 from __future__ import annotations
 
-import argparse
-import csv
-import multiprocessing
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-from studies.benchmarks.rows import draw_costs
+from studies.benchmarks.sizes import alone, draw_costs, most_held, shown, sizes_parser, write_table
 
 from evenroad_studies.bench.store import Session, open_store, read_rows
 from evenroad_studies.bench.store_parts import write_part
@@ -95,8 +92,7 @@ def tabled(store: Path) -> tuple[float, float, int]:
         cells = len(store.with_suffix(".csv").read_text().splitlines()) - 1
     else:
         cells = len(cells_of(runs_of(read_rows(store))))
-    status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
-    return time.process_time() - began, int(status["VmHWM"].split()[0]) / 1e3, cells
+    return time.process_time() - began, most_held(), cells
 
 
 def measured(kind: str, rows: int, folder: Path) -> tuple[object, ...]:
@@ -109,8 +105,7 @@ def measured(kind: str, rows: int, folder: Path) -> tuple[object, ...]:
     else:
         write = written_as_one(store, rows)
         size = store.stat().st_size
-    with multiprocessing.get_context("spawn").Pool(1) as pool:
-        return kind, rows, write, size / rows, *pool.apply(tabled, (store,))
+    return kind, rows, write, size / rows, *alone(tabled, store)
 
 
 def draw(rows: list[tuple], file: Path) -> None:
@@ -122,21 +117,13 @@ def draw(rows: list[tuple], file: Path) -> None:
 
 def main() -> None:
     """Measure, write and draw."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("table", type=Path)
-    parser.add_argument("picture", type=Path)
-    parser.add_argument("--most", type=int, default=COUNTS[-1], help="no more rows")
-    args = parser.parse_args()
+    args = sizes_parser(__doc__, COUNTS[-1]).parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for kind, most in zip(KINDS, (args.most, min(args.most, 100_000)), strict=True):
             for count in (each for each in COUNTS if each <= most):
-                rows.append(measured(kind, count, Path(folder)))
-                print(*(f"{value:.4g}" if isinstance(value, float) else value for value in rows[-1]), flush=True)
-    with args.table.open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(COLUMNS)
-        table.writerows([f"{value:.4g}" if isinstance(value, float) else value for value in row] for row in rows)
+                rows.append(shown(measured(kind, count, Path(folder))))
+    write_table(args.table, COLUMNS, rows)
     draw(rows, args.picture)
 
 

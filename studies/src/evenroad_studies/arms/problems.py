@@ -12,12 +12,11 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.errors import NotAvailable
-from evenroad.robot import ArmWorld, Robot, Scene
+from evenroad.robot import ArmWorld, Scene
 from evenroad.robot.arm_world import VALIDATION_TOLERANCE
-from evenroad.robot.kinematics import link_poses
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 from evenroad.robot_roadmap.world_roadmap import ArmWorldRoadmap
-from evenroad_studies.arms.roadmaps import box_roadmap, cell_of
+from evenroad_studies.arms.roadmaps import box_roadmap, cell_of, free_configurations
 from evenroad_studies.arms.robots import arm_named, tool_of
 from evenroad_studies.arms.scenes import GENERATORS, inside_of, places_of
 from evenroad_studies.bench.task import Problem, ProblemSource
@@ -121,12 +120,8 @@ def _many(robot: str) -> ArmRoadmap:
 @lru_cache(maxsize=2)
 def _pool(robot: str) -> tuple[Floats, Floats]:
     """Return configurations that are free of robot and cell, (n, dim), and where the tool is, (n, 3)."""
-    arm: Robot = arm_named(robot)
-    world = ArmWorld(arm, cell_of(arm))
-    q = world.space.from_cube(np.random.default_rng(0).random((POOL, world.space.dim)))
-    q = q[world.valid(q)]
-    tool = tool_of(arm)
-    return q, np.concatenate([link_poses(arm, part)[:, tool, :3, 3] for part in np.array_split(q, 40)])
+    arm = arm_named(robot)
+    return free_configurations(arm, cell_of(arm), POOL, tool_of(arm))
 
 
 ARM_ROBOTS = {"ur5-5": 5, "ur5": 6, "arm7": 7, "scara": 4, "twoarm": 8}

@@ -10,6 +10,7 @@ from evenroad._arrays import Floats
 from evenroad.points import draw
 from evenroad.roadmap.neighbours import nearest
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
+from evenroad.robot.kinematics import link_poses
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 from evenroad.robot_roadmap.build import arm_roadmap, joined
 from evenroad.robot_roadmap.turns import one_turn, shifts, winding_motions_free
@@ -35,6 +36,15 @@ def cell_of(robot: Robot) -> Scene:
     table = Obstacle.of("table", "box", (1.6, 1.6, 0.05), (0.3, 0.0, -0.03))
     bodied = [link for link in robot.links if any(capsule.link == link for capsule in robot.capsules)]
     return Scene((table,), name="table", allowed=frozenset((link, "table") for link in bodied[:2]))
+
+
+def free_configurations(arm: Robot, cell: Scene, count: int, link: int) -> tuple[Floats, Floats]:
+    """Return those of uniform configurations that are free of robot and cell, (n, dim), and where a link is, (n, 3)."""
+    world = ArmWorld(arm, cell)
+    q = world.space.from_cube(np.random.default_rng(0).random((count, world.space.dim)))
+    q = q[world.valid(q)]
+    # Some at a time: the poses of all links are much larger than those of one.
+    return q, np.concatenate([link_poses(arm, part)[:, link, :3, 3] for part in np.array_split(q, 40)])
 
 
 def why_no_roadmap(sampler: str, n: int, dim: int) -> str:

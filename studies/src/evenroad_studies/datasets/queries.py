@@ -13,8 +13,8 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, load_robot, load_scene
-from evenroad.robot.kinematics import link_poses, tip_links
-from evenroad_studies.arms.roadmaps import cell_of
+from evenroad.robot.kinematics import tip_links
+from evenroad_studies.arms.roadmaps import cell_of, free_configurations
 from evenroad_studies.arms.scenes import GENERATORS, Region, inside_of, places_of
 
 POOL = 40_000
@@ -145,11 +145,8 @@ def _ends(world: ArmWorld, robot: str, regions: list[Region], count: int, rng: n
 def _pool(robot: str) -> tuple[Floats, Floats]:
     """Return configurations that are free of robot and cell, (n, dim), and where the tool is, (n, 3)."""
     arm = _robot(robot)
-    world = ArmWorld(arm, _cell(arm))
-    q = world.space.from_cube(np.random.default_rng(0).random((POOL, world.space.dim)))
-    q = q[world.valid(q)]
     # Of a gripper the link that its fingers are on.
-    return q, link_poses(arm, q)[:, arm.links.index(tip_links(arm)[-1]), :3, 3]
+    return free_configurations(arm, _cell(arm), POOL, arm.links.index(tip_links(arm)[-1]))
 
 
 def as_text(scene: Scene) -> str:
