@@ -1,28 +1,15 @@
-// The coarse level of a map: square tiles, what hangs together inside of each, and the portals between two of them.
-//
-// A way over portals is found in time that follows the number of tiles that it looks at.  A search of cells then stays
-// in the tiles around it.
+// A way over the portals between the coarse tiles of a map, found in time that follows the number of tiles that it
+// looks at.  A search of cells then stays in the tiles around it.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "world/disk.hpp"
+#include "world/coarse_tiles.hpp"
 
 namespace evenroad::world {
-
-/// Number of bits of a row or column number that count inside of a tile: a row of one is a word.
-constexpr int COARSE_SHIFT = 6;
-
-/// Which cells of a disk count as open: those that are surely free, or all that are not surely blocked.
-enum class Open : std::uint8_t { SURELY_FREE, NOT_BLOCKED };
-
-/// A cell of the padded grid.
-struct Cell {
-  std::int32_t row, column;
-};
 
 /// The cells in the middles of the portals of a way, each on the side that it comes from; about how long it is, in
 /// pixels; and to which goal it leads.
