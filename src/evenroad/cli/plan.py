@@ -8,12 +8,15 @@ from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from evenroad.cli.options import Positional, Repeatable, option_names
 from evenroad.cli.read_options import HELP, given_options, require_known_options
 from evenroad.cli.sampler import SamplerOptions, speaks_of_points
 from evenroad.errors import InvalidValue
+
+if TYPE_CHECKING:
+    from evenroad.robot import RobotModel
 
 OF_ROBOTS: dict[str, tuple[str, ...]] = {
     "the robot's files": ("srdf", "group", "bodies", "use_visuals", "package", "xacro", "padding")
@@ -146,7 +149,7 @@ class RobotOptions:
     """Extra distance of links to obstacles: METRES; LINK=METRES, you can give several; or MoveIt's YAML file."""
 
     def options(self) -> dict[str, Any]:
-        """Return the arguments of `load_model`; fitting reports on standard error."""
+        """Return the arguments of `padded_model`; fitting reports on standard error."""
         return {
             "srdf": self.srdf,
             "group": ",".join(self.group) if self.group else None,
@@ -157,6 +160,12 @@ class RobotOptions:
             "progress": say_fitting,
             "padding": self._padding(),
         }
+
+    def model(self, source: str) -> RobotModel:
+        """Return a robot and how it was made."""
+        from evenroad.robot.load import padded_model
+
+        return padded_model(source, **self.options())
 
     def _padding(self) -> float | dict[str, float] | str | None:
         """Return the argument `padding`."""

@@ -15,7 +15,7 @@ from evenroad.cli.options import Positional
 from evenroad.cli.plan import PlanArm, RobotOptions, wants_points
 from evenroad.cli.sampler import require_seed
 from evenroad.errors import InvalidValue
-from evenroad.robot import ArmWorld, Scene, find_robot, find_scene, load_model, load_scene
+from evenroad.robot import ArmWorld, Scene, find_robot, find_scene, load_scene
 from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
 from evenroad.robot_roadmap.build import arm_roadmap, require_size
 from evenroad.robot_roadmap.file import load_roadmap
@@ -61,7 +61,7 @@ class MakeRoadmap(RobotOptions):
             raise InvalidValue(f"--out {out} would overwrite one of the files that it is made from")
         require_writable_folder(out)
         cell = Scene(name="nothing") if self.cell is None else load_scene(self.cell)
-        model = load_model(self.robot, **self.options())
+        model = self.model(self.robot)
         began = time.perf_counter()
         with progress_shown("roadmap") as shown:
             world = ArmWorld(model.robot, cell, resolution=self.resolution, clearance=self.clearance)
@@ -121,5 +121,5 @@ def kept_roadmap(plan: PlanArm) -> ArmRoadmap:
                 raise InvalidValue(f"--{option.name.replace('_', '-')} goes with --robot; the roadmap knows its arm")
     roadmap = load_arm_roadmap(plan.roadmap)
     if plan.robot is not None:
-        require_same_robot(roadmap.robot, roadmap.scene, load_model(plan.robot, **plan.options()).robot)
+        require_same_robot(roadmap.robot, roadmap.scene, plan.model(plan.robot).robot)
     return roadmap

@@ -18,7 +18,7 @@ from evenroad._rng import generator
 from evenroad._terminal import print_table
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
-from evenroad.robot import ArmWorld, Joint, RobotModel, Scene, held_values, in_scene, load_model, load_scene
+from evenroad.robot import ArmWorld, Joint, RobotModel, Scene, held_values, in_scene, load_scene
 from evenroad.robot import Robot as Arm
 from evenroad.robot.srdf import srdf_text
 
@@ -49,7 +49,7 @@ class Robot(RobotOptions):
         """Load, measure, print; return 0."""
         if self.write_srdf is not None:
             require_writable_folder(self.write_srdf)
-        model = load_model(self.robot, **self.options())
+        model = self.model(self.robot)
         scene = Scene((), name="empty space") if self.scene is None else load_scene(self.scene)
         # Without a path, contacts near start and goal are not allowed.
         scene = replace(scene, near_ends=frozenset())

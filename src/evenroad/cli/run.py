@@ -12,7 +12,7 @@ from evenroad._terminal import print_table
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
 from evenroad.errors import InvalidValue
-from evenroad.robot import ArmWorld, Scene, in_scene, load_model
+from evenroad.robot import ArmWorld, Scene, in_scene
 from evenroad.robot.given import as_scene
 
 
@@ -60,7 +60,7 @@ class RunTask(RobotOptions):
         if source is None:
             raise InvalidValue(f"{self.task} names no robot: give --robot")
         scene = as_scene(said.scene if self.scene is None else self.scene) if said.scene or self.scene else Scene()
-        world = ArmWorld(in_scene(load_model(source, **self.options()).robot, scene), scene)
+        world = ArmWorld(in_scene(self.model(source).robot, scene), scene)
         done = said.task.plan(world, said.start, seconds=self.time, rng=self.seed)
         for file in self.out:
             # The trajectory of an earlier run must not pass for this one.

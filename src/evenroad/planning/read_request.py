@@ -23,12 +23,11 @@ from evenroad.robot import (
     at_states,
     configuration,
     in_scene,
-    load_model,
     load_scene,
     scene_seen_by,
 )
 from evenroad.robot.goals import Goals, goals_of, require_tips
-from evenroad.robot.load import RobotOptions
+from evenroad.robot.load import RobotOptions, padded_model
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.reference.validate import MeshCheck, has_meshes, unseen_pairs, validate
 from evenroad.robot.robot import with_group
@@ -130,7 +129,7 @@ def arm_request(
         if options:
             raise InvalidValue(f"{', '.join(options)} must go with the file of a robot, not with a Robot")
     else:
-        model = load_model(robot, **options)
+        model = padded_model(robot, **options)
         source, robot = model.file, model.robot
     goals = _goal_list(goal, len(robot.group))
     texts = [target for target in (start, *goals) if isinstance(target, str)]

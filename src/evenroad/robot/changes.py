@@ -25,7 +25,7 @@ class Changes:
         def _without(self, names: Sequence[str]) -> Self: ...
 
     def moved(self, poses: Mapping[str, Pose]) -> Self:
-        """Return the same with obstacles in other poses, in some microseconds.
+        """Return a scene, or a world, whose named obstacles stand elsewhere: a matter of microseconds.
 
         Parameters
         ----------
@@ -35,12 +35,12 @@ class Changes:
         Returns
         -------
         Scene or ArmWorld
-            As this.
+            A new one; this one does not change.
 
         Raises
         ------
         UnknownName
-            If there is no such obstacle.
+            If a name is that of no obstacle.
         InvalidValue
             If something is no pose.
 
@@ -59,24 +59,24 @@ class Changes:
         return self._moved(poses)
 
     def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Self:
-        """Return the same with more obstacles, and more contacts left untested.
+        """Return a scene, or a world, that has these obstacles beside its own.
 
         Parameters
         ----------
         *obstacles : Shape, Obstacle, or sequence of such
-            Of new names.
+            What is added, each with a name that is not taken.
         allowed : sequence of (str, str)
-            Contacts that are not tested, (link, obstacle), e.g. of the base with its table.
+            Pairs (link, obstacle) that may touch, such as a base and its table.
 
         Returns
         -------
         Scene or ArmWorld
-            As this.
+            The added obstacles come last.
 
         Raises
         ------
         InvalidValue
-            If two have one name, or something is no shape.
+            If a name is taken, or something is no shape.
         UnknownName
             If a world's robot has no such link.
 
@@ -91,22 +91,22 @@ class Changes:
         return self._with(obstacles, allowed)
 
     def without(self, *names: str) -> Self:
-        """Return the same without some obstacles, and without what was allowed to touch them.
+        """Return what is left of a scene, or of a world's, when some obstacles are taken away.
 
         Parameters
         ----------
         *names : str
-            Of the obstacles.
+            Who leaves; contacts that were allowed with them are forgotten.
 
         Returns
         -------
         Scene or ArmWorld
-            As this.
+            The others keep their order.
 
         Raises
         ------
         UnknownName
-            If there is no such obstacle.
+            If one of them is not there.
 
         Examples
         --------

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TypedDict, Unpack
 
 from evenroad._call import explains_calls
-from evenroad.errors import BrokenFile
+from evenroad.errors import BrokenFile, UnknownName
 from evenroad.geometry.fit import fit_capsules, union_volume
 from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.inner import inner_of
@@ -37,7 +37,7 @@ SHAPES, CAPSULES = "shapes", "capsules"
 PathLike = str | os.PathLike[str]
 
 
-class RobotOptions(TypedDict, total=False):
+class ModelOptions(TypedDict, total=False):
     """Options of reading a robot; see :func:`load_model`."""
 
     srdf: PathLike | None
@@ -47,6 +47,11 @@ class RobotOptions(TypedDict, total=False):
     packages: Mapping[str, PathLike]
     arguments: Mapping[str, str]
     progress: Callable[[int, int, str], None] | None
+
+
+class RobotOptions(ModelOptions, total=False):
+    """Options of a robot: those of reading it, and by how much its links are larger."""
+
     padding: Padding | None
 
 
@@ -62,8 +67,9 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     source : str or path-like
         A URDF, xacro or MJCF; or, where there is no such file, ``ur5`` or ``arm7``.
     **options
-        ``srdf``, ``group``, ``bodies``, ``use_visuals``, ``packages``, ``arguments``, ``progress``, ``padding``: as
-        :func:`evenroad.robot.load_model` takes them, which also returns how the robot was made.
+        ``srdf``, ``group``, ``bodies``, ``use_visuals``, ``packages``, ``arguments``, ``progress``: as
+        :func:`evenroad.robot.load_model` takes them, which also returns how the robot was made.  ``padding``: by how
+        much links are larger against obstacles [m], as :meth:`evenroad.robot.Robot.with_padding` takes it.
 
     Returns
     -------
@@ -86,7 +92,7 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     >>> er.load_robot("ur5").joint_names[:2]
     ('shoulder_pan_joint', 'shoulder_lift_joint')
     """
-    model = load_model(source, **options)
+    model = padded_model(source, **options)
     if model.always_touching:
         pairs = ", ".join(f"{first} and {second}" for first, second in model.always_touching)
         advice = "disable these pairs in the SRDF, or give smaller bodies"
@@ -108,7 +114,6 @@ def load_model(
     packages: Mapping[str, PathLike] | None = None,
     arguments: Mapping[str, str] | None = None,
     progress: Callable[[int, int, str], None] | None = None,
-    padding: Padding | None = None,
 ) -> RobotModel:
     """Return a robot and how it was made from its files.
 
@@ -137,8 +142,6 @@ def load_model(
         Arguments of a xacro.
     progress : callable, optional
         Called with step, steps and a text before each body is fitted; not at all for a robot from the cache.
-    padding : float, mapping of str to float, str or path-like, optional
-        By how much links are larger against obstacles [m], see :meth:`evenroad.robot.Robot.with_padding`.
 
     Raises UnknownName if there is neither such a file nor such a robot, or a group, a joint or a link is not known;
     BrokenFile if a file is missing, broken or lacks a piece, the links do not form a tree, a mesh is missing or empty,
@@ -159,7 +162,7 @@ def load_model(
     asked = file, srdf_path, bodies_path, str(group), with_shapes
     model = known(asked)
     if model is not None:
-        return _padded(model, padding)
+        return model
     before = stamps((path, srdf_path, bodies_path))
     urdf = read_robot(file)
     before |= stamps(shape.source for shape in urdf.shapes if isinstance(shape, Mesh))
@@ -173,11 +176,18 @@ def load_model(
             keep(key, model)
     model = replace(model, file=file)
     know(asked, before, model)
-    return _padded(model, padding)
+    return model
 
 
-def _padded(model: RobotModel, padding: Padding | None) -> RobotModel:
-    """Return a model whose links keep more away from obstacles."""
+def padded_model(source: PathLike, *, padding: Padding | None = None, **options: Unpack[ModelOptions]) -> RobotModel:
+    """Return what :func:`load_model` does, with links that keep more away from obstacles.
+
+    Raises UnknownName for an option that neither has.
+    """
+    known = RobotOptions.__annotations__.keys()
+    for name in options.keys() - known:
+        raise UnknownName.among("keyword of load_robot:", name, known)
+    model = load_model(source, **options)
     return model if padding is None else replace(model, robot=model.robot.with_padding(padding))
 
 
