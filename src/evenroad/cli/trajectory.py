@@ -136,52 +136,18 @@ def trajectory_rows(
     if not result.solved or result.path is None or stays:
         _remove_earlier(plan)
         return [("trajectory", "none: the start is the goal")] if stays else [], None
-    from evenroad.trajectory import InMotion, arm_trajectory
     from evenroad.trajectory.files import save_trajectories, trajectory_record
 
-    world = request.world
-    joints = plan.controller_joints
-    order = None if joints is None else [*map(str.strip, joints.split(","))]
-    drives = constraints is not None and _drives(constraints)
-    is_default = plan.deviation == type(plan).__dataclass_fields__["deviation"].default
     try:
-        options: dict[str, Any] = {
-            "limits": _limits(plan, request),
-            "speed": plan.speed,
-            # A rounded corner would take the base sideways.
-            "deviation": 0.0 if drives and is_default else plan.deviation,
-            "step": plan.step,
-        }
-        by_controller = any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory)
-        if make is not None:
-            trajectory = make(**options)
-        else:
-            kept = with_tip(constraints, request.tip)
-            start = _velocity(world.robot, "start-velocity", plan.start_velocity)
-            goal = _velocity(world.robot, "goal-velocity", plan.goal_velocity)
-            trajectory = arm_trajectory(
-                world,
-                InMotion(result.path, start, goal),
-                rounded_by_controller=by_controller,
-                constraints=kept,
-                **options,
-            )
-        meshes = mesh_check(request, trajectory.positions)
-        if meshes is not None and meshes.verdict == "in collision":
-            raise NotAvailable(
-                "the trajectory is free for the bodies of the plan, but not for the shapes that they stand for:"
-                f" in collision {meshes.message}; a smaller --deviation may help"
-            )
+        options = _options(plan, request, constraints)
+        trajectory = _timed(plan, request, result.path, constraints, options) if make is None else make(**options)
+        _require_free(request, trajectory)
     except NotAvailable:
         _remove_earlier(plan)
         raise
+    joints = plan.controller_joints
+    order = None if joints is None else [*map(str.strip, joints.split(","))]
     save_trajectories(plan.trajectory, trajectory, order)
-    used = ", ".join(f"{100 * share:.0f} % of {kind}" for kind, share in trajectory.highest.items())
-    stops = f", {trajectory.stops} stops" if trajectory.stops else ""
-    about = (
-        f"{trajectory.duration:.3f} s, at most {used}; {trajectory.deviation:.2g} off the path{stops};"
-        f" {trajectory.proof}"
-    )
     record = {
         "files": [str(file) for file in plan.trajectory],
         **{name: getattr(trajectory, name) for name in ("duration", "deviation", "stops", "proof")},
@@ -189,4 +155,52 @@ def trajectory_rows(
         "states": trajectory_record(trajectory, order),
     }
     files = [("", ", ".join(map(str, plan.trajectory)))] if plan.trajectory else []
-    return [("trajectory", about), *files], record
+    return [("trajectory", _about(trajectory)), *files], record
+
+
+def _options(plan: PlanArm, request: Request, constraints: Constraint | None) -> dict[str, Any]:
+    """Return the arguments of what makes a trajectory."""
+    is_default = plan.deviation == type(plan).__dataclass_fields__["deviation"].default
+    # A rounded corner would take a base that cannot go sideways off its way.
+    keeps_corners = is_default and constraints is not None and _drives(constraints)
+    return {
+        "limits": _limits(plan, request),
+        "speed": plan.speed,
+        "deviation": 0.0 if keeps_corners else plan.deviation,
+        "step": plan.step,
+    }
+
+
+def _timed(
+    plan: PlanArm, request: Request, path: Floats, constraints: Constraint | None, options: dict[str, Any]
+) -> Trajectory:
+    """Return the trajectory along a path; NotAvailable where there is none that is free."""
+    from evenroad.trajectory import InMotion, arm_trajectory
+
+    robot = request.world.robot
+    start = _velocity(robot, "start-velocity", plan.start_velocity)
+    goal = _velocity(robot, "goal-velocity", plan.goal_velocity)
+    return arm_trajectory(
+        request.world,
+        InMotion(path, start, goal),
+        rounded_by_controller=any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory),
+        constraints=with_tip(constraints, request.tip),
+        **options,
+    )
+
+
+def _require_free(request: Request, trajectory: Trajectory) -> None:
+    """Raise NotAvailable if a trajectory is in collision with the robot's meshes."""
+    meshes = mesh_check(request, trajectory.positions)
+    if meshes is not None and meshes.verdict == "in collision":
+        raise NotAvailable(
+            "the trajectory is free for the bodies of the plan, but not for the shapes that they stand for:"
+            f" in collision {meshes.message}; a smaller --deviation may help"
+        )
+
+
+def _about(trajectory: Trajectory) -> str:
+    used = ", ".join(f"{100 * share:.0f} % of {kind}" for kind, share in trajectory.highest.items())
+    stops = f", {trajectory.stops} stops" if trajectory.stops else ""
+    off = f"{trajectory.deviation:.2g} off the path{stops}"
+    return f"{trajectory.duration:.3f} s, at most {used}; {off}; {trajectory.proof}"
