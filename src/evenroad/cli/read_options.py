@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import MISSING
 from typing import Any
@@ -61,39 +62,48 @@ def _sorted(
     given: dict[str, list[list[str]]] = {}
     loose: list[str] = []
     unknown: list[str] = []
-    i = 0
-    while i < len(words):
-        word, i = words[i], i + 1
+    rest = deque(words)
+    while rest:
+        word = rest.popleft()
         if word == "--":
-            loose += words[i:]
+            loose += rest
             break
-        name, equals, value = word.partition("=")
-        if name not in named and word[:2] in named:
-            # `-n3` is `-n 3`.
-            name, equals, value = word[:2], "=", word[2:]
+        name, equals, value = _split(word, named)
         option = named.get(name)
         if option is None:
             (unknown if _is_like_an_option(word) else loose).append(word)
             continue
-        taken = [value] if equals else []
+        uses = given.setdefault(option.field, [])
         if option.kind is bool:
-            unknown += taken
-        else:
-            while i < len(words) and (option.several or not taken) and not _stops(words[i], named):
-                # The last words of the line are those that have no name, if these are still to come.
-                if taken and len(words) - i <= needed - len(loose):
-                    break
-                taken.append(words[i])
-                i += 1
-            if not taken:
-                raise InvalidValue(f"{'/'.join(option.names)} needs a value: {option.text}; {hint}")
-        given.setdefault(option.field, []).append(taken)
+            uses.append([])
+            unknown += [value] if equals else []
+            continue
+        # The last words of the line are those that have no name, if these are still to come.
+        taken = _taken(option, [value] if equals else [], rest, named, needed - len(loose))
+        if not taken:
+            raise InvalidValue(f"{'/'.join(option.names)} needs a value: {option.text}; {hint}")
+        uses.append(taken)
     for option in positional:
         if loose:
             count = len(loose) if option.several else 1
             given[option.field] = [loose[:count]]
             del loose[:count]
     return given, unknown, loose
+
+
+def _split(word: str, named: dict[str, Option]) -> tuple[str, str, str]:
+    """Return the name of an option, and the value that stands in the same word: ``-n3`` is ``-n=3``."""
+    name, equals, value = word.partition("=")
+    return (word[:2], "=", word[2:]) if name not in named and word[:2] in named else (name, equals, value)
+
+
+def _taken(option: Option, values: list[str], rest: deque[str], named: dict[str, Option], reserved: int) -> list[str]:
+    """Return the values of an option: those that it has, and words of the rest, of which some are reserved."""
+    while rest and (option.several or not values) and not _stops(rest[0], named):
+        if values and len(rest) <= reserved:
+            break
+        values.append(rest.popleft())
+    return values
 
 
 def _stops(word: str, named: dict[str, Option]) -> bool:

@@ -37,24 +37,33 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
     """
     groups = {} if srdf is None else srdf.groups
     if wanted is not None:
-        words = _words(wanted)
-        owners = {name.rpartition("/")[0] for name in urdf.order}
-        if groups and words and not set(words) & {*urdf.order, *groups, *owners}:
-            raise UnknownName.among("group", ",".join(words), groups)
-        chosen: list[str] = []
-        for word in words:
-            if word in groups:
-                own = _not_empty(groups[word], f"group {word!r}")
-                chosen += [name for name in own if name not in chosen]
-            else:
-                for name in named(word, urdf.order) or [word]:
-                    _require_movable(urdf, name, chosen)
-                    chosen.append(name)
-        return _not_empty(tuple(chosen), "the group")
+        return _wanted_joints(urdf, groups, _words(wanted))
     if any(groups.values()):
         return groups[arm_group(urdf, groups)]
     if all(joint.kind == "fixed" for joint in urdf.joints):
         return ()
+    return _movable_joints(urdf, srdf)
+
+
+def _wanted_joints(urdf: Urdf, groups: Mapping[str, tuple[str, ...]], words: Sequence[str]) -> tuple[str, ...]:
+    """Return the joints of the groups and joints that words name, in this order."""
+    owners = {name.rpartition("/")[0] for name in urdf.order}
+    if groups and words and not set(words) & {*urdf.order, *groups, *owners}:
+        raise UnknownName.among("group", ",".join(words), groups)
+    chosen: list[str] = []
+    for word in words:
+        if word in groups:
+            own = _not_empty(groups[word], f"group {word!r}")
+            chosen += [name for name in own if name not in chosen]
+        else:
+            for name in named(word, urdf.order) or [word]:
+                _require_movable(urdf, name, chosen)
+                chosen.append(name)
+    return _not_empty(tuple(chosen), "the group")
+
+
+def _movable_joints(urdf: Urdf, srdf: Srdf | None) -> tuple[str, ...]:
+    """Return every joint that moves on its own, in the order of the file."""
     free = urdf.free - (frozenset() if srdf is None else srdf.passive)
     said = "".join(f"; {note}" for note in urdf.notes if note.startswith("joint"))
     locked = [joint.name for joint in urdf.joints if joint.kind != "fixed" and joint.lower == joint.upper]

@@ -118,6 +118,23 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
     ):
         if tuple(ours) != tuple(theirs):
             yield _lists(what, ours, theirs)
+    yield from _of_joints(made, given)
+    # What a scene narrows keeps the bodies and pairs themselves.
+    if not (made.capsules is given.capsules and made.hulls is given.hulls and made.pairs is given.pairs):
+        yield from _of_bodies(made, given)
+    if made.shapes != given.shapes:
+        both = f"its {made.bodies}, now with its {given.bodies}"
+        yield f"it touched obstacles with {both}: read both with the same bodies"
+    was, now = dict(made.padding), dict(given.padding)
+    for link in sorted(link for link in was.keys() | now.keys() if was.get(link) != now.get(link)):
+        yield f"link {link!r} had a padding of {was.get(link, 0.0):g} m, now {now.get(link, 0.0):g} m"
+    held = held_values(given)
+    for name, value in held_values(made).items():
+        if held.get(name) != value:
+            yield f"joint {name!r} was held at {value:g}, now at {held.get(name)}"
+
+
+def _of_joints(made: Robot, given: Robot) -> Iterator[str]:
     joints = {joint.name: joint for joint in given.joints}
     for joint in made.joints:
         other = joints.get(joint.name)
@@ -131,26 +148,16 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
                 yield f"joint {joint.name!r} had {field} {was}, now {now}"
     if len(joints) != len(made.joints):
         yield "this one has more joints"
-    # What a scene narrows keeps the bodies and pairs themselves.
-    same = made.capsules is given.capsules and made.hulls is given.hulls and made.pairs is given.pairs
-    for link in () if same else made.links:
+
+
+def _of_bodies(made: Robot, given: Robot) -> Iterator[str]:
+    for link in made.links:
         if _bodies(made, link) != _bodies(given, link):
             had, has = _lost(made, given, link), _lost(given, made, link)
             yield f"the bodies of {link!r} differ: it had {had}; this one has {has}"
-    pairs = (() if same else sorted(map(str, map(sorted, robot.pairs))) for robot in (made, given))
-    ours, theirs = map(tuple, pairs)
+    ours, theirs = (tuple(sorted(map(str, map(sorted, robot.pairs)))) for robot in (made, given))
     if ours != theirs:
         yield _lists("tested pairs", ours, theirs)
-    if made.shapes != given.shapes:
-        both = f"its {made.bodies}, now with its {given.bodies}"
-        yield f"it touched obstacles with {both}: read both with the same bodies"
-    was, now = dict(made.padding), dict(given.padding)
-    for link in sorted(link for link in was.keys() | now.keys() if was.get(link) != now.get(link)):
-        yield f"link {link!r} had a padding of {was.get(link, 0.0):g} m, now {now.get(link, 0.0):g} m"
-    held = held_values(given)
-    for name, value in held_values(made).items():
-        if held.get(name) != value:
-            yield f"joint {name!r} was held at {value:g}, now at {held.get(name)}"
 
 
 def _bodies(robot: Robot, link: str) -> list[str]:
