@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
 from inspect import Parameter, signature
 from types import FunctionType
@@ -36,6 +36,14 @@ def explains_calls(called: Called) -> Called:
             raise _explained(called, given, named, str(error)) from None
 
     return explained  # type: ignore[return-value]
+
+
+def require_options(name: str, given: Mapping[str, object], options: type) -> None:
+    """Raise UnknownName for a keyword that a function takes by no name of its own, and its TypedDict does not have."""
+    known = options.__annotations__
+    for keyword in given:
+        if keyword not in known:
+            raise UnknownName.among(f"keyword of {name}:", keyword, known)
 
 
 def _explained(function: Callable[..., Any], given: tuple[Any, ...], named: dict[str, Any], text: str) -> EvenroadError:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints
+from evenroad._call import explains_calls, require_options
 from evenroad._checks import as_batch, require_count
 from evenroad._native.planning import ManyQueries
 from evenroad._rng import RngLike
@@ -28,17 +29,24 @@ _SLICE = 0.1
 """Time between two looks at what interrupts, and reports of progress [s]."""
 
 
+class QueryOptions(TypedDict, total=False):
+    """Options of each of many queries, as :func:`evenroad.plan` takes them."""
+
+    seconds: float | None
+    limits: Budget | Mapping[str, int] | None
+    smooth: Smooth
+    rng: RngLike
+
+
+@explains_calls
 def plan_many(
     worlds: World | Sequence[World],
     starts: npt.ArrayLike,
     goals: npt.ArrayLike,
     *,
-    seconds: float | None = None,
-    limits: Budget | Mapping[str, int] | None = None,
-    smooth: Smooth = True,
-    rng: RngLike = 0,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[QueryOptions],
 ) -> PlanResults:
     """Plan many paths, in one world or each in its own.
 
@@ -52,18 +60,13 @@ def plan_many(
         Where to plan; all worlds have the same number of coordinates.  A world may be there several times.
     starts, goals : array_like, shape (m, dim)
         Configurations.  Row i of both is one query; in which a start or goal is not free has a status that says so.
-    seconds : float, optional
-        Largest wall time of each query, > 0.  Default: 5.
-    limits : mapping or Budget, optional
-        Other limits of each query, as of :func:`evenroad.plan`.
-    smooth : bool or "quick"
-        As of :func:`evenroad.plan`.
-    rng : int, SeedSequence or Generator
-        Seed of all queries.
     threads : int, optional
         Number of threads, >= 1.  Default: one a processor.
     progress : callable, optional
         Called with the numbers of queries answered and of all, a few times a second.
+    **options
+        ``seconds=5``, the largest wall time of each query [s], > 0; ``limits``, its other limits; ``smooth=True``; and
+        ``rng=0``, the seed of all queries: as :func:`evenroad.plan` takes them.
 
     Returns
     -------
@@ -71,7 +74,7 @@ def plan_many(
 
     Raises
     ------
-    InvalidValue
+    InvalidValue, UnknownName
         If an argument is not one of these; the message names the row.
 
     Examples
@@ -82,6 +85,7 @@ def plan_many(
     >>> er.plan_many(world, [home] * 2, [(0.5, -1.57, 0, -1.57, 0, 0), (3, 0.5, 0, 0, 0, 0)])
     PlanResults(2 queries: 1 solved, 1 goal_invalid)
     """
+    require_options("plan_many", options, QueryOptions)
     different, of = _read_worlds(worlds)
     dim = different[0].space.dim
     first, last = as_batch("starts", starts, dim), as_batch("goals", goals, dim)
@@ -93,8 +97,9 @@ def plan_many(
     if len(of) != count:
         raise InvalidValue(f"worlds must be one, or one a query: {count}, got {len(of)}")
     workers = processors() if threads is None else require_count("threads", threads)
+    smooth, variant = options.get("smooth", True), variant_of(options.get("rng", 0))
     require_smooth(smooth)
-    budget, variant = budget_of(None, seconds, limits), variant_of(rng)
+    budget = budget_of(None, options.get("seconds"), options.get("limits"))
     report = (lambda done: None) if progress is None else (lambda done: progress(done, count))
 
     def query(row: int) -> PlanResult:

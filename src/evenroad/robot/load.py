@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypedDict, Unpack
 
-from evenroad._call import explains_calls
-from evenroad.errors import BrokenFile, UnknownName
+from evenroad._call import explains_calls, require_options
+from evenroad.errors import BrokenFile
 from evenroad.geometry.fit import fit_capsules, union_volume
 from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.inner import inner_of
@@ -184,9 +184,7 @@ def padded_model(source: PathLike, *, padding: Padding | None = None, **options:
 
     Raises UnknownName for an option that neither has.
     """
-    known = RobotOptions.__annotations__.keys()
-    for name in options.keys() - known:
-        raise UnknownName.among("keyword of load_robot:", name, known)
+    require_options("load_robot", options, RobotOptions)
     model = load_model(source, **options)
     return model if padding is None else replace(model, robot=model.robot.with_padding(padding))
 
