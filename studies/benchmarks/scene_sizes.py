@@ -1,10 +1,11 @@
 """What a scene costs by its size: boxes, points and triangles, to be made, to be checked, and in memory.
 
-    python -m studies.benchmarks.scene_sizes OUT.csv OUT.png [--most 1e5]
+    python -m studies.benchmarks.scene_sizes OUT.csv OUT.png [--most 1e5] [--robot ROBOT.urdf]
 
-The UR5 among the same bodies in ever more parts: 100 boxes of 5 to 20 cm, each cut into n / 100 boxes; the image of a
-depth camera with n points; a wavy plate of n triangles.  Every row is a process of its own.  Times are of its
-processor, the least of several; memory is what the process holds more when the world is made (Linux alone).
+The UR5, whose capsules decide, or a robot of a file, whose true shapes do, among the same bodies in ever more parts:
+100 boxes of 5 to 20 cm, each cut into n / 100 boxes; the image of a depth camera with n points; a wavy plate of n
+triangles.  Every row is a process of its own.  Times are of its processor, the least of several; memory is what the
+process holds more when the world is made (Linux alone).
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ Floats = npt.NDArray[np.float64]
 SIZES = {
     "boxes": (1, 10, 100, 300, 1000, 10_000, 100_000),
     "points": (1000, 10_000, 100_000, 307_200, 1_000_000, 10_000_000),
-    "triangles": (1000, 10_000, 100_000),
+    "triangles": (1000, 10_000, 100_000, 1_000_000),
 }
 COLUMNS = ("what", "size", "free", "made [ms]", "memory [MB]", "configurations/s", "motions/s")
 
@@ -85,9 +86,9 @@ def least(task: Callable[[], object], repeats: int = 9) -> float:
     return min(times)
 
 
-def measured(what: str, size: int) -> tuple[str, int, float, float, float, float, float]:
+def measured(what: str, size: int, of: str) -> tuple[str, int, float, float, float, float, float]:
     """Return a row of the table."""
-    robot, scene = load_robot("ur5"), scene_of(what, size)
+    robot, scene = load_robot(of), scene_of(what, size)
     # What is loaded once for all does not count.
     _ = ArmWorld(robot, scene_of(what, 50)).checker, scene.rows
     before, begin = held(), time.process_time()
@@ -113,8 +114,11 @@ def draw(rows: list[tuple[str, int, float, float, float, float, float]], file: P
 
 def main() -> None:
     """Measure, write and draw."""
-    args = sizes_parser(__doc__, 1e7).parse_args()
-    rows = [shown(alone(measured, what, size)) for what, sizes in SIZES.items() for size in sizes if size <= args.most]
+    parser = sizes_parser(__doc__, 1e7)
+    parser.add_argument("--robot", default="ur5", help="a URDF file: true shapes decide")
+    args = parser.parse_args()
+    sizes = [(what, size) for what, sizes in SIZES.items() for size in sizes if size <= args.most]
+    rows = [shown(alone(measured, *each, args.robot)) for each in sizes]
     write_table(args.table, COLUMNS, rows)
     draw(rows, args.picture)
 

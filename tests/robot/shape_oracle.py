@@ -21,8 +21,13 @@ _CUBE = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
 
 
 def solids_of(shape):
-    """The convex solids that make a shape, in the frame of its link, as (corners, radius); a mesh must be the fork."""
+    """The convex solids that make a shape, in the frame of its link, as (corners, radius).
+
+    A mesh must be the fork; triangles alone, (n, 3, 3), are one each.
+    """
     match shape:
+        case np.ndarray():
+            return [(corners, 0.0) for corners in shape]
         case Box():
             return [(shape.pose.apply(_CUBE * shape.size), 0.0)]
         case Sphere():

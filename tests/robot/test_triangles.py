@@ -7,11 +7,11 @@ import pytest
 
 from evenroad._native import robot as native
 from evenroad.geometry import TriangleMesh
-from evenroad.geometry.mesh import closed_parts
+from evenroad.geometry.mesh import closed_parts, first_of_parts
 
 
 def slow_closed_parts(mesh):
-    """The same by dictionaries of corners."""
+    """The same, and which triangle of a part is the first, by dictionaries of corners."""
     faces = [[tuple((mesh.vertices[i] + 0.0).tolist()) for i in face] for face in mesh.triangles]
     part = {}
     for face in faces:
@@ -26,9 +26,12 @@ def slow_closed_parts(mesh):
     odd = {id(part[a]) for (a, _), count in times.items() if count % 2}
     unturned = {id(part[a]) for (a, _), count in turns.items() if count}
     closed = [id(part[face[0]]) not in odd for face in faces]
-    return closed, not any(
+    oriented = not any(
         is_closed and id(part[face[0]]) in unturned for is_closed, face in zip(closed, faces, strict=True)
     )
+    known = set()
+    first = [not (id(part[face[0]]) in known or known.add(id(part[face[0]]))) for face in faces]
+    return closed, oriented, first
 
 
 def slow_pieces(corners, reach, longest):
@@ -70,17 +73,21 @@ def test_closed_parts_are_those_of_a_slow_search(seed):
     expected = slow_closed_parts(mesh)
     assert closed.tolist() == expected[0]
     assert oriented == expected[1]
+    assert first_of_parts(mesh).tolist() == expected[2]
 
 
 def test_pieces_are_those_of_a_slow_recursion_and_cover_what_is_reached():
     rng = np.random.default_rng(0)
     corners = rng.normal(size=(60, 3, 3)) * rng.uniform(0.05, 3.0, (60, 1, 1))
-    pieces = native.pieces_within(corners, 0.9, 0.3)
-    expected = [piece for triangle in corners for piece in slow_pieces(triangle, 0.9, 0.3)]
+    first = rng.random(len(corners)) < 0.3
+    pieces, of_first = native.pieces_within(corners, first, 0.9, 0.3)
     assert len(pieces) > 300
-    assert sorted(pieces.tolist()) == sorted(expected)
+    for which in (False, True):
+        expected = [piece for triangle in corners[first == which] for piece in slow_pieces(triangle, 0.9, 0.3)]
+        assert sorted(pieces[of_first == which].tolist()) == sorted(expected)
     # Places of the triangles within reach are in one of the pieces: areas tell.
     near = corners[(np.abs(corners) < 0.9).all(axis=(1, 2))]
     assert len(near) > 5
     area = lambda t: np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1).sum()  # noqa: E731
-    assert np.isclose(area(native.pieces_within(near, 0.9, 0.3).reshape(-1, 3, 3)), area(near))
+    pieces, _ = native.pieces_within(near, np.ones(len(near), dtype=bool), 0.9, 0.3)
+    assert np.isclose(area(pieces.reshape(-1, 3, 3)), area(near))

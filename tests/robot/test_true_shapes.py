@@ -1,6 +1,7 @@
 """Where capsules touch an obstacle the links' true shapes decide: against solids in double precision, near contact."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -43,12 +44,26 @@ def points(seed, count=60):
     return Scene((Obstacle("cloud", PointCloud(places, 0.012)),), name="points")
 
 
+def triangles(seed, count=90):
+    """Triangles around the arm, large and small; a third are needles, some are segments or points; and each alone."""
+    rng = np.random.default_rng(seed)
+    angle, away = rng.uniform(0.0, 2.0 * np.pi, count), rng.uniform(0.3, 0.7, count)
+    places = np.stack([away * np.cos(angle), away * np.sin(angle), rng.uniform(0.2, 1.0, count)], axis=1)
+    first, second = rng.normal(0.0, 1.0, (2, count, 3)) * np.linspace(0.002, 0.2, count)[:, np.newaxis]
+    second[::3] = first[::3] * 0.6 + rng.normal(0.0, 1e-7, second[::3].shape)
+    second[::9], first[::18] = first[::9], 0.0
+    corners = places[:, np.newaxis] + np.stack([np.zeros_like(first), first, second], axis=1)
+    mesh = Mesh(TriangleMesh(corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3)))
+    return Scene((Obstacle("triangles", mesh),)), SimpleNamespace(obstacles=[SimpleNamespace(body=corners)])
+
+
 BOXES = as_meshes(solids(3, 80))
 SCENES = {
     "solids": (solids(1), solids(1)),
     "others": (solids(2), solids(2)),
     "points": (points(4),) * 2,
     "meshes": BOXES,
+    "triangles": triangles(10),
 }
 
 

@@ -84,7 +84,7 @@ class TriangleMesh:
         return self.compact.triangles
 
     @cached_property
-    def _closed(self) -> tuple[Bools, bool]:
+    def _closed(self) -> tuple[Bools, bool, Bools]:
         return native.closed_parts(self.vertices, self.triangles)
 
     @cached_property
@@ -222,4 +222,9 @@ def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
     A part, of triangles that share corners, is closed if every edge belongs to an even number of triangles, and
     oriented if its triangles run along each edge in both directions equally often.  Equal corners are one.
     """
-    return mesh._closed
+    return mesh._closed[:2]
+
+
+def first_of_parts(mesh: TriangleMesh) -> Bools:
+    """Return which triangles are the first of their part, (t,)."""
+    return mesh._closed[2]

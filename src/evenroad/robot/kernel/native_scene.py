@@ -25,17 +25,17 @@ def native_scene(
     is so far, or so large, that too few digits are left.
     """
     tested = tested_contacts(tables.capsules, links, scene)
-    reach, shaped = tables.reach + clearance, bool(scene.surfaces) and native.is_shaped(robot)
+    reach = tables.reach + clearance
     surfaces, bodies = [], []
     for number, obstacle in scene.surfaces:
         body = obstacle.body
         assert isinstance(body, PointCloud | Mesh)  # all others have rows
         if not tested[:, number].any():
             continue
-        if (surface := surface_of(body, reach, obstacle.clearance, shaped)) is not None:
+        if (surface := surface_of(body, reach, obstacle.clearance)) is not None:
             surfaces.append((surface, number, np.ascontiguousarray(tested[:, number])))
             bodies.append((body, obstacle.clearance))
-    around = surfaces_around(tuple(bodies), reach, shaped) if len(bodies) >= MANY else None
+    around = surfaces_around(tuple(bodies), reach) if len(bodies) >= MANY else None
     solid = tested if not scene.surfaces else np.delete(tested, [number for number, _ in scene.surfaces], axis=1)
     made = native.Scene(robot, scene.rows, np.ascontiguousarray(solid), surfaces, around, clearance)
     if made.too_far >= 0:

@@ -10,7 +10,7 @@ import numpy as np
 
 from evenroad._native import robot as native
 from evenroad.geometry.hulls import winding_number
-from evenroad.geometry.mesh import closed_parts
+from evenroad.geometry.mesh import closed_parts, first_of_parts
 from evenroad.geometry.shapes import Mesh, PointCloud
 
 MANY = 8
@@ -35,28 +35,23 @@ _CUBE = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))[np.concatenate(
 """Triangles of a cube around the origin, outside to the right of their turn."""
 
 
-def surface_of(
-    body: PointCloud | Mesh, reach: float, clearance: float = 0.0, shaped: bool = True
-) -> native.Surface | None:
+def surface_of(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) -> native.Surface | None:
     """Return what a robot of this reach can touch of a body that is larger by a clearance, None where that is nothing;
     kept for the next scene.
-
-    It says whether true shapes of the robot are to be tested: without them a mesh is made in two thirds of the time.
     """
     is_frame = isinstance(body, PointCloud) and len(body.points) > FRAME
-    return (_frames if is_frame else _surfaces)(body, reach, clearance, shaped)
+    return (_frames if is_frame else _surfaces)(body, reach, clearance)
 
 
-def make_surface(
-    body: PointCloud | Mesh, reach: float, clearance: float = 0.0, shaped: bool = True
-) -> native.Surface | None:
+def make_surface(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) -> native.Surface | None:
     """Return the same, made anew."""
     reach += clearance
     if isinstance(body, PointCloud):
         pose = np.array(body.pose.rotation), np.array(body.pose.xyz)
         return native.Surface.of_cloud(body.points, *pose, body.radius, clearance, reach)
     corners = body.pose.apply(body.triangles.vertices)[body.triangles.triangles]
-    near = native.pieces_within(corners, reach, reach * PIECE).reshape(-1, 3, 3)
+    near, first = native.pieces_within(corners, first_of_parts(body.triangles), reach, reach * PIECE)
+    near = near.reshape(-1, 3, 3)
     closed, turned = closed_parts(body.triangles)
     solid = corners[closed]
     if len(near) == 0:
@@ -64,8 +59,9 @@ def make_surface(
             return None
         # All that the robot can reach is inside.
         near = solid = reach * _CUBE
+        first = np.zeros(len(near), dtype=bool)
     padding = PADDING * math.sqrt(np.einsum("ijk,ijk->ij", near, near).max())
-    return native.Surface(np.ascontiguousarray(near), clearance + padding, solid, turned, reach, shaped)
+    return native.Surface(np.ascontiguousarray(near), clearance + padding, solid, turned, reach, first)
 
 
 _surfaces = lru_cache(maxsize=64)(make_surface)
@@ -73,6 +69,6 @@ _frames = lru_cache(maxsize=4)(make_surface)
 
 
 @lru_cache(maxsize=4)
-def surfaces_around(bodies: tuple[tuple[PointCloud | Mesh, float], ...], reach: float, shaped: bool) -> native.Surface:
+def surfaces_around(bodies: tuple[tuple[PointCloud | Mesh, float], ...], reach: float) -> native.Surface:
     """Return the grid around several bodies that can be reached, each with its clearance; kept, as they are."""
-    return native.Surface.around([surface_of(body, reach, clearance, shaped) for body, clearance in bodies])
+    return native.Surface.around([surface_of(body, reach, clearance) for body, clearance in bodies])

@@ -27,22 +27,20 @@ using robot::Scene;
 using robot::Surface;
 
 void make_surface(Surface* self, nb::handle corners, double radius, nb::handle solid, bool turned, double reach,
-                  bool shaped) {
+                  nb::handle first) {
   const Array<const double, 3> of(corners, "corners"), closed(solid, "solid");
+  const Array<const bool, 1> firsts(first, "first");
   require(of.shape(2) == 3 && (of.shape(1) == 1 || of.shape(1) == 3), "corners must be (n, 1, 3) or (n, 3, 3)");
   require_within(of.span(), -FARTHEST, FARTHEST, "corners"),
       require_within(closed.span(), -FARTHEST, FARTHEST, "solid");
   require_within({&radius, 1}, 0.0, FARTHEST, "radius"), require_within({&reach, 1}, 0.0, FARTHEST, "reach");
-  closed.of_shape({closed.shape(0), 3, 3});
-  new (self) Surface(robot::make_surface({of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach, shaped}));
+  closed.of_shape({closed.shape(0), 3, 3}), firsts.of_shape({of.shape(1) == 3 ? of.shape(0) : 0});
+  new (self)
+      Surface(robot::make_surface({of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach, firsts.span()}));
 }
 
-/// Return whether true shapes of a robot decide.
-bool is_shaped(const Robot& robot) {
-  return std::ranges::any_of(robot.bodies, [](const robot::Body& body) { return body.shape >= 0; });
-}
-
-/// Return which triangles, (t, 3) rows of vertices, (n, 3), belong to closed parts, and whether these are oriented.
+/// Return which triangles, (t, 3) rows of vertices, (n, 3), belong to closed parts, whether these are oriented, and
+/// which ones are the first of their part.
 nb::tuple closed_parts(nb::handle vertices, nb::handle triangles) {
   const FloatRows corners(vertices, "vertices");
   const Array<const std::int64_t, 2> rows(triangles, "triangles");
@@ -51,18 +49,23 @@ nb::tuple closed_parts(nb::handle vertices, nb::handle triangles) {
   require_below(rows.span(), corners.shape(0), "triangles");
   const std::size_t count = rows.shape(0);
   robot::ClosedParts parts = robot::closed_parts({corners.data(), 3 * corners.shape(0)}, rows.span());
-  return nb::make_tuple(as_bools(std::move(parts.closed), {count}), parts.oriented);
+  return nb::make_tuple(as_bools(std::move(parts.closed), {count}), parts.oriented,
+                        as_bools(std::move(parts.first), {count}));
 }
 
-/// Return the pieces of triangles, (t, 3, 3), that come within reach, none of a side longer than `longest`: (p, 9).
-nb::object pieces_within(nb::handle triangles, double reach, double longest) {
+/// Return the pieces of triangles, (t, 3, 3), that come within reach, none of a side longer than `longest`: (p, 9); and
+/// which are of those that are the first of their part, (p,).
+nb::tuple pieces_within(nb::handle triangles, nb::handle first, double reach, double longest) {
   const Array<const double, 3> given(triangles, "triangles");
-  given.of_shape({given.shape(0), 3, 3});
+  const Array<const bool, 1> firsts(first, "first");
+  given.of_shape({given.shape(0), 3, 3}), firsts.of_shape({given.shape(0)});
   require_within(given.span(), -FARTHEST, FARTHEST, "triangles");
   require_within({&reach, 1}, 0.0, FARTHEST, "reach");
   // Shorter sides would make pieces without end.
   require(longest >= std::max(0.01 * reach, 1e-6), "longest must be at least 1e-6, and a hundredth of reach");
-  return as_rows(robot::pieces_within(given.span(), reach, longest), 9);
+  robot::Pieces pieces = robot::pieces_within(given.span(), firsts.span(), reach, longest);
+  const std::size_t count = pieces.first.size();
+  return nb::make_tuple(as_rows(std::move(pieces.corners), 9), as_bools(std::move(pieces.first), {count}));
 }
 
 /// Return what of a cloud a robot can reach, or None; points must be finite, and within 1e9 m.
@@ -129,8 +132,6 @@ void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle t
     const Array<const bool, 1> capsules(part[2], "tested");
     capsules.of_shape({of.capsules.size()});
     auto surface = value_of<std::shared_ptr<Surface>>(part[0], "surface");
-    require(surface->triangles.empty() || !surface->firsts.empty() || !is_shaped(of),
-            "surface must be made for true shapes");
     require(!surface->tree.levels.empty(), "a grid around surfaces is no surface");
     scene.surfaces.push_back(
         {std::move(surface), value_of<int>(part[1], "number"), {capsules.span().begin(), capsules.span().end()}});
@@ -158,10 +159,9 @@ nb::object changed_scene(const Scene& before, const Robot& of, nb::handle gone, 
 void add_scene(nb::module_& part) {
   nb::class_<Surface>(part, "Surface")
       .def("__init__", &make_surface, nb::arg("corners"), nb::arg("radius"), nb::arg("solid"), nb::arg("turned"),
-           nb::arg("reach"), nb::arg("shaped") = true)
+           nb::arg("reach"), nb::arg("first"))
       .def_static("of_cloud", &surface_of_cloud)
       .def_static("around", &surface_around);
-  part.def("is_shaped", &is_shaped);
   part.def("closed_parts", &closed_parts);
   part.def("pieces_within", &pieces_within);
   part.def("box_rows", &box_rows, nb::arg("size"), nb::arg("xyz"), nb::arg("xyzw").none());

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "robot/triangles.hpp"
-
 namespace evenroad::robot {
 
 namespace {
@@ -69,7 +67,8 @@ void add_grid(Surface& surface, const GivenSurface& given) {
 Surface make_surface(const GivenSurface& given) {
   const int each = given.triangles ? 3 : 1;
   const std::size_t count = given.corners.size() / (3 * each);
-  if (count == 0 || given.corners.size() != 3 * each * count || given.solid.size() % 9 != 0) {
+  if (count == 0 || given.corners.size() != 3 * each * count || given.solid.size() % 9 != 0 ||
+      given.first.size() != (given.triangles ? count : 0)) {
     throw std::invalid_argument("a surface must have points, (n, 1, 3), or triangles, (n, 3, 3), one or more");
   }
   const auto within = [](std::span<const double> numbers, double most) {
@@ -82,8 +81,6 @@ Surface make_surface(const GivenSurface& given) {
   Surface surface;
   surface.radius = static_cast<float>(given.radius);
   add_grid(surface, given);
-  std::vector<std::uint8_t> firsts;
-  if (given.shaped && given.triangles) firsts = first_of_parts(given.corners);
   std::vector<Place> middles(count);
   double largest = 0;
   for (std::size_t i = 0; i < count; i++) {
@@ -119,7 +116,7 @@ Surface make_surface(const GivenSurface& given) {
     for (std::size_t i = first; i < std::min(first + LANES, count); i++) {
       const double* here = given.corners.data() + 3 * static_cast<std::size_t>(each * order[i]);
       const int lane = static_cast<int>(i - first);
-      if (!firsts.empty()) first_here = static_cast<std::uint16_t>(first_here | firsts[order[i]] << lane);
+      if (given.triangles) first_here = static_cast<std::uint16_t>(first_here | given.first[order[i]] << lane);
       if (given.triangles)
         put(triangles, lane, here);
       else
@@ -129,10 +126,9 @@ Surface make_surface(const GivenSurface& given) {
       }
     }
     if (given.triangles)
-      surface.triangles.push_back(triangles);
+      surface.triangles.push_back(triangles), surface.firsts.push_back(first_here);
     else
       surface.points.push_back(points);
-    if (!firsts.empty()) surface.firsts.push_back(first_here);
     around.push_back(around_places(corners));
   }
   // Nodes are full: their places to spare are far away, and so are the leaves below.

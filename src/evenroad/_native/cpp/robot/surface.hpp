@@ -30,8 +30,9 @@ struct Surface {
   float radius = 0;               // by which points, or triangles, are widened
   std::vector<PointLeaf> points;  // of a cloud
   std::vector<TriangleLeaf> triangles;  // of a mesh
-  std::vector<std::uint16_t> firsts;    // of a mesh for true shapes: the first of those that hang together
-  BoxTree tree;                         // over the leaves
+  std::vector<std::uint16_t>
+      firsts;    // of a mesh: which of a leaf's triangles are the first of their part, that hangs together
+  BoxTree tree;  // over the leaves
 };
 
 /// A surface as Python gives it.
@@ -42,7 +43,7 @@ struct GivenSurface {
   std::span<const double> solid;  // (m, 3, 3): triangles of closed surfaces, however far
   bool turned;                    // whether the sides of these tell inside from outside
   double reach;                   // the grid ends at that distance from the origin along each axis
-  bool shaped = true;             // whether true shapes of a robot are to be tested against it: needs its firsts
+  std::span<const bool> first;    // of a mesh: which triangles are the first of a part, or pieces of one
 };
 
 /// Return a surface; std::invalid_argument if sizes do not fit.

@@ -110,37 +110,30 @@ ClosedParts closed_parts(std::span<const double> vertices, std::span<const std::
     if (edge.turns != 0) is_unturned[parts.root(edge.low)] = 1;
   }
   ClosedParts made;
-  made.closed.reserve(triangles.size() / 3);
+  std::vector<std::uint8_t> is_known(first.size());
+  made.closed.reserve(triangles.size() / 3), made.first.reserve(triangles.size() / 3);
   for (std::size_t i = 0; i < triangles.size(); i += 3) {
     const Number part = parts.root(corner(i));
     made.closed.push_back(is_open[part] == 0 ? 1 : 0);
+    made.first.push_back(is_known[part] == 0 ? 1 : 0), is_known[part] = 1;
     if (is_open[part] == 0 && is_unturned[part] != 0) made.oriented = false;
   }
   return made;
 }
 
-std::vector<std::uint8_t> first_of_parts(std::span<const double> triangles) {
-  const std::vector<Number> first = first_at_place(triangles);
-  Sets parts(first.size());
-  for (std::size_t i = 0; i < first.size(); i += 3) {
-    parts.join(first[i], first[i + 1]), parts.join(first[i + 1], first[i + 2]);
-  }
-  std::vector<std::uint8_t> known(first.size()), found(first.size() / 3);
-  for (std::size_t i = 0; i < found.size(); i++) {
-    std::uint8_t& part = known[parts.root(first[3 * i])];
-    found[i] = part == 0 ? 1 : 0, part = 1;
-  }
-  return found;
-}
-
-std::vector<double> pieces_within(std::span<const double> triangles, double reach, double longest) {
-  std::vector<double> pieces, large, halves;
-  pieces.reserve(triangles.size());
+Pieces pieces_within(std::span<const double> triangles, std::span<const bool> first, double reach, double longest) {
+  Pieces made;
+  std::vector<double>& pieces = made.corners;
+  std::vector<double> large, halves;
+  std::vector<std::uint8_t> of_large, of_halves;  // whether they are of a first triangle
+  pieces.reserve(triangles.size()), made.first.reserve(first.size());
   for (std::span<const double> left = triangles; !left.empty(); left = large) {
-    halves.clear();
+    const bool is_whole = left.data() == triangles.data();
+    halves.clear(), of_halves.clear();
     for (std::size_t i = 0; i < left.size(); i += 9) {
       const double* t = &left[i];
       if (!is_reached(t, reach)) continue;
+      const std::uint8_t is_first = is_whole ? first[i / 9] : of_large[i / 9];
       double side[3];
       for (int k = 0; k < 3; k++) {
         const double *a = t + 3 * k, *b = t + 3 * ((k + 1) % 3);
@@ -149,7 +142,7 @@ std::vector<double> pieces_within(std::span<const double> triangles, double reac
       }
       const auto k = static_cast<std::size_t>(std::ranges::max_element(side) - side);
       if (side[k] <= longest) {
-        pieces.insert(pieces.end(), t, t + 9);
+        pieces.insert(pieces.end(), t, t + 9), made.first.push_back(is_first);
         continue;
       }
       const double *a = t + 3 * k, *b = t + 3 * ((k + 1) % 3), *c = t + 3 * ((k + 2) % 3);
@@ -159,10 +152,11 @@ std::vector<double> pieces_within(std::span<const double> triangles, double reac
            {a, static_cast<const double*>(middle), c, static_cast<const double*>(middle), b, c}) {
         halves.insert(halves.end(), corner, corner + 3);
       }
+      of_halves.insert(of_halves.end(), 2, is_first);
     }
-    std::swap(large, halves);
+    std::swap(large, halves), std::swap(of_large, of_halves);
   }
-  return pieces;
+  return made;
 }
 
 }  // namespace evenroad::robot
