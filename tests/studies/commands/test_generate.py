@@ -34,7 +34,7 @@ def made(tmp_path_factory):
 def test_a_set_is_made_and_after_a_kill_the_same_line_makes_what_is_missing_and_nothing_else(run, tmp_path, made):
     assert run(*LINE, "-o", "set")[0] == 0
     whole = files_of(tmp_path / "set")
-    assert sorted(whole) == ["card.json", *(f"part-{i:06d}.parquet" for i in range(3)), "request.json"]
+    assert sorted(whole) == ["_card.json", "_request.json", *(f"part-{i:06d}.parquet" for i in range(3))]
     assert {name: whole[name] for name in files_of(made)} == files_of(made), "bytes do not depend on the process"
     (tmp_path / "set" / "part-000001.parquet").unlink()
     kept = (tmp_path / "set" / "part-000002.parquet").stat().st_mtime_ns
@@ -51,17 +51,18 @@ def test_a_set_is_made_and_after_a_kill_the_same_line_makes_what_is_missing_and_
 def test_shards_merge_to_the_bytes_of_one_machine(run, tmp_path, made):
     for i in range(2):
         assert run(*LINE, "--shard", f"{i}/2", "-o", f"shard-{i}")[0] == 0
-    assert not (tmp_path / "shard-0" / "card.json").exists()
+    assert not (tmp_path / "shard-0" / "_card.json").exists()
     code, out, _ = run("generate", "shard-0", "--merge", "-o", "half")
     assert code == 1
     assert "1 are missing" in out
     assert run("generate", "shard-0", "shard-1", "--merge", "-o", "set")[0] == 0
     merged = files_of(tmp_path / "set")
     assert {name: merged[name] for name in files_of(made)} == files_of(made)
-    card = json.loads(merged["card.json"])
+    card = json.loads(merged["_card.json"])
     assert len(card["sha256"]) == 3
     assert card["request"]["robot"] == "arm7"
     assert run("generate", "shard-0", "nothing", "--merge", "-o", "other")[0] == 2
+    assert pytest.importorskip("pyarrow.parquet").read_table(tmp_path / "set").num_rows == 50, "a folder for readers"
 
 
 def test_workers_of_a_dask_cluster_make_the_bytes_of_one_machine(run, tmp_path, made):

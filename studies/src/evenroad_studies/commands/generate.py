@@ -14,7 +14,7 @@ from evenroad.cli.options import Positional
 from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.robot import load_robot
 from evenroad_studies.bench.schedulers import dask_workers
-from evenroad_studies.datasets.folder import make_parts, merge, write_card
+from evenroad_studies.datasets.folder import CARD, make_parts, merge, write_card
 from evenroad_studies.datasets.part import Format, Request
 from evenroad_studies.datasets.queries import sources_of
 from evenroad_studies.workers import interrupt_between_steps, processes
@@ -75,7 +75,7 @@ class Generate:
                 made = make_parts(request, self.out, shard, workers, report)
         whole = write_card(request, self.out)
         there = sum((self.out / request.name(part)).exists() for part in range(request.parts))
-        state = "complete, card.json says what it is" if whole else f"{request.parts - there} are missing"
+        state = f"complete, {CARD} says what it is" if whole else f"{request.parts - there} are missing"
         print(f"{self.out}: {counted(made, 'file')} made, {there} of {counted(request.parts, 'file')} there; {state}")
         return 0 if whole or self.shard != "0/1" else 1
 

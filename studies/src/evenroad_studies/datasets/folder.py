@@ -17,7 +17,8 @@ from evenroad_studies.datasets.part import Request, make_part
 from evenroad_studies.training.folder import claim_folder
 from evenroad_studies.workers import Workers
 
-REQUEST, CARD = "request.json", "card.json"
+REQUEST, CARD = "_request.json", "_card.json"
+"""Readers of folders of Parquet files pass over names that begin like these."""
 
 
 def make_parts(
