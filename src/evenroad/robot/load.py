@@ -11,23 +11,21 @@ from typing import TypedDict, Unpack
 
 from evenroad._call import explains_calls, require_options
 from evenroad.errors import BrokenFile
-from evenroad.geometry.fit import fit_capsules, union_volume
-from evenroad.geometry.hulls import Piece, piece_of
+from evenroad.geometry.hulls import Piece
 from evenroad.geometry.inner import inner_of
-from evenroad.geometry.kept import is_new
-from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.parts import parts_of
-from evenroad.geometry.shapes import Capsule, Mesh, Shape
+from evenroad.geometry.shapes import Mesh
 from evenroad.robot.apart import held_apart
 from evenroad.robot.bodies_file import read_bodies
 from evenroad.robot.cache import cached, keep, key_of, know, known, stamps
 from evenroad.robot.find import find_robot
 from evenroad.robot.free_joints import without_moved
 from evenroad.robot.groups import choose_group, chosen_states, group_notes, held_states
-from evenroad.robot.pairs import pairs_of, self_pairs
+from evenroad.robot.link_bodies import capsules_of, link_body, opened, pieces_of, shapes_of
+from evenroad.robot.pairs import SelfPairs, pairs_of, self_pairs
 from evenroad.robot.robot import Robot
 from evenroad.robot.robot_methods import Padding
-from evenroad.robot.robot_model import LinkBody, RobotModel
+from evenroad.robot.robot_model import RobotModel
 from evenroad.robot.srdf import Srdf, read_srdf, with_moving_base
 from evenroad.robot.urdf import Urdf, read_urdf
 from evenroad.robot.urdf_xml import RobotFile, outermost
@@ -211,8 +209,8 @@ def _build(
 ) -> RobotModel:
     urdf, srdf, chosen = _planned(urdf, srdf_path, group)
     given = {} if bodies_path is None else read_bodies(bodies_path, urdf.links)
-    urdf = replace(urdf, shapes=_opened(urdf.shapes))
-    capsules = _capsules(urdf, given, progress)
+    urdf = replace(urdf, shapes=opened(urdf.shapes))
+    capsules = capsules_of(urdf, given, progress)
     if not capsules:
         hint = "; --use-visuals takes what is drawn" if urdf.drawn_only else ""
         raise BrokenFile(f"{file.path} has no collision geometry at all: the robot would never collide{hint}")
@@ -226,39 +224,41 @@ def _build(
         states={} if srdf is None else chosen_states(srdf, chosen, group),
         planes=urdf.planes,
         # Capsules that the user gives replace a link's shapes as they are.
-        inner=inner_of(_shapes(urdf, given)),
-        shapes=parts_of(_shapes(urdf, given)) if with_shapes else (),
+        inner=inner_of(shapes_of(urdf, given)),
+        shapes=parts_of(shapes_of(urdf, given)) if with_shapes else (),
     )
-    # Of those that a robot's own file lets touch, each has its reason; those of an SRDF have one for all.
-    untested = {frozenset((a, b)): why for a, b, why in urdf.untested or ()}
-    by_srdf = srdf is not None and bool(srdf.disabled)
-    pieces = _pieces(urdf, given)
-    if srdf is not None:
-        untested = dict.fromkeys(srdf.disabled, "disabled in the SRDF") | untested
-    said = by_srdf or urdf.untested is not None
-    if srdf is not None and by_srdf:
-        # Elsewhere pairs that touch where they are held are not tested as long as they are held there.
-        robot = replace(robot, held=held_states(srdf, robot))
-        apart = held_apart(robot, pieces, pairs_of(robot, pieces, untested), srdf.states.values())
-        robot = replace(robot, held={**robot.held, **apart})
-    pairs = self_pairs(robot, pieces, untested if said else None, drop_touching=not by_srdf)
-    links = tuple(_link_body(urdf, link, capsules[link], link in given) for link in capsules)
-    drawn_only = tuple(link for link in urdf.drawn_only if link not in capsules)
+    robot, pairs = _with_pairs(robot, urdf, srdf, pieces_of(urdf, given))
     return RobotModel(
-        replace(robot, pairs=pairs.tested, hulls=pairs.hulls, pairs_given=by_srdf, resting=pairs.held),
-        links,
-        "SRDF" if by_srdf else "computed" if urdf.untested is None else "MJCF",
-        pairs.dropped,
-        drawn_only,
-        pairs.always,
-        pairs.never_free,
-        (
+        robot,
+        tuple(link_body(urdf, link, capsules[link], link in given) for link in capsules),
+        pairs_from="SRDF" if robot.pairs_given else "computed" if urdf.untested is None else "MJCF",
+        dropped=pairs.dropped,
+        drawn_only=tuple(link for link in urdf.drawn_only if link not in capsules),
+        always_touching=pairs.always,
+        never_free=pairs.never_free,
+        notes=(
             *without_moved(urdf.notes, chosen),
             *(() if srdf is None else srdf.notes),
             *group_notes(urdf, srdf, group),
             *map(_contained, pairs.contained),
         ),
     )
+
+
+def _with_pairs(robot: Robot, urdf: Urdf, srdf: Srdf | None, pieces: dict[str, list[Piece]]) -> tuple[Robot, SelfPairs]:
+    """Return a robot with the pairs of links that are tested, and what is known of all pairs."""
+    # Of those that a robot's own file lets touch, each has its reason; those of an SRDF have one for all.
+    untested = {frozenset((a, b)): why for a, b, why in urdf.untested or ()}
+    by_srdf = srdf is not None and bool(srdf.disabled)
+    if srdf is not None and by_srdf:
+        untested = dict.fromkeys(srdf.disabled, "disabled in the SRDF") | untested
+        # Elsewhere pairs that touch where they are held are not tested as long as they are held there.
+        robot = replace(robot, held=held_states(srdf, robot))
+        apart = held_apart(robot, pieces, pairs_of(robot, pieces, untested), srdf.states.values())
+        robot = replace(robot, held={**robot.held, **apart})
+    said = by_srdf or urdf.untested is not None
+    pairs = self_pairs(robot, pieces, untested if said else None, drop_touching=not by_srdf)
+    return replace(robot, pairs=pairs.tested, hulls=pairs.hulls, pairs_given=by_srdf, resting=pairs.held), pairs
 
 
 def _planned(
@@ -282,56 +282,4 @@ def _contained(pair: tuple[str, str]) -> str:
     return (
         f"{first!r} and {second!r}, of which one goes into the other as drawn, are not tested against each other: an"
         " SRDF that disables other pairs alone has them tested"
-    )
-
-
-def _opened(shapes: Sequence[Shape]) -> tuple[Shape, ...]:
-    """Return shapes with their meshes read, each file once."""
-    meshes: dict[object, TriangleMesh] = {}
-    opened = []
-    for shape in shapes:
-        if isinstance(shape, Mesh):
-            key = shape.source, shape.scale
-            meshes[key] = meshes.get(key) or shape.triangles
-            shape = replace(shape, source=meshes[key], scale=(1.0, 1.0, 1.0))
-        opened.append(shape)
-    return tuple(opened)
-
-
-def _capsules(
-    urdf: Urdf, given: dict[str, tuple[Capsule, ...]], progress: Callable[[int, int, str], None] | None
-) -> dict[str, tuple[Capsule, ...]]:
-    found: dict[str, tuple[Capsule, ...]] = {}
-    fitted = [shape for shape in urdf.shapes if shape.link not in given]
-    for i, shape in enumerate(fitted):
-        if progress is not None and isinstance(shape, Mesh) and is_new("around", shape.triangles):
-            progress(i, len(fitted), f"{shape} of {shape.link}")
-        found[shape.link] = found.get(shape.link, ()) + fit_capsules(shape)
-    found |= given
-    return {link: found[link] for link in urdf.links if link in found}
-
-
-def _pieces(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> dict[str, list[Piece]]:
-    """Return the shapes of every link with a body: the capsules given, or the shapes of the URDF."""
-    pieces: dict[str, list[Piece]] = {}
-    for shape in _shapes(urdf, given):
-        pieces.setdefault(shape.link, []).append(piece_of(shape))
-    return pieces
-
-
-def _shapes(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> list[Shape]:
-    """Return the shapes of all links: the capsules given, or those of the URDF."""
-    shapes = [shape for shape in urdf.shapes if shape.link not in given]
-    return [*shapes, *(capsule for capsules in given.values() for capsule in capsules)]
-
-
-def _link_body(urdf: Urdf, link: str, capsules: tuple[Capsule, ...], given: bool) -> LinkBody:
-    shapes = [shape for shape in urdf.shapes if shape.link == link]
-    return LinkBody(
-        link=link,
-        shapes=tuple(map(str, shapes)),
-        shape_volume=sum(shape.volume for shape in shapes),
-        capsules=len(capsules),
-        capsule_volume=union_volume(capsules),
-        given=given,
     )
