@@ -27,6 +27,7 @@ def test_an_unknown_name_is_shown_in_short_and_asked_about_where_it_is_nearly_kn
     ("Sobol", "did you mean 'sobol'?"),
     ("--tip_Speed", "did you mean '--tip-speed'?"),
     ("tip", "did you mean '--tip-speed' or 'tip_pose'?"),
+    ("speed", "did you mean '--tip-speed'?"),
     ("tipspeed", "did you mean '--tip-speed'?"),
     ("maze-7", "did you mean 'maze-1' or 'maze-2'?"),
     ("joint_5", ""), ("jo", ""), ("elk", ""), (3, ""), ("", ""),

@@ -46,19 +46,17 @@ def in_one_line(text: str) -> str:
 def near(name: object, known: Iterable[str]) -> str:
     """Return ``did you mean 'even'?`` for the known names that may be meant, at most three, or "".
 
-    A name may be meant that begins with what was given, that differs from it in numbers alone, or in few letters.
-    Capitals, underscores and leading dashes make no difference.
+    A name may be meant that begins or ends with what was given, that differs from it in numbers alone, or in few
+    letters.  Capitals, underscores, and dashes and dots before it make no difference.
     """
     from difflib import get_close_matches
 
     if not isinstance(name, str) or len(name) >= SHOWN:
         return ""
     word, names = _plain(name), {_plain(each): each for each in known}
-    letters = _without_digits(word)
-    meant = [each for each in names if len(word) > 2 and (each.startswith(word) or _without_digits(each) == letters)]
-    if word in names:
-        meant = [word]
-    elif not meant:
+    parts = [each for each in names if len(word) > 2 and _is_part(word, each)]
+    meant = [word] if word in names else parts
+    if not meant:
         meant = get_close_matches(word, names, 1, _NEAR)
     return f"did you mean {' or '.join(repr(names[each]) for each in meant)}?" if 1 <= len(meant) <= 3 else ""
 
@@ -73,14 +71,19 @@ def listed(names: Iterable[str]) -> str:
 
 
 def _plain(name: str) -> str:
-    return name.lstrip("-").replace("_", "-").casefold()
+    return name.lstrip("-.").replace("_", "-").casefold()
+
+
+def _is_part(word: str, name: str) -> bool:
+    """Return whether a name begins or ends with a word, or differs from it in numbers alone."""
+    return name.startswith(word) or name.endswith(f"-{word}") or _without_digits(name) == _without_digits(word)
 
 
 def _without_digits(word: str) -> str:
     return "".join(each for each in word if not each.isdigit())
 
 
-_NEAR = 0.65
+_NEAR = 0.7
 """Least share of letters in common, in their order, of names that may be meant for each other."""
 _GAP = " ... "
 _BRIEF = reprlib.Repr()

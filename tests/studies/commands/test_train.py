@@ -52,7 +52,7 @@ def test_orders_are_what_is_searched_for_the_star_discrepancy_of_the_plane(run, 
 
 
 @pytest.mark.parametrize(("arguments", "says"), [
-    (("-n", 0), "n must be"), (("--objective", "hickernel"), "known: .*hickernell"),
+    (("-n", 0), "n must be"), (("--objective", "hickernel"), "did you mean 'hickernell'"),
     (("--objective", "hickernell+"), "column"), (("--steps", 0), "steps"), (("-o", "no/where"), "does not exist"),
     (("--sets", 0), "sets must be"),
     (("-n", 1, "--objective", "riesz"), "at least 2 points"),
