@@ -111,16 +111,35 @@ Mask touching_lanes(const Surface& surface, const Asked& of, float one_by_square
   return meeting;
 }
 
+/// Return in which lanes the grid tells that a ball inside of a true shape touches for sure.
+Mask inside_touching(const ShapeNear& of, const Surface& surface, Mask asked) {
+  const PlacedFrame& frame = of.places.frames[of.body.frame];
+  Mask touching = 0;
+  for (int i = of.body.inside.first; i < of.body.inside.end && (asked & ~touching) != 0; i++) {
+    const auto& [centre, radius] = of.robot.inside[i];
+    const float reach = radius + of.near + surface.radius;
+    // Of smaller ones no cell tells.
+    if (reach <= surface.grid.told) continue;
+    const Vec3x16 p = spread(centre);
+    const Vec3x16 here = frame.origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
+    touching |= asked & ask(surface.grid, here, 0, reach).sure;
+  }
+  return touching;
+}
+
 }  // namespace
 
-Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Mask asked) {
-  Mask meeting = 0;
+Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Mask asked, Wanted wanted) {
+  Mask meeting = inside_touching(of, surface, asked);
+  if (is_enough(meeting, wanted)) return meeting;
   const Capsule& capsule = of.robot.capsules[of.capsule];
   const PlacedCapsule& there = of.places.capsules[of.capsule];
-  for (Mask left = asked; left != 0; left &= left - 1) {
+  for (Mask left = asked & ~meeting; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     const CapsuleAt at{lane_of(there.centre, lane), lane_of(there.half, lane), capsule.one_by_squared, reach};
-    if (shape_touches(of, surface, at, lane)) meeting |= 1U << lane;
+    if (!shape_touches(of, surface, at, lane)) continue;
+    meeting |= 1U << lane;
+    if (is_enough(meeting, wanted)) return meeting;
   }
   if (surface.windings.empty()) return meeting;
   const PlacedFrame& frame = of.places.frames[of.body.frame];
@@ -164,7 +183,8 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
         const Mask near = told.near & open & ~(blocked | meeting | told.sure);
         here |= touching_lanes(surface, of, capsule.one_by_squared, near, shaped ? Wanted::ALL : wanted);
       }
-      if (shaped) here = shape_touching({robot, places, body, i, lengths.shapes[capsule.body]}, surface, reach, here);
+      if (shaped)
+        here = shape_touching({robot, places, body, i, lengths.shapes[capsule.body]}, surface, reach, here, wanted);
       if (found != nullptr && (meeting & ~blocked) == 0 && here != 0) *found = {Contact::With::SURFACE, i, each.number};
       meeting |= here;
       if (meeting != 0 && wanted == Wanted::FIRST) return meeting;
@@ -188,7 +208,7 @@ Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Plac
       const ShapeNear shape{robot, places, body, i,
                             static_cast<float>(robot.lengths.shapes[capsule.body] - robot.padding)};
       if ((touches(surface, at) || (!surface.windings.empty() && is_inside(surface, centre))) &&
-          (body.shape < 0 || shape_touching(shape, surface, at.reach, 1) != 0)) {
+          (body.shape < 0 || shape_touching(shape, surface, at.reach, 1, Wanted::FIRST) != 0)) {
         return {Contact::With::SURFACE, i, each.number};
       }
     }

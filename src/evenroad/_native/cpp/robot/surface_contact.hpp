@@ -29,8 +29,8 @@ struct ShapeNear {
 };
 
 /// Return the mask of those lanes asked for in which the true shape of a body touches a surface, where its capsule
-/// does.
-Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Mask asked);
+/// does; of the first alone that is wanted.
+Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Mask asked, Wanted wanted);
 
 /// Return whether a place that touches no triangle is inside of a closed mesh.
 bool is_inside(const Surface& mesh, Vec3 place);
