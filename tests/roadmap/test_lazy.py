@@ -174,7 +174,7 @@ def test_the_shortcut_keeps_to_the_edge_cost():
     ({"edge_cost": lambda a, b: np.zeros(len(a))}, "at least the length"),
     ({"edge_cost": lambda a, b: np.full(len(a), np.nan)}, "finite"),
     ({"edge_cost": lambda a, b: 7.0}, "shape"),
-    ({"search": "lazzy"}, "full, lazy"),
+    ({"search": "lazzy"}, "unknown search 'lazzy'; did you mean 'lazy'"),
 ])  # fmt: skip
 def test_an_edge_cost_that_cannot_be_one_and_an_unknown_search_are_refused(option, text):
     refused((InvalidValue, UnknownName), text, plan_on, ChanceWorld(0), START, GOAL, draw("sobol", 8, 2), **option)

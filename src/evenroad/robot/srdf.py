@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -206,22 +207,28 @@ _REASONS = {"neighbours": "Adjacent", TOUCHING: "Always", "fixed to each other":
 """Why a pair is not tested, in MoveIt's words where it has such."""
 
 
+_GRIPPER = re.compile("gripper|jaw|finger|claw", re.IGNORECASE)
+"""What the name of a joint has that opens a gripper."""
+
+
 def srdf_text(model: RobotModel) -> str:
     """Return an SRDF of a robot: groups, named states, and the pairs that are not tested, each with the reason.
 
     Groups are the robot's chains without a branch, each named after the link at its end, and the group that the robot
-    has where it is none of these.  Every group has a state ``home``, at 0 or the nearest to it within limits, or near
-    there where links would touch, and where one was found a state ``ready``, free and bent, beside the states that are
-    known.  Read again with this file, the robot tests the same pairs, but for those that touched in every sample.
+    has where it is none of these.  A last joint whose name is a gripper's has a group of its own.  Every group has a
+    state ``home``, at 0 or the nearest to it within limits, or near there where links would touch, and where one was
+    found a state ``ready``, free and bent, beside the states that are known.  Read again with this file, the robot
+    tests the same pairs, but for those that touched in every sample.
     """
     robot = model.robot
     root = ElementTree.Element("robot", name=robot.name)
-    groups = chains(robot.joints)
+    runs = chains(robot.joints)
+    groups = {name: part for run in runs.values() for name, part in _without_gripper(run)}
     for name, joints in groups.items():
         group = ElementTree.SubElement(root, "group", name=name)
         ElementTree.SubElement(group, "chain", base_link=joints[0].parent, tip_link=joints[-1].child)
     names = {name: tuple(joint.name for joint in joints) for name, joints in groups.items()}
-    if robot.group and robot.group not in names.values():
+    if robot.group and set(robot.group) not in [{joint.name for joint in run} for run in runs.values()]:
         names["planned"] = robot.group
         group = ElementTree.SubElement(root, "group", name="planned")
         for joint in robot.group:
@@ -241,3 +248,13 @@ def srdf_text(model: RobotModel) -> str:
         ElementTree.SubElement(root, "disable_collisions", link1=first, link2=second, reason=reason)
     ElementTree.indent(root)
     return '<?xml version="1.0"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _without_gripper(run: list[Joint]) -> list[tuple[str, list[Joint]]]:
+    """Return the chain, or the arm and the joint at its end that opens a gripper, each with its last link."""
+    whole = (run[-1].child, run)
+    opens = [_GRIPPER.search(joint.name) is not None for joint in run]
+    # A finger of several joints stays one.
+    if len(run) == 1 or not opens[-1] or any(opens[:-1]):
+        return [whole]
+    return [(run[-2].child, run[:-1]), (run[-1].child, run[-1:])]
