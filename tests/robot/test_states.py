@@ -23,7 +23,15 @@ def ur5():
     return load_robot("ur5")
 
 
-@pytest.mark.parametrize("text", ["0,-1.57,0,-1.57,0,0.5", "0 -1.57 0 -1.57 0 0.5", " 0, -1.57, 0,-1.57 ,0,5e-1 "])
+LISTS = (
+    "0,-1.57,0,-1.57,0,0.5",
+    "0 -1.57 0 -1.57 0 0.5",
+    " 0, -1.57, 0,-1.57 ,0,5e-1 ",
+    "[0, -1.57, 0, -1.57, 0, 0.5]",
+)
+
+
+@pytest.mark.parametrize("text", LISTS)
 def test_a_list_is_read_in_the_order_of_the_joints(ur5, text):
     np.testing.assert_array_equal(configuration(ur5, text), [0, -1.57, 0, -1.57, 0, 0.5])
 

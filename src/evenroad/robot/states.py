@@ -95,7 +95,8 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
     Parameters
     ----------
     text : str
-        One number a joint of the group, with commas (or blanks) between them: ``0,-1.57,0,-1.57,0,0``; or
+        One number a joint of the group, with commas (or blanks) between them, also in brackets as ROS prints a list:
+        ``0,-1.57,0,-1.57,0,0``; or
         ``name=value`` for some joints of the group, the others at 0, or at the nearest to it within limits; or the
         name of a state, also of the `scene`.
     degrees : bool
@@ -116,7 +117,8 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
     elif "=" in text:
         q = _from_pairs(robot, text, degrees)
     else:
-        q = _from_list(robot, text, states, degrees)
+        listed = name[1:-1] if name[0] + name[-1] == "[]" else name
+        q = _from_list(robot, listed, states, degrees)
     joints = {joint.name: joint for joint in robot.joints}
     for joint, value in zip(robot.group, q.tolist(), strict=True):
         _require_within(joints[joint], value, repr(text), scene)
