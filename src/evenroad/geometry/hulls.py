@@ -279,9 +279,13 @@ def _inside_piece(piece: Piece, points: Floats) -> Bools:
 
 def winding_number(triangles: Floats, point: Floats) -> float:
     """Return how many times a surface, (t, 3, 3), goes around a point, (3,) (Van Oosterom and Strackee 1983)."""
-    a, b, c = (triangles - point).swapaxes(0, 1)
-    la, lb, lc = (np.linalg.norm(each, axis=1) for each in (a, b, c))
-    over = np.einsum("ti,ti->t", a, np.cross(b, c))
-    dots = [np.einsum("ti,ti->t", *pair) for pair in ((a, b), (b, c), (c, a))]
-    under = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
+    # Coordinates in rows: what is done to all triangles at once runs along memory.
+    a, b, c = np.ascontiguousarray((triangles - point).transpose(1, 2, 0))
+    la, lb, lc = (np.sqrt(_dots(each, each)) for each in (a, b, c))
+    over = _dots(a, np.cross(b, c, axis=0))
+    under = la * lb * lc + _dots(a, b) * lc + _dots(b, c) * la + _dots(c, a) * lb
     return float(np.arctan2(over, under).sum()) / (2.0 * np.pi)
+
+
+def _dots(u: Floats, v: Floats) -> Floats:
+    return np.asarray(u[0] * v[0] + u[1] * v[1] + u[2] * v[2])

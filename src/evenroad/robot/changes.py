@@ -96,7 +96,7 @@ class Changes:
         Parameters
         ----------
         *names : str
-            Who leaves; contacts that were allowed with them are forgotten.
+            Names of those taken away; contacts that were allowed with them are forgotten.
 
         Returns
         -------

@@ -117,8 +117,7 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
     elif "=" in text:
         q = _from_pairs(robot, text, degrees)
     else:
-        listed = name[1:-1] if name[0] + name[-1] == "[]" else name
-        q = _from_list(robot, listed, states, degrees)
+        q = _from_list(robot, name[1:-1] if name[0] + name[-1] == "[]" else name, states, degrees)
     joints = {joint.name: joint for joint in robot.joints}
     for joint, value in zip(robot.group, q.tolist(), strict=True):
         _require_within(joints[joint], value, repr(text), scene)

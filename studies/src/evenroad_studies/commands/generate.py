@@ -49,7 +49,7 @@ class Generate:
     shard: str = "0/1"
     """i/n: make the files number i, i + n, i + 2 n ... alone.  So n machines share a set, i from 0 to n - 1."""
     merge: bool = False
-    """Gather the files of shards into one set, with a card.json that describes it."""
+    """Gather the files of shards into one set, with a _card.json that describes it."""
     jobs: int | None = None
     """Number of processes (default: one a processor)."""
     scheduler: str | None = None

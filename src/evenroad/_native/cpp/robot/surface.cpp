@@ -134,7 +134,7 @@ Surface make_surface(const GivenSurface& given) {
   // Nodes are full: their places to spare are far away, and so are the leaves below.
   const std::size_t leaves = (around.size() + LANES - 1) / LANES * LANES;
   if (given.triangles)
-    surface.triangles.resize(leaves, {far, none, none, none});
+    surface.triangles.resize(leaves, {far, none, none, none}), surface.firsts.resize(leaves);
   else
     surface.points.resize(leaves, {far});
   surface.tree = make_box_tree(std::move(around), wider);

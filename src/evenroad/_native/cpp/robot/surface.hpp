@@ -30,9 +30,8 @@ struct Surface {
   float radius = 0;               // by which points, or triangles, are widened
   std::vector<PointLeaf> points;  // of a cloud
   std::vector<TriangleLeaf> triangles;  // of a mesh
-  std::vector<std::uint16_t>
-      firsts;    // of a mesh: which of a leaf's triangles are the first of their part, that hangs together
-  BoxTree tree;  // over the leaves
+  std::vector<std::uint16_t> firsts;    // of a mesh: which triangles of a leaf are the first of their part
+  BoxTree tree;                         // over the leaves
 };
 
 /// A surface as Python gives it.
