@@ -177,7 +177,7 @@ def announce() -> None:
     """Say what is going on, also to somebody who waits for pip, which shows nothing of a build."""
     own = os.environ.get("CXX")
     how = f"with {own}" if own else "with clang of the wheel ziglang"
-    line = f"evenroad: compiling the native kernel {how}, once: one to two minutes"
+    line = f"evenroad: compiling the native kernel {how}, once: one to three minutes"
     print(line, file=sys.stderr, flush=True)
     with suppress(OSError), open("/dev/tty", "w") as terminal:
         if not sys.stderr.isatty():
