@@ -66,6 +66,7 @@ fuzz: $(VENV)/.dev
 	EVENROAD_FUZZ=2000 $(BIN)/python tools/build_backend.py --sanitized -s -n 0 tests/native/test_inconsistent_tables.py
 
 tidy: $(VENV)/.dev
+	$(PIP) clang-tidy
 	$(BIN)/python tools/tidy_native.py
 
 demo: $(VENV)/.core $(VENV)/.native
