@@ -276,7 +276,9 @@ def recorded(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         for name in ("Robot", "Surface", "Scene"):
             patch.setattr(_native.robot, name, recording(f"robot.{name}", calls))
-        patch.setattr(_native.planning, "Improver", recording("planning.Improver", calls))
+        for name in ("Improver", "Trees"):
+            patch.setattr(_native.planning, name, recording(f"planning.{name}", calls))
+        patch.setattr("evenroad.robot.tree_sequences.Drivers", recording("planning.Drivers", calls))
         patch.setattr("evenroad.world.gridmap.gridmap.Disk", recording("world.Disk", calls))
         patch.setattr("evenroad.robot.arm_world.Checker", recording("robot.Checker", calls))
         patch.setattr("evenroad.planning.connectors.answer", recording("planning.answer", calls))
@@ -290,7 +292,9 @@ def recorded(tmp_path_factory):
         ends = np.stack([START, GOAL])
         first = np.stack([START, START + 0.1, GOAL]), 0, 10
         ARM_TREES.improver(box_world(), ends, first, variant=0, is_smoothing=True)
-        ARM_TREES.answer(box_world(), START, GOAL, variant=0, most_motions=100, seconds=1.0, smooth="tight")
+        # Another variant: the sequences of the first may be kept from an earlier test.
+        ARM_TREES.answer(box_world(), START, GOAL, variant=1, most_motions=100, seconds=1.0, smooth="tight")
+        ARM_TREES.connect(box_world(), START, GOAL[np.newaxis], variant=0, most_motions=100, seconds=1.0)
         plan_many(box_world(), [START] * 3, [START, START + 0.1, GOAL], limits={"motions": 50})
         for resolution in (0.1, 0.5):
             GridMap(rng.random((20, 30)) < 0.1, resolution=resolution).world(0.4).valid(np.zeros((1, 2)))

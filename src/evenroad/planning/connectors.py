@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 RESTART = 4_000
 """Number of motions of the first search, after which trees begin again, elsewhere: most queries need fewer."""
+LATER = 4
+"""So many times as long last the searches after it: what is hard once is mostly hard however trees begin."""
 BEFORE_QUICK_PROOF, BEFORE_PROOF = 12_000, 60_000
 """Numbers of motions after which the world tries to prove that there is no path.
 
@@ -56,11 +58,11 @@ def drivers_of(dim: int, variant: int) -> Drivers:
 def restarts(dim: int) -> Iterator[Search]:
     """Yield searches of trees that begin again and again: the time that one takes varies by far.
 
-    They last 1, 1, 2, 1, 1, 2, 4 ... times as long (M. Luby, A. Sinclair and D. Zuckerman, 1993).
+    After the first they last 1, 1, 2, 1, 1, 2, 4 ... times as long (M. Luby, A. Sinclair and D. Zuckerman, 1993).
     """
     motions, more = 0, max(1.0, dim / FEW_JOINTS) ** 2
-    for number in count(1):
-        most = RESTART * luby(number)
+    for number in count():
+        most = RESTART * (LATER * luby(number) if number else 1)
         before, motions = motions, motions + most
         is_quick, is_any = (before < more * due <= motions for due in (BEFORE_QUICK_PROOF, BEFORE_PROOF))
         yield Search(most, "any" if is_any else "quick" if is_quick else "none")

@@ -18,7 +18,7 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.planning.connectors import RESTART, drivers_of, smoothing_of
 from evenroad.planning.many_results import Part, PlanResults, joined
 from evenroad.planning.plan import budget_of, plan
-from evenroad.planning.trees import variant_of
+from evenroad.planning.trees import TreesGoOn, variant_of
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Smooth, require_smooth
 from evenroad.roadmap.result import PlanResult
@@ -103,7 +103,8 @@ def plan_many(
     report = (lambda done: None) if progress is None else (lambda done: progress(done, count))
 
     def query(row: int) -> PlanResult:
-        return plan(different[of[row]], first[row], last[row], limits=budget, smooth=smooth, rng=variant)
+        planner = TreesGoOn(solved.pathless[row]) if row in solved.pathless else None
+        return plan(different[of[row]], first[row], last[row], planner, limits=budget, smooth=smooth, rng=variant)
 
     terminals = np.stack([first, last], axis=1)
     solved = by_compiled_code(different, of, terminals, budget, smooth, variant, min(workers, 1024), report)
@@ -153,7 +154,7 @@ def by_compiled_code(
     threads: int,
     report: Callable[[int], None],
 ) -> Part:
-    """Return the paths of queries of arms that one call of compiled code answers; starts and goals are (m, 2, dim)."""
+    """Return the answers of queries of arms by one call of compiled code each; starts and goals are (m, 2, dim)."""
     dim, is_arm = terminals.shape[2], np.array([isinstance(world, ArmWorld) for world in different])
     rows = np.flatnonzero(is_arm[of])
     arms = [world for world, arm in zip(different, is_arm, strict=True) if arm]
@@ -171,4 +172,5 @@ def by_compiled_code(
     while (done := queries.go_on(threads, _SLICE)) < len(rows):
         report(done)
     found, begins, waypoints, lengths, took = queries.columns
-    return Part(rows[found], np.diff(begins)[found], waypoints, lengths[found], took[found])
+    pathless = {int(rows[number]): queries.answer(number) for number in np.flatnonzero(~found).tolist()}
+    return Part(rows[found], np.diff(begins)[found], waypoints, lengths[found], took[found], pathless)

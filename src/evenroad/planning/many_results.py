@@ -15,6 +15,7 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import counted, require_extra
 from evenroad._files import atomic_write
+from evenroad._native.planning import Answer
 from evenroad._threads import in_order
 from evenroad.errors import InvalidValue
 from evenroad.roadmap.result import PlanResult, Status
@@ -159,13 +160,17 @@ class PlanResults:
 
 
 class Part(NamedTuple):
-    """Some queries that have paths: their rows, how many waypoints each path has, the waypoints, lengths and times."""
+    """Some queries that have paths: their rows, how many waypoints each path has, the waypoints, lengths and times.
+
+    Those that were asked and have none yet are beside them: row -> answer.
+    """
 
     rows: Ints
     counts: Ints
     waypoints: Floats
     lengths: Floats
     seconds: Floats
+    pathless: dict[int, Answer]
 
 
 def joined(

@@ -15,7 +15,7 @@ from evenroad._call import explains_calls
 from evenroad._native.planning import Answer
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
-from evenroad.planning.connectors import CELLS, RESTART, ArmTrees, connector_of, trees_for
+from evenroad.planning.connectors import ARM_TREES, CELLS, RESTART, ArmTrees, connector_of, trees_for
 from evenroad.roadmap.answer import connected, gave_up, path_message, proof_of, refusal, shown_apart
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.connector import Connection, Connector, require_smooth
@@ -112,10 +112,26 @@ def _growing(improve: bool) -> Planner:
     return GrowingPRM(until="budget", informed=True) if improve else GrowingPRM(until="solved")
 
 
-def solve_by(problem: Problem, connector: Connector, *, improve: bool = False) -> PlanResult:
-    """Plan with a connector until there is a path, a proof that there is none, or the budget is spent."""
-    world, variant, first = problem.world, variant_of(problem.rng), None
-    if isinstance(connector, ArmTrees) and len(problem.goals) == 1 and not improve:
+@dataclass(frozen=True)
+class TreesGoOn:
+    """Trees of an arm after their first search, which found no path."""
+
+    first: Answer
+
+    def solve(self, problem: Problem) -> PlanResult:
+        """Return what `RRTConnect` returns, which would begin with the same search."""
+        return solve_by(problem, ARM_TREES, first=self.first)
+
+
+def solve_by(
+    problem: Problem, connector: Connector, *, improve: bool = False, first: Answer | None = None
+) -> PlanResult:
+    """Plan with a connector until there is a path, a proof that there is none, or the budget is spent.
+
+    `first` is what the first search found, where that is done.
+    """
+    world, variant = problem.world, variant_of(problem.rng)
+    if first is None and isinstance(connector, ArmTrees) and len(problem.goals) == 1 and not improve:
         first = _answer(problem, connector, variant)
         if first.ended == "solved":
             return _solved(problem, connector, first)

@@ -156,6 +156,12 @@ void add_queries(nb::module_& part) {
              require(threads >= 1, "threads must be 1 or more");
              return without_gil([&] { return many.queries.go_on(static_cast<std::size_t>(threads), seconds); });
            })
+      .def("answer",
+           [](const ManyQueries& many, std::int64_t query) {
+             const std::span<const planning::Answer> answers = many.queries.answers();
+             require_below(query, answers.size(), "query");
+             return Answer{answers[static_cast<std::size_t>(query)], many.dim()};
+           })
       .def_prop_ro("columns", &columns_of);
 }
 

@@ -44,7 +44,8 @@ void make_disk(world::Disk* self, nb::handle occupied, nb::handle frame, double 
   require(cells.shape(0) >= 1 && cells.shape(1) >= 1, "occupied must have a cell or more");
   require(cells.shape(0) < MOST_ROWS && cells.shape(1) < MOST_ROWS,
           "occupied must have at most a billion rows and columns");
-  require(radius > 0.0 && radius < 1e300, "radius must be a finite number > 0");
+  // The square of a smaller one is 0, and counts as no radius at all.
+  require(radius >= 1e-150 && radius < 1e300, "radius must be a finite number >= 1e-150");
   const double* f = of.data();
   without_gil(
       [&] { new (self) world::Disk(cells.matrix(), {f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]}, radius); });
