@@ -187,7 +187,7 @@ int add_parts(HullTree<T>& tree, const GivenParts& given, Range parts) {
   }
   for (int part = parts.first; part < parts.end; part++) {
     const std::int64_t first = given.first_point[part], end = given.first_point[part + 1];
-    if (first < 0 || first >= end || 3 * end > static_cast<std::int64_t>(given.points.size()) ||
+    if (first < 0 || first >= end || end > static_cast<std::int64_t>(given.points.size() / 3) ||
         (!given.enclosing.empty() && given.enclosing[part] && end - first != 3)) {
       throw std::invalid_argument("parts.first_point must rise, within parts.points");
     }
