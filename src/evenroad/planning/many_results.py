@@ -162,7 +162,7 @@ class PlanResults:
 class Part(NamedTuple):
     """Some queries that have paths: their rows, how many waypoints each path has, the waypoints, lengths and times.
 
-    Those that were asked and have none yet are beside them: row -> answer.
+    Beside them are the answers without a path, where planning goes on: row -> answer.
     """
 
     rows: Ints
