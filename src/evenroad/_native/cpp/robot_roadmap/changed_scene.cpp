@@ -40,6 +40,8 @@ void keep_edges(const SceneGraph& before, planning::MotionChecks& changed, Scene
       if (there < here || before.edges[edge] == Verdict::UNKNOWN) continue;
       before.joints.write_turned(before.graph()[here], 0, from);
       before.joints.write_turned(before.graph()[there], turns, to);
+      // Beyond the joints' limits nothing is proved.
+      if (!planning::enter(from, changed.joints) || !planning::enter(to, changed.joints)) continue;
       if (changed.is_proved(from, to, planning::PATH_PROOF)) after.edges[edge] = before.edges[edge];
     }
   }
