@@ -192,7 +192,8 @@ std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
 
 void add_shapes(Robot& robot, const GivenRobot& given) {
   const auto& [owner, parts, around, inside] = given.shapes;
-  require(owner.size() == parts.widths.size(), "shapes.body must be as long as shapes.widths");
+  require(owner.size() == parts.widths.size() && owner.size() == parts.enclosing.size(),
+          "shapes.body must be as long as shapes.widths and shapes.enclosing");
   for (int first = 0, end = 0; first < static_cast<int>(owner.size()); first = end) {
     Body& body = robot.bodies[index(owner[first], robot.bodies.size(), "shapes.body")];
     while (end < static_cast<int>(owner.size()) && owner[end] == owner[first]) {
@@ -204,6 +205,7 @@ void add_shapes(Robot& robot, const GivenRobot& given) {
     body.points = points_of_parts(robot.shapes, body.shape);
   }
   const std::size_t bodies = robot.bodies.size();
+  require(inside.rows.size() % 4 == 0, "shapes.inside must have four columns");
   require(
       around.first_point.size() == bodies + 1 && around.widths.size() == bodies && inside.first.size() == bodies + 1,
       "what is around and inside of shapes must be given for each body");
