@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 RESTART = 4_000
 """Number of motions of the first search, after which trees begin again, elsewhere: most queries need fewer."""
 LATER = 4
-"""So many times as long last the searches after it: what is hard once is mostly hard however trees begin."""
+"""How many times as long later searches last: what is hard once is mostly hard however trees begin."""
 BEFORE_QUICK_PROOF, BEFORE_PROOF = 12_000, 60_000
 """Numbers of motions after which the world tries to prove that there is no path.
 
