@@ -17,7 +17,8 @@ def tables(tmp_path_factory):
     kept, made = [], native_robot.robot_arrays
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(native_robot, "robot_arrays", lambda *given: kept.append(made(*given)) or kept[-1])
-        robot = load_robot(write_fork_arm(tmp_path_factory.mktemp("fork")))
+        # Of a size of its own: a robot that an earlier test used is not packed again.
+        robot = load_robot(write_fork_arm(tmp_path_factory.mktemp("fork"), scale="1.0123 1.0123 1.0123"))
         ArmWorld(robot, Scene(random_scene(3).obstacles)).valid(np.zeros(3))
     return next(each for each in kept if len(each["shapes"]["body"]))
 
