@@ -1,5 +1,6 @@
 """The verb that makes data sets: what is killed goes on, shards merge to the bytes of one machine, paths are free."""
 
+import hashlib
 import json
 from itertools import pairwise
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
+from tests.refused import refused
 from tests.robot.oracle import clearance
 
 arrow = pytest.importorskip("pyarrow.parquet")
@@ -34,13 +36,17 @@ def made(tmp_path_factory):
 def test_a_set_is_made_and_after_a_kill_the_same_line_makes_what_is_missing_and_nothing_else(run, tmp_path, made):
     assert run(*LINE, "-o", "set")[0] == 0
     whole = files_of(tmp_path / "set")
-    assert sorted(whole) == ["_card.json", "_request.json", *(f"part-{i:06d}.parquet" for i in range(3))]
+    parts = [f"part-{i:06d}.parquet" for i in range(3)]
+    assert sorted(whole) == ["_card.json", *(f"_{part}.sha256" for part in parts), "_request.json", *parts]
     assert {name: whole[name] for name in files_of(made)} == files_of(made), "bytes do not depend on the process"
-    (tmp_path / "set" / "part-000001.parquet").unlink()
+    damaged = bytearray(whole["part-000001.parquet"])
+    damaged[len(damaged) // 2] ^= 4
+    (tmp_path / "set" / "part-000001.parquet").write_bytes(damaged)
+    (tmp_path / "set" / "part-000000.parquet").unlink()
     kept = (tmp_path / "set" / "part-000002.parquet").stat().st_mtime_ns
     code, out, _ = run(*LINE, "-o", "set")
     assert code == 0
-    assert "1 file made, 3 of 3 files there; complete" in out
+    assert "2 files made, 3 of 3 files there; complete" in out
     assert files_of(tmp_path / "set") == whole
     assert (tmp_path / "set" / "part-000002.parquet").stat().st_mtime_ns == kept
     code, _, errors = run(*LINE, "--seed", 1, "-o", "set")
@@ -63,6 +69,60 @@ def test_shards_merge_to_the_bytes_of_one_machine(run, tmp_path, made):
     assert card["request"]["robot"] == "arm7"
     assert run("generate", "shard-0", "nothing", "--merge", "-o", "other")[0] == 2
     assert pytest.importorskip("pyarrow.parquet").read_table(tmp_path / "set").num_rows == 50, "a folder for readers"
+
+
+@pytest.fixture
+def small():
+    """A request whose parts are texts, and the folder's function that makes its missing parts."""
+    from evenroad_studies.datasets import folder as of
+    from evenroad_studies.datasets.part import Request
+
+    return of, Request("arm7", ("boxes",), 3, rows=1)
+
+
+@pytest.mark.parametrize("damage", ["a bit", "a half", "nothing left", "no digest", "half a digest", "another's"])
+def test_a_damaged_part_is_none_of_the_set_and_is_not_merged(small, tmp_path, damage):
+    of, request = small
+    made, merged = tmp_path / "made", tmp_path / "merged"
+    made.mkdir()
+    merged.mkdir()
+    of.claim_folder(made, request.values(), of.REQUEST)
+    for part in range(3):
+        of.write_part(made / request.name(part), f"part {part}, as it was made".encode())
+    assert of.write_card(request, made) == 3
+    card = (made / of.CARD).read_bytes()
+    file, digest = made / request.name(1), made / f"_{request.name(1)}.sha256"
+    content = file.read_bytes()
+    match damage:
+        case "a bit":
+            file.write_bytes(bytes([content[0] ^ 4]) + content[1:])
+        case "a half":
+            file.write_bytes(content[:10])
+        case "nothing left":
+            file.write_bytes(b"")
+        case "no digest":
+            digest.unlink()
+        case "half a digest":
+            digest.write_bytes(digest.read_bytes()[:40])
+        case _:
+            file.write_bytes((made / request.name(2)).read_bytes())
+            digest.write_bytes((made / f"_{request.name(2)}.sha256").read_bytes())
+    assert of.write_card(request, made) == 2
+    assert (made / of.CARD).read_bytes() == card, "a digest of damage never enters the card"
+    refused(er.errors.BrokenFile, "part-000001.parquet is not what was made", of.merge, [made], merged)
+    of.write_part(file, content)
+    of.merge([made], merged)
+    assert of.write_card(request, merged) == 3
+    assert (merged / of.CARD).read_bytes() == card
+
+
+def test_a_kill_between_a_digest_and_its_part_loses_nothing(small, tmp_path):
+    of, request = small
+    of.write_part(tmp_path / request.name(0), b"as it was made")
+    (tmp_path / request.name(0)).unlink()
+    assert of.digest_of(tmp_path / request.name(0)) is None
+    of.write_part(tmp_path / request.name(0), b"as it was made")
+    assert of.digest_of(tmp_path / request.name(0)) == hashlib.sha256(b"as it was made").hexdigest()
 
 
 def test_workers_of_a_dask_cluster_make_the_bytes_of_one_machine(run, tmp_path, made):

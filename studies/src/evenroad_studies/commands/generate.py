@@ -24,7 +24,8 @@ from evenroad_studies.workers import interrupt_between_steps, processes
 class Generate:
     """Make a data set of problems of an arm, with paths that are proved free and timed, for learning.
 
-    A problem is a scene, a start and a goal.  The same command goes on where it stopped.
+    A problem is a scene, a start and a goal.  The same command goes on where it stopped, and
+    makes files again that are damaged.
 
     Example: evenroad generate shelf boxes --robot ur5 --count 1000 -o problems
     """
@@ -73,8 +74,8 @@ class Generate:
                     shown_as(done, parts)
 
                 made = make_parts(request, self.out, shard, workers, report)
-        whole = write_card(request, self.out)
-        there = sum((self.out / request.name(part)).exists() for part in range(request.parts))
+        there = write_card(request, self.out)
+        whole = there == request.parts
         state = f"complete, {CARD} says what it is" if whole else f"{request.parts - there} are missing"
         print(f"{self.out}: {counted(made, 'file')} made, {there} of {counted(request.parts, 'file')} there; {state}")
         return 0 if whole or self.shard != "0/1" else 1

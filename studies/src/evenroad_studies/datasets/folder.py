@@ -1,10 +1,11 @@
-"""The folder of a data set: parts that are there are done; a card says what the set is, and how it was made."""
+"""The folder of a data set: parts that are there, and as they were made, are done; a card says what the set is, and how
+it was made.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import shutil
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
@@ -26,11 +27,12 @@ def make_parts(
 ) -> int:
     """Make the parts of a shard, i of n, that a folder has not; return how many those are.
 
-    What a killed run has left is whole parts: nothing is lost, and nothing made twice.
+    What a killed run has left is whole parts: nothing is lost, and nothing made twice.  A part that is damaged is made
+    again.
     """
     claim_folder(folder, request.values(), REQUEST)
     mine = range(shard[0], request.parts, shard[1])
-    missing = deque(part for part in mine if not (folder / request.name(part)).exists())
+    missing = deque(part for part in mine if digest_of(folder / request.name(part)) is None)
     count, made = len(mine), len(mine) - len(missing)
     todo, begun = len(missing), deque[tuple[int, Future[bytes]]]()
     executor = workers.make()
@@ -40,7 +42,7 @@ def make_parts(
                 part = missing.popleft()
                 begun.append((part, executor.submit(make_part, request, part)))
             part, future = begun.popleft()
-            write(folder / request.name(part), future.result())
+            write_part(folder / request.name(part), future.result())
             made += 1
             report(made, count)
     except BaseException:
@@ -53,7 +55,8 @@ def make_parts(
 def merge(shards: Sequence[Path], folder: Path) -> Request:
     """Copy the parts of shards into a folder; return their request.
 
-    Raises InvalidValue where shards are of different requests; BrokenFile where a folder is none of a set.
+    Raises InvalidValue where shards are of different requests; BrokenFile where a folder is none of a set, or a part is
+    damaged.
     """
     requests = [request_of(shard) for shard in shards]
     for shard, request in zip(shards, requests, strict=True):
@@ -63,9 +66,11 @@ def merge(shards: Sequence[Path], folder: Path) -> Request:
     for shard in shards:
         for part in range(requests[0].parts):
             file = shard / requests[0].name(part)
-            if file.exists() and not (folder / file.name).exists():
-                with file.open("rb") as source, atomic_write(folder / file.name) as target:
-                    shutil.copyfileobj(source, target)
+            if not file.exists() or digest_of(folder / file.name) is not None:
+                continue
+            if digest_of(file) is None:
+                raise BrokenFile(f"{file} is not what was made: give the command that made {shard} again")
+            write_part(folder / file.name, file.read_bytes())
     return requests[0]
 
 
@@ -79,12 +84,12 @@ def request_of(folder: Path) -> Request:
     return Request(**{**fields, "sources": tuple(fields["sources"])})
 
 
-def write_card(request: Request, folder: Path) -> bool:
-    """Write what the set is and the hashes of its parts, where all are there; return whether they are."""
+def write_card(request: Request, folder: Path) -> int:
+    """Write what the set is and the digests of its parts, where all are there; return how many are, undamaged."""
     files = [folder / request.name(part) for part in range(request.parts)]
-    if not all(file.exists() for file in files):
-        return False
-    hashes = {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+    hashes = {file.name: digest for file in files if (digest := digest_of(file)) is not None}
+    if len(hashes) < len(files):
+        return len(hashes)
     card = {
         "about": f"{request.count} problems of {request.robot}, with paths proved free and timed",
         "made by": "evenroad generate; the same request has the same bytes with the same versions",
@@ -93,7 +98,30 @@ def write_card(request: Request, folder: Path) -> bool:
         "sha256": hashes,
     }
     write(folder / CARD, json.dumps(card, indent=1).encode())
-    return True
+    return len(hashes)
+
+
+def write_part(file: Path, content: bytes) -> None:
+    """Write a part, and before it the digest of what was made: what is on disk later may be something else."""
+    digest = hashlib.sha256(content).hexdigest()
+    # As `sha256sum --check` reads it.
+    write(_digest_file(file), f"{digest}  {file.name}\n".encode())
+    write(file, content)
+
+
+def digest_of(file: Path) -> str | None:
+    """Return the digest of a part that is what was made; None where there is none, or it is damaged."""
+    try:
+        said = _digest_file(file).read_bytes()
+        with file.open("rb") as opened:
+            digest = hashlib.file_digest(opened, "sha256").hexdigest()
+    except OSError:
+        return None
+    return digest if said == f"{digest}  {file.name}\n".encode() else None
+
+
+def _digest_file(file: Path) -> Path:
+    return file.with_name(f"_{file.name}.sha256")
 
 
 def write(path: Path, content: bytes) -> None:
