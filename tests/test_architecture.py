@@ -47,63 +47,93 @@ MAY_IMPORT = {
 """Part -> the parts it may import: the arrows of docs/design.md."""
 
 MODULES = sorted(ROOT.rglob("*.py"))
+TYPES = "for type checkers"
 
 
-def _imported_parts(path):
-    for node in ast.walk(ast.parse(path.read_text())):
-        names = []
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path}: imports are absolute"
-            names = (
-                [f"{node.module}.{alias.name}" for alias in node.names] if node.module == "evenroad" else [node.module]
-            )
-        for name in names:
-            top, _, rest = name.partition(".")
-            if top == "evenroad" and rest and rest != "__version__":
-                yield rest.partition(".")[0]
+UPWARD = {
+    ("robot.robot", "Robot.configuration"): {"robot.states"},
+    ("robot.robot", "Robot.fk"): {"robot.robot_queries"},
+    ("robot.robot", "Robot.ik"): {"robot.robot_queries"},
+    ("robot.robot", "Robot.random"): {"robot.robot_queries"},
+    ("robot.robot", "Robot.with_padding"): {"robot.robot_queries"},
+    ("robot.robot", TYPES): {"robot.pose_goal", "robot.scene"},
+}
+"""Module and method -> modules above it that the method imports: values have methods for what users type most."""
 
 
-def test_imports_go_in_one_direction():
-    against = []
-    for path in MODULES:
-        part = path.relative_to(ROOT).parts[0].removesuffix(".py")
-        if part == "__init__" or part == "__main__":
-            continue
-        assert part in MAY_IMPORT, f"{part} is new: give it a place in MAY_IMPORT and docs/design.md"
-        against += [
-            f"{path.relative_to(ROOT)} imports {other}"
-            for other in sorted(set(_imported_parts(path)) - {part} - MAY_IMPORT[part])
-        ]
-    assert against == []
+def _name_of(path):
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+def _imports(path):
+    """Yield each import of a file within evenroad as (method, module, name): the method that it stands in, if any."""
+
+    def within(node, method):
+        for child in ast.iter_child_nodes(node):
+            inner = method
+            if isinstance(child, ast.FunctionDef) and isinstance(node, ast.ClassDef):
+                inner = f"{node.name}.{child.name}"
+            elif isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
+                inner = TYPES
+            if isinstance(child, ast.Import):
+                yield from ((inner, alias.name, "") for alias in child.names)
+            elif isinstance(child, ast.ImportFrom):
+                assert child.level == 0, f"{path}: imports are absolute"
+                yield from ((inner, child.module, alias.name) for alias in child.names)
+            yield from within(child, inner)
+
+    for method, module, name in within(ast.parse(path.read_text()), ""):
+        top, _, rest = module.partition(".")
+        if top == "evenroad":
+            yield method, rest, name
 
 
 def _imported_modules(path, known):
-    """Yield the modules of `known` that a file imports anywhere, also in functions and for type checkers alone."""
-    for node in ast.walk(ast.parse(path.read_text())):
-        names = []
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            # What a package hands on is imported from the package; a submodule is a module of its own.
-            inner = [f"{node.module}.{alias.name}" for alias in node.names]
-            names = [name if name in known else node.module for name in inner]
-        yield from (name for name in names if name in known)
+    """Yield (method, module) for the modules of `known` that a file imports, also in functions."""
+    for method, module, name in _imports(path):
+        # What a package hands on is imported from the package; a submodule is a module of its own.
+        inner = f"{module}.{name}".strip(".")
+        found = inner if inner in known else module
+        if found in known:
+            yield method, found
+
+
+def test_imports_go_in_one_direction():
+    known = {_name_of(path) for path in MODULES} | BASE
+    against = []
+    for path in MODULES:
+        name = _name_of(path)
+        part = name.partition(".")[0]
+        if part in ("__init__", "__main__"):
+            continue
+        assert part in MAY_IMPORT, f"{part} is new: give it a place in MAY_IMPORT and docs/design.md"
+        for method, other in _imported_modules(path, known):
+            parts = {part} | MAY_IMPORT[part]
+            if other.partition(".")[0] not in parts and other not in UPWARD.get((name, method), ()):
+                against.append(f"{name} imports {other}")
+    assert against == []
 
 
 def test_no_modules_import_each_other_in_a_circle():
-    names = {}
-    for path in MODULES:
-        parts = ("evenroad", *path.relative_to(ROOT).with_suffix("").parts)
-        # What a package hands on stands in its stub.
-        path = stub if (stub := path.with_suffix(".pyi")).exists() else path
-        names[".".join(parts).removesuffix(".__init__")] = path
-    # The package itself is imported for its version alone, and takes its names when they are asked for.
-    del names["evenroad"]
-    imports = {name: sorted(set(_imported_modules(path, names)) - {name}) for name, path in names.items()}
+    # What a package hands on stands in its stub.  The package itself takes its names when they are asked for.
+    paths = {_name_of(path): stub if (stub := path.with_suffix(".pyi")).exists() else path for path in MODULES}
+    del paths["__init__"]
+    imports = {
+        name: sorted(
+            {other for method, other in _imported_modules(path, paths) if other not in UPWARD.get((name, method), ())}
+            - {name}
+        )
+        for name, path in paths.items()
+    }
     # Raises CycleError, which names one.
     TopologicalSorter(imports).prepare()
+
+
+def test_every_method_that_imports_upward_still_does():
+    listed = {(name, method, other) for (name, method), others in UPWARD.items() for other in others}
+    known = {_name_of(path) for path in MODULES}
+    there = {(_name_of(path), *found) for path in MODULES for found in _imported_modules(path, known)}
+    assert listed <= there
 
 
 def test_nobody_imports_the_adapters():
@@ -119,9 +149,26 @@ def test_evenroad_imports_nothing_of_the_studies_and_knows_their_verbs_and_netwo
     assert set(settings["project"]["entry-points"][MAKERS]) < set(TRAINED_FAMILIES)
 
 
-def test_no_module_is_longer_than_400_lines_and_none_of_tests_than_350():
-    both = [(path, 400) for path in MODULES] + [(path, 350) for path in (ROOT.parents[1] / "tests").rglob("*.py")]
-    assert [path for path, most in both if len(path.read_text().splitlines()) > most] == []
+def test_files_are_at_most_350_lines_or_500_around_a_class():
+    def most(path):
+        classes = any(isinstance(node, ast.ClassDef) for node in ast.parse(path.read_text()).body)
+        return 500 if classes and ROOT in path.parents else 350
+
+    paths = [*MODULES, *(ROOT.parents[1] / "tests").rglob("*.py")]
+    assert [path for path in paths if len(path.read_text().splitlines()) > most(path)] == []
+
+
+def test_functions_are_at_most_60_lines_and_take_at_most_8_arguments():
+    long, wide = [], []
+    for path in MODULES:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.FunctionDef):
+                body = node.body[1:] if ast.get_docstring(node) else node.body
+                long += [f"{_name_of(path)}.{node.name}"] if body and node.end_lineno - body[0].lineno >= 60 else []
+                arguments = len(node.args.posonlyargs) + len(node.args.args) + len(node.args.kwonlyargs)
+                wide += [f"{_name_of(path)}.{node.name}"] if arguments > 8 else []
+    # What people type most has everything by keyword.
+    assert (long, wide) == ([], ["planning.plan.plan"])
 
 
 def test_test_modules_import_helpers_and_not_each_other():

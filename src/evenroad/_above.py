@@ -23,12 +23,6 @@ FUNCTIONS = {
     "PointSet.discrepancy": "scipy.stats.qmc:discrepancy",
     "PointSet.save": "evenroad.points.npz:write_points",
     "Task.plan": "evenroad.task.solve:plan_task",
-    "Robot.configuration": "evenroad.robot.states:as_configuration",
-    "Robot.limits": "evenroad.robot.robot_queries:joint_limits",
-    "Robot.fk": "evenroad.robot.robot_queries:pose_of_link",
-    "Robot.ik": "evenroad.robot.robot_queries:configurations_at",
-    "Robot.with_padding": "evenroad.robot.robot_queries:with_padding",
-    "Robot.random": "evenroad.robot.robot_queries:random_configurations",
 }
 """Method -> its function, ``module:name``."""
 

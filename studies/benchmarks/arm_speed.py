@@ -17,10 +17,10 @@ import numpy as np
 import numpy.typing as npt
 from tests.robot.kernel_arms import as_balls
 
+from evenroad.robot import Robot, in_scene, with_group
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.load import load_robot
-from evenroad.robot.robot import Robot, in_scene, with_group
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot.scene_file import load_scene
 from evenroad.world import World

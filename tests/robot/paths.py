@@ -6,7 +6,7 @@ import numpy as np
 
 from evenroad.planning.arm_trees import connect
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.robot import with_limits
+from evenroad.robot.variants import with_limits
 from evenroad.space.path import resample
 from tests.robot.kernel_arms import box_scene, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import motions_proved

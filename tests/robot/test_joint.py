@@ -11,8 +11,8 @@ from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.joint import Joint, Mimic, within_limits_of_mimics
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.load import load_robot
-from evenroad.robot.robot import with_limits
 from evenroad.robot.scene import Scene
+from evenroad.robot.variants import with_limits
 from tests.robot.urdf_texts import joint, link, urdf, write
 
 NONE = (0.0, 0.0, 0.0)

@@ -11,7 +11,7 @@ import evenroad as er
 from evenroad.cli import main
 from evenroad.planning import plan
 from evenroad.robot import ArmWorld, Obstacle, Scene, configuration, in_scene
-from evenroad.robot.robot import with_limits
+from evenroad.robot.variants import with_limits
 from tests.plan_on import may_connect
 from tests.robot.kernel_arms import ur5
 from tests.robot.urdf_texts import joint, link, urdf, write

@@ -13,7 +13,7 @@ import trimesh
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.robot import load, load_model, load_robot, with_group, with_limits
-from evenroad.robot.robot import in_scene
+from evenroad.robot.robot_in_scene import in_scene
 from evenroad.robot.scene import Scene
 from tests.refused import refused
 from tests.robot.kernel_arms import CAPSULES, LINKS

@@ -9,7 +9,8 @@ from evenroad.geometry import Box, Pose
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot
 from evenroad.robot.cache import robot_of
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.planes import Plane, with_planes
+from evenroad.robot.planes import Plane
+from evenroad.robot.robot_in_scene import with_planes
 
 UR5 = load_robot("ur5")
 TILTED = Pose.from_quaternion((0.1, -0.2, -0.3), xyzw=(np.sin(0.2), 0.0, 0.0, np.cos(0.2)))

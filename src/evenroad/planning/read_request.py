@@ -30,9 +30,9 @@ from evenroad.robot.goals import Goals, goals_of, require_tips
 from evenroad.robot.load import RobotOptions, padded_model
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.reference.validate import MeshCheck, has_meshes, unseen_pairs, validate
-from evenroad.robot.robot import with_group
 from evenroad.robot.scan import allowed_near_ends, open_everywhere
 from evenroad.robot.states import as_configuration
+from evenroad.robot.variants import with_group
 
 if TYPE_CHECKING:
     from evenroad.world import GridMap

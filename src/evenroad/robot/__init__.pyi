@@ -14,9 +14,7 @@ from evenroad.robot.load import load_model as load_model
 from evenroad.robot.load import load_robot as load_robot
 from evenroad.robot.pose_goal import PoseGoal as PoseGoal
 from evenroad.robot.robot import Robot as Robot
-from evenroad.robot.robot import in_scene as in_scene
-from evenroad.robot.robot import with_group as with_group
-from evenroad.robot.robot import with_limits as with_limits
+from evenroad.robot.robot_in_scene import in_scene as in_scene
 from evenroad.robot.robot_model import LinkBody as LinkBody
 from evenroad.robot.robot_model import RobotModel as RobotModel
 from evenroad.robot.scan import allowed_near_ends as allowed_near_ends
@@ -33,3 +31,5 @@ from evenroad.robot.scene_file import load_scene as load_scene
 from evenroad.robot.states import at_states as at_states
 from evenroad.robot.states import configuration as configuration
 from evenroad.robot.states import named_states as named_states
+from evenroad.robot.variants import with_group as with_group
+from evenroad.robot.variants import with_limits as with_limits

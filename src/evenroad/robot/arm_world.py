@@ -24,9 +24,9 @@ from evenroad.robot.given import as_robot, as_scene
 from evenroad.robot.kernel.native_scene import native_scene
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
 from evenroad.robot.obstacle import MOST_CLEARANCE
-from evenroad.robot.planes import with_planes
 from evenroad.robot.prepared_robots import prepared
-from evenroad.robot.robot import Robot, within_scene
+from evenroad.robot.robot import Robot
+from evenroad.robot.robot_in_scene import with_planes, within_scene
 from evenroad.robot.scene import Scene, limits_in_words, smaller_scene
 from evenroad.robot.states import as_configuration
 from evenroad.robot.world_changes import WorldChanges

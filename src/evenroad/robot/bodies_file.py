@@ -14,12 +14,13 @@ from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable, shown
 from evenroad.geometry.parts import spread
 from evenroad.geometry.shapes import Capsule
-from evenroad.robot.distance import MOST
-from evenroad.robot.robot_methods import Padding
+from evenroad.robot.robot import Padding
 
 if TYPE_CHECKING:
     from evenroad.robot.robot import Robot
 
+MOST_PADDING = 1.0
+"""Largest padding of a link [m]."""
 _OTHERS = ("default_object_padding", "default_attached_padding")
 _PADDING = ("default_robot_padding", "default_robot_link_padding")
 _SCALE = ("default_robot_scale", "default_robot_link_scale")
@@ -76,7 +77,7 @@ def padding_of(robot: Robot, padding: Padding) -> dict[str, float]:
 
 def padded(what: str, metres: Any) -> float:
     """Return a padding, 0 to 1 [m], or raise InvalidValue."""
-    return require_positive(what, metres, or_zero=True, at_most=MOST)
+    return require_positive(what, metres, or_zero=True, at_most=MOST_PADDING)
 
 
 def _read_padding(robot: Robot, path: Path) -> dict[str, float]:

@@ -23,8 +23,7 @@ from evenroad.robot.free_joints import without_moved
 from evenroad.robot.groups import choose_group, chosen_states, group_notes, held_states
 from evenroad.robot.link_bodies import capsules_of, link_body, opened, pieces_of, shapes_of
 from evenroad.robot.pairs import SelfPairs, pairs_of, self_pairs
-from evenroad.robot.robot import Robot
-from evenroad.robot.robot_methods import Padding
+from evenroad.robot.robot import Padding, Robot
 from evenroad.robot.robot_model import RobotModel
 from evenroad.robot.srdf import Srdf, read_srdf, with_moving_base
 from evenroad.robot.urdf import Urdf, read_urdf

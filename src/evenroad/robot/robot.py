@@ -1,33 +1,44 @@
-"""Robot: a kinematic tree, its bodies as capsules, and the joints that are planned for; and robots made from others."""
+"""Robot: a kinematic tree, its bodies as capsules, and the joints that are planned for."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING
 
-from evenroad._arrays import set_fields
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_known
 from evenroad._fingerprint import fingerprint_of
+from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.hulls import Hull, Piece, piece_of
 from evenroad.geometry.inner import inner_of
-from evenroad.geometry.parts import Parts, parts_of
+from evenroad.geometry.parts import Parts, kinds_in_words, parts_of
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
-from evenroad.robot.held import HeldObject, held_parts, inner_of_both, same_bodies
-from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
+from evenroad.robot.held import HeldObject, held_parts, inner_of_both
+from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.pairs import self_pairs
 from evenroad.robot.planes import Plane
-from evenroad.robot.robot_methods import RobotMethods
-from evenroad.robot.scene import Scene
+
+if TYPE_CHECKING:
+    from evenroad.robot.pose_goal import PoseGoal
+    from evenroad.robot.scene import Scene
+
+Padding = float | Mapping[str, float] | str | os.PathLike[str]
+"""What says by how much links are larger: a length of all of them, link -> length, or a file of MoveIt."""
 
 
 @explains_calls
 @dataclass(frozen=True, repr=False)
-class Robot(RobotMethods):
+class Robot:
     """A kinematic tree with bodies; :func:`evenroad.load_robot` makes one of its file.
 
     Parameters
@@ -80,6 +91,210 @@ class Robot(RobotMethods):
     def __post_init__(self) -> None:
         # The kernel takes endpoints: those of a capsule with a pose are transformed to its link's frame.
         set_fields(self, capsules=tuple(map(without_pose, self.capsules)))
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name!r}, {self.dof} joints, {len(self.links)} links)"
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """The joints that are planned for, in the order of a configuration; another name for `group`."""
+        return self.group
+
+    @property
+    def dof(self) -> int:
+        """Number of values in a configuration."""
+        return len(self.group)
+
+    @property
+    def limits(self) -> Floats:
+        """Lower and upper limit of each joint of the group, (dof, 2) [rad or m]; infinite for continuous ones."""
+        joints = {joint.name: joint for joint in self.joints}
+        return np.array([(joints[name].lower, joints[name].upper) for name in self.group]).reshape(-1, 2)
+
+    def configuration(self, q: npt.ArrayLike | Mapping[str, float] | str, scene: Scene | None = None) -> Floats:
+        """Return a configuration as numbers, from numbers, a mapping or a text.
+
+        Parameters
+        ----------
+        q : array_like, shape (dof,), mapping or str
+            Numbers in the order of `joint_names` [rad or m]; joint -> value, where joints that are left out are at 0,
+            or the nearest to it within limits; or a text: the name of a state, ``"0,-1.57,..."`` or ``"elbow=1,..."``.
+        scene : Scene, optional
+            A scene with more named states.
+
+        Returns
+        -------
+        ndarray, shape (dof,)
+            In rad or m.
+
+        Raises
+        ------
+        InvalidValue
+            If it has another number of finite numbers, or a text has a value outside of the limits.
+        UnknownName
+            If there is no such state or joint.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.load_robot("ur5").configuration({"elbow_joint": -1.5}).tolist()
+        [0.0, 0.0, -1.5, 0.0, 0.0, 0.0]
+        """
+        from evenroad.robot.states import as_configuration
+
+        return as_configuration(self, q, scene)
+
+    def fk(self, q: npt.ArrayLike | Mapping[str, float] | str, link: str = "") -> Pose:
+        """Return the pose of a link: forward kinematics.
+
+        Parameters
+        ----------
+        q : array_like, shape (dof,), mapping or str
+            A configuration [rad or m].  Joints that a mapping leaves out are at 0, or the nearest to it within limits;
+            a text is as :meth:`configuration` takes it.
+        link : str
+            The link; default: the last one that the group moves.
+
+        Returns
+        -------
+        Pose
+            Pose of the link in the frame of the robot's root link.
+
+        Raises
+        ------
+        InvalidValue
+            If `q` is no configuration, or no link is named and there are several at the end.
+        UnknownName
+            If there is no such link, joint or state.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> robot = er.load_robot("ur5")
+        >>> robot.fk("home", "tool0").matrix[:3, 3].round(2).tolist()
+        [0.0, 0.19, 1.0]
+        """
+        from evenroad.robot.robot_queries import pose_of_link
+
+        return pose_of_link(self, q, link)
+
+    def ik(
+        self, pose: Pose | PoseGoal, link: str = "", *, start: npt.ArrayLike | Mapping[str, float] | str = ()
+    ) -> Floats:
+        """Return the configurations that bring a link to a pose: inverse kinematics.
+
+        Nothing is tested for collisions; :func:`evenroad.plan` takes poses as goals, and does.
+
+        Parameters
+        ----------
+        pose : Pose, PoseGoal or array_like, shape (4, 4)
+            In the frame of the robot's root link.
+        link : str
+            The link; default: that of the PoseGoal, else the last one that the group moves.
+        start : configuration, optional
+            A configuration as `q` of :meth:`fk`.  The nearest to it comes first, and joints that do not move the
+            link keep its values.  Default: all joints at 0, or the nearest to it within limits.
+
+        Returns
+        -------
+        ndarray, shape (n, dof)
+            All that were found, within limits, whole turns added; for a redundant arm some.  n is 0 where the pose is
+            out of reach.
+
+        Raises
+        ------
+        InvalidValue
+            If `pose` or `start` is none, or no link is named and there are several at the end.
+        UnknownName
+            If there is no such link.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> robot = er.load_robot("ur5")
+        >>> robot.ik(er.Pose((0.4, 0.2, 0.3), rpy=(3.14159, 0, 0)), "tool0").shape[1]
+        6
+        """
+        from evenroad.robot.robot_queries import configurations_at
+
+        return configurations_at(self, pose, link, start)
+
+    def random(self, rng: RngLike = 0, n: int | None = None) -> Floats:
+        """Return random configurations within the limits, uniform in each joint; they may be in collision.
+
+        Parameters
+        ----------
+        rng : int, SeedSequence or Generator
+            Seed: equal numbers give equal configurations; a Generator is spawned.
+        n : int, optional
+            Number of configurations, >= 1.  Default: one, without this axis.
+
+        Returns
+        -------
+        ndarray, shape (dof,) or (n, dof)
+            In rad or m.
+
+        Raises
+        ------
+        InvalidValue
+            If `rng` or `n` is not of that kind, or a joint has no limits.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.load_robot("ur5").random(rng=7, n=10).shape
+        (10, 6)
+        """
+        from evenroad.robot.robot_queries import random_configurations
+
+        return random_configurations(self, rng, n)
+
+    def with_padding(self, padding: Padding) -> Robot:
+        """Return the robot with links that keep more away from obstacles, as MoveIt's link padding.
+
+        Links are tested against each other as they are, and so is what no joint moves.  The clearance of a world is
+        added.
+
+        Parameters
+        ----------
+        padding : mapping of str to float, float, str or path-like
+            Link -> by how much it is larger against obstacles, from 0 to 1 [m]; others keep what they have.  A number
+            is that of all links.  Or a YAML file with ``default_robot_padding``, ``default_robot_link_padding``,
+            ``default_robot_scale`` and ``default_robot_link_scale``, or some of them, as MoveIt's ``joint_limits.yaml``
+            may have them.  A scale s, >= 1, adds (s - 1) times the largest distance of a link's shapes from their
+            middle.
+
+        Returns
+        -------
+        Robot
+
+        Raises
+        ------
+        UnknownName
+            If there is no such link.
+        InvalidValue
+            If a number is none, or out of its range.
+        BrokenFile
+            If the file is missing, or says nothing of it.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> robot = er.load_robot("ur5").with_padding({"wrist_3_link": 0.02})
+        >>> er.ArmWorld(robot, "box-reach").valid("home")
+        True
+        """
+        from evenroad.robot.robot_queries import with_padding
+
+        return with_padding(self, padding)
+
+    @property
+    def bodies(self) -> str:
+        """The kinds of bodies that decide what touches an obstacle: ``capsules``, or as ``hulls, meshes and capsules``.
+
+        A link without shapes of its own is its capsules.
+        """
+        return kinds_in_words(self.shapes, self.capsules)
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of all that decides checks; the names of the robot and its states do not."""
@@ -273,77 +488,3 @@ def require_robot(robot: object) -> None:
     """Raise InvalidValue unless this is a Robot: names and files are read by ``load_robot``."""
     if not isinstance(robot, Robot):
         raise InvalidValue(f"robot must be a Robot, as load_robot(name or file) gives it, got {shown(robot)}")
-
-
-def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | None = None) -> Robot:
-    """Return the robot with another group; the other movable joints are held at `held`, else at 0 or nearest to it.
-
-    Raises UnknownName if a joint is not one that moves freely; InvalidValue if one is held that is in the group, or
-    outside its limits.
-    """
-    require_robot(robot)
-    free = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
-    held = dict(held or {})
-    for name in (*group, *held):
-        require_known("joint", name, free)
-    for name, value in held.items():
-        if name in group:
-            raise InvalidValue(f"joint {name!r} is in the group: it is planned for and cannot be held")
-        require_within(free[name], value, f"holding {robot.name!r}")
-    changed = replace(robot, group=tuple(group), held=held)
-    if robot.resting and (changed.group, held_values(changed)) != (robot.group, held_values(robot)):
-        return replace(changed, pairs=(*robot.pairs, *robot.resting), resting=())
-    return changed
-
-
-def in_scene(robot: Robot, scene: Scene) -> Robot:
-    """Return the robot as it is in a scene: with the ranges to plan in, where narrower, and what it holds there.
-
-    Raises UnknownName if the scene names a joint or a link that the robot does not have; InvalidValue if no value is
-    within both ranges, or the robot holds something else of the same name.
-    """
-    require_robot(robot)
-    for held in scene.attached:
-        if held.name in robot.holds:
-            if not same_bodies(robot, held):
-                both = f"scene {scene.name!r} and robot {robot.name!r}"
-                raise InvalidValue(f"{held.name!r} is attached twice: {both} have two bodies of that name")
-            continue
-        robot = robot.holding(held)
-    return within_scene(robot, scene)
-
-
-def within_scene(robot: Robot, scene: Scene) -> Robot:
-    """Return the robot with the scene's ranges to plan in, itself where none is narrower.  Raises as `in_scene`."""
-    require_robot(robot)
-    limits = {}
-    joints = {joint.name: joint for joint in robot.joints} if scene.limits else {}
-    for name, (lower, upper) in scene.limits.items():
-        require_known(f"joint in the limits of scene {scene.name!r}:", name, joints)
-        own = joints[name].lower, joints[name].upper
-        narrowed = max(lower, own[0]), min(upper, own[1])
-        if narrowed != own:
-            limits[name] = narrowed
-    # The same object: its cached tables are then found without comparing all values.
-    return with_limits(robot, limits) if limits else robot
-
-
-def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robot:
-    """Return the robot with other limits, joint -> (lower, upper) [rad or m].
-
-    A continuous joint that gets limits becomes a revolute one; limits of a mimic narrow those of its leader.  Raises
-    UnknownName if a joint is not there; InvalidValue if lower is not below upper.
-    """
-    require_robot(robot)
-    names = [joint.name for joint in robot.joints]
-    for name, (lower, upper) in limits.items():
-        require_known("joint", name, names)
-        if not lower < upper:
-            raise InvalidValue(f"limits of joint {name!r} must satisfy lower < upper, got {lower!r}, {upper!r}")
-    joints = list(robot.joints)
-    for i, joint in enumerate(joints):
-        if joint.name in limits:
-            lower, upper = map(float, limits[joint.name])
-            turns = joint.kind == "continuous"
-            joints[i] = replace(joint, kind="revolute" if turns else joint.kind, lower=lower, upper=upper)
-    return replace(robot, joints=tuple(within_limits_of_mimics(joints)))

@@ -19,8 +19,7 @@ from evenroad.robot.inverse_kinematics import reach
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
 from evenroad.robot.prepared_robots import prepared
-from evenroad.robot.robot import Robot
-from evenroad.robot.robot_methods import Padding
+from evenroad.robot.robot import Padding, Robot
 from evenroad.robot.states import as_configuration
 
 
@@ -37,12 +36,6 @@ class _Anywhere:
     def explain(self, q: Floats) -> str:
         """Return that nothing blocks."""
         return "it is free"
-
-
-def joint_limits(robot: Robot) -> Floats:
-    """Return `Robot.limits`."""
-    joints = {joint.name: joint for joint in robot.joints}
-    return np.array([(joints[name].lower, joints[name].upper) for name in robot.group]).reshape(-1, 2)
 
 
 def pose_of_link(robot: Robot, q: npt.ArrayLike | Mapping[str, float] | str, link: str = "") -> Pose:

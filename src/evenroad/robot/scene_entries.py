@@ -78,7 +78,7 @@ def obstacle_of(
     if shape == PLANE:
         require_keys(entry, ("shape",), optional, where)
         pose = _pose(entry, where)
-        return replace(Plane(name, pose.xyz, pose.rotation).obstacle, cell=cell)
+        return Obstacle(name, Plane(name, pose.xyz, pose.rotation).body, cell=cell)
     if shape == HEIGHTS:
         require_keys(entry, ("shape", "file", "spacing"), optional, where)
         (spacing,) = numbers(entry["spacing"], 1, f"spacing of {where}")

@@ -14,8 +14,9 @@ from evenroad._checks import as_row, require_known
 from evenroad.errors import InvalidValue, UnknownName, listed, near, shown
 from evenroad.robot.joint import Joint, require_within
 from evenroad.robot.kinematics import held_values
-from evenroad.robot.robot import Robot, require_robot, with_group
+from evenroad.robot.robot import Robot, require_robot
 from evenroad.robot.scene import Scene, limits_in_words
+from evenroad.robot.variants import with_group
 from evenroad.space.joints import SLACK
 
 _PAIR = re.compile(r"[\s,]*([^=,]*?)\s*=\s*([^\s,=]*)")

@@ -20,9 +20,9 @@ from evenroad.geometry.shapes import Capsule, Mesh, PointCloud, Shape, along_z
 from evenroad.robot.find import find_robot
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.load import read_robot
-from evenroad.robot.planes import with_planes
 from evenroad.robot.prepared_robots import joint_space
 from evenroad.robot.robot import Robot
+from evenroad.robot.robot_in_scene import with_planes
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space import JointSpace
