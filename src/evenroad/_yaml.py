@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import yaml
 
-from evenroad._checks import require_known
 from evenroad._files import not_a
+from evenroad._understood import Kind, require_understood
 from evenroad.errors import BrokenFile, InvalidValue, shown
 
 # libyaml where PyYAML was built with it: ten times as fast.
@@ -125,10 +125,11 @@ def _require_sound(loader: Any, root: yaml.Node, path: Path) -> None:
 
 
 def require_keys(keys: Iterable[str], required: Collection[str], optional: Iterable[str], where: str) -> None:
-    """Raise UnknownName for a key that is neither required nor optional, BrokenFile for one that is missing."""
-    known = (*required, *optional)
-    for key in keys:
-        require_known(f"key of {where}:", key, known)
+    """Raise UnknownName for a key that is neither required nor optional, BrokenFile for one that is missing.
+
+    It is the guard of :mod:`evenroad._understood` for a mapping whose entries are read where it is.
+    """
+    require_understood(dict.fromkeys(keys), Kind((*required, *optional)), where)
     missing = [key for key in required if key not in keys]
     if missing:
         raise BrokenFile(f"{where} lacks {', '.join(missing)}; it needs {', '.join(required)}")
