@@ -51,12 +51,23 @@ TYPES = "for type checkers"
 
 
 UPWARD = {
+    ("points.pointset", "PointSet.save"): {"points.npz"},
+    ("roadmap.point_roadmap", "PointRoadmap.within"): {"roadmap.point_world_roadmap"},
+    ("roadmap.point_roadmap", "PointRoadmap.save"): {"roadmap.npz"},
+    ("roadmap.result", "PlanResult.save"): {"io"},
+    ("roadmap.result", "PlanResult.load"): {"io"},
+    ("roadmap.result", "PlanResult.plot"): {"viz.result"},
+    ("roadmap.result", "PlanResult.trajectory"): {"trajectory.arm"},
     ("robot.robot", "Robot.configuration"): {"robot.states"},
     ("robot.robot", "Robot.fk"): {"robot.robot_queries"},
     ("robot.robot", "Robot.ik"): {"robot.robot_queries"},
     ("robot.robot", "Robot.random"): {"robot.robot_queries"},
     ("robot.robot", "Robot.with_padding"): {"robot.robot_queries"},
     ("robot.robot", TYPES): {"robot.pose_goal", "robot.scene"},
+    ("robot.scene", "Scene.__init__"): {"robot.scene_file"},
+    ("task.task", "Task.plan"): {"task.solve"},
+    ("trajectory.trajectory", "Trajectory.save"): {"trajectory.files"},
+    ("world.gridmap.grid", "CellGrid.plot"): {"viz.result"},
 }
 """Module and method -> modules above it that the method imports: values have methods for what users type most."""
 
@@ -216,9 +227,3 @@ def test_planning_on_a_shipped_set_does_not_wait_for_scipy_stats():
     code = "import sys, evenroad.viz.plan, evenroad.cli.plan_disk; print('scipy.stats' in sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert loaded.stdout.strip() == "False"
-
-
-def test_methods_of_values_name_functions_that_are_there():
-    from evenroad._above import FUNCTIONS, above
-
-    assert all(callable(above(method)) for method in FUNCTIONS)

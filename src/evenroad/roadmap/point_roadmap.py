@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from evenroad._above import above
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._npz import Path
 from evenroad.errors import InvalidValue
@@ -161,8 +160,9 @@ class PointRoadmap(Roadmap):
         if not self._fits(world.space):
             raise InvalidValue(f"the roadmap was built for another space than {world.space!r}")
         roadmap = replace(self, space=world.space) if self.space is None else self
-        planner: WorldRoadmap = above("PointRoadmap.within")(roadmap, world, edge_cost=edge_cost)
-        return planner
+        from evenroad.roadmap.point_world_roadmap import PointWorldRoadmap
+
+        return PointWorldRoadmap(roadmap, world, edge_cost=edge_cost)
 
     def _fits(self, space: Space) -> bool:
         if space is self.space or space == self.space:
@@ -175,7 +175,9 @@ class PointRoadmap(Roadmap):
 
     def save(self, file: Path) -> None:
         """Write its points, rule, milestones and edges; see :meth:`Roadmap.save`."""
-        above("PointRoadmap.save")(file, self)
+        from evenroad.roadmap.npz import save_point_roadmap
+
+        save_point_roadmap(file, self)
 
 
 def roadmap_of_points(space: Space, points: PointSet | int, rule: Rule | None = None) -> PointRoadmap:

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy.typing as npt
 
-from evenroad._above import above
 from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import counted
@@ -91,7 +90,9 @@ class Scene(SceneChanges):
                 raise InvalidValue(
                     f"a scene of a mapping has what the mapping says: put {', '.join(more)} into it, too"
                 )
-            scene = above("Scene")(obstacles, _named(name))
+            from evenroad.robot.scene_file import scene_of
+
+            scene = scene_of(obstacles, _named(name))
             set_fields(self, **{each.name: getattr(scene, each.name) for each in fields(scene)})
             return
         set_fields(self, name=_named(name), obstacles=as_obstacles(obstacles, (), name), **values)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from evenroad._above import above
 from evenroad._arrays import set_fields
 from evenroad._call import explains_calls
 from evenroad.errors import InvalidValue, shown
@@ -89,5 +88,6 @@ class Task:
         >>> Task([MoveTo("inside"), Wait(0.5)]).plan(er.ArmWorld("ur5", "box-reach"), "home").solved
         True
         """
-        found: TaskResult = above("Task.plan")(self.steps, world, start, Reading(degrees, tip, frame), **options)
-        return found
+        from evenroad.task.solve import plan_task
+
+        return plan_task(self.steps, world, start, Reading(degrees, tip, frame), **options)

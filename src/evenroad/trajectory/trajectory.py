@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
-from evenroad._above import above
 from evenroad._arrays import Floats
 from evenroad._checks import counted, require_known
 from evenroad.errors import InvalidValue, shown
@@ -182,7 +181,9 @@ class Trajectory:
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     trajectory.save(f"{folder}/go.csv")
         """
-        above("Trajectory.save")(path, self, order)
+        from evenroad.trajectory.files import save_trajectory
+
+        save_trajectory(path, self, order)
 
     def __repr__(self) -> str:
         return f"Trajectory({self.duration:.4g} s, {counted(len(self.names), 'joint')}, {len(self.times)} states)"

@@ -16,7 +16,8 @@ from evenroad.robot import ArmWorld
 from evenroad.viz.arm import draw_arm_plan
 from evenroad.viz.plan import draw_plan
 from evenroad.viz.sheet import save_png
-from evenroad.world.gridmap import DiskWorld, GridMap
+from evenroad.world.gridmap import DiskWorld
+from evenroad.world.gridmap.grid import CellGrid
 
 _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 40
 """Grey values of free, unknown and occupied cells."""
@@ -39,7 +40,7 @@ def plot_result(result: PlanResult, path: str | os.PathLike[str] | None = None, 
     return _kept(picture, path)
 
 
-def plot_map(gridmap: GridMap, path: str | os.PathLike[str] | None = None) -> Image.Image:
+def plot_map(gridmap: CellGrid, path: str | os.PathLike[str] | None = None) -> Image.Image:
     """Return what :meth:`GridMap.plot` does."""
     shades = np.where(gridmap.unknown, _UNKNOWN, np.where(gridmap.occupied, _OCCUPIED, _FREE)).astype(np.uint8)
     times = max(1, _LONG_SIDE // max(gridmap.shape))

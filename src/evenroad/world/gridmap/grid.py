@@ -8,7 +8,6 @@ from typing import Any, Self
 
 import numpy as np
 
-from evenroad._above import above
 from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad.errors import InvalidValue, shown
@@ -97,7 +96,9 @@ class CellGrid:
         >>> grid.plot().size
         (600, 400)
         """
-        return above("GridMap.plot")(self, path)
+        from evenroad.viz.result import plot_map
+
+        return plot_map(self, path)
 
     def __repr__(self) -> str:
         rows, cols = self.shape
