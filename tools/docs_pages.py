@@ -61,7 +61,15 @@ REFERENCE = {
     ),
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
     "pictures": ("Pictures", ("evenroad.viz.show", "evenroad.viz.plan", "evenroad.viz.arm")),
-    "mazes": ("Mazes", ("evenroad.world.gridmap.load",)),
+    "mazes": (
+        "Maps and mazes",
+        (
+            "evenroad.world.gridmap.load",
+            "evenroad.world.gridmap.images",
+            "evenroad.world.gridmap.map_server",
+            "evenroad.world.gridmap.movingai",
+        ),
+    ),
     "adapters": (
         "Adapters",
         (

@@ -27,6 +27,7 @@ _BEGINNINGS = {
     b"PK": "a .npz or other archive",
     b"\x89PNG": "a PNG image",
     b"P5": "a PGM image",
+    b"BM": "a BMP image",
     b"\xff\xd8\xff": "a JPEG image",
     b"GIF8": "a GIF image",
     b"SQLite format 3": "a SQLite file",

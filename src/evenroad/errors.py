@@ -43,6 +43,15 @@ def in_one_line(text: str) -> str:
     return f"{line[:half]}{_GAP}{line[-half:]}"
 
 
+def distinguished(first: float, second: float) -> tuple[str, str]:
+    """Return two different numbers with six digits, or with as many as show that they differ."""
+    for digits in range(6, 17):
+        texts = f"{first:.{digits}g}", f"{second:.{digits}g}"
+        if texts[0] != texts[1]:
+            return texts
+    return repr(first), repr(second)
+
+
 def near(name: object, known: Iterable[str]) -> str:
     """Return ``did you mean 'even'?`` for the known names that may be meant, at most three, or "".
 

@@ -90,8 +90,7 @@ def test_an_end_in_collision_says_with_what_and_by_how_much():
     )
     inside = plan_on(WALL.world(1.0), (2, 2), (18, 9.5), draw("halton", 64, 2))
     assert inside.message == (
-        "the goal is in collision: its centre lies in an obstacle or outside the map; the nearest free position is"
-        " (18, 8)"
+        "the goal is in collision: its centre lies in an obstacle; the nearest free position is (18, 8)"
     )
 
 

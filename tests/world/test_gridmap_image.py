@@ -10,7 +10,7 @@ from PIL import Image
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.world import GridMap, MapFrame, load_map
 from evenroad.world.gridmap import load_image
-from evenroad.world.gridmap.load import LARGEST_IMAGE
+from evenroad.world.gridmap.images import LARGEST_IMAGE
 from tests.refused import refused
 
 
@@ -48,7 +48,7 @@ def test_a_limit_outside_the_scale_is_refused(tmp_path, dark):
 def test_rows_and_columns_keep_their_places(tmp_path):
     pixels = np.full((3, 5), 255, dtype=np.uint8)
     pixels[2, 1] = 0
-    for name in ("a.png", "a.pgm", "A.PGM"):
+    for name in ("a.png", "a.pgm", "A.PGM", "a.bmp"):
         occupied = load_map(saved(tmp_path, Image.fromarray(pixels), name)).occupied
         assert np.argwhere(occupied).tolist() == [[2, 1]]
 
@@ -114,16 +114,16 @@ def test_a_missing_image_and_a_folder_are_named(tmp_path):
     assert_refused(tmp_path / "folder.png", "s a directory")
 
 
-def test_what_is_no_png_or_pgm_is_refused_whatever_its_suffix_says(tmp_path):
+def test_what_is_no_png_pgm_or_bmp_is_refused_whatever_its_suffix_says(tmp_path):
     path = tmp_path / "garbage.png"
     for content in (b"", b"hello", b"\x89PNG\r\n\x1a\n", b"P5 4", b"P5 x y 255\n", bytes(100), png_header(0, 5)):
         path.write_bytes(content)
         assert_refused(path)
-    grey(0, 255).save(path, format="BMP")
-    assert_refused(path, "not a PNG or PGM image")
+    grey(0, 255).save(path, format="GIF")
+    assert_refused(path, "a GIF image, not a PNG, PGM or BMP image")
 
 
-@pytest.mark.parametrize("name", ["map.png", "map.pgm"])
+@pytest.mark.parametrize("name", ["map.png", "map.pgm", "map.bmp"])
 def test_an_image_cut_short_anywhere_is_refused(tmp_path, name):
     pixels = np.random.default_rng(0).integers(0, 256, (20, 30), dtype=np.uint8)
     whole = saved(tmp_path, Image.fromarray(pixels), name).read_bytes()
@@ -161,7 +161,7 @@ def test_a_huge_size_in_the_header_is_refused_before_any_pixel_is_read(tmp_path,
 
 @pytest.mark.parametrize("name", ["map.jpg", "map", "map.yaml.bak"])
 def test_an_unknown_suffix_is_refused_with_the_known_ones(name):
-    refused(UnknownName, r"\.pgm, \.png, \.yaml, \.yml", load_map, name)
+    refused(UnknownName, r"\.bmp, \.map, \.pgm, \.png, \.yaml, \.yml", load_map, name)
 
 
 def test_an_array_is_a_map():

@@ -31,7 +31,7 @@ class PlanOptions(SamplerOptions):
     groups: ClassVar[dict[str, tuple[str, ...]]] = {
         "from where to where": (
             *("help", "world", "robot_radius", "robot", "roadmap", "start", "goal", "goal_pose"),
-            *("tip", "frame", "free_axis", "tolerance", "deg", "clearance", "unknown_is_free"),
+            *("tip", "frame", "free_axis", "tolerance", "deg", "clearance", "unknown_is_free", "rules"),
         ),
         "on the way": ("via", "straight", "away", "upright", "upright_axis", "constraint"),
         "search": ("time", "improve", "certified", "resolution", "seed", "raw"),
@@ -95,8 +95,9 @@ def wants_points(plan: PlanOptions) -> bool:
 class PlanDisk(PlanOptions):
     """Plan a short path for a disk on a map, write a JSON result and a picture.
 
-    A disk (--robot-radius) moves on a bare image (.png, .pgm): unit = pixel, x right, y DOWN, origin in the top-left
-    corner, dark = obstacle; or on a ROS map_server file (.yaml): unit = metre, map frame, y up.
+    A disk (--robot-radius) moves on a bare image (.png, .pgm, .bmp): unit = pixel, x right, y DOWN, origin in the
+    top-left corner, dark = obstacle; on a map of the MovingAI benchmarks (.map): the same, a letter a pixel; or on a
+    ROS map_server file (.yaml): unit = metre, map frame, y up.
 
     For an arm in a scene give --robot instead; its options: evenroad plan --robot --help
 
@@ -106,7 +107,7 @@ class PlanDisk(PlanOptions):
     planner = "evenroad.cli.plan_disk:plan_disk"
 
     world: Positional[Path]
-    """A map: a .png or .pgm image, or a ROS map_server .yaml."""
+    """A map: a .png, .pgm or .bmp image, a ROS map_server .yaml, or a MovingAI .map."""
     start: tuple[str, ...]
     """Where to start: x y in map units."""
     goal: Repeatable[tuple[tuple[str, ...], ...]]
@@ -118,6 +119,8 @@ class PlanDisk(PlanOptions):
     """Distance to keep from every obstacle, beside the radius, >= 0, in map units."""
     unknown_is_free: bool = False
     """Treat unknown cells of a ROS map as free."""
+    rules: str | None = None
+    """Read a ROS map by the rules of nav2 (since April 2025; the default) or ros1 (and nav2 before)."""
     csv: bool = False
     """Also write the path as OUT.csv."""
     guarantees: bool = False

@@ -40,7 +40,7 @@ def plan_disk(plan: PlanDisk) -> int:
 
         if is_scene(plan.world):
             raise InvalidValue(f"{plan.world} is a scene, no map: give the arm that moves in it with --robot")
-    gridmap = load_map(plan.world, unknown_is_free=plan.unknown_is_free)
+    gridmap = load_map(plan.world, unknown_is_free=plan.unknown_is_free, rules=plan.rules)
     suffixes = ("json", "csv") if plan.csv else ("json",)
     files = output_files(plan, map_files(plan.world), suffixes, "map")
     for name, value in (("start", start), *(("goal", goal) for goal in goals)):
@@ -60,6 +60,7 @@ def plan_disk(plan: PlanDisk) -> int:
         "robot_radius": plan.robot_radius,
         "clearance": plan.clearance,
         "unknown_is_free": plan.unknown_is_free,
+        "rules": plan.rules,
         **common_query(plan),
     }
 

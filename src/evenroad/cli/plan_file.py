@@ -30,8 +30,14 @@ FILES = {
     "padding": float | int | dict | str | None,
 }
 """Fields of a plan about its robot's files, and their types; plans of earlier versions have fewer."""
-_MAP = {"map": str, "robot_radius": float | int, "clearance": float | int, "unknown_is_free": bool}
-"""Fields of a plan about its map, and their types."""
+_MAP = {
+    "map": str,
+    "robot_radius": float | int,
+    "clearance": float | int,
+    "unknown_is_free": bool,
+    "rules": str | None,
+}
+"""Fields of a plan about its map, and their types; plans of earlier versions have no rules."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +59,7 @@ def read_plan(file: Path, robot: str | None = None, options: dict[str, Any] | No
     if "map" in query:
         if not all(isinstance(query.get(name), kind) for name, kind in _MAP.items()):
             raise BrokenFile(f"{file} is a damaged plan: of its map, radius, clearance or unknown cells")
-        grid = load_map(query["map"], unknown_is_free=query["unknown_is_free"])
+        grid = load_map(query["map"], unknown_is_free=query["unknown_is_free"], rules=query.get("rules"))
         world: Any = grid.world(query["robot_radius"], clearance=query["clearance"])
         request = Request(world, result.start, result.goals)
     else:

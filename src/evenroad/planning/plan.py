@@ -108,8 +108,8 @@ def plan(
     tip, frame : str
         The link that goal poses place, and the link in whose frame; default: the last link, and the root.
     **of_world
-        ``radius``, ``clearance``, ``unknown_is_free`` of a map; ``robot``, ``clearance``, ``resolution``, and what
-        :func:`evenroad.load_robot` takes, of a scene.
+        ``radius``, ``clearance``, ``unknown_is_free``, ``rules`` of a map; ``robot``, ``clearance``, ``resolution``,
+        and what :func:`evenroad.load_robot` takes, of a scene.
 
     Returns
     -------

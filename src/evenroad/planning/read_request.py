@@ -37,7 +37,7 @@ from evenroad.robot.variants import with_group
 if TYPE_CHECKING:
     from evenroad.world import GridMap
 
-OF_MAP = ("radius", "clearance", "unknown_is_free")
+OF_MAP = ("radius", "clearance", "unknown_is_free", "rules")
 OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
 
 
@@ -58,7 +58,8 @@ def read_request(
             # Imported late: a plan of an arm reads no image.
             from evenroad.world import load_map
 
-            world = load_map(world, unknown_is_free=of_world.pop("unknown_is_free", False))
+            reading_of_map = {name: of_world.pop(name) for name in ("unknown_is_free", "rules") if name in of_world}
+            world = load_map(world, **reading_of_map)
         elif "robot" not in of_world:
             raise InvalidValue(
                 f"{os.fspath(world)!r} needs radius=, of a disk on this map, or robot=, the arm in this scene"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
@@ -24,6 +25,7 @@ class CellGrid:
     occupied: Bools
     frame: MapFrame
     unknown: Bools
+    notes: tuple[str, ...]
 
     def __init__(
         self,
@@ -32,6 +34,7 @@ class CellGrid:
         unknown: Bools | None = None,
         *,
         resolution: float | None = None,
+        notes: Iterable[str] = (),
     ) -> None:
         occupied = _as_cells("occupied", occupied)
         rows, cols = occupied.shape
@@ -48,7 +51,7 @@ class CellGrid:
                 f"frame must be a MapFrame of {rows} rows and {cols} columns, as occupied has, got {shown(frame)}; the"
                 " side of a cell is resolution=0.05"
             )
-        set_fields(self, occupied=occupied, unknown=unknown, frame=frame)
+        set_fields(self, occupied=occupied, unknown=unknown, frame=frame, notes=tuple(notes))
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -146,7 +149,7 @@ class CellGrid:
         x, y = self.frame.to_map(np.array([[left, bottom if self.frame.y_up else top]], dtype=float))[0]
         frame = replace(self.frame, rows=bottom - top, cols=right - left, origin=(float(x), float(y)))
         inside = slice(top, bottom), slice(left, right)
-        return type(self)(self.occupied[inside], frame, self.unknown[inside])
+        return type(self)(self.occupied[inside], frame, self.unknown[inside], notes=self.notes)
 
 
 def _as_cells(name: str, value: Bools) -> Bools:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
@@ -13,6 +14,7 @@ from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_positive
 from evenroad._native.world import Components, Disk
+from evenroad.errors import distinguished
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.clearance import least_distance
@@ -26,6 +28,9 @@ _CLOSE = 1e-3
 """Largest error of a reported clearance, which is too small by it [pixels]."""
 _INTERVALS = 300_000
 """So many intervals of cells' sides are looked at to bound the length of paths: some hundredths of a second."""
+_UNKNOWN_COUNT = "unknown cells count as obstacles unless unknown_is_free=True or --unknown-is-free says otherwise"
+_ON_A_SIDE = 1e-6
+"""Distance from a side of a cell within which a point is on it [pixels]."""
 _SMALLEST_RADIUS = 1e-150
 """Smallest radius, whose square is above 0: a disk of any size touches what its centre lies on [pixels]."""
 
@@ -44,6 +49,8 @@ class GridMap(CellGrid):
         Unknown cells; `occupied` says whether they are obstacles.  Default: none.
     resolution : float, optional
         In place of `frame`: side of a cell, > 0 [m], of a map as ROS has them, y up, the origin in the lower left.
+    notes : iterable of str, optional
+        What was read otherwise than it may have been meant, a line each; `load_map` fills it.
 
     Raises
     ------
@@ -204,11 +211,10 @@ class DiskWorld(OneOrMany):
         Tiles of the map decide first; then the components of the whole map are made once, which is not quick.
         """
         first, last = as_batch("start", np.reshape(start, (1, -1)), 2)[0], as_batch("goals", goals, 2)
-        if not self.disk.may_reach(first, last):
-            return Apart(PROVED, proved=True)
-        if quickly or any(self.may_connect(start, goal) for goal in goals):
+        if self.disk.may_reach(first, last) and (quickly or any(self.may_connect(start, goal) for goal in goals)):
             return None
-        return Apart(PROVED, proved=True)
+        counted = f"; {_UNKNOWN_COUNT}" if (self.grid.unknown & self.grid.occupied).any() else ""
+        return Apart(PROVED + counted, proved=True)
 
     def least_length(self, start: Floats, goals: Floats) -> float:
         """Return a length that no path from a map point, (2,), to any goal, (g, 2), falls below, in map units.
@@ -246,16 +252,35 @@ class DiskWorld(OneOrMany):
     def explain(self, q: Floats) -> str:
         """Return, in words, how near an obstacle is to a disk at the map point `q`, (2,)."""
         centre = self._row(q)[np.newaxis]
-        distance = float(self._from_centre(centre)[0])
-        reason = "its centre lies in an obstacle or outside the map"
-        if distance > 0.0:
-            x, y = self.nearest_obstacle(centre)[0]
-            needs = f"the disk needs {self.radius:.6g}"
-            reason = f"the obstacle at ({x:.6g}, {y:.6g}) is {distance:.6g} away, {needs}"
+        pixels, distances = self.disk.nearest_obstacles(centre)
+        is_unknown = self._is_unknown(pixels[0])
+        kind = "unknown cell" if is_unknown else "obstacle"
+        if not self.grid.contains(centre)[0]:
+            reason = "its centre lies outside the map"
+        elif distances[0] == 0.0:
+            reason = f"its centre lies in an {kind}"
+        else:
+            x, y = self.grid.frame.to_map(pixels)[0]
+            # A distance is rounded, too: what is not free is never as far as it needs.
+            distance = min(float(distances[0]) * self.grid.frame.resolution, math.nextafter(self.radius, 0.0))
+            away, needs = distinguished(distance, self.radius)
+            reason = f"the {kind} at ({x:.6g}, {y:.6g}) is {away} away, the disk needs {needs}"
+        reason += f" ({_UNKNOWN_COUNT})" if is_unknown else ""
         free = self.nearest_free(centre)
         if free is None:
             return f"{reason}; no position on the map is free"
         return f"{reason}; the nearest free position is ({free[0]:.6g}, {free[1]:.6g})"
+
+    def _is_unknown(self, pixel: Floats) -> bool:
+        """Return whether all obstacles that a point of the pixel plane, (2,), lies in are unknown cells."""
+        rows, cols = self.grid.shape
+        found = []
+        for row in {math.floor(pixel[1] - _ON_A_SIDE), math.floor(pixel[1] + _ON_A_SIDE)}:
+            for column in {math.floor(pixel[0] - _ON_A_SIDE), math.floor(pixel[0] + _ON_A_SIDE)}:
+                inside = 0 <= row < rows and 0 <= column < cols
+                if not inside or self.grid.occupied[row, column]:
+                    found.append(inside and bool(self.grid.unknown[row, column]))
+        return bool(found) and all(found)
 
     def _pixels(self, q: Floats) -> Floats:
         """Return the pixel coordinates (column, row) of one map point."""
