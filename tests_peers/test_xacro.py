@@ -1,11 +1,15 @@
-"""A xacro is the URDF that it stands for."""
+"""A xacro is the URDF that it stands for, as ROS's own xacro expands it."""
+
+from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
 from evenroad.errors import BrokenFile, UnknownName
 from evenroad.robot import load_model, load_robot
+from evenroad.robot.xacro.expand import expanded
 
-pytest.importorskip("xacrodoc")
+xacro = pytest.importorskip("xacro")
 
 XACRO = """<?xml version="1.0"?>
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -92,3 +96,50 @@ def test_a_xacro_with_a_mistake_is_refused_with_the_mistake(tmp_path):
     path.write_text(XACRO.replace("${2 * reach}", "${2 * far}"))
     with pytest.raises(BrokenFile, match=r"the xacro .*arm\.xacro cannot be expanded: .*far"):
         load_model(path)
+
+
+ALIKE = {
+    "lazy properties": (
+        '<xacro:property name="b" value="${a * 2}"/><xacro:property name="a" value="1"/><x v="${b}"/>'
+        '<xacro:property name="a" value="5"/><x v="${b} ${a}"/>'
+    ),
+    "what a text stands for": "".join(
+        f'<xacro:property name="p{i}" value="{text}"/><x v="${{p{i}}} ${{p{i} * 2}}"/>'
+        for i, text in enumerate(["'5'", "5", "5.0", "true", "1_0", " 7 ", "'${1 + 1}'", "a b", "1e-9", "${[1, 2]}"])
+    ),
+    "parameters": (
+        "<xacro:property name='y' value='4'/><xacro:macro name='m' params=\"x y:=^ z:=^|7 u=${1 + 2} v:='a b' *o **p\">"
+        '<x v="${x} ${y} ${z} ${u} ${v}"><xacro:insert_block name="o"/><xacro:insert_block name="p"/></x></xacro:macro>'
+        '<xacro:m x="${pi}"><o xyz="${y}"/><p><a/><b/></p></xacro:m>'
+        '<xacro:call macro="m" x="1" y="2"><o/><p/></xacro:call>'
+    ),
+    "scopes": (
+        '<xacro:macro name="m" params=""><xacro:property name="k" value="${1 + 1}" scope="parent"/>'
+        '<xacro:property name="g" value="7" scope="global"/><xacro:property name="own" value="3"/></xacro:macro>'
+        '<xacro:macro name="n" params=""><xacro:m/><x v="${k} ${g}"/></xacro:macro>'
+        '<xacro:property name="own" value="1"/><xacro:n/><xacro:m/><x v="${k} ${g} ${own}"/>'
+    ),
+    "arguments": (
+        '<xacro:arg name="s" default="3"/><xacro:arg name="t" default="${2 * 2}"/>'
+        "<x v=\"$(arg s) ${'$(arg t)' == '4'} ${$(arg s) * 2} ${xacro.arg('t')} $(eval s + 1) $${s} $$$(arg s)\"/>"
+    ),
+    "blocks of properties": (
+        '<xacro:property name="o"><a v="${k}"/><b/></xacro:property><xacro:property name="k" value="3"/>'
+        '<xacro:property name="k" default="4"/><c><xacro:insert_block name="o"/></c>'
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", ALIKE)
+def test_a_xacro_is_expanded_as_ros_does(tmp_path, kind):
+    path = tmp_path / "a.xacro"
+    path.write_text(f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{ALIKE[kind]}</robot>')
+    xacro.init_stacks(str(path))
+    document = xacro.parse(None, str(path))
+    xacro.process_doc(document, mappings={"s": "6"})
+    ours = expanded(path, {"s": "6"} if kind == "arguments" else {}, Path, {})
+    assert as_lists(ours) == as_lists(ElementTree.fromstring(document.toxml()))
+
+
+def as_lists(element):
+    return element.tag, dict(element.attrib), [as_lists(each) for each in element]

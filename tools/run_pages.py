@@ -111,7 +111,7 @@ INSTEAD = {
     "evenroad view box-reach.json": Instead(None, "serves a page until it is stopped (extra [view])"),
     "evenroad send box-reach.json --host *": Instead(None, "needs an arm: tests_peers has one on loopback"),
     "evenroad robot duo.urdf *": Instead(None, "a robot of two arms that does not ship"),
-    "evenroad robot arm.urdf.xacro *": Instead(None, "needs the extra [xacro] and a package of ROS"),
+    "evenroad robot arm.urdf.xacro *": Instead(None, "needs a package of ROS"),
     "evenroad plan docs/data/humanoid_table.yaml *": Instead(None, "a humanoid that does not ship"),
 }
 """A command, or how it begins -> what is run in its place."""

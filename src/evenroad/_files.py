@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import stat
@@ -111,8 +112,22 @@ def not_a(wanted: str, path: str | os.PathLike[str], why: str = "") -> BrokenFil
     return BrokenFile(f"{path} is {found}, not {wanted}")
 
 
+def require_file(path: str | os.PathLike[str]) -> None:
+    """Raise OSError for what is there and no file: a pipe would be waited for, and some devices never end."""
+    mode = os.stat(path).st_mode
+    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
+        raise OSError(errno.EINVAL, "it is a device or a pipe, not a file", os.fspath(path))
+
+
+def read_bytes(path: str | os.PathLike[str]) -> bytes:
+    """Return the content of a file; OSError if it cannot be read, or is a device or a pipe."""
+    require_file(path)
+    return Path(path).read_bytes()
+
+
 def looks_like(path: str | os.PathLike[str]) -> str:
     """Return the type of a readable file by its content."""
+    require_file(path)
     with open(path, "rb") as file:
         begin = file.read(4096).lstrip()
     if not begin:
@@ -128,7 +143,7 @@ def looks_like(path: str | os.PathLike[str]) -> str:
 def read_json_file(path: str | os.PathLike[str], what: str) -> Any:
     """Return the content of a JSON file of the kind `what`; BrokenFile if it cannot be read."""
     try:
-        return json.loads(Path(path).read_text(encoding="utf-8"))
+        return json.loads(read_bytes(path).decode())
     except OSError as error:
         raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
     except json.JSONDecodeError as error:

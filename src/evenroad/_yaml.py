@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from evenroad._files import not_a
+from evenroad._files import not_a, read_bytes
 from evenroad._understood import Kind, require_understood
 from evenroad.errors import BrokenFile, InvalidValue, shown
 
@@ -30,19 +30,42 @@ def read_mapping(path: Path, what: str) -> dict[str, Any]:
     Raises BrokenFile if the file is missing, no YAML or no mapping, or any mapping in it has a key twice (``1`` and
     ``'1'`` are the same).
     """
+    document = read_yaml(path, what)
+    if not isinstance(document, dict):
+        raise not_a(f"a {what}", path, "it must consist of 'key: value' lines")
+    return {str(key): value for key, value in document.items()}
+
+
+def read_yaml(path: Path, what: str, *, tags: Mapping[str, Callable[[str, str], object]] | None = None) -> object:
+    """Return the content of a YAML file; `tags` of scalars are read by functions of the tag and the text.
+
+    Raises BrokenFile as `read_mapping`.
+    """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_bytes(path).decode()
         _require_bounded(text, path)
-        document = _document(text, path)
+        return _document(text, path, _with_tags(tags) if tags else _Loader)
     except BrokenFile:
         raise
     except OSError as error:
         raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
     except (yaml.YAMLError, ValueError, LookupError, AttributeError, RecursionError) as error:
         raise not_a(f"YAML, as a {what} is", path, _why(error)) from error
-    if not isinstance(document, dict):
-        raise not_a(f"a {what}", path, "it must consist of 'key: value' lines")
-    return {str(key): value for key, value in document.items()}
+
+
+def _with_tags(tags: Mapping[str, Callable[[str, str], object]]) -> Any:
+    """Return a loader that knows some tags, and leaves dates as texts."""
+
+    class Loader(_Loader):
+        pass
+
+    def construct(loader: Any, node: yaml.Node) -> object:
+        return tags[node.tag](node.tag, loader.construct_scalar(node))
+
+    for tag in tags:
+        Loader.add_constructor(tag, construct)
+    Loader.add_constructor("tag:yaml.org,2002:timestamp", _Loader.construct_yaml_str)
+    return Loader
 
 
 def _why(error: Exception) -> str:
@@ -85,8 +108,8 @@ def _require_bounded(text: str, path: Path) -> None:
             raise BrokenFile(f"{path} has {len(text)} characters and with its aliases written out more than {allowed}")
 
 
-def _document(text: str, path: Path) -> object:
-    loader = _Loader(text)
+def _document(text: str, path: Path, kind: Any) -> object:
+    loader = kind(text)
     try:
         root = loader.get_single_node()
         if root is None:

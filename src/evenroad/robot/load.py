@@ -27,7 +27,8 @@ from evenroad.robot.robot import Padding, Robot
 from evenroad.robot.robot_model import RobotModel
 from evenroad.robot.srdf import Srdf, read_srdf, with_moving_base
 from evenroad.robot.urdf import Urdf, read_urdf
-from evenroad.robot.urdf_xml import RobotFile, outermost
+from evenroad.robot.urdf_xml import RobotFile
+from evenroad.robot.xml_file import outermost
 
 SHAPES, CAPSULES = "shapes", "capsules"
 """`bodies` where the maker's shapes decide once capsules touch an obstacle, and where capsules alone do."""
@@ -120,7 +121,7 @@ def load_model(
     Parameters
     ----------
     source : str or path-like
-        A URDF, xacro (extra ``[xacro]``) or MJCF (extra ``[mjcf]``); or, where there is no such file, the name of a
+        A URDF, xacro or MJCF (extra ``[mjcf]``); or, where there is no such file, the name of a
         shipped robot: ``ur5``, ``arm7``; with the extra ``[robots]`` also ``panda`` and others.
     srdf : str or path-like, optional
         Its SRDF: groups, named states, pairs that need no test.  Robots by name have one of their own.

@@ -20,7 +20,8 @@ from evenroad.robot.mjcf_contacts import Contacts, contacts_of, untested_pairs
 from evenroad.robot.mjcf_equalities import name_of, with_equalities
 from evenroad.robot.planes import DEPTH, SIDE, Plane
 from evenroad.robot.urdf import Urdf, as_tree
-from evenroad.robot.urdf_xml import RobotFile, read_xml
+from evenroad.robot.urdf_xml import RobotFile
+from evenroad.robot.xml_file import read_xml
 
 _FAR = 1e6
 """Limits of prismatic joints without limits [m]."""

@@ -21,7 +21,7 @@ from evenroad.robot.pairs import TOUCHING
 from evenroad.robot.robot import pieces_of
 from evenroad.robot.robot_model import RobotModel
 from evenroad.robot.urdf import Urdf
-from evenroad.robot.urdf_xml import read_xml
+from evenroad.robot.xml_file import read_xml
 
 
 @dataclass(frozen=True)

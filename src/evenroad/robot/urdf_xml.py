@@ -8,18 +8,16 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
-from xml.etree.ElementTree import Element, TreeBuilder
-from xml.parsers import expat
+from xml.etree.ElementTree import Element
 
-from evenroad._checks import require_extra
-from evenroad._files import not_a
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.shapes import PRIMITIVES
+from evenroad.robot.xacro.expand import expanded, is_xacro
+from evenroad.robot.xml_file import read_xml
 
 _SIZES = {tag: dict(shape.dimensions) for tag, shape in PRIMITIVES.items()}
 _SHAPES = (*_SIZES, "mesh")
@@ -50,10 +48,6 @@ _IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_co
 """What collision checking does not need; much of it in dialects of its own."""
 
 
-_ARGUMENT = re.compile(r"""<[\w.-]+:arg\s[^>]*?\bname\s*=\s*["']([^"']+)|\$\(arg\s+([^)\s]+)""")
-"""Where a xacro declares or uses an argument."""
-
-
 @dataclass(frozen=True)
 class RobotFile:
     """The file of a robot, and how it is to be read.
@@ -75,7 +69,7 @@ def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
 
     Numbers are rewritten with blanks between them; of a ``<visual>`` is kept that it is there.  Raises BrokenFile if
     the file is missing, not XML or not a URDF, or an element lacks a piece; InvalidValue if an attribute does not hold
-    the numbers that it must; NotAvailable if it is a xacro and the extra for these is not installed.
+    the numbers that it must.
     """
     path, notes = file.path, list[str]()
     root = read_robot_xml(file)
@@ -115,89 +109,22 @@ def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
 
 
 def read_robot_xml(file: RobotFile) -> Element:
-    """Return the ``<robot>`` element of a URDF or xacro as it stands there; raises BrokenFile and NotAvailable as
-    `read_urdf_xml`.
-    """
+    """Return the ``<robot>`` element of a URDF or xacro as it stands there; raises BrokenFile as `read_urdf_xml`."""
     root = read_xml(file.path, "robot", "a URDF")
-    if file.path.suffix == ".xacro" or any(element.tag.startswith("xacro:") for element in root.iter()):
-        root = _expanded(file)
-    return root
-
-
-def read_xml(path: Path, what: str, kind: str, tag: str = "robot") -> Element:
-    """Return the outermost element of a file; `what` and `kind` name it in errors, each a BrokenFile."""
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
-    root = _parsed(content, path)
-    if root.tag != tag:
-        raise BrokenFile(f"{path} is not {kind}: its outermost element is <{root.tag}>, not <{tag}>")
-    return root
-
-
-def _parsed(content: bytes, path: Path) -> Element:
-    """Return the root of XML as other readers of URDFs take it: with any prefixes, and blanks around it."""
-    builder, parser = TreeBuilder(), expat.ParserCreate()
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.CharacterDataHandler = builder.data
-    try:
-        parser.Parse(content.strip(b" \t\r\n\0"), True)
-        return builder.close()
-    except (expat.ExpatError, ValueError, LookupError) as error:
-        raise _no_xml(content, path, error) from error
-
-
-def _no_xml(content: bytes, path: Path, error: Exception) -> BrokenFile:
-    """Return the error of what is no XML; a text that does not even begin as such is another kind of file."""
-    if content.lstrip(b" \t\r\n\0\xef\xbb\xbf").startswith(b"<"):
-        return BrokenFile(f"{path} is not XML: {error}")
-    return not_a("XML, as URDF, xacro, MJCF and SRDF are", path)
+    return _expanded(file) if file.path.suffix == ".xacro" or is_xacro(root) else root
 
 
 def _expanded(file: RobotFile) -> Element:
     """Return the URDF that a xacro stands for."""
-    xacrodoc = require_extra("xacrodoc", "xacro", f"{file.path} is a xacro file, which")
-    import xacro
-
-    # They keep packages and files for the whole process, those of the last robot, too.
-    xacrodoc.packages.reset()
-    xacrodoc.packages._finder.finder_funcs.insert(0, (lambda name: _package(name, file), LookupError))
-    xacro.all_includes.clear()
-    # What is included by a relative name lies beside the file that includes it.
-    xacro.init_stacks(str(file.path.resolve()))
-    try:
-        text = xacrodoc.XacroDoc.from_file(str(file.path), subargs=dict(file.arguments)).to_urdf_string()
-    except Exception as error:  # Whatever its macros raise.
-        raise BrokenFile(f"the xacro {file.path} cannot be expanded: {error}") from error
-    known = _known_arguments([file.path, *map(Path, xacro.all_includes)])
-    for name, _ in file.arguments:
-        if name not in known:
-            raise UnknownName.among(f"argument of the xacro {file.path}:", name, known)
-    return _parsed(text.encode(), file.path)
+    return expanded(file.path, dict(file.arguments), lambda name: _package(name, file), dict(file.packages))
 
 
-def _known_arguments(files: Iterable[Path]) -> set[str]:
-    """Return the arguments that some xacros declare or use."""
-    text = "".join(each.read_text(errors="replace") for each in files)
-    return {declared or used for declared, used in _ARGUMENT.findall(text)}
-
-
-def _package(name: str, file: RobotFile) -> str:
+def _package(name: str, file: RobotFile) -> Path:
     """Return the folder of a package; LookupError if there is none."""
     for folder in _package_folders(name, file):
         if folder.is_dir():
-            return str(folder)
+            return folder
     raise LookupError(name)
-
-
-def outermost(path: Path) -> str:
-    """Return the tag of the outermost element of an XML; an empty text of what is none."""
-    try:
-        return _parsed(path.read_bytes(), path).tag
-    except (OSError, BrokenFile):
-        return ""
 
 
 def drawn_only(root: Element) -> tuple[str, ...]:
@@ -338,8 +265,8 @@ def _package_folders(package: str, file: RobotFile) -> Iterator[Path]:
 def _said_name(manifest: Path) -> str:
     """Return the name that a ``package.xml`` gives its package, if it is there."""
     try:
-        return (_parsed(manifest.read_bytes(), manifest).findtext("name") or "").strip()
-    except (OSError, BrokenFile):
+        return (read_xml(manifest, "package", "a package", "package").findtext("name") or "").strip()
+    except BrokenFile:
         return ""
 
 

@@ -1,0 +1,53 @@
+"""Reading an XML file of other people: a robot, an SRDF, an MJCF, a package."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree.ElementTree import Element, TreeBuilder
+from xml.parsers import expat
+
+from evenroad._files import not_a, read_bytes
+from evenroad.errors import BrokenFile
+
+
+def read_xml(path: Path, what: str, kind: str, tag: str | None = "robot") -> Element:
+    """Return the outermost element of a file, which is a `tag`, or any where that is None.
+
+    `what` and `kind` name the file in errors, each a BrokenFile.
+    """
+    try:
+        content = read_bytes(path)
+    except OSError as error:
+        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+    root = _parsed(content, path)
+    if tag is not None and root.tag != tag:
+        raise BrokenFile(f"{path} is not {kind}: its outermost element is <{root.tag}>, not <{tag}>")
+    return root
+
+
+def _parsed(content: bytes, path: Path) -> Element:
+    """Return the root of XML as other readers of URDFs take it: with any prefixes, and blanks around it."""
+    builder, parser = TreeBuilder(), expat.ParserCreate()
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.data
+    try:
+        parser.Parse(content.strip(b" \t\r\n\0"), True)
+        return builder.close()
+    except (expat.ExpatError, ValueError, LookupError) as error:
+        raise _no_xml(content, path, error) from error
+
+
+def _no_xml(content: bytes, path: Path, error: Exception) -> BrokenFile:
+    """Return the error of what is no XML; a text that does not even begin as such is another kind of file."""
+    if content.lstrip(b" \t\r\n\0\xef\xbb\xbf").startswith(b"<"):
+        return BrokenFile(f"{path} is not XML: {error}")
+    return not_a("XML, as URDF, xacro, MJCF and SRDF are", path)
+
+
+def outermost(path: Path) -> str:
+    """Return the tag of the outermost element of an XML; an empty text of what is none."""
+    try:
+        return _parsed(read_bytes(path), path).tag
+    except (OSError, BrokenFile):
+        return ""
