@@ -9,8 +9,9 @@ import time
 import numpy as np
 import pytest
 
+from evenroad import ArmWorld, load_robot
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.trajectory import Limits, make_trajectory, save_trajectory
+from evenroad.trajectory import Limits, make_trajectory, proved_in, save_trajectory
 from evenroad.trajectory.send import send_trajectory
 from tests_peers.fake_ur import SERVO, STOP_SCRIPT, STOP_SERVO, ArmElsewhere
 
@@ -23,7 +24,8 @@ START = [0.1, -1.5, 0.3, -1.2, 0.2, 0.0]
 @pytest.fixture(scope="module")
 def trajectory():
     path = [START, np.add(START, [0.1, 0.1, -0.1, 0.05, 0.0, 0.1])]
-    return make_trajectory(path, Limits((1.0,) * 6, (4.0,) * 6))
+    made = make_trajectory(path, Limits((1.0,) * 6, (4.0,) * 6), names=load_robot("ur5").group)
+    return proved_in(made, ArmWorld("ur5", "empty"))
 
 
 @pytest.fixture
@@ -62,7 +64,7 @@ def test_the_arm_is_driven_through_every_state_and_stopped(trajectory, arm):
 @pytest.mark.parametrize(
     ("options", "asked", "said"),
     [
-        ({"q": np.add(START, [0, 0, 0.02, 0, 0, 0])}, {}, "not at the start: joint_3"),
+        ({"q": np.add(START, [0, 0, 0.02, 0, 0, 0])}, {}, "not at the start: elbow_joint"),
         ({"model": "UR10"}, {}, "is a UR10, not a UR5"),
         ({"safety": 3}, {}, "not ready"),
         ({"mode": 5}, {}, "not ready"),
@@ -100,10 +102,12 @@ def test_a_connection_that_is_lost_at_any_byte_is_one_line_and_ends(trajectory, 
 
 
 def test_ctrl_c_stops_the_arm(arm, tmp_path):
-    slow = make_trajectory([START, np.add(START, 0.5)], Limits((0.02,) * 6, (1.0,) * 6))
+    names = load_robot("ur5").group
+    slow = make_trajectory([START, np.add(START, 0.5)], Limits((0.02,) * 6, (1.0,) * 6), names=names)
     save_trajectory(tmp_path / "t.json", slow)
     there = arm()
     command = [sys.executable, "-m", "evenroad", "send", str(tmp_path / "t.json"), "--host", HOST]
+    command += ["--robot", "ur5", "--scene", "empty"]
     process = subprocess.Popen(
         [*command, "--model", "UR5", "--go"], stderr=subprocess.PIPE, env=os.environ, start_new_session=True
     )

@@ -1,12 +1,38 @@
-"""Seals of cached files: a digest before the content, by which damage is detected before use."""
+"""Seals of files: a digest, by which damage is detected before use, before what is cached and within JSON records."""
 
 from __future__ import annotations
 
 import hashlib
+import json
 import logging
 import os
+from collections.abc import Mapping
+from typing import Any
+
+from evenroad.errors import BrokenFile
 
 _MARK = b"evenroad-kept:"
+_DIGEST = "sha256"
+"""Key of the digest in a record."""
+
+
+def with_digest(record: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a record of plain JSON values with the digest of all of them."""
+    return {**record, _DIGEST: _digest_of(record)}
+
+
+def has_digest(record: Mapping[str, Any], path: str | os.PathLike[str]) -> bool:
+    """Return whether the record of a file has a digest; BrokenFile if that is of other values."""
+    if _DIGEST not in record:
+        return False
+    if record[_DIGEST] != _digest_of(record):
+        raise BrokenFile(f"{path} is not as it was written: its {_DIGEST} is of other values")
+    return True
+
+
+def _digest_of(record: Mapping[str, Any]) -> str:
+    values = {key: value for key, value in record.items() if key != _DIGEST}
+    return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 
 
 def sealed(content: bytes, name: str) -> bytes:

@@ -19,6 +19,7 @@ from evenroad import __version__
 from evenroad._arrays import set_fields
 from evenroad._checks import as_file, require_known
 from evenroad._files import atomic_write, read_json_file
+from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points import Origin
 from evenroad.roadmap import PlanResult, Status
@@ -109,7 +110,7 @@ def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
     if suffix == ".png":
         result.plot(path)
     elif suffix == ".json":
-        save_json(path, plan_record(result, {}))
+        save_json(path, with_digest(plan_record(result, {})))
     elif result.path is None:
         raise InvalidValue(f"there is no path that could be saved: {result.message}")
     else:
@@ -134,7 +135,11 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
     Raises
     ------
     BrokenFile
-        If the file is missing, or is no such record.
+        If the file is missing, is no such record, or has the digest of another one.
+
+    Notes
+    -----
+    What it says of a proof holds for the world in which it was planned; nothing is proved anew.
 
     Examples
     --------
@@ -148,9 +153,41 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
     ...     er.io.load_plan(f"{folder}/plan.json")[0].solved
     True
     """
-    record = read_json_file(as_file("a plan", path), "plan")
+    return plan_of(read_json_file(as_file("a plan", path), "plan"), path)
+
+
+def plan_of(record: Any, path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]:
+    """Return a plan from the record of its file, as :func:`load_plan` does.
+
+    Parameters
+    ----------
+    record : object
+        What the JSON of the file holds.
+    path : str or path-like
+        The file, for errors.
+
+    Returns
+    -------
+    tuple of PlanResult and dict
+
+    Raises
+    ------
+    BrokenFile
+        As :func:`load_plan`.
+
+    Examples
+    --------
+    >>> import json
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> result = er.plan(er.GridMap(np.zeros((20, 30), dtype=bool)).world(2), (3, 3), (27, 17))
+    >>> record = json.loads(json.dumps(er.io.plan_record(result, {"seed": 0})))
+    >>> er.io.plan_of(record, "plan.json")[1]["seed"]
+    0
+    """
     if not isinstance(record, dict) or not {"status", "query", "path"} <= set(record):
         raise BrokenFile(f"{path} is not a plan of evenroad: it must have status, query, path and more")
+    has_digest(record, path)
     try:
         query = dict(record["query"])
         start, goals = (np.array(query[name], dtype=np.float64) for name in ("start", "goals"))

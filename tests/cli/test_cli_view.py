@@ -44,6 +44,9 @@ def test_a_damaged_plan_is_one_line(run, refuse, tmp_path):
     run(*REACH)
     file = tmp_path / "box-reach.json"
     whole = json.loads(file.read_text())
+    file.write_text(json.dumps(whole | {"seconds": 9.0}))
+    assert "not as it was written" in refuse("view", "box-reach.json", "--gif", "out.gif")
+    del whole["sha256"]
     for change, said in (
         ({"query": {"scene": None}}, "names neither a robot and its scene nor a map"),
         ({"query": {"map": 5}}, "damaged plan: of its map"),

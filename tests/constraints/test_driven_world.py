@@ -9,10 +9,10 @@ import pytest
 import evenroad as er
 from evenroad.cli import main
 from evenroad.constraints.driven_world import driven_world
-from evenroad.errors import EvenroadError, InvalidValue
+from evenroad.errors import EvenroadError, InvalidValue, NotAvailable
 from evenroad.robot import with_group
 from evenroad.task import MoveTo
-from evenroad.trajectory import Limits, arm_trajectory, load_trajectory
+from evenroad.trajectory import Limits, arm_trajectory, load_trajectory, make_trajectory, proved_in
 
 PLATFORM = """
 <robot name="platform">
@@ -130,7 +130,15 @@ def test_a_task_from_its_file_drives_such_a_base_within_limits_of_a_file(tmp_pat
     (tmp_path / "limits.yaml").write_text("joint_limits: {" + ", ".join(f"{name}: {limit}" for name in BASE) + "}")
     command = ["run", "task.yaml", "--group", "base", "-o", "out.json"]
     assert main([*command, "--limits", "limits.yaml"]) == 0
-    assert sideways(load_trajectory("out.json").positions) < 1e-6
+    made = load_trajectory("out.json")
+    assert sideways(made.positions) < 1e-6
+    scene = er.Scene(limits={"base/x": (-1.0, 4.0), "base/y": (-2.0, 2.0), "base/theta": (-3.2, 3.2)})
+    world = er.ArmWorld(er.load_robot("platform.urdf", group="base"), scene)
+    assert proved_in(made, world, DRIVE).proof == "certified"
+    askew = make_trajectory([[0, 0.8, 0], [3, 0.4, 0]], made.limits, names=made.names)
+    assert proved_in(askew, world).proof == "certified"
+    with pytest.raises(NotAvailable, match="not proved free"):
+        proved_in(askew, world, DRIVE)
     capsys.readouterr()
     assert main(command) == 2
     assert "has no velocity limit" in capsys.readouterr().err

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 import yaml
 
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName
-from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
+import evenroad as er
+from evenroad.errors import BrokenFile, InvalidValue, NotAvailable, UnknownName
+from evenroad.trajectory import Limits, load_trajectory, make_trajectory, proved_in, save_trajectory
 from evenroad.trajectory.files import save_trajectories
 from evenroad.trajectory.send import send_trajectory
 from tests.refused import refused
@@ -27,8 +28,20 @@ def test_json_is_read_back_bit_for_bit(trajectory, tmp_path):
     for name in ("times", "positions", "velocities", "accelerations", "waypoints"):
         np.testing.assert_array_equal(getattr(read, name), getattr(trajectory, name))
     assert read.controller == (*trajectory.names, *trajectory.held)
-    for name in ("names", "held", "limits", "deviation", "stops", "proof", "duration", "radii", "highest"):
+    for name in ("names", "held", "limits", "deviation", "stops", "duration", "radii", "highest", "source"):
         assert getattr(read, name) == getattr(trajectory, name)
+
+
+def test_what_was_read_is_unchecked_until_a_world_has_proved_it(tmp_path):
+    world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+    made = er.plan(world, (3, 3), (27, 17)).trajectory(speed=5.0)
+    made.save(tmp_path / "t.json")
+    read = load_trajectory(tmp_path / "t.json")
+    assert (made.proof, read.proof) == ("exact", "unchecked")
+    assert proved_in(read, world).proof == "exact"
+    wall = np.zeros((20, 30), dtype=bool)
+    wall[:, 15] = True
+    refused(NotAvailable, "not proved free at .* s", proved_in, read, er.GridMap(wall).world(2))
 
 
 def test_csv_has_all_joints_with_their_units(trajectory, tmp_path):
@@ -107,9 +120,9 @@ def test_an_unknown_format_is_named(trajectory, tmp_path, name):
 
 @pytest.mark.parametrize(("change", "said"), [
     ({"format": "other"}, "format"), ({"times": [0.0]}, "belong together"), ({"joint_names": ["a"]}, "waypoints"),
-    ({"positions": None}, "damaged"), ({"velocities": [[1e9] * 5]}, "belong together"),
-    ({"limits": {"velocity": [0.1] * 5, "acceleration": [1.0] * 5}}, "faster"),
-    ({"limits": 3}, "damaged"), ({"waypoints": [[0.0] * 4] * 3}, "waypoints"), ({"radii": [0.1] * 9}, "radii"),
+    ({"positions": None}, "belong together"), ({"velocities": [[1e9] * 5]}, "belong together"),
+    ({"limits": {"velocity": [0.1] * 5, "acceleration": [1.0] * 5}}, "velocity of"),
+    ({"limits": 3}, "mapping"), ({"waypoints": [[0.0] * 4] * 3}, "waypoints"), ({"radii": [0.1] * 9}, "radii"),
     ({"held": {"tool": float("nan")}}, "held"), ({"held": {NAMES[0]: 0.0}}, "named once"),
     (lambda record: record["times"].__setitem__(3, record["times"][2]), "grow"),
     # Sent one a cycle, its last states would be driven far faster than they say.
@@ -120,6 +133,9 @@ def test_a_damaged_file_is_named(trajectory, tmp_path, change, said):
     save_trajectory(file, trajectory)
     record = json.loads(file.read_text())
     change(record) if callable(change) else record.update(change)
+    file.write_text(json.dumps(record))
+    refused(BrokenFile, said if said == "format" else "not as it was written", load_trajectory, file)
+    del record["sha256"]
     file.write_text(json.dumps(record))
     refused(BrokenFile, said, load_trajectory, file)
 
@@ -134,5 +150,5 @@ def test_what_is_no_trajectory_is_named(tmp_path, text):
 
 def test_sending_asks_how_fast_the_states_are_not_what_they_say():
     made = make_trajectory([[0.0] * 6, [1.0] * 6], Limits((2.0,) * 6, (4.0,) * 6))
-    quiet = replace(made, velocities=np.zeros_like(made.velocities))
+    quiet = replace(made, velocities=np.zeros_like(made.velocities), proof="certified")
     refused(InvalidValue, "faster than", send_trajectory, quiet, "127.0.0.1", model="UR5", fastest=0.5)

@@ -7,10 +7,12 @@ import multiprocessing
 import queue
 import threading
 import types
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+import evenroad as er
 from evenroad.cli import main
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory import Limits, make_trajectory, save_trajectory, send
@@ -120,7 +122,10 @@ def trajectory(away=0.02):
 
 def sent(moves=None, **options):
     moves = trajectory() if moves is None else moves
-    return send_trajectory(moves, "arm", **({"model": "UR5", "fastest": 1.0, "go": True} | options))
+    # What an arm does is the question here, not what it touches.
+    return send_trajectory(
+        replace(moves, proof="certified"), "arm", **({"model": "UR5", "fastest": 1.0, "go": True} | options)
+    )
 
 
 def stopped(arm):
@@ -214,9 +219,18 @@ def test_a_connection_that_is_lost_ends_it_and_stop_is_tried(there):
     assert stopped(arm)
 
 
+@pytest.mark.parametrize("go", [False, True])
+def test_what_nobody_has_checked_in_a_world_is_not_sent(there, go):
+    arm = there()
+    refused(InvalidValue, "nobody has checked", send_trajectory, trajectory(), "arm", model="UR5", fastest=1.0, go=go)
+    assert arm.calls == []
+
+
 def test_the_command_dry_runs_refuses_and_moves(there, tmp_path, capsys):
-    save_trajectory(tmp_path / "t.json", trajectory())
-    line = ["send", str(tmp_path / "t.json"), "--host", "arm", "--model", "UR5"]
+    group = er.load_robot("ur5").group
+    moves = make_trajectory([START, np.add(START, 0.02)], LIMITS, names=group)
+    save_trajectory(tmp_path / "t.json", moves)
+    line = ["send", str(tmp_path / "t.json"), "--robot", "ur5", "--scene", "empty", "--host", "arm", "--model", "UR5"]
     arm = there()
     assert main(line) == 0
     assert "dry run" in capsys.readouterr().out

@@ -164,7 +164,7 @@ class RobotOptions:
             "padding": self._padding(),
         }
 
-    def model(self, source: str) -> RobotModel:
+    def read_robot(self, source: str) -> RobotModel:
         """Return a robot and how it was made."""
         from evenroad.robot.load import padded_model
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from evenroad.cli.plan import PlanArm, wants_points
 from evenroad.cli.plan_parts import (
+    KEPT,
     chosen_budget,
     chosen_planner,
     common_query,
@@ -74,14 +75,14 @@ def plan_arm(plan: PlanArm) -> int:
     else:
         found = solve(request, by, options)
     result, meshes = finished(request, found, certified=plan.certified)
-    more_rows, trajectory = trajectory_rows(plan, request, result, constraints, make)
     record = plan_record(result, _options(plan, request, result) | common_query(plan)) | {
         "no_body": [] if request.model is None else list(request.model.bodiless),
         "drawn_only": [] if request.model is None else list(request.model.drawn_only),
-        "trajectory": trajectory,
         "made_of": made_of(world, robot=plan.robot, scene=str(plan.world)),
         "meshes": None if meshes is None else asdict(meshes),
     }
+    source = {"plan": {name: record[name] for name in ("query", "made_of")}}
+    more_rows, record["trajectory"] = trajectory_rows(plan, request, result, constraints, make, source)
     rows = [*_rows(request), *([] if meshes is None else [("second check", str(meshes))]), *more_rows]
 
     def draw(file: Path) -> None:
@@ -110,6 +111,8 @@ def _options(plan: PlanArm, request: Request, result: PlanResult) -> dict[str, A
         "goal_poses": request.given.records(world, None if result.path is None else result.path[-1]),
         "resolution": world.resolution,
         "clearance": world.clearance,
+        **{name: getattr(plan, name) for name in KEPT},
+        "tip": request.tip,
     }
 
 

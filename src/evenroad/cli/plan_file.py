@@ -6,16 +6,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from evenroad._arrays import set_fields
+from evenroad._arrays import Floats, set_fields
 from evenroad._files import read_json_file
-from evenroad.cli.plan_parts import made_of
+from evenroad._seal import has_digest
+from evenroad.cli.plan import PlanArm
+from evenroad.cli.plan_parts import KEPT, made_of
 from evenroad.cli.roadmap import load_arm_roadmap
 from evenroad.errors import BrokenFile, InvalidValue
-from evenroad.io import load_plan
+from evenroad.io import plan_of
 from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Reading, Request
 from evenroad.roadmap import PlanResult
 from evenroad.robot import load_scene
+from evenroad.robot.constraint import Constraint, with_tip
 from evenroad.robot_roadmap.static_scene import joined_scenes
 from evenroad.trajectory.files import trajectory_of
 from evenroad.trajectory.trajectory import Trajectory
@@ -42,12 +45,19 @@ _MAP = {
 
 @dataclass(frozen=True)
 class PlanFile:
-    """A plan with its request, its times if it has any, and the names of what changed in its world since."""
+    """A plan with its request, its times if it has any, and what else its file says.
+
+    `changed` are the names of what changed in its world since; `whole` says whether the file is as it was written, and
+    tells what it was made of; `stops` whether the arm stops at points on the way.
+    """
 
     request: Request
     result: PlanResult
     trajectory: Trajectory | None = None
     changed: tuple[str, ...] = ()
+    whole: bool = False
+    constraints: Constraint | None = None
+    stops: bool = False
 
 
 def read_plan(file: Path, robot: str | None = None, options: dict[str, Any] | None = None) -> PlanFile:
@@ -55,7 +65,12 @@ def read_plan(file: Path, robot: str | None = None, options: dict[str, Any] | No
 
     Raises BrokenFile if it is damaged, and InvalidValue if it names no robot and scene, and no map.
     """
-    result, query = load_plan(file)
+    return plan_file_of(read_json_file(file, "plan"), file, robot, options)
+
+
+def plan_file_of(record: Any, file: Path, robot: str | None = None, options: dict[str, Any] | None = None) -> PlanFile:
+    """Return the plan of a record of a file; errors as :func:`read_plan`."""
+    result, query = plan_of(record, file)
     if "map" in query:
         if not all(isinstance(query.get(name), kind) for name, kind in _MAP.items()):
             raise BrokenFile(f"{file} is a damaged plan: of its map, radius, clearance or unknown cells")
@@ -63,26 +78,41 @@ def read_plan(file: Path, robot: str | None = None, options: dict[str, Any] | No
         world: Any = grid.world(query["robot_radius"], clearance=query["clearance"])
         request = Request(world, result.start, result.goals)
     else:
-        request = _of_arm(file, result, query, robot, dict(options or {}))
+        request = request_of(query, file, result.start, result.goals, robot, options)
     set_fields(result, world=request.world)
-    record = read_json_file(file, "plan")
-    kept, now = record.get("made_of"), made_of(request.world)
-    before = {name: each.get("sha256") for name, each in kept.items()} if _is_record(kept) else {}
-    changed = tuple(name for name, each in now.items() if before.get(name, each["sha256"]) != each["sha256"])
+    changed = changed_since(record.get("made_of"), request.world)
     times = record.get("trajectory")
     has_states = isinstance(times, dict) and times.get("states") is not None
-    return PlanFile(request, result, trajectory_of(times["states"], file) if has_states else None, changed)
+    trajectory = trajectory_of(times["states"], file) if has_states else None
+    whole = has_digest(record, file) and changed is not None
+    return PlanFile(
+        request, result, trajectory, changed or (), whole, constraints_in(query, file), bool(query.get("via"))
+    )
 
 
-def _is_record(kept: Any) -> bool:
-    """Return whether a plan says what it was made in; those of earlier versions do not."""
-    return isinstance(kept, dict) and all(isinstance(each, dict) for each in kept.values())
+def changed_since(kept: Any, world: Any) -> tuple[str, ...] | None:
+    """Return the names of what is another than when a plan was made; None for plans that do not say what it was."""
+    if not isinstance(kept, dict) or not all(isinstance(each, dict) for each in kept.values()):
+        return None
+    now = made_of(world)
+    if not set(now) <= set(kept):
+        return None
+    return tuple(name for name, each in now.items() if kept[name].get("sha256") != each["sha256"])
 
 
-def _of_arm(file: Path, result: PlanResult, query: dict[str, Any], robot: Any, options: dict[str, Any]) -> Request:
-    robot = robot or query.get("robot")
+def request_of(
+    query: dict[str, Any],
+    file: Path,
+    start: Floats,
+    goals: Floats,
+    robot: str | None = None,
+    options: dict[str, Any] | None = None,
+) -> Request:
+    """Return the request of an arm's plan from its query, with this start, (dim,), and these goals, (g, dim)."""
+    options = dict(options or {})
+    arm: Any = robot or query.get("robot")
     kept = query.get("roadmap")
-    if not isinstance(robot or kept, str) or not isinstance(query.get("scene"), str):
+    if not isinstance(arm or kept, str) or not isinstance(query.get("scene"), str):
         raise InvalidValue(f"{file} names neither a robot and its scene nor a map: evenroad plan writes such plans")
     _require_sound(file, query)
     for name in FILES:
@@ -93,9 +123,24 @@ def _of_arm(file: Path, result: PlanResult, query: dict[str, Any], robot: Any, o
     if kept is not None:
         roadmap = load_arm_roadmap(kept)
         scene = joined_scenes(roadmap.scene, scene)
-        robot, options = (roadmap.robot, {}) if robot is None else (robot, options)
+        arm, options = (roadmap.robot, {}) if arm is None else (arm, options)
     apart = {name: query[name] for name in ("resolution", "clearance") if isinstance(query.get(name), float | int)}
-    return arm_request(robot, scene, result.start, list(result.goals), Reading(held=query["held"]), **apart, **options)
+    return arm_request(arm, scene, start, list(goals), Reading(held=query["held"]), **apart, **options)
+
+
+def constraints_in(query: dict[str, Any], file: Path) -> Constraint | None:
+    """Return what a plan keeps on its way, by its query; plans of earlier versions do not say it."""
+    given = {name: query[name] for name in KEPT if name in query}
+    if not given:
+        return None
+    sound = all(isinstance(value, KEPT[name]) for name, value in given.items())
+    words = [*given.get("via", ()), *given.get("constraint", ())] if sound else []
+    if not sound or not all(isinstance(each, list) and all(isinstance(word, str) for word in each) for each in words):
+        raise BrokenFile(f"{file} is a damaged plan: of what its path keeps")
+    # Imported late: most plans have no constraints.
+    from evenroad.cli.plan_constraints import given_constraints
+
+    return with_tip(given_constraints(PlanArm(world=file, start=(), **given)), given.get("tip", ""))
 
 
 def _require_sound(file: Path, query: dict[str, Any]) -> None:

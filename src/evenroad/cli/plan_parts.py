@@ -8,6 +8,7 @@ from typing import Any
 
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
+from evenroad._seal import with_digest
 from evenroad._terminal import print_table
 from evenroad.cli.plan import PlanOptions, wants_points
 from evenroad.cli.sampler import chosen_rule, chosen_sampler, draw_points, require_seed
@@ -27,6 +28,19 @@ PROOFS = {
     "certified": "certified: the robot's {} touch nothing anywhere along the path",
     "resolution": "resolution: motions are free at states close together; what lies between them is not seen",
 }
+
+
+KEPT = {
+    "via": list,
+    "constraint": list,
+    "straight": str | None,
+    "away": str | None,
+    "upright": float | int | None,
+    "upright_axis": str | None,
+    "tip": str,
+    "deg": bool,
+}
+"""Options of what a path keeps on its way, as a plan records them, and their types there."""
 
 
 def chosen_planner(plan: PlanOptions, request: Request, **of_prm: Any) -> Planner:
@@ -99,7 +113,7 @@ def finish(
 ) -> int:
     """Write record and path, print, draw the picture; return 0 when solved, else 1."""
     before = {path for path in files.values() if path.exists()}
-    save_json(files["json"], record)
+    save_json(files["json"], with_digest(record))
     if "csv" in files:
         # The path of an earlier run, or one in collision, must not pass for this one.
         files["csv"].unlink(missing_ok=True)

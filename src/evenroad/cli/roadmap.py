@@ -61,7 +61,7 @@ class MakeRoadmap(RobotOptions):
             raise InvalidValue(f"--out {out} would overwrite one of the files that it is made from")
         require_writable_folder(out)
         cell = Scene(name="nothing") if self.cell is None else load_scene(self.cell)
-        model = self.model(self.robot)
+        model = self.read_robot(self.robot)
         began = time.perf_counter()
         with progress_shown("roadmap") as shown:
             world = ArmWorld(model.robot, cell, resolution=self.resolution, clearance=self.clearance)
@@ -121,5 +121,5 @@ def kept_roadmap(plan: PlanArm) -> ArmRoadmap:
                 raise InvalidValue(f"--{option.name.replace('_', '-')} goes with --robot; the roadmap knows its arm")
     roadmap = load_arm_roadmap(plan.roadmap)
     if plan.robot is not None:
-        require_same_robot(roadmap.robot, roadmap.scene, plan.model(plan.robot).robot)
+        require_same_robot(roadmap.robot, roadmap.scene, plan.read_robot(plan.robot).robot)
     return roadmap

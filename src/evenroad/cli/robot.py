@@ -49,7 +49,7 @@ class Robot(RobotOptions):
         """Load, measure, print; return 0."""
         if self.write_srdf is not None:
             require_writable_folder(self.write_srdf)
-        model = self.model(self.robot)
+        model = self.read_robot(self.robot)
         scene = Scene((), name="empty space") if self.scene is None else load_scene(self.scene)
         # Without a path, contacts near start and goal are not allowed.
         scene = replace(scene, near_ends=frozenset())

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
-from evenroad.errors import InvalidValue
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.robot import ArmWorld, Scene, in_scene
 from evenroad.robot.given import as_scene
+
+if TYPE_CHECKING:
+    from evenroad.task import TaskResult
+    from evenroad.trajectory import Trajectory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,8 +49,6 @@ class RunTask(RobotOptions):
 
     def run(self) -> int:
         """Plan, write, report; return 0 if all steps can be done, else 1."""
-        from evenroad.task.task_file import load_task
-        from evenroad.trajectory import limits_of
         from evenroad.trajectory.files import format_of, save_trajectories
 
         require_positive("speed", self.speed, at_most=1.0)
@@ -55,23 +57,69 @@ class RunTask(RobotOptions):
             if file.resolve() in {each.resolve() for each in (self.task, self.limits) if each is not None}:
                 raise InvalidValue(f"--out {file} would overwrite what is read")
             require_writable_folder(file)
-        said = load_task(self.task)
-        source = said.robot if self.robot is None else self.robot
-        if source is None:
-            raise InvalidValue(f"{self.task} names no robot: give --robot")
-        scene = as_scene(said.scene if self.scene is None else self.scene) if said.scene or self.scene else Scene()
-        world = ArmWorld(in_scene(self.model(source).robot, scene), scene)
-        done = said.task.plan(world, said.start, seconds=self.time, rng=self.seed)
+        world, done = self.planned()
         for file in self.out:
             # The trajectory of an earlier run must not pass for this one.
             file.unlink(missing_ok=True)
         rows = [("status", f"{done.status}: {done.message}"), ("time", f"{1e3 * done.timings['task']:.0f} ms")]
         if done.solved:
-            trajectory = done.trajectory(speed=self.speed, limits=limits_of(world.robot, self.limits))
-            save_trajectories(self.out, trajectory)
+            trajectory = self.timed(world, done)
+            save_trajectories(self.out, replace(trajectory, source={"task": self._record()}))
             rows.append(
                 ("trajectory", f"{trajectory.duration:.3f} s, {len(trajectory.times)} states, {trajectory.proof}")
             )
             rows += [("files", ", ".join(map(str, self.out)))] if self.out else []
         print_table(rows)
         return 0 if done.solved else 1
+
+    def planned(self) -> tuple[ArmWorld, TaskResult]:
+        """Return the world and the plan of the task: the same for the same options."""
+        from evenroad.task.task_file import load_task
+
+        said = load_task(self.task)
+        source = said.robot if self.robot is None else self.robot
+        if source is None:
+            raise InvalidValue(f"{self.task} names no robot: give --robot")
+        scene = as_scene(said.scene if self.scene is None else self.scene) if said.scene or self.scene else Scene()
+        world = ArmWorld(in_scene(self.read_robot(source).robot, scene), scene)
+        return world, said.task.plan(world, said.start, seconds=self.time, rng=self.seed)
+
+    def timed(self, world: ArmWorld, done: TaskResult) -> Trajectory:
+        """Return the trajectory of a task that is solved."""
+        from evenroad.trajectory import limits_of
+
+        return done.trajectory(speed=self.speed, limits=limits_of(world.robot, self.limits))
+
+    def _record(self) -> dict[str, Any]:
+        """Return the options as plain values, of which `run_task_of` makes them again."""
+        values = {each.name: getattr(self, each.name) for each in fields(self) if each.name != "out"}
+        return {name: str(value) if isinstance(value, Path) else value for name, value in values.items()}
+
+
+def run_task_of(record: Any, file: Path) -> RunTask:
+    """Return the options of the record in a trajectory's file; BrokenFile where they are none."""
+    sound = isinstance(record, dict) and {*record} == {*_FIELDS}
+    if not sound or not all(isinstance(record[name], kind) for name, kind in _FIELDS.items()):
+        raise BrokenFile(f"{file} is a damaged trajectory: of the task that it was made for")
+    texts = {name: tuple(map(str, record[name])) for name, kind in _FIELDS.items() if kind is list}
+    paths = {name: Path(record[name]) for name in ("task", "limits", "srdf", "bodies") if record[name] is not None}
+    return RunTask(**{**record, **paths, **texts})
+
+
+_FIELDS: dict[str, Any] = {
+    "task": str,
+    "robot": str | None,
+    "scene": str | None,
+    "speed": float | int,
+    "limits": str | None,
+    "time": float | int | None,
+    "seed": int,
+    "srdf": str | None,
+    "group": list,
+    "bodies": str | None,
+    "use_visuals": bool,
+    "package": list,
+    "xacro": list,
+    "padding": list,
+}
+"""Options of a task in the file of its trajectory, and their types there."""

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from evenroad._checks import require_positive
 from evenroad._files import read_json_file
 from evenroad._terminal import print_table, progress_shown
 from evenroad.cli.options import Positional
-from evenroad.cli.plan_file import PlanFile, read_plan
-from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.trajectory import Trajectory, arm_trajectory, limits_of, load_trajectory
+from evenroad.cli.plan import RobotOptions
+from evenroad.cli.sent import sent_plan, sent_trajectory
+from evenroad.errors import InvalidValue
+from evenroad.trajectory import Trajectory
 from evenroad.trajectory.send import checked_states, send_trajectory
 
 
 @dataclass(frozen=True, kw_only=True)
-class Send:
+class Send(RobotOptions):
     """Send a plan or a trajectory to a UR arm, state by state; nothing moves without --go.
+
+    What is sent is proved anew: in the robot and scene that the file names, which must be as they were, the states keep
+    limits and constraints and touch nothing.  A damaged file is refused.
 
     Without --host there is no arm: the states are checked as they would be sent.  With --host a plan is refused if the
     arm is another model, not ready or not at the start, or if the plan is faster than allowed.  Ctrl-C stops the arm;
@@ -29,6 +33,11 @@ class Send:
     plan: Positional[Path]
     """A plan of evenroad plan --robot, or a trajectory of its --trajectory (.json).
     A plan without times, or too fast, is timed for --fastest."""
+    robot: str | None = None
+    """With a trajectory that does not say where it was planned: a URDF, xacro or MJCF file, or a name.  Goes with
+    --scene."""
+    scene: str | None = None
+    """The scene in which such a trajectory is proved: a name or a file."""
     host: str | None = None
     """Address of the controller.  Default: no arm."""
     model: str | None = None
@@ -78,25 +87,13 @@ class Send:
         return 0
 
     def _timed(self) -> tuple[Trajectory, str]:
-        """Return the trajectory of the file, or one of its path, and where the times are from."""
+        """Return the trajectory that is sent, proved anew, and where its times are from."""
         record = read_json_file(self.plan, "plan or trajectory")
-        if not isinstance(record, dict) or "query" not in record:
-            return load_trajectory(self.plan), "of the trajectory"
-        plan = read_plan(self.plan)
-        if plan.changed:
-            changed = " and ".join(plan.changed)
-            raise InvalidValue(f"the {changed} of {self.plan} changed since it was planned: plan again")
-        if plan.trajectory is not None and bool((abs(plan.trajectory.velocities) <= self.fastest).all()):
-            return plan.trajectory, "of the plan"
-        return self._made(plan), f"made for at most {self.fastest:g} rad/s"
-
-    def _made(self, plan: PlanFile) -> Trajectory:
-        world, path = plan.request.world, plan.result.path
-        if not hasattr(world, "robot"):
-            raise NotAvailable(f"{self.plan} is the plan of a disk on a map; plans of arms are sent")
-        if not plan.result.solved or path is None:
-            raise NotAvailable(f"{self.plan} holds no path: {plan.result.message}")
-        limits = limits_of(world.robot)
-        # Positions are sent rounded to steps: a hair below what is allowed.
-        slow = tuple(min(each, 0.999 * self.fastest) for each in limits.velocity)
-        return arm_trajectory(world, path, replace(limits, velocity=slow))
+        if isinstance(record, dict) and "query" in record:
+            if self.robot is not None or self.scene is not None:
+                raise InvalidValue("--robot and --scene go with a trajectory; a plan names its own")
+            return sent_plan(record, self.plan, self.fastest)
+        if (self.robot is None) != (self.scene is None):
+            raise InvalidValue("--robot and --scene go together")
+        given = None if self.robot is None or self.scene is None else (self.robot, self.scene, self.options())
+        return sent_trajectory(record, self.plan, given), "of the trajectory"

@@ -124,9 +124,10 @@ def trajectory_rows(
     request: Request,
     result: PlanResult,
     constraints: Constraint | None,
-    make: Callable[..., Trajectory] | None = None,
+    make: Callable[..., Trajectory] | None,
+    source: dict[str, Any],
 ) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:
-    """Write the trajectory of a solved plan; return rows for the table, and its record.
+    """Write the trajectory of a solved plan, with its `source`; return rows for the table, and its record.
 
     `make` makes it in place of :func:`evenroad.trajectory.arm_trajectory`, from the options.
     """
@@ -141,13 +142,13 @@ def trajectory_rows(
     try:
         options = _options(plan, request, constraints)
         trajectory = _timed(plan, request, result.path, constraints, options) if make is None else make(**options)
-        _require_free(request, trajectory)
+        require_meshes_free(request, trajectory)
     except NotAvailable:
         _remove_earlier(plan)
         raise
     joints = plan.controller_joints
     order = None if joints is None else [*map(str.strip, joints.split(","))]
-    save_trajectories(plan.trajectory, trajectory, order)
+    save_trajectories(plan.trajectory, replace(trajectory, source=source), order)
     record = {
         "files": [str(file) for file in plan.trajectory],
         **{name: getattr(trajectory, name) for name in ("duration", "deviation", "stops", "proof")},
@@ -189,7 +190,7 @@ def _timed(
     )
 
 
-def _require_free(request: Request, trajectory: Trajectory) -> None:
+def require_meshes_free(request: Request, trajectory: Trajectory) -> None:
     """Raise NotAvailable if a trajectory is in collision with the robot's meshes."""
     meshes = mesh_check(request, trajectory.positions)
     if meshes is not None and meshes.verdict == "in collision":

@@ -25,6 +25,7 @@ from evenroad.roadmap import Budget, PlanResult
 from evenroad.robot import ArmWorld, find_robot
 from evenroad.robot.goals import Goals
 from evenroad.robot.urdf_xml import RobotFile
+from evenroad.trajectory.corners import drivable
 
 SECONDS = 0.5
 """Time limit for planning again while a start or goal is dragged [s]."""
@@ -74,6 +75,8 @@ class View(RobotOptions):
         plan = self.plan_file()
         if plan.changed:
             print(f"evenroad: the {' and '.join(plan.changed)} changed since this was planned", file=sys.stderr)
+        if not _is_free(plan):
+            print("evenroad: this is not proved free in its world as that is now", file=sys.stderr)
         arm = isinstance(plan.request.world, ArmWorld)
         if self.png is not None:
             self._save_picture(plan, self.png)
@@ -151,6 +154,12 @@ class View(RobotOptions):
     def _planned(self, request: Request) -> PlanResult:
         planner = None if self.n is None else PRM(self.n)
         return solve(request, planner, Options(Budget(seconds=SECONDS)))
+
+
+def _is_free(plan: PlanFile) -> bool:
+    """Return whether what is shown is proved free: a file says only that it once was."""
+    shown = plan.result.path if plan.trajectory is None else plan.trajectory.positions
+    return shown is None or not plan.result.solved or bool(drivable(plan.request.world, shown)[0].all())
 
 
 def _times(plan: PlanFile) -> tuple[Floats, Floats] | None:

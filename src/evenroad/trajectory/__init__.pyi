@@ -1,6 +1,7 @@
 from evenroad.robot.masses import Mass as Mass
 from evenroad.trajectory.arm import arm_trajectory as arm_trajectory
 from evenroad.trajectory.arm import controller_joints as controller_joints
+from evenroad.trajectory.checked import proved_in as proved_in
 from evenroad.trajectory.dynamics import Dynamics as Dynamics
 from evenroad.trajectory.dynamics import load_dynamics as load_dynamics
 from evenroad.trajectory.files import format_of as format_of

@@ -16,7 +16,10 @@ import yaml
 from evenroad._arrays import Floats
 from evenroad._checks import require_extra
 from evenroad._files import atomic_write, read_json_file
+from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, UnknownName
+from evenroad.trajectory.checked import require_within_limits
+from evenroad.trajectory.corners import MOST_STATES
 from evenroad.trajectory.limits import Limits
 from evenroad.trajectory.trajectory import Trajectory
 from evenroad.trajectory.urscript import movej_script, servoj_script
@@ -74,7 +77,11 @@ def format_of(path: str | os.PathLike[str]) -> str:
 
 
 def load_trajectory(path: str | os.PathLike[str]) -> Trajectory:
-    """Read a trajectory from the JSON of :func:`save_trajectory`; BrokenFile if its numbers do not fit together."""
+    """Read a trajectory from the JSON of :func:`save_trajectory`.
+
+    Nobody has checked it in a world: its `proof` is ``unchecked`` until :func:`proved_in`.  Raises BrokenFile if it is
+    damaged, its numbers do not fit together, or they violate its own limits.
+    """
     return trajectory_of(read_json_file(path, "trajectory"), path)
 
 
@@ -83,6 +90,7 @@ def trajectory_of(record: Any, path: str | os.PathLike[str]) -> Trajectory:
     if not isinstance(record, dict) or record.get("format") != FORMAT:
         wrote = "as `evenroad plan --trajectory` writes it"
         raise BrokenFile(f"{path} is not a trajectory: its 'format' must be {FORMAT!r}, {wrote}")
+    has_digest(record, path)
     try:
         return _from_record(record)
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
@@ -101,6 +109,8 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
         raise ValueError("waypoints must have one number a joint")
     if len(times) < 2 or len(limits.velocity) != len(names) or any(table.shape != shape for table in tables):
         raise ValueError(f"times, joint_names, limits and states must belong together, {shape}")
+    if len(times) > MOST_STATES:
+        raise ValueError(f"there must be at most {MOST_STATES} states")
     if not all(np.isfinite(table).all() for table in (times, waypoints, *tables)):
         raise ValueError("states must be finite numbers")
     if times[0] != 0.0 or times[1] <= 0.0 or not np.allclose(np.diff(times), times[1], rtol=1e-6, atol=0.0):
@@ -112,10 +122,10 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
         raise ValueError("positions of held joints must be finite numbers")
     if len(set(names) | set(held)) < len(names) + len(held):
         raise ValueError("every joint must be named once")
-    moved, allowed = np.abs(np.diff(tables[0], axis=0)), np.diff(times)[:, None] * np.array(limits.velocity)
-    if np.any(moved > 1.001 * allowed + 1e-9) or np.any(np.abs(tables[1]) > 1.001 * np.array(limits.velocity)):
-        raise ValueError("it moves faster than its own limits say")
-    return Trajectory(
+    source = record.get("source", {})
+    if not isinstance(source, dict):
+        raise ValueError("its source must be a mapping")
+    trajectory = Trajectory(
         names=names,
         times=times,
         positions=tables[0],
@@ -128,9 +138,11 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
         highest={str(kind): float(share) for kind, share in record["highest"].items()},
         held=held,
         controller=tuple(map(str, record["controller"])),
-        proof=str(record["proof"]),
         radii=radii,
+        source=source,
     )
+    require_within_limits(trajectory)
+    return trajectory
 
 
 def trajectory_record(trajectory: Trajectory, order: Sequence[str] | None = None) -> dict[str, Any]:
@@ -152,11 +164,12 @@ def trajectory_record(trajectory: Trajectory, order: Sequence[str] | None = None
         "waypoints": trajectory.waypoints.tolist(),
         "times": trajectory.times.tolist(),
         **{name: getattr(trajectory, name).tolist() for name in _TABLES},
+        **({"source": dict(trajectory.source)} if trajectory.source else {}),
     }
 
 
 def _json(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
-    return (json.dumps(trajectory_record(trajectory, order), allow_nan=False) + "\n").encode()
+    return (json.dumps(with_digest(trajectory_record(trajectory, order)), allow_nan=False) + "\n").encode()
 
 
 def _csv(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:

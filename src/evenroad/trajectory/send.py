@@ -60,7 +60,7 @@ def send_trajectory(
     Parameters
     ----------
     trajectory : Trajectory
-        Six joints, states 8 ms (CB3) or 2 ms (e-Series) apart.
+        Six joints, states 8 ms (CB3) or 2 ms (e-Series) apart; checked in a world.
     host : str
         Address of the controller.
     model : str
@@ -77,7 +77,8 @@ def send_trajectory(
     Raises
     ------
     InvalidValue
-        If the trajectory is too fast or not of a UR arm, the arm is another one, not ready, or not at the start.
+        If the trajectory is unchecked, too fast or not of a UR arm; or the arm is another one, not ready, or not at the
+        start.
     NotAvailable
         If ur_rtde is not installed, the connection fails or is lost, the arm leaves the trajectory, or it was stopped.
     """
@@ -106,6 +107,8 @@ def checked_states(
     Parameters and errors as :func:`send_trajectory`.
     """
     limit = require_positive("fastest", fastest)
+    if trajectory.proof == "unchecked":
+        raise InvalidValue("nobody has checked the trajectory in its world: proved_in of evenroad.trajectory does")
     names, (positions, velocities, _) = columns_of_ur(trajectory, order)
     cycle = float(trajectory.times[1])
     if not np.isclose(cycle, CYCLES).any():

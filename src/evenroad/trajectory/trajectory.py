@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -45,10 +46,12 @@ class Trajectory:
         All joints of the controller, in its order; empty if unknown.
     proof : str
         Proof of the motions from state to state: ``exact``, ``certified`` or ``resolution``; ``unchecked`` without a
-        world.
+        world, and from a file, until :func:`evenroad.trajectory.proved_in`.
     radii : tuple of float
         Distance of the tip from each inner waypoint at which rounding may begin [m], see
         :func:`evenroad.trajectory.urscript.with_radii`; empty if not computed.
+    source : mapping of str to Any
+        What ``evenroad plan`` or ``evenroad run`` made it of, as they write it; empty if unknown.
 
     Examples
     --------
@@ -74,6 +77,7 @@ class Trajectory:
     controller: tuple[str, ...] = ()
     proof: str = "unchecked"
     radii: tuple[float, ...] = ()
+    source: Mapping[str, Any] = field(default_factory=dict)
 
     def at(self, t: npt.ArrayLike) -> Floats:
         """Return positions at given times, between the states by a cubic of their positions and velocities.

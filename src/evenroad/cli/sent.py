@@ -1,0 +1,148 @@
+"""What ``evenroad send`` sends: trajectories of files, proved anew in the worlds that they were made for."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from evenroad._seal import has_digest
+from evenroad.cli.plan_file import PlanFile, changed_since, constraints_in, plan_file_of, request_of
+from evenroad.cli.run import run_task_of
+from evenroad.cli.trajectory import require_meshes_free
+from evenroad.constraints.driven_world import DifferentialDrive
+from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
+from evenroad.planning.read_request import arm_request
+from evenroad.planning.request import Reading, Request
+from evenroad.robot.constraint import Constraint, part_of
+from evenroad.trajectory import Trajectory, arm_trajectory, controller_joints, limits_of, proved_in
+from evenroad.trajectory.files import trajectory_of
+from evenroad.trajectory.make import DEVIATION
+
+_SAME = 1e-6
+"""Largest distance of the first and last states from start and goal [rad or m]."""
+
+Given = tuple[str, str, dict[str, Any]]
+"""A robot, a scene, and the options of the robot's files, as a command names them."""
+
+
+def sent_plan(record: Any, file: Path, fastest: float) -> tuple[Trajectory, str]:
+    """Return the trajectory of a plan's record, or one that is not `fastest` [rad/s] made of its path, and which.
+
+    Raises InvalidValue where it is another than its robot and scene are now, or does not keep its limits; NotAvailable
+    where it is not proved free; BrokenFile where it is damaged.
+    """
+    plan = plan_file_of(record, file)
+    if not hasattr(plan.request.world, "robot"):
+        raise NotAvailable(f"{file} is the plan of a disk on a map; plans of arms are sent")
+    _require_unchanged(plan.changed, file)
+    kept = plan.trajectory
+    is_kept = kept is not None and bool((abs(kept.velocities) <= fastest).all())
+    moves = kept if kept is not None and is_kept else _made(plan, file, fastest)
+    proved = _proved(moves, plan.request, plan.constraints, file, whole=plan.whole)
+    return proved, "of the plan" if is_kept else f"made for at most {fastest:g} rad/s"
+
+
+def sent_trajectory(record: Any, file: Path, given: Given | None) -> Trajectory:
+    """Return the trajectory of a record, proved where the file says that it was planned, or in what is `given`.
+
+    Raises as :func:`sent_plan`.
+    """
+    trajectory = trajectory_of(record, file)
+    whole = has_digest(record, file)
+    if given is None and "task" in trajectory.source:
+        return _planned_again(trajectory, file)
+    first, last = trajectory.positions[[0, -1]]
+    if given is not None:
+        robot, scene, options = given
+        options["group"] = options["group"] or ",".join(trajectory.names)
+        request = arm_request(robot, scene, first, [last], Reading(held=trajectory.held), **options)
+        return _proved(trajectory, request, None, file, whole=whole)
+    source = trajectory.source.get("plan")
+    if not isinstance(source, dict) or not isinstance(source.get("query"), dict):
+        raise InvalidValue(
+            f"{file} does not say in which robot and scene it is free: name these with --robot and --scene"
+        )
+    try:
+        start, goals = (np.array(source["query"][name], dtype=np.float64) for name in ("start", "goals"))
+    except (KeyError, TypeError, ValueError) as error:
+        raise BrokenFile(f"{file} is a damaged trajectory: of the plan that it was made of: {error}") from error
+    request = request_of(source["query"], file, start, goals)
+    changed = changed_since(source.get("made_of"), request.world)
+    _require_unchanged(changed or (), file)
+    whole = whole and changed is not None
+    return _proved(trajectory, request, constraints_in(source["query"], file), file, whole=whole)
+
+
+def _require_unchanged(changed: tuple[str, ...], file: Path) -> None:
+    if changed:
+        raise InvalidValue(f"the {' and '.join(changed)} of {file} changed since it was planned: plan again")
+
+
+def _proved(
+    trajectory: Trajectory, request: Request, constraints: Constraint | None, file: Path, *, whole: bool
+) -> Trajectory:
+    """Return a trajectory from start to goal of a request with the proof of its world.
+
+    Of a file that is not known to be as it was written, which is said, limits and the order of joints are those of the
+    robot.
+    """
+    world = request.world
+    if not whole:
+        limits, least = trajectory.limits, limits_of(world.robot)
+        velocity, acceleration = (
+            tuple(map(min, getattr(limits, kind), getattr(least, kind))) for kind in ("velocity", "acceleration")
+        )
+        limits = replace(limits, velocity=velocity, acceleration=acceleration)
+        known = set(trajectory.names) | set(trajectory.held)
+        order = tuple(name for name in controller_joints(world.robot) if name in known)
+        trajectory = replace(trajectory, limits=limits, controller=order)
+    first, last = trajectory.positions[[0, -1]]
+    if np.abs(first - request.start).max() > _SAME:
+        raise InvalidValue("the trajectory does not begin at the start of its plan: plan again")
+    if world.space.distance(np.broadcast_to(last, request.goals.shape), request.goals).min() > _SAME:
+        raise InvalidValue("the trajectory does not end at a goal of its plan: plan again")
+    proved = proved_in(trajectory, world, constraints)
+    require_meshes_free(request, proved)
+    if not whole:
+        text = "has no digest, or does not say of what it was made: only what is proved anew is known of it"
+        print(f"evenroad: {file} {text}", file=sys.stderr)
+    return proved
+
+
+def _made(plan: PlanFile, file: Path, fastest: float) -> Trajectory:
+    """Return a trajectory along the path of a plan that is not faster."""
+    world, path = plan.request.world, plan.result.path
+    if not plan.result.solved or path is None:
+        raise NotAvailable(f"{file} holds no path: {plan.result.message}")
+    limits = limits_of(world.robot)
+    # Positions are sent rounded to steps: a hair below what is allowed.
+    slow = tuple(min(each, 0.999 * fastest) for each in limits.velocity)
+    stops = plan.stops or part_of(plan.constraints, DifferentialDrive) is not None
+    deviation = 0.0 if stops else DEVIATION
+    return arm_trajectory(
+        world, path, replace(limits, velocity=slow), deviation=deviation, constraints=plan.constraints
+    )
+
+
+def _planned_again(trajectory: Trajectory, file: Path) -> Trajectory:
+    """Return the trajectory of a task that is planned again, and so proved: it must have the same states.
+
+    What is held, and what may touch it, is another at each step.
+    """
+    task = run_task_of(trajectory.source["task"], file)
+    world, done = task.planned()
+    if not done.solved:
+        raise NotAvailable(f"the task of {file} cannot be done as it is now: {done.message}")
+    again = task.timed(world, done)
+    same = again.names == trajectory.names and dict(again.held) == dict(trajectory.held)
+    same = same and all(
+        np.array_equal(getattr(again, name), getattr(trajectory, name))
+        for name in ("times", "positions", "velocities", "accelerations")
+    )
+    if not same:
+        raise InvalidValue(f"the task of {file} leads to other motions now: give the command that made it again")
+    return again
