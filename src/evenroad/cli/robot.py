@@ -27,6 +27,8 @@ _MOTIONS = 256
 _MOST_SEGMENTS = 1000
 """Largest number of segments of a timed motion: between limits of a million radians each would take ten seconds."""
 _SECONDS = 0.2
+_UNLIMITED = ("lower", "upper", "velocity", "acceleration", "deceleration", "jerk")
+"""Limits that a joint may lack."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,7 +205,8 @@ def _record(model: RobotModel, world: ArmWorld) -> dict[str, Any]:
     record["held"] = held_values(world.robot)
     record["robot"]["hulls"] = dict(Counter(hull.link for hull in model.robot.hulls))
     for joint in record["robot"]["joints"]:
-        joint |= {key: None for key in ("lower", "upper", "velocity") if math.isinf(joint[key])}
+        joint |= {key: None for key in _UNLIMITED if math.isinf(joint[key])}
+        joint["hard"] = joint["hard"] and [end if math.isfinite(end) else None for end in joint["hard"]]
     checks = {"scene": world.scene.name, **_measured(world)}
     return record | {"no_body": list(model.bodiless), "checks": checks}
 

@@ -32,7 +32,7 @@ from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.reference.validate import MeshCheck, has_meshes, unseen_pairs, validate
 from evenroad.robot.scan import allowed_near_ends, open_everywhere
 from evenroad.robot.states import as_configuration
-from evenroad.robot.variants import with_group
+from evenroad.robot.variants import standing_at, with_group
 
 if TYPE_CHECKING:
     from evenroad.world import GridMap
@@ -140,6 +140,7 @@ def arm_request(
     scene = scene_seen_by(robot, scene)
     first = _configuration(robot, scene, "start", start, reading)
     _refuse_what_is_none(robot, scene, goals, reading)
+    robot = standing_at(robot, first)
     # Where a goal pose is not reached, contacts near the endpoints stay allowed.
     world = ArmWorld(robot, open_everywhere(scene), resolution=resolution, clearance=clearance)
     given = _goals_in(world, first, goals, reading)
@@ -154,6 +155,8 @@ def request_in(world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[
     """Read start and goals of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
     goals = _goal_list(goal, world.dim)
     first = _configuration(world.robot, world.scene, "start", start, reading)
+    robot = standing_at(world.robot, first)
+    world = world if robot is world.robot else replace(world, robot=robot)
     if len(goals) == 1 and type(goals[0]) is np.ndarray:
         # Most goals: read at once, as `goals_of` would.
         given = Goals(_configuration(world.robot, world.scene, "goal", goals[0], reading)[np.newaxis], ("",))

@@ -263,7 +263,8 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
         for name, value, low, high, period in zip(self.robot.group, row, *self.bounds, strict=True):
             if math.isinf(period) and not low - SLACK <= value <= high + SLACK:
                 beyond = max(low - value, value - high)
-                limits = limits_in_words(self.scene, name, low, high)
+                soft = any(joint.name == name and joint.hard for joint in self.robot.joints)
+                limits = limits_in_words(self.scene, name, low, high, "its soft limits" if soft else "its limits")
                 return f"joint {name!r} is at {value:g}, {beyond:.3g} outside {limits}"
         if (bodies := self.fixed_contact) is not None and bodies[1] in self.scene.names:
             advice = f"if it stands there, allow it: in the scene, allowed: {{{bodies[1]}: [{bodies[0]}]}}"

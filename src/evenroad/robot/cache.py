@@ -36,7 +36,7 @@ from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.urdf import Urdf
 from evenroad.robot.urdf_xml import RobotFile
 
-_FORMAT = 26
+_FORMAT = 27
 """Version of the cache: it counts up when the same files give another robot, or the format changes."""
 
 
@@ -46,7 +46,8 @@ def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | S
     The others have a name for errors: BrokenFile if one is missing, as a cached robot is never returned for files that
     are gone.
     """
-    said = fingerprint_of(replace(urdf, shapes=()), [_said(shape) for shape in urdf.shapes], group)
+    unchecked = [(joint.acceleration, joint.deceleration, joint.jerk, joint.hard, joint.of) for joint in urdf.joints]
+    said = fingerprint_of(replace(urdf, shapes=()), unchecked, [_said(shape) for shape in urdf.shapes], group)
     digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{said}".encode())
     sources = [shape.source for shape in urdf.shapes if isinstance(shape, Mesh)]
     meshes = [("mesh", source) for source in sources if isinstance(source, Path)]

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Protocol
 
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.rotation import rotation_from_z
-from evenroad.robot.joint import LOOSE, Joint
+from evenroad.robot.joint import Joint
 
 PLANAR = ("x", "y", "theta")
 """Coordinates of a planar joint, called as MoveIt does."""
@@ -17,7 +18,6 @@ FAR = 50.0
 _FLOATING = ("x", "y", "z", "yaw", "pitch", "roll")
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _AXES |= {"theta": _AXES["z"], "yaw": _AXES["z"], "pitch": _AXES["y"], "roll": _AXES["x"]}
-assert set(LOOSE) == set(_AXES)
 
 
 def coordinates(kind: str, joint: Joint) -> list[Joint]:
@@ -49,6 +49,7 @@ def coordinates(kind: str, joint: Joint) -> list[Joint]:
                 axis=_AXES[name],
                 lower=-FAR if slides else -math.inf,
                 upper=FAR if slides else math.inf,
+                of=joint.name,
             )
         )
     return found
@@ -67,12 +68,20 @@ def held_note(kind: str, name: str, joints: Sequence[Joint]) -> str:
     return f"{said}; --group {name} plans for {names}, within {FAR:g} m or the limits of a scene"
 
 
-def without_moved(notes: Sequence[str], group: Sequence[str]) -> tuple[str, ...]:
+def without_moved(notes: Sequence[str], joints: Sequence[Joint], group: Sequence[str]) -> tuple[str, ...]:
     """Return notes but those that hold a joint of which a group has coordinates."""
-    moved = tuple(f"joint {name.rpartition('/')[0]!r} is " for name in group if "/" in name)
+    moved = tuple(f"joint {joint.of!r} is " for joint in joints if joint.of and joint.name in group)
     return tuple(note for note in notes if not (moved and note.startswith(moved) and "it is held at 0" in note))
 
 
-def named(joint: str, order: Sequence[str]) -> list[str]:
-    """Return the coordinates of a joint among the names of a robot's joints; none where it has only itself."""
-    return [name for name in order if name.rpartition("/")[0] == joint and name.rpartition("/")[2] in LOOSE]
+def named(joint: str, urdf: _Joints) -> list[str]:
+    """Return the coordinates of a joint, in the order of a robot's file; none where it has only itself."""
+    own = {each.name for each in urdf.joints if each.of == joint}
+    return [name for name in urdf.order if name in own] if own else []
+
+
+class _Joints(Protocol):
+    @property
+    def joints(self) -> tuple[Joint, ...]: ...
+    @property
+    def order(self) -> tuple[str, ...]: ...

@@ -47,7 +47,7 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
 
 def _wanted_joints(urdf: Urdf, groups: Mapping[str, tuple[str, ...]], words: Sequence[str]) -> tuple[str, ...]:
     """Return the joints of the groups and joints that words name, in this order."""
-    owners = {name.rpartition("/")[0] for name in urdf.order}
+    owners = {joint.of for joint in urdf.joints}
     if groups and words and not set(words) & {*urdf.order, *groups, *owners}:
         raise UnknownName.among("group", ",".join(words), groups)
     chosen: list[str] = []
@@ -56,7 +56,7 @@ def _wanted_joints(urdf: Urdf, groups: Mapping[str, tuple[str, ...]], words: Seq
             own = _not_empty(groups[word], f"group {word!r}")
             chosen += [name for name in own if name not in chosen]
         else:
-            for name in named(word, urdf.order) or [word]:
+            for name in named(word, urdf) or [word]:
                 _require_movable(urdf, name, chosen)
                 chosen.append(name)
     return _not_empty(tuple(chosen), "the group")
@@ -68,7 +68,7 @@ def _movable_joints(urdf: Urdf, srdf: Srdf | None) -> tuple[str, ...]:
     said = "".join(f"; {note}" for note in urdf.notes if note.startswith("joint"))
     locked = [joint.name for joint in urdf.joints if joint.kind != "fixed" and joint.lower == joint.upper]
     said = said or (f"; limits that are equal lock {', '.join(locked)}" if locked else "")
-    loose = {joint.name for joint in urdf.joints if joint.loose}
+    loose = {joint.name for joint in urdf.joints if joint.of}
     return _not_empty(tuple(name for name in urdf.order if name in free - loose), f"robot {urdf.name!r}", said)
 
 
@@ -158,7 +158,8 @@ def held_states(srdf: Srdf, robot: KinematicTree) -> dict[str, float]:
     joints = {joint.name: joint for joint in robot.joints}
     for values in srdf.states.values():
         for name in held_values(robot):
-            if name in values and joints[name].lower <= values[name] <= joints[name].upper:
+            lower, upper = joints[name].stops
+            if name in values and lower <= values[name] <= upper:
                 held.setdefault(name, values[name])
     return held
 
@@ -197,7 +198,7 @@ def chains(joints: Sequence[Joint]) -> dict[str, list[Joint]]:
     free = {
         joint.child: joint
         for joint in joints
-        if joint.kind != "fixed" and joint.mimic is None and joint.lower < joint.upper and not joint.loose
+        if joint.kind != "fixed" and joint.mimic is None and joint.lower < joint.upper and not joint.of
     }
     parent = {joint.child: joint.parent for joint in joints}
     followers: dict[str | None, list[Joint]] = {}

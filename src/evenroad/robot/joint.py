@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -13,8 +13,6 @@ from evenroad.geometry.pose import Pose
 from evenroad.space.joints import SLACK
 
 Kind = Literal["revolute", "continuous", "prismatic", "fixed"]
-LOOSE = ("x", "y", "z", "theta", "yaw", "pitch", "roll")
-"""Coordinates of planar and floating joints, called ``base/x``: held, unless they are named."""
 _ROUNDING = 1e-9
 """Movement of a follower up to which limits stay as they are written [rad or m]."""
 
@@ -35,7 +33,10 @@ class Joint:
     `xyz` [m] and `rotation`, row by row, are the joint's frame in the parent link's; the child's is the joint's at 0.
     `axis` is a unit vector in the joint's frame, of no meaning where fixed.  Limits [rad or m] are -inf and inf for
     a continuous joint, the largest speed, `velocity` [rad/s or m/s], is inf where not given; `mimic` is the joint that
-    this one follows.
+    this one follows.  The largest `acceleration` and `deceleration` [rad/s^2 or m/s^2] and `jerk` are inf where not
+    given.  `hard` are limits around the soft ones, `lower` and `upper`, that are planned within: a robot may stand
+    beyond these.  `of` is the planar or floating joint that this one is a coordinate of; such are held, unless they are
+    named.
     """
 
     name: str
@@ -49,6 +50,12 @@ class Joint:
     upper: float = 0.0
     velocity: float = float("inf")
     mimic: Mimic | None = None
+    # These decide no check: robots that differ in them alone have one fingerprint.
+    acceleration: float = field(default=math.inf, compare=False)
+    deceleration: float = field(default=math.inf, compare=False)
+    jerk: float = field(default=math.inf, compare=False)
+    hard: tuple[float, float] | None = field(default=None, compare=False)
+    of: str = field(default="", compare=False)
 
     @cached_property
     def origin(self) -> Pose:
@@ -56,12 +63,9 @@ class Joint:
         return Pose(self.xyz, self.rotation)
 
     @property
-    def loose(self) -> bool:
-        """Whether it is a coordinate of a planar or a floating joint: its name alone says so of other joints, too."""
-        owner, _, name = self.name.rpartition("/")
-        before, _, last = self.parent.rpartition("/")
-        follows = before == owner and last in LOOSE
-        return bool(owner) and name in LOOSE and (self.child == self.name or follows)
+    def stops(self) -> tuple[float, float]:
+        """The limits beyond which the joint cannot stand: the hard ones, where it has soft ones within."""
+        return (self.lower, self.upper) if self.hard is None else self.hard
 
     @property
     def neutral(self) -> float:
@@ -73,17 +77,18 @@ class Joint:
 
 
 def require_within(joint: Joint, value: float, what: str, limits: str = "") -> None:
-    """Raise InvalidValue unless a joint can have a value [rad or m], up to 1e-5; `what` names the source of the value.
+    """Raise InvalidValue unless a joint can stand at a value [rad or m], up to 1e-5; `what` names its source.
 
     `limits` are the limits in words, where they are not the joint's own.
     """
     if not math.isfinite(value):
         raise InvalidValue(f"{what} puts joint {joint.name!r} at {value!r}; it must be a finite number")
-    if joint.lower - SLACK <= value <= joint.upper + SLACK:
+    lower, upper = joint.stops
+    if lower - SLACK <= value <= upper + SLACK:
         return
     unit = "m" if joint.kind == "prismatic" else "rad"
-    beyond = max(joint.lower - value, value - joint.upper)
-    limits = limits or f"its limits [{joint.lower:.6g}, {joint.upper:.6g}]"
+    beyond = max(lower - value, value - upper)
+    limits = limits or f"its limits [{lower:.6g}, {upper:.6g}]"
     raise InvalidValue(f"{what} puts joint {joint.name!r} at {value:.6g} {unit}, {beyond:.3g} {unit} outside {limits}")
 
 
@@ -127,21 +132,26 @@ def within_limits_of_mimics(joints: Sequence[Joint]) -> list[Joint]:
         if follower.mimic is None or follower.kind == "fixed":
             continue
         leader = narrowed[follower.mimic.joint]
-        low, high = _range_for(follower, follower.mimic)
+        low, high = _range_for(follower, follower.mimic, (follower.lower, follower.upper))
         lower = low if low > leader.lower + _ROUNDING else leader.lower
         upper = high if high < leader.upper - _ROUNDING else leader.upper
         if upper - lower <= _ROUNDING:
             continue
-        if (lower, upper) != (leader.lower, leader.upper):
-            kind = "revolute" if leader.kind == "continuous" else leader.kind
-            narrowed[leader.name] = replace(leader, kind=kind, lower=lower, upper=upper)
+        hard = None
+        if leader.hard or follower.hard:
+            low, high = _range_for(follower, follower.mimic, follower.stops)
+            hard = max(low, leader.stops[0]), min(high, leader.stops[1])
+        if (lower, upper, hard) != (leader.lower, leader.upper, leader.hard):
+            turns = leader.kind == "continuous" and (lower, upper) != (leader.lower, leader.upper)
+            kind = "revolute" if turns else leader.kind
+            narrowed[leader.name] = replace(leader, kind=kind, lower=lower, upper=upper, hard=hard)
     return [narrowed[joint.name] for joint in joints]
 
 
-def _range_for(follower: Joint, mimic: Mimic) -> tuple[float, float]:
-    """Return the values of the leader that keep a follower within its limits; lower above upper if none does."""
+def _range_for(follower: Joint, mimic: Mimic, limits: tuple[float, float]) -> tuple[float, float]:
+    """Return the values of the leader that keep a follower within limits; lower above upper if none does."""
     if mimic.multiplier == 0.0:
-        stays = follower.lower - _ROUNDING <= mimic.offset <= follower.upper + _ROUNDING
+        stays = limits[0] - _ROUNDING <= mimic.offset <= limits[1] + _ROUNDING
         return (-math.inf, math.inf) if stays else (math.inf, -math.inf)
-    extremes = [(limit - mimic.offset) / mimic.multiplier for limit in (follower.lower, follower.upper)]
+    extremes = [(limit - mimic.offset) / mimic.multiplier for limit in limits]
     return min(extremes), max(extremes)

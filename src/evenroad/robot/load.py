@@ -237,7 +237,7 @@ def _build(
         always_touching=pairs.always,
         never_free=pairs.never_free,
         notes=(
-            *without_moved(urdf.notes, chosen),
+            *without_moved(urdf.notes, urdf.joints, chosen),
             *(() if srdf is None else srdf.notes),
             *group_notes(urdf, srdf, group),
             *map(_contained, pairs.contained),

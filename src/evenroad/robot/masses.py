@@ -9,8 +9,10 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from evenroad._understood import require_understood
 from evenroad.errors import BrokenFile
 from evenroad.geometry.pose import Pose
+from evenroad.robot.urdf_kinds import ROBOT
 from evenroad.robot.urdf_xml import RobotFile, read_robot_xml
 
 
@@ -32,6 +34,8 @@ def read_masses(path: Path) -> tuple[tuple[Mass, ...], dict[str, float]]:
     Raises BrokenFile if it cannot be read, or a number is none, or below 0.
     """
     root = read_robot_xml(RobotFile(path))
+    # Loading a robot notes what nobody knows; here only a misspelt name matters.
+    require_understood(root, ROBOT, str(path), [])
     found = [(str(link.get("name")), link.find("inertial")) for link in root.findall("link")]
     masses = tuple(_mass_of(link, inertial, path) for link, inertial in found if inertial is not None)
     efforts = {}
@@ -58,8 +62,11 @@ def _mass_of(link: str, inertial: Element, path: Path) -> Mass:
         raise BrokenFile(f"the mass and moments {where} must be >= 0")
     at = {} if origin is None else origin.attrib
     xyz = _numbers(at.get("xyz", "0 0 0"), 3, f"origin of the mass {where}")
-    rpy = _numbers(at.get("rpy", "0 0 0"), 3, f"rotation of the mass {where}")
-    turn = Pose(rpy=tuple(rpy)).rotation_matrix
+    if "quat_xyzw" in at:
+        turned = Pose.from_quaternion((0, 0, 0), xyzw=_numbers(at["quat_xyzw"], 4, f"quaternion of the mass {where}"))
+    else:
+        turned = Pose(rpy=tuple(_numbers(at.get("rpy", "0 0 0"), 3, f"rotation of the mass {where}")))
+    turn = turned.rotation_matrix
     about = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
     return Mass(link, kilograms, (xyz[0], xyz[1], xyz[2]), tuple(about.ravel().tolist()))
 

@@ -240,9 +240,8 @@ def _named(name: object) -> str:
     return name
 
 
-def limits_in_words(scene: Scene | None, joint: str, lower: float, upper: float) -> str:
-    """Return what to call the limits of a joint: those of the scene where it has one of them, else its own."""
-    whose = "its limits"
+def limits_in_words(scene: Scene | None, joint: str, lower: float, upper: float, whose: str = "its limits") -> str:
+    """Return what to call the limits of a joint: those of the scene where it has one of them, else `whose`."""
     if scene is not None and {lower, upper}.intersection(scene.limits.get(joint, ())):
         whose = f"the limits of scene {scene.name!r}"
     return f"{whose} [{lower:.6g}, {upper:.6g}]"

@@ -79,7 +79,7 @@ def _in_order(robot: Robot, name: str, values: Mapping[str, float]) -> Floats:
 
 def _require_within(joint: Joint, value: float, what: str, scene: Scene | None) -> None:
     """Raise InvalidValue as `require_within`; the text names the scene where it is the scene that narrows."""
-    require_within(joint, value, what, limits_in_words(scene, joint.name, joint.lower, joint.upper))
+    require_within(joint, value, what, limits_in_words(scene, joint.name, *joint.stops))
 
 
 def _outside_group(robot: Robot, name: str, values: Mapping[str, float]) -> dict[str, float]:

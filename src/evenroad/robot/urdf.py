@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import cast
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -17,12 +16,12 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
 from evenroad.robot.free_joints import coordinates, held_note
-from evenroad.robot.joint import Joint, Kind, Mimic, with_direct_mimics, within_limits_of_mimics
+from evenroad.robot.joint import Joint, Mimic, with_direct_mimics, within_limits_of_mimics
 from evenroad.robot.planes import Plane
+from evenroad.robot.urdf_limits import joint_limits, soft_notes
 from evenroad.robot.urdf_xml import RobotFile, drawn_only, find_mesh, read_urdf_xml
 
 _KINDS = ("revolute", "continuous", "prismatic", "fixed", "planar", "floating")
-_LIMITS = ("lower", "upper", "velocity")
 _ANY = 1000.0
 """A range of more than this is that of a joint without limits [rad or m]."""
 
@@ -77,12 +76,12 @@ def read_urdf(source: Path | RobotFile) -> Urdf:
     names = [link.attrib["name"] for link in links]
     return as_tree(
         root.get("name", file.path.stem),
-        [*names, *(joint.child for joint in joints if joint.loose and joint.child not in names)],
+        [*names, *(joint.child for joint in joints if joint.of and joint.child not in names)],
         joints,
         [_shape(link.attrib["name"], each, file) for link in links for each in link.findall("collision")],
         str(file.path),
         drawn_only(root),
-        notes,
+        notes + soft_notes(joints),
     )
 
 
@@ -115,7 +114,7 @@ def _without_end(joint: Joint, notes: list[str]) -> Joint:
     said = f"joint {joint.name!r} with the limits {joint.lower:g}, {joint.upper:g}"
     if joint.kind == "revolute":
         notes.append(f"{said} turns without end")
-        return replace(joint, kind="continuous", lower=-math.inf, upper=math.inf)
+        return replace(joint, kind="continuous", lower=-math.inf, upper=math.inf, hard=None)
     notes.append(f"{said} slides without end: it is held, unless a scene limits it and --group names it")
     return joint
 
@@ -137,23 +136,19 @@ def _joint(element: Element, kind: str, path: Path, notes: list[str]) -> Joint:
     where = f"joint {name!r} in {path}"
     require_known(f"type of {where}:", kind, _KINDS)
     origin, follows = _pose(element), element.find("mimic")
-    lower, upper, velocity = _limits(element.find("limit"), kind, where, notes)
     mimic = None
     if follows is not None and kind != "fixed":
         multiplier, offset = float(follows.get("multiplier", 1.0)), float(follows.get("offset", 0.0))
         mimic = Mimic(follows.attrib["joint"], multiplier, offset)
     return Joint(
         name=name,
-        kind=cast(Kind, kind),
         parent=_link(element, "parent"),
         child=_link(element, "child"),
         xyz=origin.xyz,
         rotation=origin.rotation,
         axis=(0.0, 0.0, 1.0) if kind == "fixed" else _axis(element, where),
-        lower=lower,
-        upper=upper,
-        velocity=velocity,
         mimic=mimic,
+        **joint_limits(element, kind, where, notes),
     )
 
 
@@ -172,34 +167,6 @@ def _axis(joint: Element, where: str) -> tuple[float, float, float]:
     return (x, y, z)
 
 
-def _limits(limit: Element | None, kind: str, where: str, notes: list[str]) -> tuple[float, float, float]:
-    """Return lower, upper and velocity; a velocity of 0 in a URDF means that nobody knew it."""
-    given = {} if limit is None else {end: float(limit.attrib[end]) for end in _LIMITS if end in limit.attrib}
-    velocity = given.get("velocity") or math.inf
-    if velocity < 0.0:
-        raise InvalidValue(f"the velocity limit of {where} must be >= 0, got {velocity:g}")
-    if kind == "fixed":
-        return 0.0, 0.0, velocity
-    if kind == "continuous":
-        return -math.inf, math.inf, velocity
-    missing = " and ".join(end for end in ("lower", "upper") if end not in given)
-    if limit is None:
-        raise BrokenFile(
-            f"{where} has no limits: a {kind} joint needs <limit lower=... upper=...>; one that rotates without limits"
-            " is of type continuous"
-        )
-    lower, upper = given.get("lower", 0.0), given.get("upper", 0.0)
-    if missing:
-        note = f"{where.partition(' in ')[0]} has no {missing} limit: 0 by the specification"
-        locked = ", so that it cannot move; one that turns without limits is of type continuous"
-        notes.append(note + (locked if lower == upper else ""))
-    if lower > upper:
-        absent = f" ({missing} is not given: 0 by the specification)" if missing else ""
-        got = f"got {lower:g}, {upper:g}{absent}"
-        raise InvalidValue(f"the limits of {where} must satisfy lower <= upper, {got}")
-    return lower, upper, velocity
-
-
 def _shape(link: str, collision: Element, file: RobotFile) -> Shape:
     pose, (shape,) = _pose(collision), collision.iterfind("geometry/*")
     if shape.tag == "mesh":
@@ -212,6 +179,8 @@ def _shape(link: str, collision: Element, file: RobotFile) -> Shape:
 def _pose(owner: Element) -> Pose:
     origin = owner.find("origin")
     x, y, z = _numbers(origin, "xyz", (0.0, 0.0, 0.0))
+    if origin is not None and "quat_xyzw" in origin.attrib:
+        return Pose.from_quaternion((x, y, z), xyzw=_numbers(origin, "quat_xyzw", ()))
     roll, pitch, yaw = _numbers(origin, "rpy", (0.0, 0.0, 0.0))
     # rotation_from_rpy in another order of operations, in which robots were always read: their capsules, and what was
     # computed with these, keep their last bits.

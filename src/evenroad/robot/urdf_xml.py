@@ -14,20 +14,21 @@ from pathlib import Path
 from urllib.parse import unquote
 from xml.etree.ElementTree import Element
 
+from evenroad._understood import require_understood
 from evenroad.errors import BrokenFile, InvalidValue
-from evenroad.geometry.shapes import PRIMITIVES
+from evenroad.robot.urdf_kinds import IGNORED, LIMITS, ROBOT, SIZES, SOFT
 from evenroad.robot.xacro.expand import expanded, is_xacro
 from evenroad.robot.xml_file import read_xml
 
-_SIZES = {tag: dict(shape.dimensions) for tag, shape in PRIMITIVES.items()}
-_SHAPES = (*_SIZES, "mesh")
+_SHAPES = (*SIZES, "mesh")
 _NUMBERS = {
-    "origin": {"xyz": 3, "rpy": 3},
+    "origin": {"xyz": 3, "rpy": 3, "quat_xyzw": 4},
     "axis": {"xyz": 3},
-    "limit": {"lower": 1, "upper": 1, "velocity": 1},
+    "limit": dict.fromkeys((*LIMITS, "drake:acceleration"), 1),
+    "safety_controller": dict.fromkeys(SOFT, 1),
     "mimic": {"multiplier": 1, "offset": 1},
     "mesh": {"scale": 3},
-    **_SIZES,
+    **SIZES,
 }
 """Element -> attribute -> how many finite numbers it must hold, if it is there."""
 _REQUIRED: dict[str, Iterable[str]] = {
@@ -37,15 +38,13 @@ _REQUIRED: dict[str, Iterable[str]] = {
     "child": ("link",),
     "mimic": ("joint",),
     "mesh": ("filename",),
-    **_SIZES,
+    **SIZES,
 }
 _LENGTHS = ("size", "radius", "length")
 _THIN = 1e-6
 """What a body has in place of a dimension of 0 [m]."""
-_SINGLE = ("origin", "axis", "limit", "mimic", "parent", "child", "geometry")
+_SINGLE = ("origin", "axis", "limit", "safety_controller", "mimic", "parent", "child", "geometry")
 """Of these, the first would be taken and others passed over, unless they are equal."""
-_IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_control", "collision_checking")
-"""What collision checking does not need; much of it in dialects of its own."""
 
 
 @dataclass(frozen=True)
@@ -73,10 +72,9 @@ def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
     """
     path, notes = file.path, list[str]()
     root = read_robot_xml(file)
-    for name in _IGNORED:
-        for parent in list(root.iter()):
-            for element in parent.findall(name):
-                parent.remove(element)
+    require_understood(root, ROBOT, str(path), notes)
+    for parent in list(root.iter()):
+        parent[:] = [child for child in parent if child.tag not in IGNORED]
     drawn = []
     for link in root.findall("link"):
         visuals = link.findall("visual")
@@ -174,12 +172,23 @@ def _check(owner: Element, path: Path) -> None:
                 what = f"{where}: {attribute} of <{element.tag}>"
                 # The readers that come after this one do not agree on what separates numbers.
                 element.set(attribute, " ".join(map(repr, _numbers(what, attribute, text, count))))
+        if element.tag == "origin" and "quat_xyzw" in element.attrib:
+            _require_rotation(element, where)
     if owner.tag == "joint":
         for tag in ("parent", "child"):
             if owner.find(tag) is None:
                 raise BrokenFile(f"{where} lacks <{tag}>")
     for collision in owner.findall("collision"):
         _check_geometry(collision.find("geometry"), where)
+
+
+def _require_rotation(origin: Element, where: str) -> None:
+    """Raise InvalidValue unless the quaternion of an origin, as in URDF 1.2, is its only rotation, and is one."""
+    text = origin.attrib["quat_xyzw"]
+    if "rpy" in origin.attrib:
+        raise InvalidValue(f"{where}: <origin> must have one of rpy and quat_xyzw, got both")
+    if not math.sqrt(sum(float(word) ** 2 for word in text.split())) > 1e-9:
+        raise InvalidValue(f"{where}: quat_xyzw of <origin> must have a direction, got {text!r}")
 
 
 def _check_geometry(geometry: Element | None, where: str) -> None:

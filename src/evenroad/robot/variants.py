@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_known
 from evenroad.errors import InvalidValue
-from evenroad.robot.joint import require_within, within_limits_of_mimics
+from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.robot import Robot, require_robot
 
@@ -36,8 +37,9 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
 def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robot:
     """Return the robot with other limits, joint -> (lower, upper) [rad or m].
 
-    A continuous joint that gets limits becomes a revolute one; limits of a mimic narrow those of its leader.  Raises
-    UnknownName if a joint is not there; InvalidValue if lower is not below upper.
+    A continuous joint that gets limits becomes a revolute one; limits of a mimic narrow those of its leader.  These are
+    hard limits, also where the robot's file has soft ones.  Raises UnknownName if a joint is not there; InvalidValue if
+    lower is not below upper.
     """
     require_robot(robot)
     names = [joint.name for joint in robot.joints]
@@ -50,5 +52,21 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
         if joint.name in limits:
             lower, upper = map(float, limits[joint.name])
             turns = joint.kind == "continuous"
-            joints[i] = replace(joint, kind="revolute" if turns else joint.kind, lower=lower, upper=upper)
+            joints[i] = replace(joint, kind="revolute" if turns else joint.kind, lower=lower, upper=upper, hard=None)
     return replace(robot, joints=tuple(within_limits_of_mimics(joints)))
+
+
+def standing_at(robot: Robot, q: Floats) -> Robot:
+    """Return the robot with its soft limits as wide as where it stands, (dim,), itself where it stands within them."""
+    if all(joint.hard is None for joint in robot.joints):
+        return robot
+    values = dict(zip(robot.group, q.tolist(), strict=True))
+    joints = tuple(_reaching(joint, values.get(joint.name, joint.neutral)) for joint in robot.joints)
+    return robot if joints == robot.joints else replace(robot, joints=joints)
+
+
+def _reaching(joint: Joint, value: float) -> Joint:
+    """Return a joint that can be at a value within its hard limits."""
+    if joint.hard is None or not joint.hard[0] <= value <= joint.hard[1]:
+        return joint
+    return replace(joint, lower=min(joint.lower, value), upper=max(joint.upper, value))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,11 +16,12 @@ from evenroad._checks import as_row, require_known, require_positive
 from evenroad._native.trajectory import TipLimits as NativeTip
 from evenroad._native.trajectory import TorqueLimits, further_shares
 from evenroad._shared import once_property
-from evenroad._yaml import read_mapping
-from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
+from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.robot import Robot
 from evenroad.robot.prepared_robots import prepared
+from evenroad.space.joints import SLACK
 from evenroad.trajectory.dynamics import Dynamics, native_links
+from evenroad.trajectory.limits_file import LimitsFile, read_limits
 
 SECONDS_TO_FULL_SPEED = 0.5
 """Default time from rest to full speed [s]: URDF has no acceleration."""
@@ -83,6 +85,9 @@ class Limits:
     torque : Dynamics or None
         Masses of the links and efforts of the joints; None: no limit of torque.  A share of full speed leaves it as it
         is.
+    position : tuple of pairs of float or None
+        Lower and upper limit of each joint within those of the robot, infinite where there is none [rad; m for
+        prismatic ones].  A path that leaves them gets no times.
     """
 
     velocity: tuple[float, ...]
@@ -91,6 +96,7 @@ class Limits:
     along_path: float | None = None
     tip: TipLimits | None = None
     torque: Dynamics | None = None
+    position: tuple[tuple[float, float], ...] | None = None
 
     def __post_init__(self) -> None:
         for kind in _KINDS:
@@ -103,6 +109,25 @@ class Limits:
             object.__setattr__(self, kind, row)
         if self.along_path is not None:
             require_positive("along_path", self.along_path)
+        if self.position is not None:
+            pairs = tuple((float(lower), float(upper)) for lower, upper in self.position)
+            if len(pairs) != len(self.velocity) or not all(lower < upper for lower, upper in pairs):
+                raise InvalidValue(f"position must be (lower, upper) of every joint, got {shown(self.position)}")
+            object.__setattr__(self, "position", pairs)
+
+    def require_positions(self, path: Floats, names: Sequence[str]) -> None:
+        """Raise InvalidValue if a path, (p, dim), leaves the limits of positions, up to 1e-5."""
+        if self.position is None:
+            return
+        lower, upper = np.transpose(self.position)
+        beyond = np.maximum(lower - path, path - upper)
+        row, joint = divmod(int(beyond.argmax()), len(self.position))
+        if beyond[row, joint] > SLACK:
+            raise InvalidValue(
+                f"the path puts joint {names[joint]!r} at {path[row, joint]:.6g}, {beyond[row, joint]:.3g} outside its"
+                f" limits of position [{lower[joint]:.6g}, {upper[joint]:.6g}]: plan with limits of a scene, or"
+                " with_limits(robot, ...), within them"
+            )
 
     def at_speed(self, speed: float) -> Limits:
         """Return the limits at a share of full speed, 0 < speed <= 1."""
@@ -166,10 +191,13 @@ def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limit
     Parameters
     ----------
     robot : Robot
-        Its joints have the velocities of the URDF.
+        Its joints have the velocities of the URDF, and the accelerations, decelerations and jerks where it has some.
     file : str or path-like, optional
-        MoveIt's ``joint_limits.yaml``; its ``max_velocity``, ``max_acceleration`` and ``max_jerk`` come first.  A joint
-        without an acceleration reaches full speed in 0.5 s; jerk is limited if it is given for every joint.
+        MoveIt's ``joint_limits.yaml``; its ``max_velocity``, ``max_acceleration``, ``max_deceleration`` and
+        ``max_jerk`` come first.  Its factors ``default_velocity_scaling_factor`` and
+        ``default_acceleration_scaling_factor`` scale all joints, and its positions are limits of the path.  A joint
+        without an acceleration reaches full speed in 0.5 s; without a jerk, where others have one, it reaches full
+        acceleration as late as the last of these.
 
     Raises
     ------
@@ -178,45 +206,36 @@ def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limit
     InvalidValue
         If a limit is not > 0, or a joint has no velocity anywhere.
     """
-    by_name = {joint.name: joint for joint in robot.joints}
-    given = {} if file is None else _read(Path(file), set(by_name))
+    joints = {joint.name: joint for joint in robot.joints}
+    given = LimitsFile({}, {}, {}) if file is None else read_limits(Path(file), joints)
     velocity, acceleration, jerk = [], [], []
     for name in robot.group:
-        said = given.get(name, {})
-        fastest = said.get("velocity", by_name[name].velocity)
+        joint, said = joints[name], given.rates.get(name, {})
+        fastest = said.get("velocity", joint.velocity)
         if not 0.0 < fastest < math.inf:
             raise InvalidValue(
                 f"joint {name!r} of {robot.name!r} has no velocity limit: give it a max_velocity > 0 in a"
                 " joint_limits.yaml"
             )
-        velocity.append(fastest)
-        acceleration.append(said.get("acceleration", fastest / SECONDS_TO_FULL_SPEED))
-        jerk.append(said.get("jerk", math.inf))
-    return Limits(tuple(velocity), tuple(acceleration), tuple(jerk) if max(jerk) < math.inf else None)
+        velocity.append(fastest * given.scaling.get("velocity", 1.0))
+        push = said.get("acceleration", joint.acceleration)
+        push = push if push < math.inf else fastest / SECONDS_TO_FULL_SPEED
+        # One number for both ways: the smaller one.
+        push = min(push, said.get("deceleration", joint.deceleration))
+        acceleration.append(push * given.scaling.get("acceleration", 1.0))
+        jerk.append(said.get("jerk", joint.jerk))
+    positions = tuple(given.positions.get(name, (-math.inf, math.inf)) for name in robot.group)
+    return Limits(
+        tuple(velocity),
+        tuple(acceleration),
+        _jerks(jerk, acceleration),
+        position=positions if np.isfinite(positions).any() else None,
+    )
 
 
-def _read(path: Path, joints: set[str]) -> dict[str, dict[str, float]]:
-    """Return joint -> kind of limit -> value of a file, without those that it switches off."""
-    document = read_mapping(path, "joint_limits file")
-    table = document.get("joint_limits")
-    if not isinstance(table, dict):
-        raise BrokenFile(f"{path} must have a mapping 'joint_limits', joint -> limits")
-    limits = {}
-    for name, row in table.items():
-        require_known(f"joint in {path}:", name, joints)
-        if not isinstance(row, dict):
-            raise BrokenFile(f"joint_limits of {name!r} in {path} must be a mapping, got {row!r}")
-        limits[str(name)] = _limits_of_joint(row, f"{name} in {path}")
-    return limits
-
-
-def _limits_of_joint(row: dict[Any, Any], where: str) -> dict[str, float]:
-    known = {f"max_{kind}" for kind in _KINDS} | {f"has_{kind}_limits" for kind in _KINDS}
-    known |= {"has_position_limits", "min_position", "max_position"}
-    for key in row:
-        require_known(f"limit of {where}:", key, known)
-    return {
-        kind: require_positive(f"max_{kind} of {where}", row[f"max_{kind}"])
-        for kind in _KINDS
-        if f"max_{kind}" in row and row.get(f"has_{kind}_limits", True)
-    }
+def _jerks(jerk: list[float], acceleration: list[float]) -> tuple[float, ...] | None:
+    """Return the jerk of every joint, None where no joint has one: the slowest says when others are at full push."""
+    if min(jerk) == math.inf:
+        return None
+    seconds = max(push / most for push, most in zip(acceleration, jerk, strict=True))
+    return tuple(most if most < math.inf else push / seconds for push, most in zip(acceleration, jerk, strict=True))

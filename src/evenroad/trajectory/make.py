@@ -105,6 +105,7 @@ def make_trajectory(
     joints = tuple(names) if names is not None else tuple(f"joint_{i + 1}" for i in range(waypoints.shape[1]))
     if len(joints) != waypoints.shape[1]:
         raise InvalidValue(f"names must be {waypoints.shape[1]}, one a joint, got {len(joints)}")
+    limits.require_positions(waypoints, joints)
     said: dict[str, Any] = {
         "names": joints,
         "limits": limits,
