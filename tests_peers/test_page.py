@@ -1,7 +1,11 @@
 """The page in a browser: opened, its slider moved, and looked at."""
 
+import asyncio
 import threading
 import time
+from contextlib import closing
+from http.client import HTTPConnection
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -13,6 +17,7 @@ from evenroad.space.path import configuration_at
 from tests_peers.chromium import opened
 
 viser = pytest.importorskip("viser")
+msgspec = pytest.importorskip("msgspec")
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
 
@@ -133,3 +138,55 @@ def test_what_is_played_moves_at_its_speed_and_stops_unless_it_loops(page):
     time.sleep(1.5)
     assert page.slider.value == page.slider.max
     assert not page._playing
+
+
+def _status(page, path, **headers):
+    with closing(HTTPConnection("127.0.0.1", page._server.get_port(), timeout=10)) as connection:
+        connection.request("GET", path, headers=headers)
+        answer = connection.getresponse()
+        return answer.status, answer.read()
+
+
+def test_the_page_is_sent_to_its_address_alone(page):
+    path = urlsplit(page.address).path
+    assert _status(page, path)[0] == _status(page, f"{path}/")[0] == 200
+    for foreign in ("/", "/index.html", f"{path}x"):
+        assert _status(page, foreign)[0] == 403
+    status, content = _status(page, path, Host="evil.example")
+    assert (status, content.count(b"\n")) == (403, 1)
+    assert _status(page, f"{path}/../../setup.py")[0] == 404
+
+
+@pytest.mark.parametrize(("origin", "host"), [("http://evil.example", None), (None, "evil.example"), (None, None)])
+def test_a_socket_of_another_origin_moves_nothing(page, origin, host):
+    websockets = pytest.importorskip("websockets")
+    message = msgspec.msgpack.encode(
+        {
+            "type": "TransformControlsUpdateMessage",
+            "name": "/hand of goal",
+            "wxyz": [1.0, 0.0, 0.0, 0.0],
+            "position": [0.3, 0.3, 0.5],
+        }
+    )
+
+    async def connect(address, **options):
+        protocol = f"viser-v{viser.__version__}"
+        async with websockets.connect(address, subprotocols=[protocol], max_size=None, **options) as connection:
+            await asyncio.wait_for(connection.recv(), 10)
+            await connection.send(message)
+            await asyncio.sleep(1.0)
+
+    address = page.address.replace("http", "ws")
+    goal = page._endpoints["goal"].copy()
+    if origin is host is None:
+        with pytest.raises(websockets.exceptions.InvalidStatus, match="403"):
+            asyncio.run(connect(address.rpartition("/")[0]))
+        # The same message from the page itself moves it.
+        own = page.address.rpartition("/")[0]
+        asyncio.run(connect(address, origin=own))
+        assert (page._endpoints["goal"] != goal).any()
+        return
+    foreign = {"origin": origin} if origin else {"additional_headers": {"Host": host}}
+    with pytest.raises(websockets.exceptions.InvalidStatus, match="403"):
+        asyncio.run(connect(address, **foreign))
+    assert (page._endpoints["goal"] == goal).all()

@@ -5,7 +5,9 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from dataclasses import replace
+from io import StringIO
 from typing import Any
 
 import numpy as np
@@ -22,6 +24,7 @@ from evenroad.space.path import configuration_at
 from evenroad.viz import style
 from evenroad.viz.bodies import indexed, rgb, robot_sets
 from evenroad.viz.follow import follow, wxyz_of
+from evenroad.viz.page_guard import PageGuard, guarded
 from evenroad.viz.page_obstacles import PageObstacles
 from evenroad.viz.player import clearances
 from evenroad.viz.stage import Part
@@ -42,7 +45,7 @@ Planner = Callable[[ArmWorld, Floats, Floats], PlanResult]
 
 
 class ArmPage:
-    """A page, served until it is closed.
+    """A page, served until it is closed, to those who know its address.
 
     Parameters
     ----------
@@ -78,7 +81,10 @@ class ArmPage:
     ) -> None:
         viser = require_extra("viser", "view", "a page in the browser")
         self.world, self.result, self._plan, self._timed = world, result, plan, timed
-        self._server = viser.ViserServer(host=host, port=port, label="evenroad", verbose=False)
+        self._guard = PageGuard.of(host)
+        # What viser prints names an address without the token.
+        with guarded(self._guard), redirect_stdout(StringIO()):
+            self._server = viser.ViserServer(host=host, port=port, label="evenroad", verbose=False)
         self._busy, self._playing = threading.RLock(), False
         self._wanted: dict[str, tuple[Floats, Floats]] = {}
         self._tips = tip_links(world.robot)
@@ -97,8 +103,8 @@ class ArmPage:
 
     @property
     def address(self) -> str:
-        """Address of the page, for a browser."""
-        return f"http://{self._server.get_host()}:{self._server.get_port()}"
+        """Address of the page, for a browser; its token lets nobody else in."""
+        return f"http://{self._server.get_host()}:{self._server.get_port()}/{self._guard.token}"
 
     def serve(self) -> None:
         """Serve the page until Ctrl-C, and play the path on request."""
