@@ -224,7 +224,7 @@ NAMED_APART = BALLS[0].vertices[BALLS[0].triangles].reshape(-1, 3), np.arange(24
 
 @pytest.mark.parametrize(("mesh", "closed", "turned"), [
     (BALLS[0], 1.0, True), (merged(BOXES), 1.0, True), (half_open(BALLS[0]), 0.0, True),
-    (half_turned(BALLS[0]), 1.0, False),
+    (half_turned(BALLS[0]), 1.0, True),
     (merged((BALLS[0], half_open(BALLS[2]))), 80 / 240, True),
     (soup(5, 20), 0.0, True),
     # Corners that are named apart but lie in one place.

@@ -11,27 +11,33 @@ from evenroad.geometry.mesh import closed_parts, first_of_parts
 
 
 def slow_closed_parts(mesh):
-    """The same, and which triangle of a part is the first, by dictionaries of corners."""
+    """Which triangles bound closed parts, and which one of a part is the first, by dictionaries of corners."""
     faces = [[tuple((mesh.vertices[i] + 0.0).tolist()) for i in face] for face in mesh.triangles]
     part = {}
     for face in faces:
         joined = set().union(*(part.get(corner, {corner}) for corner in face))
         for corner in joined:
             part[corner] = joined
-    sides = [(face[k], face[(k + 1) % 3]) for face in faces for k in range(3)]
-    times = Counter(min(side, side[::-1]) for side in sides)
-    turns = Counter()
-    for a, b in sides:
-        turns[min((a, b), (b, a))] += (b > a) - (a > b)
-    odd = {id(part[a]) for (a, _), count in times.items() if count % 2}
-    unturned = {id(part[a]) for (a, _), count in turns.items() if count}
-    closed = [id(part[face[0]]) not in odd for face in faces]
-    oriented = not any(
-        is_closed and id(part[face[0]]) in unturned for is_closed, face in zip(closed, faces, strict=True)
-    )
+    odd, seen, again = {True: set(), False: set()}, set(), []
+    for face in faces:
+        again.append(frozenset(face) in seen)
+        seen.add(frozenset(face))
+    for once in odd:
+        sides = [
+            frozenset((face[k], face[(k + 1) % 3]))
+            for face, repeated in zip(faces, again, strict=True)
+            for k in range(3)
+            if len(set(face)) == 3 and not (once and repeated)
+        ]
+        odd[once] = {id(part[next(iter(side))]) for side, count in Counter(sides).items() if count % 2}
+    closed = [
+        len(set(face)) == 3
+        and (not repeated if id(part[face[0]]) not in odd[True] else id(part[face[0]]) not in odd[False])
+        for face, repeated in zip(faces, again, strict=True)
+    ]
     known = set()
     first = [not (id(part[face[0]]) in known or known.add(id(part[face[0]]))) for face in faces]
-    return closed, oriented, first
+    return closed, first
 
 
 def slow_pieces(corners, reach, longest):
@@ -57,6 +63,10 @@ def tetrahedra(rng, count, turned):
         if turned and rng.random() < 0.4:
             faces[0] = faces[0, ::-1]
         triangles.append(faces + 4 * len(vertices))
+        if turned and rng.random() < 0.4:
+            triangles.append(triangles[-1][rng.integers(0, len(faces), rng.integers(1, 3)), ::-1])
+        if turned and rng.random() < 0.3:
+            triangles.append(triangles[-1][:1, [0, 1, 1]])
         corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]) * rng.choice((-1.0, 1.0), 3)
         vertices.append(corners + rng.integers(-2, 3, 3))
     vertices, triangles = np.concatenate(vertices), np.concatenate(triangles)
@@ -69,11 +79,9 @@ def tetrahedra(rng, count, turned):
 def test_closed_parts_are_those_of_a_slow_search(seed):
     rng = np.random.default_rng(seed)
     mesh = tetrahedra(rng, int(rng.integers(1, 30)), turned=seed % 2 == 1)
-    closed, oriented = closed_parts(mesh)
-    expected = slow_closed_parts(mesh)
-    assert closed.tolist() == expected[0]
-    assert oriented == expected[1]
-    assert first_of_parts(mesh).tolist() == expected[2]
+    closed, first = slow_closed_parts(mesh)
+    assert closed_parts(mesh)[0].tolist() == closed
+    assert first_of_parts(mesh).tolist() == first
 
 
 def test_pieces_are_those_of_a_slow_recursion_and_cover_what_is_reached():

@@ -90,7 +90,7 @@ def _in_cylinder(radius: float, half: float) -> list[Fitted]:
 
 
 def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
-    """Return balls inside the closed, consistently oriented parts of a mesh; none where its orientation is unclear."""
+    """Return balls inside the closed parts of a mesh; none where their sides cannot tell inside from outside."""
     from scipy.spatial import cKDTree
 
     closed, turned = closed_parts(mesh)
@@ -99,7 +99,7 @@ def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
         return []
     mesh = mesh.compact
     proper = (mesh.triangles != np.roll(mesh.triangles, 1, axis=1)).all(axis=1)
-    rows = mesh.triangles[closed & proper]
+    rows = mesh.facing[closed & proper]
     corners = mesh.vertices[rows]
     middles = _points_inside(corners)
     if not len(middles):

@@ -84,8 +84,14 @@ class TriangleMesh:
         return self.compact.triangles
 
     @cached_property
-    def _closed(self) -> tuple[Bools, bool, Bools]:
+    def _closed(self) -> tuple[Bools, bool, Bools, Bools]:
         return native.closed_parts(self.vertices, self.triangles)
+
+    @cached_property
+    def facing(self) -> Ints:
+        """The triangles, those of closed parts turned so that what they wind around is solid."""
+        turned = self._closed[3][:, np.newaxis]
+        return np.where(turned, self.triangles[:, ::-1], self.triangles)
 
     @cached_property
     def outer(self) -> Floats:
@@ -190,7 +196,9 @@ def convex_hull(points: npt.ArrayLike, name: str = "hull", grown: float = 0.0) -
     return TriangleMesh(every[hull.vertices], number[triangles], name)
 
 
-def height_map(heights: npt.ArrayLike, spacing: float, low: Sequence[float] = (0.0, 0.0)) -> TriangleMesh:
+def height_map(
+    heights: npt.ArrayLike, spacing: float, low: Sequence[float] = (0.0, 0.0), depth: float = 0.0
+) -> TriangleMesh:
     """Return the surface over a grid of heights: two triangles between four neighbours.
 
     Parameters
@@ -201,10 +209,14 @@ def height_map(heights: npt.ArrayLike, spacing: float, low: Sequence[float] = (0
         Distance of neighbours, > 0 [m].
     low : sequence of 2 floats
         x and y of the first [m].
+    depth : float
+        How deep the ground below the lowest height is, >= 0 [m].  Of 0 there is the surface alone, and what is below it
+        is free; else walls and a bottom close it, and what they enclose is solid.
 
     Raises InvalidValue if they are not such numbers, or no triangle is left.
     """
     z, step = np.asarray(heights, dtype=np.float64), require_positive("spacing", spacing)
+    deep = require_positive("depth", depth, or_zero=True)
     if z.ndim != 2 or min(z.shape) < 2 or np.isinf(z).any():
         raise InvalidValue(f"heights must be an (x, y) array of 2 or more along both, none inf, got {z.shape}")
     x, y = (first + step * np.arange(count) for first, count in zip(as_row("low", low, 2), z.shape, strict=True))
@@ -213,14 +225,30 @@ def height_map(heights: npt.ArrayLike, spacing: float, low: Sequence[float] = (0
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
     known = ~np.isnan(z.ravel())
     vertices = np.stack([*(each.ravel() for each in np.meshgrid(x, y, indexing="ij")), np.where(known, z.ravel(), 0.0)])
-    return TriangleMesh(vertices.T, triangles[known[triangles].all(axis=1)], "height map")
+    surface = TriangleMesh(vertices.T, triangles[known[triangles].all(axis=1)], "height map")
+    return _ground_below(surface, deep) if deep else surface
+
+
+def _ground_below(surface: TriangleMesh, depth: float) -> TriangleMesh:
+    """Return what is between a surface and a level below its lowest place, closed."""
+    top, count = surface.triangles, len(surface.vertices)
+    bottom = surface.vertices.copy()
+    bottom[:, 2] = surface.vertices[top, 2].min() - depth
+    sides = top[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    _, edge = unique_rows(np.sort(sides, axis=1))
+    a, b = sides[np.bincount(edge)[edge] == 1].T
+    walls = np.concatenate([np.stack([b, a, a + count], axis=1), np.stack([b, a + count, b + count], axis=1)])
+    triangles = np.concatenate([top, top[:, ::-1] + count, walls])
+    return TriangleMesh(np.concatenate([surface.vertices, bottom]), triangles, surface.name)
 
 
 def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
-    """Return which triangles belong to closed parts, (t,), and whether all of these are consistently oriented.
+    """Return which triangles bound closed parts, (t,), and whether `facing` tells inside from outside.
 
-    A part, of triangles that share corners, is closed if every edge belongs to an even number of triangles, and
-    oriented if its triangles run along each edge in both directions equally often.  Equal corners are one.
+    A part, of triangles that share corners, is closed if every edge belongs to an even number of triangles.  Equal
+    corners are one; a triangle that is there again does not count where the part is closed without it, nor does one
+    without an area.  What closed surfaces go around is solid, however they face, but for hollows: surfaces within
+    others that face the other way, or to both sides, and cross no larger one.
     """
     return mesh._closed[:2]
 

@@ -89,7 +89,7 @@ def _parts(shape: Shape) -> tuple[Parts, ...]:
     around, beyond = thinned(shape.pose.apply(mesh.outer), LITTLE)
     if mesh.is_convex:
         return (Parts(around[np.newaxis], shape.link, "hull", beyond),)
-    corners = shape.pose.apply(mesh.vertices)[mesh.triangles]
+    corners = shape.pose.apply(mesh.vertices)[mesh.facing]
     closed, turned = closed_parts(mesh)
     # Where sides do not tell inside from outside nobody knows what is solid.
     closed &= turned

@@ -29,7 +29,8 @@ class Distance(NamedTuple):
     Attributes
     ----------
     metres : float, or float64 ndarray, shape (n,)
-        0.0 where two touch, or are nearer than some micrometres; 1.0 where all are that far, or farther.
+        0.0 where two touch, also such as no joint moves, and > 0 in every free configuration; 1.0 where all are that
+        far, or farther.
     pair : (str, str) or None, or list of n such
         Which two: a link and an obstacle, or two links; None where nothing is nearer than 1 m.
     """
@@ -40,6 +41,9 @@ class Distance(NamedTuple):
 
 MOST = 1.0
 """Distance from which on all is the same [m]."""
+
+LEAST = 1e-9
+"""Distance of what does not touch, where less than some micrometres is known of it [m]."""
 
 WITH = ("nothing", "obstacle", "surface", "itself")
 """With what something is in contact, as the native kernel numbers it."""
@@ -68,6 +72,12 @@ class ArmDistances:
         return Checker(made.native, scene, self.resolution, 0.0, False)
 
     @once_property
+    def _bare(self) -> Any:
+        """The same world without a clearance of its own."""
+        world: Any = self
+        return replace(world, clearance=0.0) if self.clearance else self
+
+    @once_property
     def _unpadded(self) -> Any:
         """The same world without what is kept away beside contact: no clearance of it or of an obstacle, no padding."""
         kept = {each.name: 0.0 for each in self.scene.obstacles if each.clearance}
@@ -82,7 +92,8 @@ class ArmDistances:
 
         Bodies are those that the world plans with, without its clearance: capsules, against obstacles the spheres that
         cover them, or what decides in their place.  The distance is never larger than theirs, and some micrometres
-        smaller at most.  Pairs that may touch do not count, nor what no joint moves.
+        smaller at most; of a world without a clearance it is > 0 exactly where `valid` says so.  Pairs that may touch
+        do not count.
 
         Parameters
         ----------
@@ -107,8 +118,12 @@ class ArmDistances:
         """
         batch = as_batch("q", self._row(q)[np.newaxis] if is_one(q) else q, self.space.dim)
         metres, pairs = self._distances(batch)
+        bare = self._bare
+        if bare.fixed_contact is not None:
+            pairs = [bare.fixed_contact] * len(batch)
         if (outside := np.flatnonzero(np.isnan(metres))).size:
             raise InvalidValue(f"q has no distance in row {outside[0]}: {self.explain(batch[outside[0]])}")
+        metres = np.where(bare.valid(batch), np.maximum(metres, LEAST), 0.0)
         return Distance(float(metres[0]), pairs[0]) if is_one(q) else Distance(metres, pairs)
 
     def _distances(self, q: Floats, *, to_itself: bool = True) -> Distance:

@@ -7,6 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from evenroad._checks import require_known, require_positive
 from evenroad._npz import read_array, reading
 from evenroad._yaml import numbers, require_keys
@@ -80,10 +82,8 @@ def obstacle_of(
         pose = _pose(entry, where)
         return Obstacle(name, Plane(name, pose.xyz, pose.rotation).body, cell=cell)
     if shape == HEIGHTS:
-        require_keys(entry, ("shape", "file", "spacing"), optional, where)
-        (spacing,) = numbers(entry["spacing"], 1, f"spacing of {where}")
-        heights = _heights(_file(entry, path, where), require_positive(f"spacing of {where}", spacing))
-        return Obstacle(name, Mesh(heights, pose=_pose(entry, where)), cell)
+        require_keys(entry, ("shape", "file", "spacing"), ("depth", *optional), where)
+        return Obstacle(name, Mesh(_heights(entry, path, where), pose=_pose(entry, where)), cell)
     if shape == Mesh.kind:
         require_keys(entry, ("shape", "file"), (*optional, "scale", "convex"), where)
         scale = entry.get("scale", 1)
@@ -141,11 +141,15 @@ def region_of(entry: object, more: dict[str, Any], where: str, path: Path) -> tu
     return obstacle_of("region", region, path, where).body, require_positive(f"grow of {where}", grow, or_zero=True)
 
 
-def _heights(file: Path, spacing: float) -> TriangleMesh:
-    """Return the surface over the heights of a .npy, (x, y)."""
+def _heights(entry: dict[str, Any], path: Path, where: str) -> TriangleMesh:
+    """Return the ground under the heights of a .npy, (x, y): as deep as the map is wide, or as the entry says."""
+    file = _file(entry, path, where)
+    (spacing,) = numbers(entry["spacing"], 1, f"spacing of {where}")
+    require_positive(f"spacing of {where}", spacing)
     with reading(file, ".npy of heights", b"\x93NUMPY"), open(file, "rb") as stream:
         heights = read_array(stream, file.stat().st_size)
-    return height_map(heights, spacing)
+    (depth,) = numbers(entry.get("depth", spacing * max(np.shape(heights), default=0)), 1, f"depth of {where}")
+    return height_map(heights, spacing, depth=require_positive(f"depth of {where}", depth, or_zero=True))
 
 
 def _pose(entry: dict[str, Any], where: str) -> Pose:

@@ -57,7 +57,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
           scan: {shape: cloud, file: scan.ply, radius: 0.01, seen_at: home, margin: 0.02}
           shelf: {shape: mesh, file: shelf.stl, scale: 0.001, xyz: [0.8, 0, 0]}    # convex: true: its convex hull
           floor: {shape: plane, xyz: [0, 0, -0.8]}                                 # all that is below its x-y plane
-          ground: {shape: height_map, file: ground.npy, spacing: 0.05}             # (x, y) heights
+          ground: {shape: height_map, file: ground.npy, spacing: 0.05, depth: 1}   # (x, y) heights, solid below
           kitchen: {include: kitchen.glb, xyz: [1, 0, 0]}                          # its objects: kitchen/table, ...
           fridge: {include: fridge.urdf, joints: {door: 1.2}, xyz: [0, 1, 0]}      # its links: fridge/door, ...
         allowed:                                  # contacts that are not tested

@@ -8,8 +8,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from evenroad._arrays import Bools, Floats
 from evenroad._native import robot as native
-from evenroad.geometry.hulls import winding_number
 from evenroad.geometry.mesh import closed_parts, first_of_parts
 from evenroad.geometry.shapes import Mesh, PointCloud
 
@@ -23,6 +23,10 @@ origin."""
 PIECE = 0.1
 """Triangles are cut until no side is longer than this share of the robot's reach: a box around a large one says
 little."""
+
+BEYOND, LEAST_BEYOND = 0.03, 0.005
+"""Triangles count that are farther than the reach by this share of it and this length [m]: so wide is a cell of a
+surface's grid at most, where crossings between its middle and a place are counted."""
 
 FRAME = 50_000
 """Clouds of more points than this come anew from a camera: a few are kept, and not 64, which would fill the memory."""
@@ -49,19 +53,33 @@ def make_surface(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) 
     if isinstance(body, PointCloud):
         pose = np.array(body.pose.rotation), np.array(body.pose.xyz)
         return native.Surface.of_cloud(body.points, *pose, body.radius, clearance, reach)
-    corners = body.pose.apply(body.triangles.vertices)[body.triangles.triangles]
-    near, first = native.pieces_within(corners, first_of_parts(body.triangles), reach, reach * PIECE)
-    near = near.reshape(-1, 3, 3)
-    closed, turned = closed_parts(body.triangles)
+    mesh = body.triangles
+    corners = body.pose.apply(mesh.vertices)[mesh.facing]
+    closed, turned = closed_parts(mesh)
     solid = corners[closed]
+    near, first, bounding = _within(corners, first_of_parts(mesh), closed, reach)
     if len(near) == 0:
-        if not turned or abs(winding_number(solid, np.zeros(3))) < 0.5:
+        if not native.winding_at(np.zeros(3), solid, turned):
             return None
         # All that the robot can reach is inside.
-        near = solid = reach * _CUBE
-        first = np.zeros(len(near), dtype=bool)
+        near, turned = reach * _CUBE, True
+        solid, first, bounding = near, np.zeros(len(near), dtype=bool), np.ones(len(near), dtype=bool)
     padding = PADDING * math.sqrt(np.einsum("ijk,ijk->ij", near, near).max())
-    return native.Surface(np.ascontiguousarray(near), clearance + padding, solid, turned, reach, first)
+    return native.Surface(np.ascontiguousarray(near), clearance + padding, solid, turned, reach, first, bounding)
+
+
+def _within(corners: Floats, first: Bools, closed: Bools, reach: float) -> tuple[Floats, Bools, Bools]:
+    """Return the pieces of triangles that a surface of this reach needs, (p, 3, 3); of each whether it is of the first
+    of a part, and of a closed part.
+    """
+    farther = (1.0 + BEYOND) * reach + LEAST_BEYOND
+    found = [(native.pieces_within(corners[of], first[of], farther, PIECE * farther), of is closed)
+             for of in (closed, ~closed) if of.any()]  # fmt: skip
+    return (
+        np.concatenate([pieces.reshape(-1, 3, 3) for (pieces, _), _ in found]),
+        np.concatenate([of_first for (_, of_first), _ in found]),
+        np.concatenate([np.full(len(of_first), is_closed) for (_, of_first), is_closed in found]),
+    )
 
 
 _surfaces = lru_cache(maxsize=64)(make_surface)

@@ -9,6 +9,7 @@
 #include "bind/arrays.hpp"
 #include "bind/doubles.hpp"
 #include "bind/parts.hpp"
+#include "robot/closed_parts.hpp"
 #include "robot/given_boxes.hpp"
 #include "robot/triangles.hpp"
 
@@ -27,20 +28,21 @@ using robot::Scene;
 using robot::Surface;
 
 void make_surface(Surface* self, nb::handle corners, double radius, nb::handle solid, bool turned, double reach,
-                  nb::handle first) {
+                  nb::handle first, nb::handle bounding) {
   const Array<const double, 3> of(corners, "corners"), closed(solid, "solid");
-  const Array<const bool, 1> firsts(first, "first");
+  const Array<const bool, 1> firsts(first, "first"), bounds(bounding, "closed");
   require(of.shape(2) == 3 && (of.shape(1) == 1 || of.shape(1) == 3), "corners must be (n, 1, 3) or (n, 3, 3)");
   require_within(of.span(), -FARTHEST, FARTHEST, "corners"),
       require_within(closed.span(), -FARTHEST, FARTHEST, "solid");
   require_within({&radius, 1}, 0.0, FARTHEST, "radius"), require_within({&reach, 1}, 0.0, FARTHEST, "reach");
   closed.of_shape({closed.shape(0), 3, 3}), firsts.of_shape({of.shape(1) == 3 ? of.shape(0) : 0});
-  new (self)
-      Surface(robot::make_surface({of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach, firsts.span()}));
+  bounds.of_shape({firsts.shape(0)});
+  new (self) Surface(robot::make_surface(
+      {of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach, firsts.span(), bounds.span()}));
 }
 
-/// Return which triangles, (t, 3) rows of vertices, (n, 3), belong to closed parts, whether these are oriented, and
-/// which ones are the first of their part.
+/// Return which triangles, (t, 3) rows of vertices, (n, 3), belong to closed parts, whether these can be oriented,
+/// which ones are the first of their part, and which have to be turned.
 nb::tuple closed_parts(nb::handle vertices, nb::handle triangles) {
   const FloatRows corners(vertices, "vertices");
   const Array<const std::int64_t, 2> rows(triangles, "triangles");
@@ -50,7 +52,18 @@ nb::tuple closed_parts(nb::handle vertices, nb::handle triangles) {
   const std::size_t count = rows.shape(0);
   robot::ClosedParts parts = robot::closed_parts({corners.data(), 3 * corners.shape(0)}, rows.span());
   return nb::make_tuple(as_bools(std::move(parts.closed), {count}), parts.oriented,
-                        as_bools(std::move(parts.first), {count}));
+                        as_bools(std::move(parts.first), {count}), as_bools(std::move(parts.turned), {count}));
+}
+
+/// Return how often closed triangles, (t, 3, 3), wind around a place, (3,); unless they are turned, whether they do so
+/// an odd number of times.
+int winding_at(nb::handle place, nb::handle triangles, bool turned) {
+  const Array<const double, 1> at(place, "place");
+  const Array<const double, 3> closed(triangles, "triangles");
+  at.of_shape({3}), closed.of_shape({closed.shape(0), 3, 3});
+  require_within(at.span(), -FARTHEST, FARTHEST, "place");
+  require_within(closed.span(), -FARTHEST, FARTHEST, "triangles");
+  return robot::winding_at({at.span()[0], at.span()[1], at.span()[2]}, closed.span(), turned);
 }
 
 /// Return the pieces of triangles, (t, 3, 3), that come within reach, none of a side longer than `longest`: (p, 9); and
@@ -159,11 +172,12 @@ nb::object changed_scene(const Scene& before, const Robot& of, nb::handle gone, 
 void add_scene(nb::module_& part) {
   nb::class_<Surface>(part, "Surface")
       .def("__init__", &make_surface, nb::arg("corners"), nb::arg("radius"), nb::arg("solid"), nb::arg("turned"),
-           nb::arg("reach"), nb::arg("first"))
+           nb::arg("reach"), nb::arg("first"), nb::arg("closed"))
       .def_static("of_cloud", &surface_of_cloud)
       .def_static("around", &surface_around);
   part.def("closed_parts", &closed_parts);
   part.def("pieces_within", &pieces_within);
+  part.def("winding_at", &winding_at);
   part.def("box_rows", &box_rows, nb::arg("size"), nb::arg("xyz"), nb::arg("xyzw").none());
   nb::class_<Scene>(part, "Scene")
       .def("__init__", &make_scene, nb::arg("robot"), nb::arg("obstacles"), nb::arg("tested"), nb::arg("surfaces"),

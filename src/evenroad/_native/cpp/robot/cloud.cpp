@@ -50,7 +50,7 @@ std::optional<Surface> make_cloud(const GivenCloud& given) {
     points = near;
   }
   const double padding = OBSTACLE_PADDING * (std::sqrt(farthest) + given.radius);
-  return make_surface({points, false, given.radius + given.clearance + padding, {}, false, given.reach, {}});
+  return make_surface({points, false, given.radius + given.clearance + padding, {}, false, given.reach, {}, {}});
 }
 
 }  // namespace evenroad::robot

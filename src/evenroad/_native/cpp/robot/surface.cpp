@@ -34,6 +34,32 @@ constexpr std::size_t AHEAD = 2 * LANES;
 
 constexpr double CELLS = 400'000;  // about so many of a surface's grid
 
+/// Widen a box around all triangles that can be reached to the reach, along each direction in which all is inside.
+///
+/// Beyond the box no triangle can be reached, so that one place tells for all that are there.
+void widen_by_inside(const GivenSurface& given, double (&low)[3], double (&high)[3]) {
+  double least[3], most[3];
+  std::copy_n(low, 3, least), std::copy_n(high, 3, most);
+  for (std::size_t i = 0; i < given.solid.size(); i += 3) {
+    for (std::size_t axis = 0; axis < 3; axis++) {
+      least[axis] = std::min(least[axis], given.solid[i + axis]);
+      most[axis] = std::max(most[axis], given.solid[i + axis]);
+    }
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    const auto is_inside_beyond = [&](double end, double reach) {
+      double place[3] = {0, 0, 0};
+      place[axis] = 0.5 * (end + reach);
+      return winding_at(place, given.solid, given.turned) != 0;
+    };
+    // Beyond the box around what is solid nothing is inside.
+    const bool below = least[axis] < low[axis] && -given.reach < low[axis];
+    const bool above = most[axis] > high[axis] && given.reach > high[axis];
+    if (below && is_inside_beyond(low[axis], -given.reach)) low[axis] = -given.reach;
+    if (above && is_inside_beyond(high[axis], given.reach)) high[axis] = given.reach;
+  }
+}
+
 /// Write a surface's grid, and how often it winds around each cell.
 void add_grid(Surface& surface, const GivenSurface& given) {
   double low[3], high[3];
@@ -50,6 +76,7 @@ void add_grid(Surface& surface, const GivenSurface& given) {
       high[axis] = std::clamp(high[axis], -given.reach, given.reach);
     }
   }
+  if (!given.solid.empty()) widen_by_inside(given, low, high);
   const GridPlace place = place_grid(low, high, CELLS);
   std::vector<std::uint8_t> marked(place.count());
   (given.triangles ? mark_triangles : mark_points)(place, given.corners, marked);
@@ -68,7 +95,7 @@ Surface make_surface(const GivenSurface& given) {
   const int each = given.triangles ? 3 : 1;
   const std::size_t count = given.corners.size() / (3 * each);
   if (count == 0 || given.corners.size() != 3 * each * count || given.solid.size() % 9 != 0 ||
-      given.first.size() != (given.triangles ? count : 0)) {
+      given.first.size() != (given.triangles ? count : 0) || given.closed.size() != given.first.size()) {
     throw std::invalid_argument("a surface must have points, (n, 1, 3), or triangles, (n, 3, 3), one or more");
   }
   const auto within = [](std::span<const double> numbers, double most) {
@@ -112,31 +139,37 @@ Surface make_surface(const GivenSurface& given) {
     PointLeaf points{far};
     TriangleLeaf triangles{far, none, none, none};
     corners.clear();
-    std::uint16_t first_here = 0;
+    std::uint16_t first_here = 0, closed_here = 0;
     for (std::size_t i = first; i < std::min(first + LANES, count); i++) {
       const double* here = given.corners.data() + 3 * static_cast<std::size_t>(each * order[i]);
       const int lane = static_cast<int>(i - first);
-      if (given.triangles) first_here = static_cast<std::uint16_t>(first_here | given.first[order[i]] << lane);
-      if (given.triangles)
+      if (given.triangles) {
+        first_here = static_cast<std::uint16_t>(first_here | given.first[order[i]] << lane);
+        closed_here = static_cast<std::uint16_t>(closed_here | given.closed[order[i]] << lane);
         put(triangles, lane, here);
-      else
+      } else {
         put(points.points, lane, here);
+      }
       for (int corner = 0; corner < each; corner++, here += 3) {
         corners.push_back({{static_cast<float>(here[0]), static_cast<float>(here[1]), static_cast<float>(here[2])}});
       }
     }
-    if (given.triangles)
-      surface.triangles.push_back(triangles), surface.firsts.push_back(first_here);
-    else
+    if (given.triangles) {
+      surface.triangles.push_back(triangles);
+      surface.firsts.push_back(first_here), surface.closed.push_back(closed_here);
+    } else {
       surface.points.push_back(points);
+    }
     around.push_back(around_places(corners));
   }
   // Nodes are full: their places to spare are far away, and so are the leaves below.
   const std::size_t leaves = (around.size() + LANES - 1) / LANES * LANES;
-  if (given.triangles)
-    surface.triangles.resize(leaves, {far, none, none, none}), surface.firsts.resize(leaves);
-  else
+  if (given.triangles) {
+    surface.triangles.resize(leaves, {far, none, none, none});
+    surface.firsts.resize(leaves), surface.closed.resize(leaves);
+  } else {
     surface.points.resize(leaves, {far});
+  }
   surface.tree = make_box_tree(std::move(around), wider);
   return surface;
 }

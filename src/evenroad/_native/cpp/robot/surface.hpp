@@ -31,18 +31,20 @@ struct Surface {
   std::vector<PointLeaf> points;  // of a cloud
   std::vector<TriangleLeaf> triangles;  // of a mesh
   std::vector<std::uint16_t> firsts;    // of a mesh: which triangles of a leaf are the first of their part
+  std::vector<std::uint16_t> closed;    // of a mesh: which ones are of closed parts
   BoxTree tree;                         // over the leaves
 };
 
 /// A surface as Python gives it.
 struct GivenSurface {
-  std::span<const double> corners;  // (n, 1, 3) points or (n, 3, 3) triangles, as far as the robot can reach them
+  std::span<const double> corners;  // (n, 1, 3) points or (n, 3, 3) triangles, a grid's cell farther than the reach
   bool triangles;
   double radius;
   std::span<const double> solid;  // (m, 3, 3): triangles of closed surfaces, however far
   bool turned;                    // whether the sides of these tell inside from outside
-  double reach;                   // the grid ends at that distance from the origin along each axis
+  double reach;                   // no place is asked for that is farther from the origin along an axis
   std::span<const bool> first;    // of a mesh: which triangles are the first of a part, or pieces of one
+  std::span<const bool> closed;   // of a mesh: which triangles are some of the solid ones, or pieces of one
 };
 
 /// Return a surface; std::invalid_argument if sizes do not fit.

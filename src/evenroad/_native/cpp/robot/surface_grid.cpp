@@ -216,6 +216,12 @@ std::vector<std::int8_t> count_windings(const GridPlace& grid, std::span<const d
   return windings;
 }
 
+int winding_at(const double (&place)[3], std::span<const double> triangles, bool turned) {
+  const double half = 0.5 * LEAST_CELL;
+  const GridPlace around{{place[0] - half, place[1] - half, place[2] - half}, LEAST_CELL, {1, 1, 1}};
+  return count_windings(around, triangles, turned)[0];
+}
+
 /// Between cells d apart along an axis there are d - 1: so distances, axis by axis, from cells that are marked or next
 /// to one (after P. Felzenszwalb and D. Huttenlocher, Distance Transforms of Sampled Functions, 2012, but each line is
 /// searched up to the farthest that is told apart, many lines at once).

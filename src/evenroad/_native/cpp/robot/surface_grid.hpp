@@ -37,6 +37,9 @@ void mark_boxes(const GridPlace& grid, std::span<const std::array<double, 6>> bo
 /// crosses an odd number of them.
 std::vector<std::int8_t> count_windings(const GridPlace& grid, std::span<const double> triangles, bool turned);
 
+/// Return the same of one place.
+int winding_at(const double (&place)[3], std::span<const double> triangles, bool turned);
+
 /// Return how far all of each cell is from those that are marked, in parts of a cell, rounded down; 255 or more.
 std::vector<std::uint8_t> distances_to(const GridPlace& grid, std::span<const std::uint8_t> marked);
 

@@ -35,9 +35,9 @@ EVENROAD_INLINE Mask outside(const TriangleLeaf& leaf, Vec3x16 third, Vec3x16 he
   return below_zero(min(min(a, b), c) + slack);
 }
 
-/// Return how many triangles of a leaf a segment crosses along their normals, less those against them, or nothing where
-/// that cannot be told; `along` is half of the segment.
-std::optional<int> crossings(const TriangleLeaf& leaf, Vec3 begin, Vec3 half) {
+/// Return how many of some triangles of a leaf a segment crosses along their normals, less those against them, or
+/// nothing where that cannot be told; `half` is half of the segment.
+std::optional<int> crossings(const TriangleLeaf& leaf, Mask some, Vec3 begin, Vec3 half) {
   const Vec3x16 corner = leaf.corner - spread(begin), third = leaf.second - leaf.first, along = spread(half);
   const Floats16 before = -dot(leaf.normal, corner), slope = dot(leaf.normal, along);
   const Floats16 after = before + slope + slope, apart = max(min(before, after), -max(before, after));
@@ -45,7 +45,7 @@ std::optional<int> crossings(const TriangleLeaf& leaf, Vec3 begin, Vec3 half) {
   const Floats16 whole = part(share);
   const Vec3x16 here = plus(-corner, along + along, whole);
   const Mask sized = below_zero(0.5F - dot(leaf.normal, leaf.normal));
-  const Mask maybe = ~outside(leaf, third, here, UNSURE) & ~below_zero(UNSURE - apart) & sized & ALL_LANES;
+  const Mask maybe = ~outside(leaf, third, here, UNSURE) & ~below_zero(UNSURE - apart) & sized & some;
   if (maybe == 0) return 0;
   const Mask surely = below_zero(apart + UNSURE) & ~outside(leaf, third, here, -UNSURE);
   if ((maybe & ~surely) != 0) return std::nullopt;
@@ -72,7 +72,8 @@ Mask near_triangles(const TriangleLeaf& leaf, const CapsuleAt& capsule) {
 }
 
 // How often the mesh winds around a place is known for the middle of its cell, and changes where the way there crosses
-// a triangle.  Where a crossing is too near to a side to tell, it counts as inside.
+// a triangle of a closed part.  Outside of the grid nothing is inside.  Where a crossing is too near to a side to tell,
+// it counts as inside.
 bool is_inside(const Surface& mesh, Vec3 place) {
   const DistanceGrid& grid = mesh.grid;
   const float u = place.x - grid.low.x, v = place.y - grid.low.y, w = place.z - grid.low.z;
@@ -93,7 +94,7 @@ bool is_inside(const Surface& mesh, Vec3 place) {
       {place.x + half.x, place.y + half.y, place.z + half.z}, half, 1.0F / std::max(squared, LEAST_SQUARE), UNSURE};
   Walk walk(mesh.tree);
   for (int leaf = 0; (leaf = walk.next([&](const BoxNode& node) { return near_nodes(node, way); })) >= 0;) {
-    const std::optional<int> crossed = crossings(mesh.triangles[leaf], place, half);
+    const std::optional<int> crossed = crossings(mesh.triangles[leaf], mesh.closed[leaf], place, half);
     if (!crossed) return true;
     winding -= *crossed;
   }
