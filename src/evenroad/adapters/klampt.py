@@ -20,6 +20,7 @@ from evenroad.points import PointSet
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.robot import Robot
 from evenroad.space import JointSpace
+from evenroad.space.path import continued
 from evenroad.trajectory import Trajectory
 from evenroad.world import World
 from evenroad.world.function import FunctionWorld, TestedAtStates
@@ -145,7 +146,7 @@ def plan_on_points(
         plan.setEndpoints(*endpoints)
         plan.planMore(len(configurations))
         path = plan.getPath()
-        return np.array(path) if path else None
+        return continued(np.array(path), world.space, np.array(endpoints[0])) if path else None
     finally:
         plan.close()
         space.close()

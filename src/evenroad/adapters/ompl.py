@@ -25,6 +25,8 @@ from evenroad.errors import InvalidValue
 from evenroad.points import PointSet
 from evenroad.space import Space
 from evenroad.space.batch import as_batch_pair
+from evenroad.space.path import continued
+from evenroad.space.protocol import wrapped
 from evenroad.world import World
 
 ob = require_extra("ompl.base", "ompl", "evenroad.adapters.ompl")
@@ -96,7 +98,10 @@ def solve(planner: Any, start: npt.ArrayLike, goals: npt.ArrayLike, seconds: flo
     planner.setProblemDefinition(problem)
     planner.setup()
     planner.solve(seconds)
-    return path_of(information, problem.getSolutionPath()) if problem.hasExactSolution() else None
+    if not problem.hasExactSolution():
+        return None
+    path = path_of(information, problem.getSolutionPath())
+    return continued(path, space_of(information.getStateSpace()), as_batch("start", np.reshape(start, (1, -1)), dim)[0])
 
 
 def plan_on_points(
@@ -175,7 +180,7 @@ class OmplWorld:
 
     def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), lie in the space and are free: (n,)."""
-        batch = as_batch("q", q, self.space.dim)
+        batch = wrapped(self.space, as_batch("q", q, self.space.dim))
         free, state = self.space.contains(batch), self.information.allocState()
         for i in np.flatnonzero(free):
             self._format.write(state, batch[i].tolist())
@@ -184,7 +189,7 @@ class OmplWorld:
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, two (m, dim) arrays, are free: (m,)."""
-        first, second = as_batch_pair(a, b, self.space.dim)
+        first, second = (wrapped(self.space, each) for each in as_batch_pair(a, b, self.space.dim))
         free = self.valid(first)
         free[free] = self.valid(second[free])
         one, other = self.information.allocState(), self.information.allocState()
@@ -279,4 +284,4 @@ def _shortest(space: Space, data: Any, states: StateFormat, terminals: Floats) -
     route = [goal]
     while route[-1] != numbers[0]:
         route.append(int(before[route[-1]]))
-    return where[route[::-1]]
+    return continued(where[route[::-1]], space, terminals[0])

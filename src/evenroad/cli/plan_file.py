@@ -20,6 +20,7 @@ from evenroad.roadmap import PlanResult
 from evenroad.robot import load_scene
 from evenroad.robot.constraint import Constraint, with_tip
 from evenroad.robot_roadmap.static_scene import joined_scenes
+from evenroad.space.path import continued
 from evenroad.trajectory.files import trajectory_of
 from evenroad.trajectory.trajectory import Trajectory
 from evenroad.world import load_map
@@ -79,7 +80,11 @@ def plan_file_of(record: Any, file: Path, robot: str | None = None, options: dic
         request = Request(world, result.start, result.goals)
     else:
         request = request_of(query, file, result.start, result.goals, robot, options)
-    set_fields(result, world=request.world)
+    path = result.path
+    if path is not None:
+        # Earlier versions began within one turn.
+        path = continued(path, request.world.space, result.start)
+    set_fields(result, world=request.world, path=path)
     changed = changed_since(record.get("made_of"), request.world)
     times = record.get("trajectory")
     has_states = isinstance(times, dict) and times.get("states") is not None

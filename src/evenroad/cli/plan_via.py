@@ -19,6 +19,7 @@ from evenroad.planning.read_request import request_in
 from evenroad.planning.request import Goal, Reading, Request
 from evenroad.roadmap import PlanResult
 from evenroad.roadmap.result import make_result
+from evenroad.roadmap.terminals import SAME
 from evenroad.robot import ArmWorld
 from evenroad.robot.cartesian_line import CartesianLine
 from evenroad.robot.constraint import Constraint, part_of
@@ -64,7 +65,7 @@ def plan_through(
         return make_result(world, request.start, request.goals, done.status, message), done.trajectory
     path = done.path
     assert path is not None, "a solved task has a path"
-    rows = np.flatnonzero((request.goals == path[-1]).all(axis=1))
+    rows = np.flatnonzero(world.space.distance(request.goals, np.broadcast_to(path[-1], request.goals.shape)) <= SAME)
     known, row = (request.goals, int(rows[0])) if len(rows) else (path[-1:], 0)
     order = ("resolution", "certified", "exact")
     proof = min((part.proof or "resolution" for part in done.parts), key=order.index)

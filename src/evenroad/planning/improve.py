@@ -16,7 +16,7 @@ from evenroad.roadmap.attempt import NO_LIMIT, Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Connector
 from evenroad.roadmap.problem import Problem
-from evenroad.roadmap.result import PlanResult, Stage, require_start_and_goal
+from evenroad.roadmap.result import PlanResult, Stage, led
 from evenroad.space.path import path_length
 
 NO_BETTER = 1e-9
@@ -80,7 +80,7 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
         more |= dict(path=path, cost=cost, goal_index=row, message=path_message(path, cost, row, len(query.goals)))
         if not np.array_equal(raw, first.path):
             more |= dict(milestone_path=raw, milestone_cost=path_length(raw, space))
-    best = require_start_and_goal(space, replace(first, stages=tuple(stages), **more))
+    best = led(attempt.world, replace(first, stages=tuple(stages), **more))
     if not improver.rounds:
         return best
     return replace(best, message=f"{best.message}, the best of {improver.rounds + 1}: {_gap(best)}")

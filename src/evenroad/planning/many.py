@@ -22,6 +22,7 @@ from evenroad.planning.trees import TreesGoOn, variant_of
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Smooth, require_smooth
 from evenroad.roadmap.result import PlanResult
+from evenroad.roadmap.terminals import from_start_to_goal
 from evenroad.robot import ArmWorld
 from evenroad.world import World
 
@@ -173,4 +174,17 @@ def by_compiled_code(
         report(done)
     found, begins, waypoints, lengths, took = queries.columns
     pathless = {int(rows[number]): queries.answer(number) for number in np.flatnonzero(~found).tolist()}
-    return Part(rows[found], np.diff(begins)[found], waypoints, lengths[found], took[found], pathless)
+    counts = np.diff(begins)[found]
+    waypoints, counts = _led(different, of[rows[found]], waypoints, counts, terminals[rows[found]])
+    return Part(rows[found], counts, waypoints, lengths[found], took[found], pathless)
+
+
+def _led(different: list[Any], of: Ints, waypoints: Floats, counts: Ints, terminals: Floats) -> tuple[Floats, Ints]:
+    """Return paths that begin at the numbers of their starts, as every result does, and how many waypoints each has."""
+    if not any(world.space.flat.wraps for world in different if isinstance(world, ArmWorld)):
+        return waypoints, counts
+    paths = [
+        from_start_to_goal(different[world].space, path, *pair)
+        for world, path, pair in zip(of.tolist(), np.split(waypoints, np.cumsum(counts)[:-1]), terminals, strict=True)
+    ]
+    return np.concatenate([waypoints[:0], *paths]), np.array([len(path) for path in paths], dtype=np.int64)

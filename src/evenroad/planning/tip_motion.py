@@ -16,7 +16,7 @@ from evenroad.errors import InvalidValue
 from evenroad.planning.request import Request, refused
 from evenroad.roadmap import PlanResult, Status
 from evenroad.roadmap.connector import Smooth
-from evenroad.roadmap.result import make_result, require_start_and_goal
+from evenroad.roadmap.result import led, make_result
 from evenroad.robot import ArmWorld
 from evenroad.robot.cartesian_line import CartesianLine, line_from
 from evenroad.robot.cartesian_path import Followed
@@ -192,4 +192,4 @@ def _with_path(world: World, result: PlanResult, path: Floats, raw: Floats, devi
         deviation=deviation,
         message=f"path of length {cost:.6g} with {len(path)} waypoints{to}{largest}",
     )
-    return require_start_and_goal(world.space, changed)
+    return led(world, changed)

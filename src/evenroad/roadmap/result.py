@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import os
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from enum import StrEnum
 from functools import cached_property
 from typing import Any
@@ -17,15 +16,12 @@ from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.certificate import Certificate
 from evenroad.roadmap.result_html import as_html
-from evenroad.space import Space
+from evenroad.roadmap.terminals import from_start_to_goal, turns_at_end
 from evenroad.space.path import path_length, resample
 from evenroad.world import BoundsLengths, MeasuresPaths, NamesNearest, World
 
 NO_POINTS = Origin(family="none", method="no points")
 """Origin of a result whose planner draws no points."""
-
-NEAR = 1e-6
-"""Distance up to which an end of a path counts as the start or goal, for numbers of 1: rounding only."""
 
 
 class Status(StrEnum):
@@ -91,7 +87,9 @@ class PlanResult:
     goal_index : int or None
         Row of the goal that the path ends at; None without a path.
     path : ndarray, shape (p, dim), or None
-        Waypoints after shortcutting, from start to goal, in the units of the space.
+        Waypoints after shortcutting, from start to goal, in the units of the space.  Joints that turn endlessly begin
+        at the numbers of the start, and go on from there; where they end at another turn than the goal's, the message
+        says so.
     milestone_path : ndarray, shape (q, dim), or None
         The path along the roadmap, before shortcutting; along a robot's own, motions may be free at states alone.
     proof : str or None
@@ -443,31 +441,29 @@ def make_result(
     result = object.__new__(PlanResult)
     vars(result).update(_DEFAULTS, counts={}, timings={}, deviation={})
     vars(result).update(more, status=status, message=message, start=start, goals=goals, world=world)
-    return result if world is None else require_start_and_goal(world.space, result)
+    return result if world is None else led(world, result)
 
 
 _DEFAULTS = {each.name: each.default for each in fields(PlanResult) if each.default is not MISSING}
 _DEFAULTS |= {"origin": NO_POINTS, "rule": "none", "planner": "none"}
 
 
-def require_start_and_goal(space: Space, result: PlanResult) -> PlanResult:
-    """Return a result whose paths lead from its start to its goal.
+def led(world: World, result: PlanResult) -> PlanResult:
+    """Return a result whose paths lead from its start, by its very numbers, to its goal.
 
-    Coordinates that wrap may differ by whole turns.  AssertionError for anything else, which is a bug of evenroad: no
-    robot must drive such a path.
+    Its message says where coordinates that repeat end at other numbers than the goal's.  AssertionError where a path
+    does not lead there, which is a bug of evenroad: no robot must drive such a path.
     """
-    for path in (result.path, result.milestone_path if result.milestone_path is not result.path else None):
-        if path is None:
-            continue
-        # Most are equal numbers, which is ten times as fast to test.
-        if path[0].tolist() == result.start.tolist() and path[-1].tolist() == result.goal.tolist():
-            continue
-        for name, configuration, wanted in (("start", path[0], result.start), ("end", path[-1], result.goal)):
-            finite = np.isfinite(configuration).all()
-            away = float(space.distance(configuration[np.newaxis], wanted[np.newaxis])[0]) if finite else math.inf
-            if not away <= NEAR * max(1.0, float(np.abs(wanted).max())):
-                raise AssertionError(
-                    f"the path that was found does not {name} at its query, but {away:.3g} away:"
-                    " this is a fault of evenroad's, please report it"
-                )
-    return result
+    path = raw = None
+    if result.path is not None:
+        path = from_start_to_goal(world.space, result.path, result.start, result.goal)
+    if result.milestone_path is result.path:
+        raw = path
+    elif result.milestone_path is not None:
+        raw = from_start_to_goal(world.space, result.milestone_path, result.start, result.goal)
+    said = "" if path is None else turns_at_end(world, path, result.goal)
+    if said and said not in result.message:
+        result = replace(result, message=result.message + said)
+    if path is result.path and raw is result.milestone_path:
+        return result
+    return replace(result, path=path, milestone_path=raw)

@@ -8,7 +8,12 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
-from evenroad.space.protocol import Space
+from evenroad.space.protocol import Space, period_of
+
+ROUNDING = 1e-9
+"""Largest rounding of a number that was turned by whole periods [rad]."""
+HALF = 0.5 - 1e-9
+"""A step of so much of a period, or more, may lead there in either direction."""
 
 
 def motion_lengths(path: Floats, space: Space) -> Floats:
@@ -19,6 +24,57 @@ def motion_lengths(path: Floats, space: Space) -> Floats:
 def path_length(path: Floats, space: Space) -> float:
     """Return the length of a path in the metric of the space; 0 for one waypoint."""
     return float(np.add.reduce(space.distance(path[:-1], path[1:])))
+
+
+def continued(path: Floats, space: Space, start: Floats) -> Floats:
+    """Return a path, (p, dim), in numbers that go on from those of `start`, (dim,), without a jump of a period.
+
+    `start` is where the path begins, up to whole periods.  Each waypoint is where the motion from the one before leads;
+    half a period leads there in both directions, and a waypoint in the middle says in which.  Other numbers stay.
+    """
+    period = _finite_period(space)
+    if period is None:
+        return path
+    steps = np.diff(path, axis=0)
+    halves = np.flatnonzero((np.abs(steps - _whole(steps, period)) >= HALF * period).any(axis=1))
+    if len(halves):
+        path = np.insert(path, halves + 1, space.interpolate(path[halves], path[halves + 1], 0.5), axis=0)
+    return _gone_on(path, period, start)
+
+
+def _gone_on(path: Floats, period: Floats, start: Floats) -> Floats:
+    """Return a path, (p, dim), without jumps of a period, from the numbers of `start` on."""
+    turns = np.rint(np.diff(path, axis=0, prepend=start[np.newaxis]) / period)
+    if not turns.any():
+        return path
+    shifts = np.cumsum(turns, axis=0)
+    on = np.where(shifts == 0.0, path, path - shifts * np.where(np.isfinite(period), period, 0.0))
+    # Turned numbers are rounded.
+    on[0] = np.where((turns[0] != 0.0) & (np.abs(on[0] - start) <= ROUNDING), start, on[0])
+    return on
+
+
+def _finite_period(space: Space) -> Floats | None:
+    """Return the period of a space of which a coordinate repeats, (dim,); else None."""
+    flat = getattr(space, "flat", None)
+    if flat is not None and not flat.wraps:
+        return None
+    period = period_of(space)
+    return None if period is None or not np.isfinite(period).any() else period
+
+
+def _whole(steps: Floats, period: Floats) -> Floats:
+    """Return the whole periods that are nearest to steps, (n, dim)."""
+    return np.where(np.isfinite(period), period, 0.0) * np.rint(steps / period)
+
+
+def _between(a: Floats, b: Floats, space: Space, share: Floats) -> Floats:
+    """Return the states at shares of motions, (n, dim), in the numbers that go on from those of `a`."""
+    states, period = space.interpolate(a, b, share), _finite_period(space)
+    if period is None:
+        return states
+    along = a + share[:, np.newaxis] * (b - a - _whole(b - a, period))
+    return states + _whole(along - states, period)
 
 
 def subdivide(path: Floats, space: Space, segments: npt.NDArray[np.integer]) -> tuple[Floats, Ints]:
@@ -45,6 +101,8 @@ def resample(path: Floats, space: Space, step: float) -> tuple[Floats, Ints]:
     step = require_positive("step", step)
     segments = np.maximum(np.ceil(motion_lengths(path, space) / step), 1.0).astype(np.int64)
     states, _ = subdivide(path, space, segments)
+    if (period := _finite_period(space)) is not None:
+        states = _gone_on(states, period, path[0])
     return states, np.concatenate([[0], np.repeat(np.arange(len(path) - 1), segments)]).astype(np.int64)
 
 
@@ -63,4 +121,4 @@ def configuration_at(path: Floats, space: Space, t: npt.ArrayLike) -> Floats:
     motion = np.clip(np.searchsorted(travelled, along, side="right") - 1, 0, len(path) - 2)
     length = travelled[motion + 1] - travelled[motion]
     within = np.divide(along - travelled[motion], length, out=np.zeros_like(along), where=length > 0.0)
-    return space.interpolate(path[motion], path[motion + 1], np.clip(within, 0.0, 1.0))
+    return _between(path[motion], path[motion + 1], space, np.clip(within, 0.0, 1.0))

@@ -16,7 +16,7 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions, as_weights
 from evenroad.space.flat import FlatMetric
 from evenroad.space.joints import BoxSpace, Circle
-from evenroad.space.protocol import Space, all_distances
+from evenroad.space.protocol import Space, all_distances, period_of, wrapped
 from evenroad.space.so3 import SO3
 
 
@@ -79,6 +79,12 @@ class Product(Space):
         """The metric as scales and periods, where every part has one and ``combine`` is "l2"; else None."""
         return self._flat
 
+    @property
+    def period(self) -> Floats:
+        """Those of all parts; a part that does not say has none."""
+        own = (np.full(part.dim, np.inf) if period_of(part) is None else period_of(part) for part in self.parts)
+        return np.concatenate([*own])
+
     def from_cube(self, u: Floats) -> Floats:
         """Map `u`, (n, cube_dim), to configurations, (n, dim), each part from its own columns."""
         columns = _split(as_cube_batch(u, self.cube_dim), [part.cube_dim for part in self.parts])
@@ -125,6 +131,11 @@ class Product(Space):
         fraction = as_fractions(t, len(first))[:, 0]
         pairs = self._part_by_part(first, second)
         return np.hstack([part.interpolate(start, end, fraction) for part, start, end in pairs])
+
+    def wrapped(self, q: Floats) -> Floats:
+        """Return configurations, (n, dim), with coordinates that repeat brought into the ranges of their parts."""
+        batch = as_batch("q", q, self.dim)
+        return np.hstack([wrapped(part, own) for part, own in zip(self.parts, self.split(batch), strict=True)])
 
     def split(self, q: Floats) -> list[Floats]:
         """Return the columns of `q` that belong to each part.

@@ -33,6 +33,11 @@ class Space(Protocol):
         """The metric as scales and periods of the coordinates, or None where it is not of that kind."""
         return None
 
+    @property
+    def period(self) -> Floats | None:
+        """After how much each coordinate repeats, (dim,), infinite where it does not; None where that is not known."""
+        return None if self.flat is None else self.flat.period
+
     def from_cube(self, u: Floats) -> Floats:
         """Map points of the unit cube to configurations, preserving measure.
 
@@ -118,6 +123,26 @@ class Space(Protocol):
         [[1.5, 2.0, 0.0]]
         """
 
+    def wrapped(self, q: Floats) -> Floats:
+        """Return configurations with coordinates that repeat brought into their ranges.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, dim)
+
+        Returns
+        -------
+        ndarray, shape (n, dim)
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> space = er.spaces.SE2((-5, -5), (5, 5))
+        >>> space.wrapped([(1, 2, 4)]).round(3).tolist()
+        [[1.0, 2.0, -2.283]]
+        """
+        return as_batch("q", q, self.dim)
+
     def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distance of every row of `a` from every row of `b`; some spaces do it faster than one by one.
 
@@ -145,3 +170,16 @@ def all_distances(space: Space, a: Floats, b: Floats) -> Floats:
     """Return the distances of all pairs of rows, also of a space that does not inherit from Space."""
     own = getattr(space, "all_distances", None)
     return Space.all_distances(space, a, b) if own is None else own(a, b)
+
+
+def period_of(space: Space) -> Floats | None:
+    """Return after how much coordinates repeat, also of a space that does not inherit from Space; None: not known."""
+    flat = getattr(space, "flat", None)
+    own: Floats | None = getattr(space, "period", None) if flat is None else flat.period
+    return own
+
+
+def wrapped(space: Space, q: Floats) -> Floats:
+    """Return configurations with coordinates in their ranges, also of a space that does not inherit from Space."""
+    own = getattr(space, "wrapped", None)
+    return q if own is None else own(q)

@@ -13,13 +13,13 @@ from evenroad._arrays import Floats
 from evenroad.constraints.kept_world import keeps_of, kept_line, kept_world
 from evenroad.planning.request import Request, refused, unreached
 from evenroad.roadmap import PlanResult, Status
-from evenroad.roadmap.result import make_result
+from evenroad.roadmap.result import led, make_result
 from evenroad.robot import ArmWorld
 from evenroad.robot.cartesian_line import CartesianLine, line_from
 from evenroad.robot.cartesian_path import Followed
 from evenroad.robot.chain import chain_of, default_tip
 from evenroad.robot.constraint import Constraint, with_tip
-from evenroad.space.path import path_length
+from evenroad.space.path import continued, path_length
 from evenroad.task.steps import MoveTo
 
 PlanBetween = Callable[[Request, Constraint | None], PlanResult]
@@ -46,6 +46,16 @@ class Motion:
         path = self.parts[-1].path
         assert path is not None, "only of a motion that was found"
         return path[-1]
+
+    def gone_on(self, at: Floats) -> Motion:
+        """Return the motion from the numbers of a configuration on, (dim,), up to whole turns where it begins."""
+        parts: list[PlanResult] = []
+        for part in self.parts:
+            parts.append(_turned(part, at))
+            path = parts[-1].path
+            assert path is not None, "only of a motion that was found"
+            at = path[-1]
+        return replace(self, parts=tuple(parts))
 
 
 @dataclass(eq=False)
@@ -140,6 +150,16 @@ def along(world: ArmWorld, followed: Followed, motion: Motion) -> Leg:
     rows = [0, *followed.stops, len(followed.path) - 1]
     parts = [_part(world, replace(followed, path=followed.path[a : b + 1]), "curve") for a, b in pairwise(rows)]
     return Leg(followed.path[-1], tuple(parts), None, (), motion)
+
+
+def _turned(part: PlanResult, at: Floats) -> PlanResult:
+    """Return a plan by whole turns from where it was, from the numbers of a configuration on, (dim,)."""
+    assert part.world is not None, "only of a motion that was planned"
+    assert part.path is not None, "only of a motion that was found"
+    path = continued(part.path, part.world.space, at)
+    if path is part.path:
+        return part
+    return led(part.world, replace(part, start=path[0], goals=part.goals + (path[0] - part.start), path=path))
 
 
 def _in_turn(request: Request, first: Floats) -> list[int]:

@@ -162,9 +162,6 @@ def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
         for name in ("velocities", "accelerations"):
             rows[name].append(np.zeros((count, len(still))))
         if part is not None:
-            # Each begins at rest where the one before ended, where a continuous joint may have gone on for turns.
-            turns = 2.0 * np.pi * np.rint((still - part.positions[0]) / (2.0 * np.pi))
-            part = replace(part, positions=part.positions + turns, waypoints=part.waypoints + turns)
             waypoints.append(part.waypoints[1:])
             first = 0 if len(rows["positions"]) == 1 else 1
             for name, values in rows.items():

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from itertools import islice
 from time import perf_counter as now
 
+from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
@@ -179,7 +180,7 @@ def plan_task(
     motions = None
     for width in WIDTHS:
         for branch in search.whole(first, width):
-            motions = _planned(search, branch, plan_between) if now() < deadline else None
+            motions = _planned(search, branch, first.stage.q, plan_between) if now() < deadline else None
             if motions is not None:
                 break
         if motions is not None or now() >= deadline:
@@ -199,14 +200,15 @@ def plan_task(
     return TaskResult(steps, status, message, (), max(search.deepest, 0), timings, search.tried)
 
 
-def _planned(search: _Search, branch: _Branch, plan_between: PlanBetween) -> tuple[Motion, ...] | None:
-    """Return the motions of a branch; None where one cannot be planned."""
+def _planned(search: _Search, branch: _Branch, start: Floats, plan_between: PlanBetween) -> tuple[Motion, ...] | None:
+    """Return the motions of a branch from the start on, (dim,); None where one cannot be planned."""
     numbers = [number for number, step in enumerate(search.steps) if isinstance(step, Move)]
-    motions = []
+    motions, at = [], start
     for number, leg in zip(numbers, branch.legs, strict=True):
         motion = leg.plan(plan_between)
         if motion.goal is None:
             search.note(number, motion.parts[-1])
             return None
-        motions.append(motion)
+        motions.append(motion.gone_on(at))
+        at = motions[-1].end if motion.parts else at
     return tuple(motions)

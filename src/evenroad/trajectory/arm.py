@@ -9,7 +9,6 @@ from inspect import signature
 from operator import and_
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
@@ -21,6 +20,7 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.robot import ArmWorld, Robot, held_values, tip_links
 from evenroad.robot.constraint import Constraint, part_of
 from evenroad.robot.kinematics import link_poses
+from evenroad.space.path import continued
 from evenroad.trajectory.in_motion import InMotion
 from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of
 from evenroad.trajectory.make import DEVIATION, STEP, make_trajectory
@@ -78,7 +78,7 @@ def arm_trajectory(
     waypoints = as_batch("path", moving.path, world.space.dim)
     if len(waypoints) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
-    waypoints = _turned_on(world, waypoints)
+    waypoints = continued(waypoints, world.space, waypoints[0])
     checked = constrained_world(world, waypoints, constraints)
     trajectory = make_trajectory(
         replace(moving, path=waypoints),
@@ -99,15 +99,6 @@ def arm_trajectory(
         return positions
 
     return with_radii(trajectory, checked, tip_at)
-
-
-def _turned_on(world: ArmWorld, path: Floats) -> Floats:
-    """Return a path, (p, dim), whose continuous joints take the shorter direction in every step."""
-    if not world.space.flat.wraps:
-        return path
-    steps = np.diff(path, axis=0)
-    turns = np.rint((world.space.flat.difference(path[:-1], path[1:]) - steps) / (2.0 * np.pi))
-    return path + 2.0 * np.pi * np.cumsum(np.vstack([np.zeros(world.space.dim), turns]), axis=0)
 
 
 def controller_joints(robot: Robot) -> tuple[str, ...]:

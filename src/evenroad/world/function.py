@@ -15,7 +15,7 @@ from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.space import BoxSpace, Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
-from evenroad.space.protocol import all_distances
+from evenroad.space.protocol import all_distances, wrapped
 from evenroad.world.bisection import MOST_SEGMENTS, between_endpoints, require_few_segments
 from evenroad.world.one_or_many import OneOrMany, one_or_many
 
@@ -101,7 +101,7 @@ class FunctionWorld(OneOrMany):
         Of one configuration, (dim,), a bool; `motion_valid`, too.  Raises InvalidValue if `q` is no such batch, or the
         function's answer is not of the kind described above.
         """
-        batch = as_batch("q", q, self.space.dim)
+        batch = wrapped(self.space, as_batch("q", q, self.space.dim))
         free = self.space.contains(batch)
         inside = np.flatnonzero(free)
         self._clear_blocked(free, inside, batch[inside])
@@ -122,6 +122,8 @@ class FunctionWorld(OneOrMany):
 
     def _motions_free(self, first: Floats, second: Floats, finer: int) -> Bools:
         """Return which motions are free at states `finer` times as dense as the resolution says."""
+        # A function need not know how often an angle has turned.
+        first, second = wrapped(self.space, first), wrapped(self.space, second)
         free = self.valid(first)
         free[free] = self.valid(second[free])
         segments = np.zeros(len(free), dtype=np.int64)

@@ -1,6 +1,7 @@
 """A path that begins or ends elsewhere than asked is never handed out, whoever found it."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +16,8 @@ from evenroad.planning.tip_motion import TipMotion
 from evenroad.planning.trees import solve_by
 from evenroad.roadmap import Budget
 from evenroad.roadmap.connector import Connection
-from evenroad.roadmap.result import NEAR, NO_POINTS, PlanResult, Status, require_start_and_goal
+from evenroad.roadmap.result import NO_POINTS, PlanResult, Status, led
+from evenroad.roadmap.terminals import NEAR, SAME
 from evenroad.robot import ArmWorld, CartesianLine, Joint, Robot, Scene
 from evenroad.robot_roadmap.build import arm_roadmap
 from evenroad.robot_roadmap.query import search
@@ -29,6 +31,10 @@ PLANE = BoxSpace((0.0, 0.0), (1.0, 1.0))
 A, B, C = np.array([[0.1, 0.2], [0.8, 0.9], [0.5, 0.5]])
 
 
+def in_(space):
+    return SimpleNamespace(space=space)
+
+
 def result(path, start=A, goals=(B,), index=0, status=Status.SOLVED, **more):
     goals, path = np.array(goals), None if path is None else np.array(path)
     asked = dict(start=np.array(start), goals=goals, origin=NO_POINTS, rule="none", goal_index=index)
@@ -37,30 +43,59 @@ def result(path, start=A, goals=(B,), index=0, status=Status.SOLVED, **more):
 
 @pytest.mark.parametrize(("wrong", "where"), [
     (result([C, B]), "start"), (result([A, C]), "end"), (result([B, A]), "start"),
-    (result([A, B], goals=[B, C], index=1), "end"), (result([A + 2.0 * NEAR, B]), "start"),
+    (result([A, B], goals=[B, C], index=1), "end"), (result([A + 2.0 * SAME, B]), "start"),
     (result([A, B - 2.0 * NEAR]), "end"), (result([A, [np.nan, 0.9]]), "end"),
     (result([A, B], milestone_path=np.array([C, B])), "start"),
     (result([A, B], milestone_path=np.array([A, C])), "end"),
 ])  # fmt: skip
 def test_a_path_that_leads_elsewhere_is_a_fault_and_no_error_of_the_input(wrong, where):
     with pytest.raises(AssertionError, match=f"does not {where} at its query, but .* away") as raised:
-        require_start_and_goal(PLANE, wrong)
+        led(in_(PLANE), wrong)
     assert not isinstance(raised.value, EvenroadError)
 
 
 def test_one_that_leads_there_but_for_rounding_is_handed_out():
-    for path in ([A, C, B], [A + 0.5 * NEAR, B - 0.5 * NEAR]):
-        assert require_start_and_goal(PLANE, result(path)).path.tolist() == np.array(path).tolist()
+    for end in (B, B - 0.5 * NEAR, B - 0.5 * SAME):
+        path = led(in_(PLANE), result([A + 0.5 * SAME, C, end])).path
+        # The numbers of the query are handed out, and those of the end where they say something else.
+        assert path[0].tolist() == A.tolist()
+        assert path[-1].tolist() == (end if abs(end - B).max() > SAME else B).tolist()
     nothing = result(None, index=None, status=Status.NOT_CONNECTED)
-    assert require_start_and_goal(PLANE, nothing) is nothing
+    assert led(in_(PLANE), nothing) is nothing
 
 
 def test_whole_turns_count_where_a_joint_wraps_and_nowhere_else():
     space = JointSpace((-math.pi, -9.0), (math.pi, 9.0), (True, False))
     asked = [A, B + np.array([5 * math.tau, 0.0])]
-    require_start_and_goal(space, result([A, B], start=asked[0], goals=asked[1:]))
+    said = led(in_(space), result([A, B], start=asked[0], goals=asked[1:])).message
+    assert said == "; whole turns from the goal's numbers ends coordinate 0 at 0.8"
     with pytest.raises(AssertionError, match="end"):
-        require_start_and_goal(space, result([A, B], start=A, goals=[B + np.array([0.0, math.tau])]))
+        led(in_(space), result([A, B], start=A, goals=[B + np.array([0.0, math.tau])]))
+
+
+def test_a_path_in_one_turn_is_handed_out_in_the_numbers_of_its_start_and_without_a_jump():
+    space = JointSpace((-math.pi, -9.0), (math.pi, 9.0), (True, False))
+    start, goal = np.array([4 * math.tau + 3.0, 0.5]), np.array([-math.tau - 2.0, 7.0])
+    within = np.array([[3.0, 0.5], [-3.0, 1.0], [3.1, 1.0], [-3.1, 5.0], [-2.0, 7.0]])
+    on = led(in_(space), result(within, start=start, goals=[goal], milestone_path=within[[0, 4]]))
+    assert on.path[0].tolist() == start.tolist()
+    assert on.path[:, 1].tolist() == within[:, 1].tolist()
+    # The turns by hand: over pi, back, over it again, and on.
+    turned = [3.0, math.tau - 3.0, 3.1, math.tau - 3.1, math.tau - 2.0]
+    assert on.path[:, 0] == pytest.approx(4 * math.tau + np.array(turned), abs=1e-12)
+    assert on.milestone_path[:, 0] == pytest.approx(4 * math.tau + np.array([3.0, math.tau - 2.0]), abs=1e-12)
+    assert on.message.endswith(f"coordinate 0 at {5 * math.tau - 2.0:.6g}")
+
+
+def test_of_half_a_turn_a_waypoint_says_in_which_direction():
+    space = JointSpace((-math.pi,), (math.pi,), (True,))
+    for first, last in ((0.0, math.pi), (7.0, 7.0 + math.pi), (1.0, 1.0 - math.pi), (-50.0, -50.0 + math.pi)):
+        start, goal = np.array([first]), np.array([last])
+        path = led(in_(space), result([start, goal], start=start, goals=[goal])).path
+        middle = space.interpolate(start[None], goal[None], 0.5)
+        assert len(path) == 3
+        assert space.distance(path[1:2], middle) == pytest.approx(0.0, abs=1e-12)
+        assert np.abs(np.diff(path[:, 0])) == pytest.approx(0.25 * math.tau, abs=1e-12)
 
 
 def test_both_signs_of_a_quaternion_are_one_place():
@@ -68,8 +103,9 @@ def test_both_signs_of_a_quaternion_are_one_place():
     pose = np.array([0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5])
     other = np.array([0.5, 0.5, 0.5, 1.0, 0.0, 0.0, 0.0])
     opposite = pose * [1, 1, 1, -1, -1, -1, -1]
-    require_start_and_goal(space, result([opposite, other], start=pose, goals=[other]))
-    refused(AssertionError, "start", require_start_and_goal, space, result([other, other], start=pose, goals=[other]))
+    path = led(in_(space), result([opposite, other], start=pose, goals=[other])).path
+    assert path[0].tolist() == pose.tolist()
+    refused(AssertionError, "start", led, in_(space), result([other, other], start=pose, goals=[other]))
 
 
 class Astray(PlainTrees):
@@ -128,4 +164,6 @@ def test_ends_of_joints_that_turn_for_ever_may_be_asked_for_after_any_turns():
     for turns in (0, 1, -3, 1000):
         found = er.plan(Scene(name="empty"), [0.3 + turns * math.tau], [2.0 - turns * math.tau], robot=robot)
         assert found.solved
-        assert np.sin(found.path[[0, -1], 0]) == pytest.approx(np.sin([0.3, 2.0]), abs=1e-9)
+        assert found.path[0, 0] == 0.3 + turns * math.tau
+        assert found.path[-1, 0] == pytest.approx(2.0 + turns * math.tau, abs=1e-9)
+        assert ("whole turns" in found.message) == (turns != 0)

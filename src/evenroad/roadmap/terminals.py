@@ -1,0 +1,66 @@
+"""Where paths begin and end: at the numbers of their start, and at their goal, up to whole turns."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.space import Space
+from evenroad.space.path import continued
+from evenroad.space.protocol import period_of
+
+SAME = 1e-9
+"""Largest difference of the numbers at which a path begins from those of the start, for numbers of 1."""
+NEAR = 1e-6
+"""Distance up to which the end of a path counts as the goal, for numbers of 1: rounding only."""
+
+
+def from_start_to_goal(space: Space, path: Floats, start: Floats, goal: Floats) -> Floats:
+    """Return a path, (p, dim), from the very numbers of its start to its goal, both (dim,).
+
+    Where coordinates repeat, numbers go on from those of the start, so that the path may end whole periods from those
+    of the goal.  AssertionError for a path that leads elsewhere.
+    """
+    on = continued(path, space, start)
+    # Most are equal numbers, which is ten times as fast to test.
+    if on[0].tolist() != start.tolist() or on[-1].tolist() != goal.tolist():
+        _require_near("start", max(_gap(space, on[0], start), _gap_in_numbers(space, on[0], start)), SAME, start)
+        _require_near("end", _gap(space, on[-1], goal), NEAR, goal)
+        is_there = np.abs(on[-1] - goal) <= SAME * np.maximum(1.0, np.abs(goal))
+        on = np.concatenate([start[np.newaxis], on[1:-1], np.where(is_there, goal, on[-1])[np.newaxis]])
+    if on is not path:
+        on.setflags(write=False)
+    return on
+
+
+def turns_at_end(world: Any, path: Floats, goal: Floats) -> str:
+    """Return in words which coordinates of a path's end are whole periods from the goal; nothing where none is."""
+    period = period_of(world.space)
+    if period is None or not (turns := np.rint((path[-1] - goal) / period)).any():
+        return ""
+    names = getattr(getattr(world, "robot", None), "group", None) or [f"coordinate {k}" for k in range(len(goal))]
+    said = ", ".join(f"{names[k]} at {path[-1][k]:.6g}" for k in np.flatnonzero(turns))
+    return f"; whole turns from the goal's numbers ends {said}"
+
+
+def _gap(space: Space, configuration: Floats, wanted: Floats) -> float:
+    if not np.isfinite(configuration).all():
+        return math.inf
+    return float(space.distance(configuration[np.newaxis], wanted[np.newaxis])[0])
+
+
+def _gap_in_numbers(space: Space, configuration: Floats, wanted: Floats) -> float:
+    """Return the largest difference of coordinates that repeat: a distance is the same for all their turns."""
+    period = period_of(space)
+    return 0.0 if period is None else float(np.abs(configuration - wanted).max(where=np.isfinite(period), initial=0.0))
+
+
+def _require_near(name: str, away: float, near: float, wanted: Floats) -> None:
+    if not away <= near * max(1.0, float(np.abs(wanted).max())):
+        raise AssertionError(
+            f"the path that was found does not {name} at its query, but {away:.3g} away:"
+            " this is a fault of evenroad's, please report it"
+        )
