@@ -19,14 +19,14 @@ allowed:
 
 @pytest.fixture(scope="session")
 def built_roadmap(tmp_path_factory):
-    """A roadmap of the UR5 on a table, 64 milestones, as the command writes it; built once."""
+    """A roadmap of the UR5, 64 milestones, and a table to plan on; built once."""
     folder = tmp_path_factory.mktemp("roadmap")
     (folder / "cell.yaml").write_text(CELL)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         # What is known of the robot comes along.
         patch.setenv("EVENROAD_CACHE", str(folder / ".cache"))
-        assert main(["roadmap", "ur5", "--cell", "cell.yaml", "-n", "64", "-o", "my.roadmap"]) == 0
+        assert main(["roadmap", "ur5", "--cell", "box-reach.yaml", "-n", "64", "-o", "my.roadmap"]) == 0
     return folder
 
 

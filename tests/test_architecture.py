@@ -18,7 +18,7 @@ from evenroad.points.bank.bank import MAKERS
 ROOT = Path(evenroad.__file__).parent
 
 BASE = {
-    *("errors", "_above", "_arrays", "_call", "_checks", "_files", "_fingerprint", "_lazy"),
+    *("errors", "_arrays", "_call", "_checks", "_files", "_fingerprint", "_lazy"),
     *("_native", "_npz", "_rng", "_seal", "_shared", "_terminal", "_threads", "_understood", "_yaml"),
 }
 MAY_IMPORT = {
@@ -35,12 +35,11 @@ MAY_IMPORT = {
     "testing": BASE | {"space", "world"},
     "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "planning", "constraints"},
     "robot": BASE | {"space", "geometry", "world"},
-    "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "planning"},
     "trajectory": BASE | {"space", "world", "robot", "constraints"},
     "task": BASE | {"space", "geometry", "world", "robot", "roadmap", "planning", "trajectory", "constraints"},
     "adapters": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "planning", "trajectory"},
     "cli": BASE
-    | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}
+    | {"points", "space", "world", "geometry", "robot", "roadmap"}
     | {"planning", "io", "viz", "trajectory", "task", "constraints"},
     **dict.fromkeys(BASE, BASE),
 }
@@ -52,8 +51,7 @@ TYPES = "for type checkers"
 
 UPWARD = {
     ("points.pointset", "PointSet.save"): {"points.npz"},
-    ("roadmap.point_roadmap", "PointRoadmap.within"): {"roadmap.point_world_roadmap"},
-    ("roadmap.point_roadmap", "PointRoadmap.save"): {"roadmap.npz"},
+    ("roadmap.roadmap", "Roadmap.save"): {"roadmap.npz"},
     ("roadmap.result", "PlanResult.save"): {"io"},
     ("roadmap.result", "PlanResult.load"): {"io"},
     ("roadmap.result", "PlanResult.plot"): {"viz.result"},

@@ -17,8 +17,8 @@ from evenroad._yaml import read_mapping
 from evenroad.errors import LONGEST, BrokenFile, EvenroadError, InvalidValue, shown
 from evenroad.geometry import load_cloud, load_mesh
 from evenroad.points.npz import load_points
+from evenroad.roadmap import load_roadmap
 from evenroad.robot import load_robot, load_scene
-from evenroad.robot_roadmap.file import load_roadmap
 
 pytest.importorskip("trimesh")
 # Loaded before, so that its own time and memory are not a file's.

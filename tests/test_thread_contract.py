@@ -15,17 +15,13 @@ from evenroad.planning import GrowingPRM
 from evenroad.planning.connectors import ARM_TREES
 from evenroad.planning.trees import default_planner
 from evenroad.points.measures import MEASURES
-from evenroad.roadmap import Budget, KNearest, Status
-from evenroad.roadmap.point_roadmap import roadmap_of_points
-from evenroad.robot import ArmWorld, Obstacle, link_poses
+from evenroad.roadmap import Budget, KNearest
+from evenroad.roadmap.build import roadmap_of_points
+from evenroad.robot import Obstacle, link_poses
 from evenroad.robot.certified import CertifiedWorld
-from evenroad.robot_roadmap.build import arm_roadmap
-from evenroad.robot_roadmap.recipe import Recipe
-from evenroad.space.path import subdivide
 from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
 from evenroad.world.gridmap.load import load_maze
 from tests.robot.kernel_arms import TABLE, box_scene, ur5
-from tests.robot.oracle import clearance
 from tests.threads import together
 
 QUERIES = 8
@@ -164,17 +160,6 @@ def a_function():
     return [*verdicts(world, q[:2]), lambda: er.plan(world, *q[0], er.PRM(40))]
 
 
-@cache
-def known():
-    """A robot's roadmap on its table."""
-    return arm_roadmap(ArmWorld(ur5(limits=math.pi, joints=3), TABLE), 40, 4, recipe=Recipe(0.0, 100))
-
-
-def a_robot_roadmap():
-    own = replace(known(), robot=robot())
-    return [lambda a=a, b=b: own.within(ArmWorld(own.robot, box_scene())).plan(a, b) for a, b in ends()]
-
-
 def samplers():
     names = ("even", "hickernell", "korobov", "growing", "halton", "sobol", "lattice")
     draws = [lambda name=name, d=d: er.draw(name, 64, d, rng=3) for name in names for d in (2, 3)]
@@ -197,12 +182,10 @@ def files(folder):
     world = load_maze(2).world()
     er.draw("uniform", 64, 2, rng=2).save(folder / "p.npz")
     er.build_roadmap(world, 64).save(folder / "r.npz")
-    known().save(folder / "r.roadmap")
     save_trajectory(folder / "t.json", make_trajectory(ends()[0], Limits((1.0,) * 3, (4.0,) * 3)))
     return [
         lambda: er.load_points(folder / "p.npz"),
         lambda: er.load_roadmap(folder / "r.npz").edges,
-        lambda: er.load_roadmap(folder / "r.roadmap").milestones,
         lambda: load_trajectory(folder / "t.json").positions,
         lambda: er.load_robot("arm7") == er.load_robot("arm7"),
         lambda: er.load_scene("box-reach") == er.load_scene("box-reach"),
@@ -221,7 +204,6 @@ VALUES = [
     a_scene_that_changes,
     a_disk_on_a_map,
     a_function,
-    a_robot_roadmap,
     samplers,
     trajectories,
 ]
@@ -240,20 +222,3 @@ def test_eight_threads_read_and_write_files_as_one(tmp_path):
     for answers in together(*asks):
         assert [bits(answer) for answer in answers] == expected
     assert bits(er.load_points(tmp_path / "again.npz")) == bits(er.load_points(tmp_path / "p.npz"))
-
-
-def test_a_robot_roadmap_that_learns_gives_each_thread_the_path_that_it_asked_for():
-    """What was learned before decides which path that is: each is looked at in double precision."""
-    arm, scene, paths = ur5(limits=math.pi, joints=3), box_scene(), {}
-    shared = known().within(ArmWorld(arm, scene))
-    # More than once: the later ones of what was learned.
-    asks = 4 * [lambda a=a, b=b: shared.plan(a, b) for a, b in ends()]
-    for results in together(*asks):
-        for (start, goal), result in zip(itertools.cycle(ends()), results, strict=False):
-            assert (result.status, result.proof) == (Status.SOLVED, "certified")
-            assert result.path[0].tolist() == start.tolist()
-            assert result.path[-1].tolist() == goal.tolist()
-            paths[result.path.tobytes()] = result.path
-    for path in paths.values():
-        states, _ = subdivide(path, shared.world.space, np.full(len(path) - 1, 10))
-        assert clearance(arm, scene, states).min() > 0.0

@@ -50,15 +50,6 @@ REFERENCE = {
     "arms": ("Arms", ("evenroad.robot",)),
     "tasks": ("Constraints and tasks", ("evenroad.constraints", "evenroad.task")),
     "geometry": ("Geometry", ("evenroad.geometry",)),
-    "robot_roadmaps": (
-        "Robots' roadmaps",
-        (
-            "evenroad.robot_roadmap.build",
-            "evenroad.robot_roadmap.arm_roadmap",
-            "evenroad.robot_roadmap.world_roadmap",
-            "evenroad.robot_roadmap.file",
-        ),
-    ),
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
     "pictures": ("Pictures", ("evenroad.viz.show", "evenroad.viz.plan", "evenroad.viz.arm")),
     "mazes": (

@@ -43,10 +43,6 @@ scene = er.load_scene("box-reach")
 world, start, goal = ArmWorld(robot, scene), "home", "inside"
 pose = er.Pose.from_rpy((0.65, 0, 0.2), (0, 1.5708, 0))
 """
-ROADMAP = """
-from pathlib import Path
-er.build_roadmap(ArmWorld(robot), er.draw("even", 16, 6)).save(Path("my_arm.roadmap"))
-"""
 CLOUD = """
 import numpy as np, trimesh
 from evenroad.geometry import Mesh, PointCloud
@@ -59,7 +55,6 @@ PREPARED = {
     "guarantees.md": MAPS + SQUARE,
     "pose-goals.md": ARM,
     "arm-planning.md": ARM,
-    "robot-roadmaps.md": ARM + ROADMAP,
     "trajectories.md": ARM + TRAJECTORY,
     "clouds.md": CLOUD,
 }
@@ -68,7 +63,7 @@ PREPARED = {
 NEEDS = {"adapters.md": ("ompl", "klampt", "mujoco")}
 """Page -> packages of extras that its code imports; where they are missing, `make test-peers` runs it."""
 
-ARM_FILES = ("robots.md", "arm.md", "robot-roadmaps.md", "ros2.md")
+ARM_FILES = ("robots.md", "arm.md", "ros2.md")
 """Pages that speak of ``my_arm.urdf``, ``cell.yaml`` and ``today.yaml``: files that stand for the reader's own."""
 
 
@@ -91,7 +86,6 @@ INSTEAD = {
         "evenroad bench fair --only fair-balls-2d-50 --runs 1 --jobs 1 --store fair.db", "42 minutes"
     ),
     "evenroad bench paper --quick *": Instead(f"evenroad bench paper {TASTE} results.db", "half a minute"),
-    "evenroad bench arms --runs 300 *": Instead(f"evenroad bench paper {TASTE} results.db", "days"),
     "evenroad train -n 100 -d 2 --objective star *": Instead(
         "evenroad train -n 12 -d 2 --objective star --sets 1 --steps 20 -o sets", "minutes"
     ),
@@ -106,7 +100,6 @@ INSTEAD = {
         'evenroad train -n 16 -d 3 --method mpmc --objective "prefixes(hickernell)" --sets 1 --steps 2 -o prefix-sets',
         "an hour",
     ),
-    "evenroad roadmap my_arm.urdf --cell cell.yaml -n 1024 *": Instead(None, "half a minute: tests/cli runs such"),
     "evenroad view box-reach.json --gif *": Instead(None, "seconds of drawing: an example and tests/cli do"),
     "evenroad view box-reach.json": Instead(None, "serves a page until it is stopped (extra [view])"),
     "evenroad send box-reach.json --host *": Instead(None, "needs an arm: tests_peers has one on loopback"),
@@ -117,7 +110,6 @@ INSTEAD = {
 """A command, or how it begins -> what is run in its place."""
 
 SMALLER = {
-    "er.ArmWorld(robot, cell), 1024)": 'er.ArmWorld(robot), er.draw("even", 16, 6))',
     "world, runs = maze.world(), 100": "world, runs = maze.world(), 5",
 }
 """Python that takes long -> what is run in its place."""

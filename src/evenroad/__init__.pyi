@@ -24,6 +24,8 @@ from evenroad.points import load_points as load_points
 from evenroad.roadmap import PlanResult as PlanResult
 from evenroad.roadmap import Roadmap as Roadmap
 from evenroad.roadmap import Status as Status
+from evenroad.roadmap import build_roadmap as build_roadmap
+from evenroad.roadmap import load_roadmap as load_roadmap
 from evenroad.robot import ArmWorld as ArmWorld
 from evenroad.robot import CartesianLine as CartesianLine
 from evenroad.robot import PoseGoal as PoseGoal
@@ -31,8 +33,6 @@ from evenroad.robot import Robot as Robot
 from evenroad.robot import Scene as Scene
 from evenroad.robot import load_robot as load_robot
 from evenroad.robot import load_scene as load_scene
-from evenroad.robot_roadmap.build import build_roadmap as build_roadmap
-from evenroad.robot_roadmap.file import load_roadmap as load_roadmap
 from evenroad.trajectory import Trajectory as Trajectory
 from evenroad.viz.show import show as show
 from evenroad.world import FunctionWorld as FunctionWorld

@@ -16,7 +16,7 @@ from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
-from evenroad_studies.arms.roadmaps import cell_of
+from evenroad_studies.arms.cells import cell_of
 from evenroad_studies.arms.robots import arm_named as arm_named
 
 KINDS = ("shelf", "box", "cage", "table")

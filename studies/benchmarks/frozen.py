@@ -29,10 +29,9 @@ from studies.benchmarks.rows import parser_of
 from evenroad import draw
 from evenroad.geometry import Mesh, PointCloud
 from evenroad.planning import FMT, PRM, GrowingPRM, plan
-from evenroad.roadmap import Budget, KNearest, PlanResult
+from evenroad.roadmap import Budget, KNearest, PlanResult, build_roadmap
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.scene import Obstacle, Scene
-from evenroad.robot_roadmap.build import build_roadmap
 from evenroad.world import World
 from evenroad.world.gridmap.load import load_maze
 from evenroad_studies.bench.execute import run_task
@@ -179,25 +178,9 @@ def arm_plans() -> Lines:
     return lines
 
 
-def robot_roadmap_plans() -> Lines:
-    lines = []
-    for name in ("ur5", "arm7"):
-        pool = Pool(arm_named(name))
-        made = build_roadmap(ArmWorld(pool.robot), 128)
-        lines.append(f"milestones {name}: {hashlib.sha256(made.milestones.tobytes()).hexdigest()[:16]}")
-        for problem in problems(pool, SEEDS):
-            known = made.within(ArmWorld(pool.robot, problem.scene))
-            for trees in (True, False):
-                budget = Budget(seconds=None, motions=20_000)
-                result = known.plan(problem.start, problem.goal, budget=budget, trees=trees)
-                lines.append(line_of(f"roadmap {name} {problem.scene.name} trees={trees}", result))
-    return lines
-
-
 PLANS: dict[str, Callable[[], Lines]] = {
     "map-plans": map_plans,
     "arm-plans": arm_plans,
-    "robot-roadmap-plans": robot_roadmap_plans,
 }
 
 

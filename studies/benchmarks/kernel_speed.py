@@ -5,7 +5,7 @@
     python -m studies.benchmarks.kernel_speed --beside OTHER --arch x86-64-v3        # its build for AVX2 beside OTHER
 
 OTHER is a folder, such as that of `git worktree add ../other a8de9a71`, the last commit whose kernel numba compiled.
-Each checkout has a process of its own, which takes the same configurations, motions and milestones.  They take turns,
+Each checkout has a process of its own, which takes the same configurations and motions.  They take turns,
 and the shortest processor time of each counts: what else runs on the machine only ever takes away.  `differ` counts
 verdicts of configurations and motions that the two give differently.
 """
@@ -25,11 +25,10 @@ from typing import Any
 
 ROOT = Path(__file__).parents[2]
 KINDS = ("UR5", "7 joints", "100 boxes", "balls", "points", "triangles")
-RATES = ("configurations", "motions", "proofs", "queries")
+RATES = ("configurations", "motions", "proofs")
 CALLS = {"one": 1, "none": 0}
 """Calls of a check -> the number of their configurations; they are timed among the boxes of the UR5 alone."""
-STATES, MOTIONS, PROOFS, QUERIES, REPEATED = 16_000, 1_000, 200, 20, 2_000
-MILESTONES = 256
+STATES, MOTIONS, PROOFS, REPEATED = 16_000, 1_000, 200, 2_000
 
 
 class Measured:
@@ -66,14 +65,6 @@ class Measured:
         kept = proving.motion_valid(a, b)
         return proving, a[kept][:PROOFS], b[kept][:PROOFS]
 
-    @cached_property
-    def roadmap(self) -> Any:
-        """A roadmap of the robot, of the same milestones in every checkout."""
-        from evenroad import draw
-        from evenroad.robot_roadmap.build import build_roadmap
-
-        return build_roadmap(type(self.world)(self.world.robot), draw("halton", MILESTONES, self.world.space.dim))
-
     def verdicts(self) -> dict[str, str]:
         """Return which configurations and motions are free, as digits."""
         both = {"configurations": self.world.valid(self.q), "motions": self.world.motion_valid(self.a, self.b)}
@@ -88,16 +79,8 @@ class Measured:
         if measure == "proofs":
             world, a, b = self.proved
             return len(a), partial(world.motion_valid, a, b)
-        if measure == "queries":
-            return QUERIES, partial(self._query, self.roadmap.within(self.world))
         some = self.q[: CALLS[measure]]
         return REPEATED, lambda: [self.world.valid(some) for _ in range(REPEATED)]
-
-    def _query(self, known: Any) -> None:
-        from evenroad.roadmap import Budget
-
-        for start, goal in zip(self.a[:QUERIES], self.b[:QUERIES], strict=True):
-            known.plan(start, goal, budget=Budget(seconds=None), trees=False)
 
 
 def serve() -> None:

@@ -10,15 +10,6 @@ from tests.command_line import run as run
 from tests.robot.urdf_texts import two_joints
 
 
-@pytest.fixture(scope="session", autouse=True)
-def roadmaps_are_built_in_a_second():
-    """Let roadmaps learn from a hundredth of the hard queries, which takes 8 s otherwise; quality is no matter."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("evenroad.robot_roadmap.recipe.HARD_QUERIES", 30)
-        patch.setattr("evenroad.robot_roadmap.recipe.SCENES", 40)
-        yield
-
-
 @pytest.fixture
 def desk(tmp_path):
     """A folder with two joints that turn about y, and a ball that the arm must pass under or over."""

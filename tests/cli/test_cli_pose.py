@@ -99,15 +99,16 @@ def test_axes_may_be_negative(answer):
     answer(*words, "--upright-axis", "z", code=1)
 
 
-def test_a_robots_roadmap_leads_to_poses_with_full_hands_and_straight(answer, refuse, made):
-    (made / "pick.yaml").write_text(
+def test_a_roadmap_leads_to_poses_with_full_hands_and_straight(answer, refuse, run, tmp_path):
+    run("roadmap", "ur5", "-n", 64, "-o", "my.roadmap")
+    (tmp_path / "pick.yaml").write_text(
         "obstacles:\n  post: {shape: box, size: [0.1, 0.1, 0.5], xyz: [0.5, 0.5, 0.25]}\n"
         "attach:\n  rod: {shape: cylinder, radius: 0.02, length: 0.2, link: tool0, xyz: [0, 0, 0.1],"
         " touches: [wrist_2_link]}\n"
     )
-    words = ["plan", "pick.yaml", "--roadmap", "my.roadmap", *DOWN]
+    words = ["plan", "pick.yaml", "--robot", "ur5", "--roadmap", "my.roadmap", *DOWN]
     record, _ = answer(*words, "--straight", "0.05")
-    assert record["planner"] == "roadmap"
+    assert record["planner"].startswith("prm lazy")
     assert record["query"]["holds"] == ["rod"]
     assert record["deviation"]["line_m"] < 1e-3
     assert "--upright goes without --roadmap" in refuse(*words, "--upright", "5")

@@ -136,7 +136,7 @@ HEAVY = {"scipy.linalg", "scipy.ndimage", "scipy.optimize", "scipy.spatial", "sc
 
 
 @pytest.mark.parametrize(("words", "unused"), [
-    (ARM, {"html", "multiprocessing", "evenroad.world.gridmap.load", "evenroad.robot_roadmap"}),
+    (ARM, {"html", "multiprocessing", "evenroad.world.gridmap.load"}),
     (f"{ARM} --no-picture", {"PIL"}),
     (MAP, {"evenroad.cli.certify", "evenroad.points.samplers.even"}),
 ], ids=["arm", "arm without a picture", "map"])  # fmt: skip

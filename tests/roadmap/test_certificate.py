@@ -11,9 +11,9 @@ from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points import PointSet, draw
 from evenroad.points.measures import dispersion_bounds, star_discrepancy
 from evenroad.roadmap import Certificate, Complete, KNearest, Radius, Reach, Rule, Status, certify_roadmap
+from evenroad.roadmap.build import roadmap_of_points
 from evenroad.roadmap.certify import certify
 from evenroad.roadmap.neighbours import nearest
-from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.space import SO3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
 from tests.clear_paths import DiscWorld, Plane, shortest_around

@@ -6,7 +6,7 @@ import pytest
 from evenroad.planning.connectors import CELLS, Cells
 from evenroad.points import draw
 from evenroad.roadmap import KNearest
-from evenroad.roadmap.point_roadmap import roadmap_of_points
+from evenroad.roadmap.build import roadmap_of_points
 from evenroad.world import GridMap
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
 from evenroad.roadmap import Budget, KNearest, Status
-from evenroad.roadmap.point_roadmap import roadmap_of_points
+from evenroad.roadmap.build import roadmap_of_points
 from evenroad.world import GridMap
 from tests.plan_on import fmt_on, plan_growing, plan_on
 from tests.roadmap.worlds import ChanceWorld

@@ -7,7 +7,7 @@ from evenroad.points import draw
 from evenroad.points.samplers import Sobol
 from evenroad.points.samplers.even import Sliced, contracted
 from evenroad.roadmap import KNearest, Radius
-from evenroad.roadmap.point_roadmap import roadmap_of_points
+from evenroad.roadmap.build import roadmap_of_points
 from evenroad.roadmap.points_of import even_points
 from evenroad.space import SE2, SE3, SO3, BoxSpace, JointSpace, Product
 from evenroad.world import FunctionWorld

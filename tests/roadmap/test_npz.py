@@ -9,7 +9,7 @@ from evenroad import _npz, load_roadmap
 from evenroad.errors import BrokenFile
 from evenroad.points import draw
 from evenroad.roadmap import KNearest
-from evenroad.roadmap.point_roadmap import roadmap_of_points
+from evenroad.roadmap.build import roadmap_of_points
 from evenroad.world import GridMap
 from tests.refused import refused
 

@@ -7,7 +7,7 @@ import pytest
 
 from evenroad.points import draw
 from evenroad.roadmap import Budget, KNearest, Status
-from evenroad.roadmap.point_roadmap import roadmap_of_points
+from evenroad.roadmap.build import roadmap_of_points
 from evenroad.roadmap.search import confirmed
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space.path import path_length

@@ -9,8 +9,8 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.planning import plan
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import Budget, Complete, KNearest, Radius, Status
+from evenroad.roadmap.build import roadmap_of_points
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
-from evenroad.roadmap.point_roadmap import roadmap_of_points
 from evenroad.space import Rectangle
 from evenroad.world import GridMap
 from tests.refused import refused

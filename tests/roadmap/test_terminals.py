@@ -19,9 +19,6 @@ from evenroad.roadmap.connector import Connection
 from evenroad.roadmap.result import NO_POINTS, PlanResult, Status, led
 from evenroad.roadmap.terminals import NEAR, SAME
 from evenroad.robot import ArmWorld, CartesianLine, Joint, Robot, Scene
-from evenroad.robot_roadmap.build import arm_roadmap
-from evenroad.robot_roadmap.query import search
-from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.space import SE3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
 from tests.refused import refused
@@ -127,19 +124,6 @@ def test_what_a_connector_found_is_looked_at(connector, smooth):
     world = FunctionWorld(PLANE, lambda q: np.ones(len(q), dtype=bool), 0.1)
     problem = Problem(world, np.asarray(A, float), np.array([B], float), budget=Budget(), smooth=smooth)
     refused(AssertionError, "does not end", solve_by, problem, connector)
-
-
-def test_what_a_robot_roadmap_found_is_looked_at(monkeypatch):
-    world = ArmWorld(ur5(joints=3), TABLE)
-    known = arm_roadmap(world, 40, 4, recipe=Recipe(0.0, 0)).within(world)
-    a, b, c = known.roadmap.milestones[:3]
-
-    def astray(graph, worlds, query, *limits):
-        return search(graph, worlds, query._replace(start=c), *limits)
-
-    monkeypatch.setattr("evenroad.robot_roadmap.world_roadmap.search", astray)
-    for smooth in (True, False, "quick"):
-        refused(AssertionError, "does not start", known.plan, a, b, smooth=smooth)
 
 
 def test_what_lies_between_straight_lines_is_looked_at():

@@ -9,12 +9,10 @@ import pytest
 import evenroad as er
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry import Box, Cylinder, Pose, Sphere
+from evenroad.roadmap import build_roadmap
 from evenroad.robot import ArmWorld, HeldObject, Obstacle, Scene, in_scene, link_poses, load_robot, load_scene
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.find import DATA
-from evenroad.robot_roadmap.build import arm_roadmap, build_roadmap
-from evenroad.robot_roadmap.recipe import Recipe
-from evenroad.robot_roadmap.static_scene import joined_scenes
 from tests.refused import refused
 from tests.robot.kernel_arms import random_scene
 
@@ -148,33 +146,23 @@ def test_what_is_wrong_with_an_attached_object_is_said(tmp_path, entry, match):
     refused((InvalidValue, UnknownName), match, load_scene, tmp_path / "pick.yaml")
 
 
-def test_a_robots_roadmap_serves_a_robot_with_its_hands_full():
+def test_a_roadmap_serves_a_robot_with_its_hands_full():
     robot = load_robot("ur5")
-    cell = Scene(
-        (Obstacle.of("table", "box", (1.0, 1.2, 0.05), (0.25, 0, -0.025)),),
-        name="cell",
-        allowed=frozenset({("base_link", "table"), ("shoulder_link", "table")}),
-        limits=dict.fromkeys(robot.group, (-math.pi, math.pi)),
-    )
-    roadmap = arm_roadmap(ArmWorld(robot, cell), 32, recipe=Recipe(4.0, 100))
+    roadmap = build_roadmap(ArmWorld(robot), 256)
     rod = HeldObject("rod", Cylinder(0.03, 0.5, pose=Pose((0, 0, 0.25))), "tool0", ("wrist_2_link",))
-    scene = Scene((Obstacle.of("post", "box", (0.1, 0.1, 0.8), (0.5, 0.4, 0.4)),), name="today", attached=(rod,))
-    scene = joined_scenes(cell, scene)
+    post = Obstacle.of("post", "box", (0.1, 0.1, 0.8), (0.5, 0.4, 0.4))
+    scene = Scene((post,), name="today", attached=(rod,))
     known = roadmap.within(ArmWorld(in_scene(robot, scene), scene))
     assert known.world.robot.holds == ("rod",)
     q = known.world.space.from_cube(np.random.default_rng(2).random((400, 6)))
     free = q[known.world.valid(q)]
     solved = 0
     for start, goal in zip(free[0:12:2], free[1:12:2], strict=True):
-        result = known.plan(start, goal, trees=False)
+        result = known.plan(start, goal)
         if result.solved:
             solved += 1
             assert CertifiedWorld(known.world).validate(result.path).all()
     assert solved >= 3
-
-
-def test_a_roadmap_is_made_of_a_robot_with_empty_hands():
-    refused(InvalidValue, "empty hands", build_roadmap, ArmWorld(UR5.holding(BOX, "tool0")), 8)
 
 
 def test_a_file_that_attaches_something_twice_is_refused(tmp_path):

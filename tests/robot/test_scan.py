@@ -22,10 +22,7 @@ from evenroad.robot import (
     scene_seen_by,
     without_robot,
 )
-from evenroad.robot_roadmap.build import arm_roadmap
-from evenroad.robot_roadmap.recipe import Recipe
 from tests.refused import refused
-from tests.robot.surface_oracle import all_clearance
 
 UPRIGHT = "0,-1.5707963,0,-1.5707963,0,0"
 HOME = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
@@ -164,21 +161,13 @@ def scanned(ur5):
 
 
 def solves(roadmap, world):
-    result = roadmap.within(world).plan(HOME, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
+    result = er.plan(world, HOME, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0], roadmap)
     return result.solved and world.validate(result.path).all()
 
 
 def test_a_roadmap_of_a_robot_serves_in_a_scan(ur5, scanned):
-    roadmap = arm_roadmap(ArmWorld(ur5), 32, recipe=Recipe(4.0, 100))
+    roadmap = er.build_roadmap(ArmWorld(ur5), 64)
     assert solves(roadmap, ArmWorld(ur5, scanned[1]))
-
-
-def test_a_cell_that_was_scanned_is_made_without_the_robot_in_it(ur5, scanned):
-    cell, without = scanned
-    roadmap = arm_roadmap(ArmWorld(ur5, cell), 32, recipe=Recipe(4.0, 20))
-    assert roadmap.scene == without
-    assert all_clearance(ur5, without, roadmap.milestones).min() > 0.0
-    assert solves(roadmap, ArmWorld(ur5, without))
 
 
 def test_clouds_tell_scenes_apart(ur5):

@@ -9,7 +9,7 @@ import evenroad as er
 from evenroad.points import draw
 from evenroad.points.samplers import make_sampler
 from evenroad.roadmap import Budget
-from evenroad.roadmap.point_roadmap import roadmap_of_points
+from evenroad.roadmap.build import roadmap_of_points
 from evenroad.robot import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.space import SE2, SE3, BoxSpace

@@ -18,10 +18,9 @@ planning = kernel.planning
 points = kernel.points
 roadmap = kernel.roadmap
 robot = kernel.robot
-robot_roadmap = kernel.robot_roadmap
 space = kernel.space
 trajectory = kernel.trajectory
 world = kernel.world
 
-for _part in (picture, planning, points, roadmap, robot, robot_roadmap, space, trajectory, world):
+for _part in (picture, planning, points, roadmap, robot, space, trajectory, world):
     sys.modules[f"{__name__}.{_part.__name__.rpartition('.')[2]}"] = _part

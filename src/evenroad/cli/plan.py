@@ -216,11 +216,10 @@ class PlanArm(PlanOptions, RobotOptions):
     """A scene (.yaml; shipped: shelf.yaml, box-reach.yaml, box-reach-narrow.yaml, empty.yaml)."""
     start: tuple[str, ...]
     """Where to start: one number per joint, separated by commas, name=value,..., or a named state."""
-    robot: str | None = None
+    robot: str
     """Plan for this arm: a URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others."""
     roadmap: Path | None = None
-    """Plan along this roadmap, made by evenroad roadmap, which holds its arm and its cell; if you give --robot
-    too, it has to be that arm."""
+    """Plan along this roadmap of the arm's joints, made by evenroad roadmap."""
     goal: Repeatable[tuple[tuple[str, ...], ...]] = ()
     """Where to go, as start.  You can give several, also with --goal-pose: the path ends at the nearest if that is soon
     reached, with PRM or --improve at the one with the shortest path."""
@@ -257,7 +256,7 @@ class PlanArm(PlanOptions, RobotOptions):
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
     clearance: float = 0.0
-    """Distance to keep from all obstacles, 0 to 1, in metres; not from the arm itself, and not with --roadmap."""
+    """Distance to keep from all obstacles, 0 to 1, in metres; not from the arm itself."""
     trajectory: Repeatable[tuple[Path, ...]] = ()
     """Write a trajectory: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a bag), .script (URScript,
     by the clock) or .movej.script (waypoint by waypoint).  You can give several."""
@@ -315,7 +314,7 @@ class Demo:
 def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
     """Return the class of a command line by its robot; InvalidValue if its options do not go together."""
     given = given_options(words)
-    for_arm = not given.isdisjoint({"--robot", "--roadmap"})
+    for_arm = "--robot" in given
     chosen: type[PlanDisk] | type[PlanArm] = PlanArm if for_arm else PlanDisk
     if not HELP.isdisjoint(words):
         return chosen

@@ -25,7 +25,7 @@ from evenroad.io import plan_record
 from evenroad.planning.plan import Options, finished, solve
 from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Goal, Reading, Request
-from evenroad.roadmap import PlanResult
+from evenroad.roadmap import PlanResult, load_roadmap
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.constraint import Constraint, part_of
 from evenroad.robot.pose_goal import as_axis, as_numbers, pose_goal_of
@@ -36,30 +36,23 @@ def plan_arm(plan: PlanArm) -> int:
     # Wrong input is refused before any work.
     budget, goals, scene = chosen_budget(plan), _goals(plan), load_scene(plan.world)
     constraints = _constraints(plan)
-    of_robot = () if plan.robot is None else find_robot(plan.robot)
-    inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
+    inputs = (find_scene(plan.world), *find_robot(plan.robot), plan.srdf, plan.bodies, plan.roadmap)
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
-    kept = None
-    if plan.roadmap is not None:
-        from evenroad.cli.roadmap import kept_roadmap
-        from evenroad.robot_roadmap.static_scene import joined_scenes
-
-        kept = kept_roadmap(plan)
-        scene = joined_scenes(kept.scene, scene)
-    robot = kept.robot if kept is not None and plan.robot is None else plan.robot
-    assert robot is not None
+    if plan.roadmap is not None and (wants_points(plan) or plan.improve):
+        raise InvalidValue("--roadmap goes without points and without --improve: it has milestones of its own")
+    kept = None if plan.roadmap is None else load_roadmap(plan.roadmap)
     if plan.via and (plan.roadmap is not None or plan.improve or wants_points(plan)):
         raise InvalidValue("--via goes without --roadmap, --improve and points")
     request = arm_request(
-        robot,
+        plan.robot,
         scene,
         " ".join(plan.start),
         goals,
         Reading(plan.deg, plan.tip, plan.frame),
         resolution=plan.resolution,
         clearance=plan.clearance,
-        **({} if plan.robot is None else plan.options()),
+        **plan.options(),
     )
     world = request.world
     planner = chosen_planner(plan, request) if kept is None else kept.within(world)

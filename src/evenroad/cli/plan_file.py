@@ -11,15 +11,12 @@ from evenroad._files import read_json_file
 from evenroad._seal import has_digest
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import KEPT, made_of
-from evenroad.cli.roadmap import load_arm_roadmap
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import plan_of
 from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Reading, Request
 from evenroad.roadmap import PlanResult
-from evenroad.robot import load_scene
 from evenroad.robot.constraint import Constraint, with_tip
-from evenroad.robot_roadmap.static_scene import joined_scenes
 from evenroad.space.path import continued
 from evenroad.trajectory.files import trajectory_of
 from evenroad.trajectory.trajectory import Trajectory
@@ -116,21 +113,15 @@ def request_of(
     """Return the request of an arm's plan from its query, with this start, (dim,), and these goals, (g, dim)."""
     options = dict(options or {})
     arm: Any = robot or query.get("robot")
-    kept = query.get("roadmap")
-    if not isinstance(arm or kept, str) or not isinstance(query.get("scene"), str):
+    if not isinstance(arm, str) or not isinstance(query.get("scene"), str):
         raise InvalidValue(f"{file} names neither a robot and its scene nor a map: evenroad plan writes such plans")
     _require_sound(file, query)
     for name in FILES:
         options[name] = options.get(name) or query.get(name) or options.get(name)
     options["group"] = options.get("group") or ",".join(query["joints"])
     options["use_visuals"] = bool(options["use_visuals"])
-    scene = load_scene(query["scene"])
-    if kept is not None:
-        roadmap = load_arm_roadmap(kept)
-        scene = joined_scenes(roadmap.scene, scene)
-        arm, options = (roadmap.robot, {}) if arm is None else (arm, options)
     apart = {name: query[name] for name in ("resolution", "clearance") if isinstance(query.get(name), float | int)}
-    return arm_request(arm, scene, start, list(goals), Reading(held=query["held"]), **apart, **options)
+    return arm_request(arm, query["scene"], start, list(goals), Reading(held=query["held"]), **apart, **options)
 
 
 def constraints_in(query: dict[str, Any], file: Path) -> Constraint | None:
@@ -145,7 +136,7 @@ def constraints_in(query: dict[str, Any], file: Path) -> Constraint | None:
     # Imported late: most plans have no constraints.
     from evenroad.cli.plan_constraints import given_constraints
 
-    return with_tip(given_constraints(PlanArm(world=file, start=(), **given)), given.get("tip", ""))
+    return with_tip(given_constraints(PlanArm(world=file, start=(), robot="", **given)), given.get("tip", ""))
 
 
 def _require_sound(file: Path, query: dict[str, Any]) -> None:

@@ -21,7 +21,7 @@ BAD_INPUT = 2
 VERBS = {
     "plan": ("evenroad.cli.plan:PlanDisk", "plan a path, for a disk on a map or for an arm in a scene (--robot)"),
     "run": ("evenroad.cli.run:RunTask", "plan a task of several motions from its file, as one trajectory"),
-    "roadmap": ("evenroad.cli.roadmap:MakeRoadmap", "build a roadmap for an arm in its cell, for many plans"),
+    "roadmap": ("evenroad.cli.roadmap:MakeRoadmap", "build a roadmap of an arm's joints, for many plans"),
     "view": ("evenroad.cli.view:View", "show a plan in the browser, or write it as HTML, PNG or GIF"),
     "send": ("evenroad.cli.send:Send", "send a plan to a UR arm, checked; a dry run without --go"),
     "points": ("evenroad.cli.points:Points", "write evenly spread points, for sampling-based planners"),

@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
-from evenroad._above import above
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad._shared import once
@@ -22,9 +21,9 @@ from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import require_certified
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Smooth
-from evenroad.roadmap.point_roadmap import Roadmap, WorldRoadmap
 from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.result import PlanResult, Status
+from evenroad.roadmap.roadmap import Roadmap, WorldRoadmap
 from evenroad.robot import ArmWorld
 from evenroad.robot.constraint import Constraint
 from evenroad.robot.reference.validate import MeshCheck
@@ -142,7 +141,10 @@ def _as_planner(planner: object) -> Planner | Roadmap:
     if isinstance(planner, str) and planner.lower() in PLANNERS:
         return PLANNERS[planner.lower()]()
     if isinstance(planner, str | os.PathLike):
-        return cast(Roadmap, above("plan.planner")(planner))
+        # Imported late: most plans read no roadmap.
+        from evenroad.roadmap.npz import load_roadmap
+
+        return load_roadmap(planner)
     if isinstance(planner, PointSet):
         return PRM(planner)
     if not isinstance(planner, Planner | Roadmap):

@@ -13,9 +13,9 @@ from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue, listed, near, shown
 from evenroad.geometry.pose import Pose
 from evenroad.planning.request import ConfigurationLike, Goal, PathLike, Reading, Request
-from evenroad.roadmap.point_roadmap import Roadmap
 from evenroad.roadmap.problem import Planner
 from evenroad.roadmap.query import as_start_and_goals
+from evenroad.roadmap.roadmap import Roadmap
 from evenroad.robot import (
     ArmWorld,
     Robot,

@@ -15,8 +15,8 @@ from evenroad.points.measures.covering import DispersionBounds, dispersion_bound
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.certificate import SAFE, Certificate
 from evenroad.roadmap.neighbours import BLOCK, flat_metric
-from evenroad.roadmap.point_roadmap import PointRoadmap
 from evenroad.roadmap.query import LINKS, Query
+from evenroad.roadmap.roadmap import Roadmap
 from evenroad.roadmap.rules import Complete, KNearest, Radius, Reach, Rule
 from evenroad.space import Space
 from evenroad.space.protocol import all_distances
@@ -60,7 +60,7 @@ def certify(points: PointSet, rule: Rule, space: Space, *, links: int | None = L
     return _by_neighbours(points, rule.k, space, bounds, links, goals, turn)
 
 
-def certify_roadmap(roadmap: PointRoadmap, *, links: int | None = LINKS) -> Certificate:
+def certify_roadmap(roadmap: Roadmap, *, links: int | None = LINKS) -> Certificate:
     """Return what the queries of a saved roadmap guarantee in every world; errors as :func:`certify`.
 
     InvalidValue also for a roadmap from a file whose space no world has said yet.

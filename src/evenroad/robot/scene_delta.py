@@ -108,15 +108,3 @@ def delta_of(scene: Any) -> Delta:
     """Return by what a scene without clouds and meshes differs from its base, or from itself."""
     delta: Delta | None = scene.__dict__.get("delta")
     return Delta(scene) if delta is None else delta
-
-
-def changed_names(before: Any, after: Any) -> set[str]:
-    """Return the names of obstacles that two scenes without clouds and meshes do not have in common."""
-    names = {name for _, name in before.allowed ^ after.allowed}
-    first, second = delta_of(before), delta_of(after)
-    if first.base is second.base:
-        either = {*first.moved, *first.gone, *first.more, *second.moved, *second.gone, *second.more}
-        return names.union(name for name in either if first.of(name) != second.of(name))
-    one = {each.name: each for each in before.obstacles}
-    other = {each.name: each for each in after.obstacles}
-    return names.union(name for name in one.keys() | other.keys() if one.get(name) != other.get(name))

@@ -1,15 +1,19 @@
 """Problems for arms: they can be solved, but not by chance; what chooses constants and what is reported are apart."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
 from evenroad.planning.arm_trees import connect
 from evenroad.robot import ArmWorld
+from evenroad_studies.arms.cells import cell_of
 from evenroad_studies.arms.problems import ARM_ROBOTS, PREFIXES, draw_problem, problem_name, robot_and_generator
-from evenroad_studies.arms.roadmaps import BOX_SAMPLERS, cell_of, roadmap_of
 from evenroad_studies.arms.robots import ARMS, arm_named
 from evenroad_studies.arms.scenes import GENERATORS, RANGES
+from evenroad_studies.bench.execute import run_task
 from evenroad_studies.problems import PROBLEMS
+from evenroad_studies.suites import arms_suite
 
 
 @pytest.mark.parametrize("robot", ["scara", "twoarm"])
@@ -56,13 +60,10 @@ def test_robots_have_the_joints_that_lists_say_and_are_free_somewhere_in_their_c
     assert 0.1 < world.valid(q).mean() <= 1.0
 
 
-@pytest.mark.parametrize("sampler", ["sobol scrambled", "rejection", "control", "roadmap"])
-def test_every_roadmap_has_n_milestones_and_edges_that_are_free_in_the_cell(sampler):
-    # Those of the tests of the suite: the roadmap is made once for both.
-    roadmap, _ = roadmap_of("scara", sampler, 16, 4, 0, 1)
-    assert roadmap.milestones.shape == (16, 4)
-    a, b = (roadmap.milestones[roadmap.edges[:, i]] for i in (0, 1))
-    assert len(a)
-    assert roadmap.world.motion_valid(a, b).all()
-    if sampler not in BOX_SAMPLERS:
-        assert roadmap.world.valid(roadmap.milestones).all()
+def test_the_suite_has_every_robot_generator_and_sampler_each_task_once():
+    tasks = arms_suite(2).tasks
+    assert len({task.key for task in tasks}) == len(tasks)
+    assert {task.problem for task in tasks} == {problem_name(*pair) for pair in product(ARM_ROBOTS, GENERATORS)}
+    assert {"uniform", "even", "sobol scrambled"} <= {task.sampler for task in tasks}
+    one = next(task for task in arms_suite(1, only=["arm-scara-shelf"]).tasks if task.sampler == "even")
+    assert run_task(one).status in ("solved", "not_connected")

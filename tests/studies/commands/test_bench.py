@@ -125,7 +125,6 @@ def test_rows_that_a_store_could_not_take_are_named_and_taken_in_by_the_same_com
     (("bench", "--jobs", 2, "--scheduler", "tcp://127.0.0.1:9"), "--jobs does not go with --scheduler"),
     (("bench", "--store", "missing/results.db", *SMALL[2:]), "the folder missing does not exist"),
     (("export", "missing.db", "-o", "arena.db"), "no such store: missing.db"),
-    (("bench", "arms", "--draws", 0), "draws must be an integer >= 1, got 0"),
 ])  # fmt: skip
 def test_bad_input_is_one_line_and_exit_code_2(run, arguments, says):
     code, _, err = run(*arguments)

@@ -12,11 +12,11 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.errors import NotAvailable
+from evenroad.points import PointSet
+from evenroad.roadmap import KNearest, Roadmap, build_roadmap
 from evenroad.robot import ArmWorld, Scene
 from evenroad.robot.arm_world import VALIDATION_TOLERANCE
-from evenroad.robot_roadmap.arm_roadmap import ArmRoadmap
-from evenroad.robot_roadmap.world_roadmap import ArmWorldRoadmap
-from evenroad_studies.arms.roadmaps import box_roadmap, cell_of, free_configurations
+from evenroad_studies.arms.cells import cell_of, free_configurations
 from evenroad_studies.arms.robots import arm_named, tool_of
 from evenroad_studies.arms.scenes import GENERATORS, inside_of, places_of
 from evenroad_studies.bench.task import Problem, ProblemSource
@@ -98,23 +98,26 @@ def is_worth(robot: str, problem: Problem, rng: np.random.Generator) -> bool:
     assert isinstance(world, ArmWorld)
     if world.motion_certified(start[np.newaxis], goal[np.newaxis], VALIDATION_TOLERANCE)[0]:
         return False
-    few = box_roadmap(world.robot, rng.random((EASY, world.space.dim)), EASY_K)
+    few = _roadmap(world, rng.random((EASY, world.space.dim)), EASY_K)
     if joins(few, problem, EASY):
         return False
     return joins(_many(robot), problem, 500)
 
 
-def joins(roadmap: ArmRoadmap, problem: Problem, links: int) -> bool:
+def joins(roadmap: Roadmap, problem: Problem, links: int) -> bool:
     """Say whether a roadmap leads from start to goal."""
-    world = problem.world
-    assert isinstance(world, ArmWorld)
-    return ArmWorldRoadmap(roadmap, world).connect(problem.start, problem.goal[np.newaxis], links=links).goal >= 0
+    return roadmap.within(problem.world).plan(problem.start, problem.goal, smooth=False, links=links).solved
 
 
 @lru_cache(maxsize=2)
-def _many(robot: str) -> ArmRoadmap:
-    arm = arm_named(robot)
-    return box_roadmap(arm, np.random.default_rng(5000).random((ENOUGH, len(arm.group))), ENOUGH_K)
+def _many(robot: str) -> Roadmap:
+    world = ArmWorld(arm_named(robot), cell_of(arm_named(robot)))
+    return _roadmap(world, np.random.default_rng(5000).random((ENOUGH, world.space.dim)), ENOUGH_K)
+
+
+def _roadmap(world: ArmWorld, points: Floats, k: int) -> Roadmap:
+    """Return a roadmap of points of the cube, (n, dim), each joined to its k nearest."""
+    return build_roadmap(world, PointSet(points), rule=KNearest(k))
 
 
 @lru_cache(maxsize=2)

@@ -21,7 +21,6 @@ from evenroad._arrays import Floats
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
 from evenroad.roadmap.search import FREE, EdgeStates
-from evenroad_studies.arms.execute import SEARCHES_OF_ARMS, run_on_arm
 from evenroad_studies.bench.samplers import draw_set
 from evenroad_studies.bench.searches import Finding, search_named
 from evenroad_studies.bench.task import Outcome, Problem, Task
@@ -45,8 +44,6 @@ def run_task(task: Task, limit: float | None = None) -> Outcome:
 
 
 def _run(task: Task) -> Outcome:
-    if task.search in SEARCHES_OF_ARMS:
-        return run_on_arm(task)
     problem = _problem(task.problem, task.instance)
     _warm_up(task, problem)
     milestones, set_id, validity_seconds = _milestones(

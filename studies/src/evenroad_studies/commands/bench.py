@@ -14,7 +14,6 @@ from evenroad._terminal import print_table, progress_shown
 from evenroad.cli.options import Positional
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.bank import has_large_sets
-from evenroad_studies.arms.results import TABLE_HEADER, arm_lines, table_rows
 from evenroad_studies.bench.execute import DEFAULT_LIMIT, require_limit
 from evenroad_studies.bench.rows import Rows
 from evenroad_studies.bench.runner import Report, run_tasks
@@ -47,23 +46,15 @@ class Bench:
 
     suite: Positional[str] = "paper"
     """paper: the published experiments. fair: a new random world in every run. apart: the same, start and goal at
-    opposite faces. arms: robots, and roadmaps for them."""
+    opposite faces. arms: five robots among obstacles."""
     list: bool = False
     """Show suites, problems and samplers, and run nothing."""
     runs: int | None = None
-    """Runs of every cell (default 400); suite arms: problems of each robot and generator (default 40)."""
+    """Runs of every cell (default 400; suite arms: 40)."""
     quick: bool = False
     """A taste in minutes; its rows are part of the whole suite's."""
     only: str = ""
-    """Names of problems, separated by commas; suite arms: also of robots and generators.  Default: all of the suite."""
-    draws: int | None = None
-    """Suite arms: number of sets of each sampler (default 2)."""
-    counts: str = ""
-    """Suite arms: numbers of points, separated by commas (default 64,256)."""
-    neighbours: str = ""
-    """Suite arms: to how many neighbours a milestone is joined, separated by commas (default 10)."""
-    samplers: str = ""
-    """Suite arms: names of samplers, separated by commas (default: all, and trees)."""
+    """Names of problems, separated by commas.  Default: all of the suite."""
     store: Path = Path("results.db")
     """The SQLite file for the rows, made where there is none; rows that it cannot take are left in STORE.rescue.
 
@@ -99,10 +90,7 @@ class Bench:
         suite = self._suite()
         report = self._run(suite)
         rows = read_rows(self.store, problems=sorted({task.problem for task in suite.tasks}))
-        if suite.name == "arms":
-            print_arms(rows.where(rows.seed == self.seed))
-        else:
-            print_success(suite, rows)
+        print_success(suite, rows)
         failures = f", {report.failures} of them failures" if report.failures else ""
         print(f"{self.store}: {report.finished} tasks run now{failures}, {report.found} found done")
         if failed := report.failures + report.found_failures:
@@ -114,12 +102,7 @@ class Bench:
         asked: dict[str, Any] = {"seed": self.seed, "only": words_of(self.only), "quick": self.quick}
         if self.runs is not None:
             asked["runs"] = self.runs
-        of_arms: dict[str, Any] = {"draws": self.draws, "samplers": words_of(self.samplers)}
-        of_arms |= {name: counts_of(name, getattr(self, name)) for name in ("counts", "neighbours")}
-        of_arms = {name: value for name, value in of_arms.items() if value not in (None, [])}
-        if of_arms and self.suite != "arms":
-            raise InvalidValue(f"--{next(iter(of_arms))} goes with the suite arms, got {self.suite!r}")
-        return SUITES[self.suite](**asked, **of_arms)
+        return SUITES[self.suite](**asked)
 
     def _run(self, suite: Suite) -> Report:
         # Tasks in threads, as Dask's are, cannot be stopped.
@@ -149,22 +132,6 @@ class Bench:
 def words_of(text: str) -> list[str]:
     """Return the words between commas."""
     return [word.strip() for word in text.split(",") if word.strip()]
-
-
-def counts_of(name: str, text: str) -> list[int]:
-    """Return the whole numbers between commas."""
-    words = words_of(text)
-    if not all(word.isdecimal() for word in words):
-        raise InvalidValue(f"--{name} must be whole numbers with commas between them, got {text!r}")
-    return [int(word) for word in words]
-
-
-def print_arms(rows: Rows) -> None:
-    """Print the success of each robot, k, N and sampler, and what the roadmap gains on it."""
-    for (robot, k), texts in table_rows(arm_lines(rows)).items():
-        neighbours = "" if k == "-" else f" · k = {k}"
-        print_table(texts, TABLE_HEADER, f"Success [%] · {robot}{neighbours}", right=range(2, 10), gap=1)
-        print()
 
 
 def _print_catalogue() -> None:

@@ -15,8 +15,6 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._rng import generator
-from evenroad_studies.arms.outcomes import is_of_arms
-from evenroad_studies.arms.results import Line, arm_lines
 from evenroad_studies.bench.rows import Rows
 from evenroad_studies.report.cells import Cell, cells_of
 from evenroad_studies.report.comparisons import Comparison, comparisons_of, holm_of_tested
@@ -210,8 +208,8 @@ def resampled_rates(curve: Sequence[Cell]) -> Floats:
 class Analysis:
     """All results of a store; cells in the order of settings, samplers and numbers of samples.
 
-    The rows of arms are not among the runs: `arms` is what `arm_rows` say.  `verdicts` has, for each source with a cell
-    that the store has runs for, its table and the verdicts; `pooled` is empty without a fair suite.
+    `verdicts` has, for each source with a cell that the store has runs for, its table and the verdicts; `pooled` is
+    empty without a fair suite.
     """
 
     runs: Runs
@@ -222,8 +220,6 @@ class Analysis:
     pooled: dict[str, tuple[Pooled, ...]]
     lazy: tuple[LazyChecks, ...]
     failures: tuple[Failure, ...]
-    arms: tuple[Line, ...]
-    arm_rows: Rows
 
     def cells_of(self, setting: Setting) -> tuple[Cell, ...]:
         """Return the cells of one setting."""
@@ -232,9 +228,7 @@ class Analysis:
 
 def analyse(rows: Rows) -> Analysis:
     """Count, compare and test everything in a store's rows."""
-    of_arms = np.array([is_of_arms(name) for name in rows.problem.names], dtype=np.bool_)[rows.problem.codes]
-    arm_rows, others = rows.where(of_arms), rows.where(~of_arms)
-    runs = runs_of(others)
+    runs = runs_of(rows)
     cells = cells_of(runs)
     return Analysis(
         runs=runs,
@@ -245,8 +239,6 @@ def analyse(rows: Rows) -> Analysis:
         pooled=pooled(runs),
         lazy=lazy_checks(runs),
         failures=failures_of(rows),
-        arms=arm_lines(arm_rows),
-        arm_rows=arm_rows,
     )
 
 

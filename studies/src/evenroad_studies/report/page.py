@@ -12,7 +12,6 @@ from typing import NamedTuple
 from matplotlib.figure import Figure
 
 from evenroad_studies.report.analysis import Analysis
-from evenroad_studies.report.arms import arm_pictures, arm_tables, summary_tables
 from evenroad_studies.report.cells import Cell
 from evenroad_studies.report.charts import (
     as_png,
@@ -70,8 +69,6 @@ def sections_of(analysis: Analysis) -> tuple[Section, ...]:
         sections.append(_expected(analysis))
     if analysis.pooled:
         sections.append(_fair(analysis))
-    if analysis.arms:
-        sections.append(_arms(analysis))
     sections += [_setting(analysis, each) for each in settings]
     if mazes := maze_settings(settings):
         sections.append(_mazes([cell for cell in analysis.cells if cell.setting in mazes]))
@@ -96,12 +93,6 @@ def _fair(analysis: Analysis) -> Section:
     tables += [lazy_table(analysis.lazy)] if analysis.lazy else []
     picture = _picture("fair-gains", "Gain over uniform points", draw_fair_gains(analysis.pooled))
     return Section("fair", "Fair suite: random worlds, starts and goals", "", (picture,), tuple(tables))
-
-
-def _arms(analysis: Analysis) -> Section:
-    pictures = tuple(_picture(*each) for each in arm_pictures(analysis.arm_rows, analysis.arms))
-    tables = (*summary_tables(analysis.arms), *arm_tables(analysis.arms))
-    return Section("arms", "Arms: roadmaps made for one robot", "", pictures, tables)
 
 
 def _setting(analysis: Analysis, setting: Setting) -> Section:

@@ -15,7 +15,6 @@ from evenroad import __version__
 from evenroad._checks import require_known
 from evenroad._files import atomic_write, remove_abandoned_parts, require_writable_folder
 from evenroad.errors import BrokenFile, NotAvailable
-from evenroad_studies.arms.results import HEADER, csv_of
 from evenroad_studies.bench.rows import FAILURES, Rows
 from evenroad_studies.bench.store import Session, read_rows, read_sessions
 from evenroad_studies.bench.task import PROTOCOL
@@ -124,8 +123,6 @@ def csv_files(analysis: Analysis) -> dict[str, bytes]:
         files["expected.csv"] = _expected(analysis)
     if analysis.pooled:
         files["fair.csv"] = _fair(analysis)
-    if analysis.arms:
-        files["arms.csv"] = csv_text(" ".join(HEADER), csv_of(analysis.arms))
     return files
 
 

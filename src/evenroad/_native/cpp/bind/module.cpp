@@ -33,7 +33,6 @@ NB_MODULE(EVENROAD_MODULE, module) {
   evenroad::bind::add_points(module);
   evenroad::bind::add_roadmap(module);
   evenroad::bind::add_robot(module);
-  evenroad::bind::add_robot_roadmap(module);
   evenroad::bind::add_space(module);
   evenroad::bind::add_trajectory(module);
   evenroad::bind::add_world(module);

@@ -27,7 +27,6 @@ void add_planning(nanobind::module_& module);
 void add_points(nanobind::module_& module);
 void add_roadmap(nanobind::module_& module);
 void add_robot(nanobind::module_& module);
-void add_robot_roadmap(nanobind::module_& module);
 void add_scene(nanobind::module_& robot);
 void add_space(nanobind::module_& module);
 void add_trajectory(nanobind::module_& module);

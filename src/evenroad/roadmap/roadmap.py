@@ -1,31 +1,175 @@
-"""A roadmap of points in one world: a cache of the states of its milestones and edges, and queries."""
+"""Roadmaps: points and the edges between them, for all worlds of a space; and a roadmap in one world, which plans."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._npz import Path
 from evenroad._shared import OwnLock
+from evenroad.errors import InvalidValue
+from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import answer, connected, refusal, shown_apart
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Connector, Smooth
-from evenroad.roadmap.neighbours import nearest_of
-from evenroad.roadmap.point_roadmap import EdgeWeights, PointRoadmap, WorldRoadmap
+from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.query import BOUND, LINKS, EdgeCost, Query, as_start_and_goals, edge_costs
 from evenroad.roadmap.result import PlanResult
-from evenroad.roadmap.search import BLOCKED, FREE, UNKNOWN, EdgeStates, FixedPoint, SearchProblem, StateCache
+from evenroad.roadmap.rules import Rule
+from evenroad.roadmap.search import (
+    BLOCKED,
+    FREE,
+    UNKNOWN,
+    EdgeStates,
+    FixedPoint,
+    Graph,
+    SearchProblem,
+    StateCache,
+    graph_of,
+)
+from evenroad.space import Space
 from evenroad.world import World
 
 
-class PointWorldRoadmap(WorldRoadmap):
-    """A roadmap of points with a cache of states in one world; made by :meth:`PointRoadmap.within`.
+class EdgeWeights(NamedTuple):
+    """Edge weights of a roadmap, as integers (m,) of a unit that is large enough for nearly all links."""
+
+    longest: float
+    unit: FixedPoint
+    weights: Ints
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Roadmap:
+    """Milestones and edges for any world of one space, made by ``er.build_roadmap``; never changed.
+
+    The rule joins all points, valid or not.  Invalid ones take some of the k neighbours, so a larger k than in `plan`
+    is wise: 20 rather than 10.
+
+    Attributes
+    ----------
+    points : PointSet
+        Points of the unit cube of the space.
+    rule : Rule
+        Which milestones are joined.
+    milestones : ndarray, shape (n, dim)
+        Their configurations, read-only.
+    edges : ndarray of int32, shape (m, 2)
+        Pairs of milestones that are joined, smaller row first, ascending; read-only.
+    space : Space, optional
+        None in a roadmap from a file: the first world sets it.
+    measured : ndarray, shape (m,), optional
+        Lengths of the edges, if they were read from a file.
+    """
+
+    points: PointSet
+    rule: Rule
+    milestones: Floats
+    edges: Ints32
+    space: Space | None = None
+    measured: Floats | None = None
+
+    def __repr__(self) -> str:
+        return f"Roadmap({len(self.milestones)} milestones, {len(self.edges)} edges, {self.rule})"
+
+    @cached_property
+    def lengths(self) -> Floats:
+        """Lengths of the edges in the metric of the space, (m,), measured on first use; read-only."""
+        if self.measured is not None:
+            return self.measured
+        assert self.space is not None
+        lengths = edge_costs(self.space, self.milestones, self.edges)
+        lengths.setflags(write=False)
+        return lengths
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what is sent to another process, which makes a graph of its own."""
+        return {name: value for name, value in self.__dict__.items() if name != "graph"}
+
+    @cached_property
+    def graph(self) -> Graph:
+        """The edges by node."""
+        return graph_of(len(self.milestones), self.edges)
+
+    @cached_property
+    def surroundings(self) -> Surroundings:
+        """The milestones, with a query for those near a configuration."""
+        assert self.space is not None
+        return Surroundings(self.milestones, self.space)
+
+    @cached_property
+    def edge_weights(self) -> EdgeWeights:
+        """The edge weights where costs are lengths."""
+        return self.weighted(self.lengths)
+
+    def weighted(self, costs: Floats) -> EdgeWeights:
+        """Return the edge weights for these costs, (m,)."""
+        n = len(self.milestones)
+        # Two milestones are at most this far apart.
+        across = 2.0 * float(self.surroundings.distances(self.milestones[0]).max()) if n else 0.0
+        longest = max(float(costs.max(initial=0.0)), across)
+        unit = FixedPoint.of(longest, n + 2)
+        return EdgeWeights(longest, unit, unit.weights(costs))
+
+    def within(self, world: World, *, edge_cost: EdgeCost | None = None) -> WorldRoadmap:
+        """Return a planner in a world, for many queries.  It keeps the result of every check; threads may share it.
+
+        Parameters
+        ----------
+        world : World
+            Milestones are checked now, edges when a query needs them.
+        edge_cost : callable, optional
+            As in :class:`evenroad.PRM`.
+
+        Raises
+        ------
+        InvalidValue
+            If the world has another space: the points, or the distances, differ there.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> world = er.ArmWorld("ur5", "box-reach")
+        >>> cell = er.build_roadmap(world, 1024).within(world)
+        >>> er.plan(world, "home", "inside", cell).proof
+        'certified'
+        """
+        if not self._fits(world.space):
+            raise InvalidValue(
+                f"the roadmap was built for another space than {world.space!r}: other joints, other limits or another"
+                " metric; build it in a world of this space"
+            )
+        roadmap = replace(self, space=world.space) if self.space is None else self
+        return WorldRoadmap(roadmap, world, edge_cost=edge_cost)
+
+    def _fits(self, space: Space) -> bool:
+        if space is self.space or space == self.space:
+            return True
+        if (space.dim, space.cube_dim) != (self.milestones.shape[1], self.points.d):
+            return False
+        a, b = self.milestones[self.edges[:, 0]], self.milestones[self.edges[:, 1]]
+        same_points = np.array_equal(space.from_cube(self.points.points), self.milestones)
+        return same_points and np.array_equal(space.distance(a, b), self.lengths)
+
+    def save(self, file: Path) -> None:
+        """Write its points, rule, milestones and edges, atomically; ``er.load_roadmap`` reads them.
+
+        Raises BrokenFile if the file cannot be written; an earlier file is then untouched.
+        """
+        from evenroad.roadmap.npz import save_roadmap
+
+        save_roadmap(file, self)
+
+
+class WorldRoadmap:
+    """A roadmap with a cache of states in one world; made by :meth:`Roadmap.within`.
 
     A query's answer depends on the roadmap, the world and the query alone: earlier queries only save checks.  Threads
     may share it; their queries are answered one after the other.
@@ -33,9 +177,9 @@ class PointWorldRoadmap(WorldRoadmap):
     `roadmap` has the milestones and candidate edges, and `world` checks them.
     """
 
-    roadmap: PointRoadmap
+    roadmap: Roadmap
 
-    def __init__(self, roadmap: PointRoadmap, world: World, *, edge_cost: EdgeCost | None) -> None:
+    def __init__(self, roadmap: Roadmap, world: World, *, edge_cost: EdgeCost | None) -> None:
         self.roadmap, self.world, self._edge_cost = roadmap, world, edge_cost
         self._lock = OwnLock()
         # Milestones and edges come first; start, goals and their links go behind them.

@@ -1,1 +1,0 @@
-"""Roadmaps of one robot in its static scene: built once, queried among the obstacles of dynamic scenes."""
