@@ -14,7 +14,7 @@ from evenroad._checks import as_batch, require_positive
 from evenroad._native.trajectory import distances_to, largest_share
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import RoundedPath, rounded
-from evenroad.trajectory.corners import TRIES, drivable, less_at, require_steps
+from evenroad.trajectory.corners import TRIES, drivable, less_at, require_steps, with_rests
 from evenroad.trajectory.in_motion import FARTHER, InMotion
 from evenroad.trajectory.limits import Limits
 from evenroad.trajectory.timed import TooFast, timed_path
@@ -123,29 +123,11 @@ def make_trajectory(
         except TooFast:
             if limits.is_plain or farther == FARTHER[-1]:
                 raise
-    cuts = np.full(len(waypoints), deviation)
-    for tried in range(TRIES):
-        curve = rounded(waypoints, cuts)
-        law, fine, driven = _averaged_law(curve, waypoints, limits, window, step)
-        free, proof = drivable(world, driven.positions)
-        bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[driven.off > deviation + 1e-6]])
-        if len(bad) == 0:
-            break
-        cuts = less_at(cuts, curve.corners, law.length_at(bad - 0.5 * window), tried)
-    else:
-        raise NotAvailable(f"the trajectory is not proved free, or too far from its path, at {bad[0]:.3f} s")
-    return Trajectory(
-        times=fine[::_FINER],
-        positions=driven.positions,
-        velocities=driven.velocities,
-        accelerations=driven.accelerations,
-        waypoints=waypoints,
-        deviation=float(np.max(driven.off)),
-        stops=len(curve.stops),
-        highest=driven.highest,
-        proof=proof,
-        **said,
-    )
+
+    def averaged(part: Floats, cuts: Floats) -> dict[str, Any]:
+        return _averaged_path(world, part, limits, cuts, (window, step, deviation))
+
+    return Trajectory(waypoints=waypoints, **said, **averaged(waypoints, np.full(len(waypoints), deviation)))
 
 
 def _apart(path: Floats) -> Floats:
@@ -159,6 +141,52 @@ def _apart(path: Floats) -> Floats:
     if len(kept) > 1:
         kept[-1] = path[-1]
     return np.array(kept).reshape(-1, path.shape[1])
+
+
+def _averaged_path(
+    world: World | None, waypoints: Floats, limits: Limits, cuts: Floats, numbers: tuple[float, float, float]
+) -> dict[str, Any]:
+    """Return states, proof and measures as `timed_path` does, of a motion that is averaged over a window.
+
+    The numbers are this window and a step [s], and the largest distance from the path.
+    """
+    window, step, deviation = numbers
+    for tried in range(TRIES):
+        curve = rounded(waypoints, cuts)
+        law, fine, driven = _averaged_law(curve, waypoints, limits, window, step)
+        free, proof = drivable(world, driven.positions)
+        if not free.all() and len(waypoints) == 2:
+            # An average is rounded more than a position: what touches all along the line is on it to the last bits.
+            driven = driven._replace(positions=_on_line(driven.positions, *waypoints))
+            free, proof = drivable(world, driven.positions)
+        bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[driven.off > deviation + 1e-6]])
+        if len(bad) == 0:
+            return {
+                "times": fine[::_FINER],
+                "positions": driven.positions,
+                "velocities": driven.velocities,
+                "accelerations": driven.accelerations,
+                "deviation": float(np.max(driven.off)),
+                "stops": len(curve.stops),
+                "highest": driven.highest,
+                "proof": proof,
+            }
+        if len(curve.corners) == 0:
+            break
+        before, after = (law.length_at(bad + later - 0.5 * window) for later in (0.0, step))
+        cuts = less_at(cuts, curve.corners, before, after, tried)
+    refusal = f"the trajectory is not proved free, or too far from its path, at {bad[0]:.3f} s"
+    return with_rests(
+        lambda part, own: _averaged_path(world, part, limits, own, numbers), world, waypoints, cuts, refusal
+    )
+
+
+def _on_line(positions: Floats, begin: Floats, end: Floats) -> Floats:
+    """Return positions, (n, dim), on the line that they lie on up to rounding."""
+    length = float(np.linalg.norm(end - begin))
+    along = (end - begin) / length
+    onto: Floats = begin + np.clip((positions - begin) @ along, 0.0, length)[:, np.newaxis] * along
+    return onto
 
 
 def _averaged_law(

@@ -10,7 +10,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._native.trajectory import timed
 from evenroad.errors import NotAvailable
-from evenroad.trajectory.corners import MOST_STATES, TRIES, drivable, less_at, require_steps
+from evenroad.trajectory.corners import MOST_STATES, TRIES, drivable, less_at, require_steps, with_rests
 from evenroad.trajectory.limits import Limits, named_shares
 from evenroad.world import World
 
@@ -59,8 +59,13 @@ def timed_path(
                 "highest": shares,
                 "proof": proof,
             }
-        cuts = less_at(cuts, corners, lengths[:-1][~free], tried)
-    raise NotAvailable(f"the trajectory is not proved free at {duration * np.argmin(free) / len(free):.3f} s")
+        if len(corners) == 0:
+            break
+        cuts = less_at(cuts, corners, lengths[:-1][~free], lengths[1:][~free], tried)
+    refusal = f"the trajectory is not proved free at {duration * np.argmin(free) / len(free):.3f} s"
+    if any(speeds):
+        raise NotAvailable(refusal)
+    return with_rests(lambda part, own: timed_path(world, part, limits, own, step), world, waypoints, cuts, refusal)
 
 
 def _refused(outcome: str, waypoints: Floats, limits: Limits, shares: dict[str, float], end: str) -> NotAvailable:

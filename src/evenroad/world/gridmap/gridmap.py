@@ -31,6 +31,8 @@ _INTERVALS = 300_000
 _UNKNOWN_COUNT = "unknown cells count as obstacles unless unknown_is_free=True or --unknown-is-free says otherwise"
 _ON_A_SIDE = 1e-6
 """Distance from a side of a cell within which a point is on it [pixels]."""
+_ROUNDINGS = 16
+"""Number of times that a coordinate of a state may have been rounded."""
 _SMALLEST_RADIUS = 1e-150
 """Smallest radius, whose square is above 0: a disk of any size touches what its centre lies on [pixels]."""
 
@@ -147,6 +149,25 @@ class DiskWorld(OneOrMany):
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,)."""
         return self.disk.motions_free(*as_batch_pair(a, b, 2))
+
+    def driven_free(self, states: Floats) -> Bools:
+        """Return which motions between states of a trajectory, (n, 2), are free: (n - 1,).
+
+        States are computed from a path and rounded: where that touches an obstacle, so do they, up to rounding.
+        """
+        points = as_batch("states", states, 2)
+        free = self.disk.motions_free(points[:-1], points[1:])
+        again = np.flatnonzero(~free)
+        if again.size:
+            free[again] = self._nearly.motions_free(points[again], points[again + 1])
+        return free
+
+    @cached_property
+    def _nearly(self) -> Disk:
+        """The disk without what coordinates on this map are rounded by."""
+        farthest = max(float(np.abs(corner).max()) for corner in self.grid.bounds)
+        rounding = _ROUNDINGS * np.finfo(float).eps * (farthest / self.grid.resolution + sum(self.grid.shape))
+        return _disk_on(self.grid, max(self.radius - rounding * self.grid.resolution, 0.0))
 
     @one_or_many
     def distance(self, q: Floats) -> Floats:
