@@ -128,7 +128,7 @@ def test_its_example_runs(name, tmp_path, monkeypatch):
 
 def test_every_error_says_when_it_is_raised():
     errors = [each for each in vars(er.errors).values() if inspect.isclass(each) and issubclass(each, Exception)]
-    assert len(errors) == 7
+    assert len(errors) == 8
     assert all(len(each.__doc__) > 30 for each in errors)
 
 

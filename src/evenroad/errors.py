@@ -124,6 +124,10 @@ class InvalidValue(EvenroadError, ValueError):
     """An argument has a value, shape or type that the function does not take."""
 
 
+class Undecided(InvalidValue):
+    """A choice was left open that has several answers, such as a group of joints; the text lists them."""
+
+
 class UnknownName(EvenroadError, ValueError):
     """A name (sampler, family, rule, file key) is unknown; the text suggests a near one, or lists the known ones."""
 

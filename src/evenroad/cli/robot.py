@@ -18,8 +18,10 @@ from evenroad._rng import generator
 from evenroad._terminal import print_table
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
+from evenroad.errors import Undecided
 from evenroad.robot import ArmWorld, Joint, RobotModel, Scene, held_values, in_scene, load_scene
 from evenroad.robot import Robot as Arm
+from evenroad.robot.groups import EVERY
 from evenroad.robot.srdf import srdf_text
 
 _CONFIGURATIONS = 4096
@@ -51,7 +53,11 @@ class Robot(RobotOptions):
         """Load, measure, print; return 0."""
         if self.write_srdf is not None:
             require_writable_folder(self.write_srdf)
-        model = self.read_robot(self.robot)
+        try:
+            model = self.read_robot(self.robot)
+        except Undecided:
+            # This command is how to learn the groups.
+            model = replace(self, group=(EVERY,)).read_robot(self.robot)
         scene = Scene((), name="empty space") if self.scene is None else load_scene(self.scene)
         # Without a path, contacts near start and goal are not allowed.
         scene = replace(scene, near_ends=frozenset())

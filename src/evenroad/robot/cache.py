@@ -36,7 +36,7 @@ from evenroad.robot.robot_model import LinkBody, RobotModel
 from evenroad.robot.urdf import Urdf
 from evenroad.robot.urdf_xml import RobotFile
 
-_FORMAT = 27
+_FORMAT = 28
 """Version of the cache: it counts up when the same files give another robot, or the format changes."""
 
 

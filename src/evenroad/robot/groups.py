@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.errors import InvalidValue, Undecided, UnknownName, listed, shown
 from evenroad.robot.free_joints import named
 from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import KinematicTree, held_values
 from evenroad.robot.urdf import Urdf
 
+EVERY = "*"
+"""What names all joints of all groups."""
 _MOST_NAMED = 8
 """Largest number of names in one line."""
 
@@ -30,13 +32,17 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
     """Return the joints that are planned for.
 
     `wanted` are groups of the SRDF and names of joints (as a text: with commas between them), in the order that is
-    wanted; of two groups that share a joint the first has it.  None: the SRDF's arm, see :func:`arm_group`, else every
-    joint that moves, is no mimic and, by the SRDF, not passive.  None of a rigid body: another robot may carry it as a
-    tool.  Raises UnknownName if there is no such group or joint; InvalidValue if none is wanted and the SRDF has
-    several of which none is the arm, a joint does not move or follows another, one is named twice, or no joint is left.
+    wanted; of two groups that share a joint the first has it.  ``*`` is all joints of all groups.  None: the SRDF's
+    arm, see :func:`arm_group`, else every joint that moves, is no mimic and, by the SRDF, not passive.  None of a rigid
+    body: another robot may carry it as a tool.  Raises UnknownName if there is no such group or joint; Undecided if
+    none is wanted and the SRDF has several of which none is the arm; InvalidValue if a joint does not move or follows
+    another, one is named twice, or no joint is left.
     """
     groups = {} if srdf is None else srdf.groups
-    if wanted is not None:
+    if wanted == EVERY and any(groups.values()):
+        members = {name for joints in groups.values() for name in joints}
+        return tuple(name for name in urdf.order if name in members)
+    if wanted not in (None, EVERY):
         return _wanted_joints(urdf, groups, _words(wanted))
     if any(groups.values()):
         return groups[arm_group(urdf, groups)]
@@ -76,7 +82,7 @@ def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
     """Return the name of the group that is planned for where none is wanted, of those with joints.
 
     It is the only one, or else the longest chain: its joints follow each other without a branch, and none of them is a
-    gripper's (see :func:`chains`).  InvalidValue if there is no chain, or another one as long.
+    gripper's (see :func:`chains`).  Undecided if there is no chain, or another one as long.
     """
     filled = {name: joints for name, joints in groups.items() if joints}
     if len(filled) == 1:
@@ -96,7 +102,7 @@ def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
     found = {name: joints for name, joints in found.items() if name not in carried}
     if len(set(found.values())) != 1:
         which = "no one of which is the longest chain" if found else "none of which is a chain"
-        raise InvalidValue(
+        raise Undecided(
             f"the SRDF has several groups, {which}; say with --group (group=) which one is planned for:"
             f" {few_of(list(filled))}"
         )
@@ -117,8 +123,10 @@ def _below(urdf: Urdf, name: str) -> set[str]:
 def group_notes(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | None) -> tuple[str, ...]:
     """Return a note about the group that was chosen by default, where there were several."""
     names = [] if srdf is None else [name for name, joints in srdf.groups.items() if joints]
-    if srdf is None or wanted is not None or len(names) < 2:
+    if srdf is None or wanted not in (None, EVERY) or len(names) < 2:
         return ()
+    if wanted == EVERY:
+        return (f"planned for are the joints of all groups of the SRDF; --group chooses one of {listed(names)}",)
     chosen = arm_group(urdf, srdf.groups)
     others = few_of([name for name in names if name != chosen])
     return (f"planned for is the group {chosen!r}, the longest chain of the SRDF; --group chooses from {others}, too",)

@@ -20,8 +20,8 @@ from evenroad.robot.bodies_file import read_bodies
 from evenroad.robot.cache import cached, keep, key_of, know, known, stamps
 from evenroad.robot.find import find_robot
 from evenroad.robot.free_joints import without_moved
-from evenroad.robot.groups import choose_group, chosen_states, group_notes, held_states
-from evenroad.robot.link_bodies import capsules_of, link_body, opened, pieces_of, shapes_of
+from evenroad.robot.groups import EVERY, choose_group, chosen_states, group_notes, held_states
+from evenroad.robot.link_bodies import capsules_of, link_body, opened, pieces_of, shapes_of, size_notes
 from evenroad.robot.pairs import SelfPairs, pairs_of, self_pairs
 from evenroad.robot.robot import Padding, Robot
 from evenroad.robot.robot_model import RobotModel
@@ -221,7 +221,7 @@ def _build(
         tuple(capsule for link in urdf.links for capsule in capsules.get(link, ())),
         pairs=(),
         group=chosen,
-        states={} if srdf is None else chosen_states(srdf, chosen, group),
+        states=_states(urdf, srdf, chosen, group),
         planes=urdf.planes,
         # Capsules that the user gives replace a link's shapes as they are.
         inner=inner_of(shapes_of(urdf, given)),
@@ -240,9 +240,18 @@ def _build(
             *without_moved(urdf.notes, urdf.joints, chosen),
             *(() if srdf is None else srdf.notes),
             *group_notes(urdf, srdf, group),
+            *size_notes(capsules, urdf.joints),
             *map(_contained, pairs.contained),
         ),
     )
+
+
+def _states(
+    urdf: Urdf, srdf: Srdf | None, chosen: tuple[str, ...], group: str | Sequence[str] | None
+) -> dict[str, dict[str, float]]:
+    """Return the named states with a value for every joint chosen; of two of a name that of the SRDF."""
+    own = {name: dict(values) for name, values in urdf.states.items() if set(chosen) <= set(values)}
+    return own | ({} if srdf is None else chosen_states(srdf, chosen, group))
 
 
 def _with_pairs(robot: Robot, urdf: Urdf, srdf: Srdf | None, pieces: dict[str, list[Piece]]) -> tuple[Robot, SelfPairs]:
@@ -268,7 +277,7 @@ def _planned(
     if srdf_path is None:
         return urdf, None, choose_group(urdf, None, group)
     moving = with_moving_base(urdf, srdf_path)
-    if group is not None:
+    if group not in (None, EVERY):
         srdf = read_srdf(srdf_path, moving)
         chosen = choose_group(moving, srdf, group)
         if not set(chosen) <= set(urdf.order):

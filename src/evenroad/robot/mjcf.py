@@ -18,6 +18,7 @@ from evenroad.geometry.shapes import Mesh, Shape, shape_of
 from evenroad.robot.joint import Joint, Kind
 from evenroad.robot.mjcf_contacts import Contacts, contacts_of, untested_pairs
 from evenroad.robot.mjcf_equalities import name_of, with_equalities
+from evenroad.robot.mjcf_states import keyframes, note_left_out
 from evenroad.robot.planes import DEPTH, SIDE, Plane
 from evenroad.robot.urdf import Urdf, as_tree
 from evenroad.robot.urdf_xml import RobotFile
@@ -33,7 +34,7 @@ def read_mjcf(file: RobotFile) -> Urdf:
 
     Bodies are links and keep their names; of a body with several joints, or with one whose anchor is not its origin,
     links without a body lie between.  A free joint, or a ball, stays as it is drawn; a linear equality of two joints
-    makes a mimic.
+    makes a mimic.  Keyframes are named states.
 
     A mesh is its convex hull, as in MuJoCo; margins are part of what has them.  Geoms that collide with nothing are no
     bodies.  Two links are tested where MuJoCo looks for contacts: ``contype``, ``conaffinity``, ``<exclude>``,
@@ -90,10 +91,12 @@ class _Reader:
         moving = {link: of for link, of in geoms.items() if link not in still}
         planes = self._planes([geom for geom in bodies if geom not in solid], geoms, moving, contacts)
         self._note(solid, contacts)
+        note_left_out(self.mujoco, model, self.notes)
+        states = keyframes(self.mujoco, model, self.notes)
         drawn_only = tuple(link for link in self.links[1:] if link in bare)
         tree = as_tree(self.name, links, joints, shapes, str(self.file.path), drawn_only, self.notes)
         untested = None if self.file.as_drawn else untested_pairs(contacts, geoms)
-        return replace(tree, untested=untested, planes=planes)
+        return replace(tree, untested=untested, planes=planes, states=states)
 
     def _bodies(self) -> tuple[list[int], list[int]]:
         """Return the geoms that are bodies, and which of these are only drawn."""

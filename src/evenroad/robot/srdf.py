@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 from evenroad._checks import require_known
+from evenroad._understood import Kind, require_understood
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.robot.apart import bent_posture, held_apart
 from evenroad.robot.free_joints import held_note, named, of_base
@@ -22,6 +23,34 @@ from evenroad.robot.robot import pieces_of
 from evenroad.robot.robot_model import RobotModel
 from evenroad.robot.urdf import Urdf
 from evenroad.robot.xml_file import read_xml
+
+_NAMED = Kind(("name",))
+_GROUP = Kind(
+    ("name",),
+    {
+        **dict.fromkeys(("joint", "link", "group"), _NAMED),
+        "chain": Kind(("base_link", "tip_link")),
+    },
+)
+_PAIR = Kind(("link1", "link2"), harmless={"reason"})
+_FILE = Kind(
+    ("name",),
+    {
+        "group": _GROUP,
+        "group_state": Kind(("name", "group"), {"joint": Kind(("name", "value"))}),
+        "virtual_joint": Kind(("name", "type", "parent_frame", "child_link")),
+        "passive_joint": _NAMED,
+        "disable_collisions": _PAIR,
+        "enable_collisions": _PAIR,
+        "disable_default_collisions": Kind(("link",)),
+    },
+    # Hands and feet by their names, motors, and other bodies of links for other planners.
+    harmless={
+        *("version", "end_effector", "gripper", "rotor_params", "specificities", "joint_property"),
+        "link_sphere_approximation",
+    },
+)
+"""What is read of an SRDF."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +71,10 @@ class Srdf:
 
 
 def read_srdf(path: Path, urdf: Urdf) -> Srdf:
-    """Read the SRDF that belongs to a URDF; what has to do with neither groups, states nor pairs is skipped.
+    """Read the SRDF that belongs to a URDF.
+
+    Of a link whose collisions are off by default, ``disable_default_collisions``, no pair with another link is tested,
+    unless ``enable_collisions`` names it and ``disable_collisions`` does not; obstacles are.
 
     Virtual joints, which tie the root to the world, are skipped in groups and states, too, unless the robot has them
     (:func:`with_moving_base`).  So are joints and links that this URDF lacks, as makers write one SRDF for several
@@ -53,7 +85,14 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     root = read_xml(path, "SRDF", "an SRDF")
     if root.find("joint") is not None:
         raise BrokenFile(f"{path} is a URDF, not an SRDF: it has joints")
-    elements = {_attribute(group, "name", path): group for group in root.findall("group")}
+    notes: list[str] = []
+    require_understood(root, _FILE, str(path), notes)
+    elements: dict[str, Element] = {}
+    for group in root.findall("group"):
+        name = _attribute(group, "name", path)
+        if name in elements and not _same(group, elements[name]):
+            raise BrokenFile(f"{path} has two groups {name!r}, which differ")
+        elements[name] = group
     virtual = frozenset(_attribute(joint, "name", path) for joint in root.findall("virtual_joint"))
     known = _Model(urdf, virtual)
     passive = frozenset(
@@ -61,18 +100,39 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     )
     reader = _Groups(elements, known, path)
     groups = {name: _in_order(reader.joints(name, ()) - passive, urdf) for name in elements}
-    states = {}
+    states: dict[tuple[str, str], dict[str, float]] = {}
     for state in root.findall("group_state"):
         if state.get("group") is None:
             # As a Kinova's own has it: of which joints it speaks nobody knows.
             known.missing["state of no group"][_attribute(state, "name", path)] = None
             continue
-        group = _attribute(state, "group", path)
-        require_known(f"group in {path}:", group, groups)
-        states[group, _attribute(state, "name", path)] = _values(state, known, path)
-    pairs = [[_attribute(pair, end, path) for end in ("link1", "link2")] for pair in root.findall("disable_collisions")]
-    disabled = frozenset(frozenset(pair) for pair in pairs if known.links(pair))
-    return Srdf(groups, states, disabled, passive, known.notes)
+        owner = _attribute(state, "group", path)
+        require_known(f"group in {path}:", owner, groups)
+        both, values = (owner, _attribute(state, "name", path)), _values(state, known, path)
+        if states.setdefault(both, values) != values:
+            raise BrokenFile(f"{path} has two states {both[1]!r} of the group {owner!r}, which differ")
+    disabled = _pairs(root, "disable_collisions", known, path)
+    by_default = [_attribute(each, "link", path) for each in root.findall("disable_default_collisions")]
+    if by_default := [link for link in by_default if known.links([link])]:
+        every = {frozenset((link, other)) for link in by_default for other in urdf.links if other != link}
+        disabled |= every - _pairs(root, "enable_collisions", known, path)
+        notes.append(
+            "not tested against other links, only against obstacles, by disable_default_collisions:"
+            f" {few_of(by_default)}"
+        )
+    return Srdf(groups, states, disabled, passive, (*known.notes, *notes))
+
+
+def _pairs(root: Element, tag: str, known: _Model, path: Path) -> frozenset[frozenset[str]]:
+    """Return the pairs of links that elements name."""
+    pairs = [[_attribute(pair, end, path) for end in ("link1", "link2")] for pair in root.findall(tag)]
+    return frozenset(frozenset(pair) for pair in pairs if known.links(pair))
+
+
+def _same(first: Element, second: Element) -> bool:
+    """Return whether two elements say the same."""
+    said = [[(each.tag, each.attrib) for each in element.iter()] for element in (first, second)]
+    return said[0] == said[1]
 
 
 def with_moving_base(urdf: Urdf, srdf: Path) -> Urdf:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
@@ -35,7 +35,8 @@ class Urdf:
     `order` are the joints' names as the file lists them: the order of configurations.  `shapes` are the collision
     geometry, each in its link's frame; `drawn_only` are links that are drawn and have none; `notes` say what was read
     otherwise than it stands in the file.  `untested` are pairs of links that the file itself lets touch, each with the
-    reason; None where it does not say, as no URDF does.  `planes` are half spaces that it has around the robot.
+    reason; None where it does not say, as no URDF does.  `planes` are half spaces that it has around the robot, and
+    `states` are named states of an MJCF, joint -> value [rad or m].
     """
 
     name: str
@@ -47,6 +48,7 @@ class Urdf:
     notes: tuple[str, ...] = ()
     untested: tuple[tuple[str, str, str], ...] | None = None
     planes: tuple[Plane, ...] = ()
+    states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @property
     def free(self) -> frozenset[str]:
