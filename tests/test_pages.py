@@ -11,6 +11,8 @@ from tools import run_examples, run_pages
 from tools.run_examples import EXAMPLES
 from tools.run_pages import INSTEAD, ROOT
 
+from evenroad.cli.verbs import ABOUT
+
 PAGES = run_pages.pages()
 README = (ROOT / "README.md").read_text()
 
@@ -77,25 +79,31 @@ def test_commands_that_are_not_ours_are_known():
     assert unknown == []
 
 
-def test_make_targets_and_benchmarks_that_a_page_names_exist():
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "studies" / "README.md"], ids=_named)
+def test_every_command_that_a_page_names_exists(page):
+    text = page.read_text()
+    shell = [block for block in run_pages.blocks(page) if block.language == "sh"]
+    said = re.findall(r"`([^`]+)`", text) + [each for block in shell for each in run_pages.commands(block)]
     targets = set(re.findall(r"^(\w[\w-]*):", (ROOT / "Makefile").read_text(), flags=re.MULTILINE))
-    for page in PAGES:
-        text = page.read_text()
-        assert {each.split()[1] for each in COMMANDS if each.startswith("make ")} <= targets
-        for name in re.findall(r"\bstudies\.benchmarks\.(\w+)", text):
-            assert (ROOT / "studies" / "benchmarks" / f"{name}.py").exists(), f"{page.name}: {name}"
-        if re.search(r"(?<!studies\.)\bbenchmarks\.\w+", text):
-            assert OLD_BENCHMARKS in text, f"{page.name} names a benchmark that left, without its commit"
-        for name in re.findall(r"python\s+((?:studies/)?(?:tools|examples)/\w+\.py)", text):
-            assert (ROOT / name).exists(), f"{page.name} names {name}"
+    for first, allowed in (("make", targets), ("evenroad", set(ABOUT))):
+        assert {found[1] for each in said if (found := re.match(rf"{first}\s+([a-z][\w-]*)", each))} <= allowed
+    for name in re.findall(r"python3?\s+-m\s+(\w[\w.]*\w)", text):
+        assert name in OTHERS or name.endswith("NAME") or _source(name).exists(), f"it names python -m {name}"
+    for name in re.findall(r"python3?\s+((?:studies/)?(?:tools|examples)/\w+\.py)", text):
+        assert (ROOT / name).exists(), f"it names {name}"
+    assert "git switch" not in text
 
 
-def test_verbs_that_a_page_names_exist():
-    from evenroad.cli.verbs import ABOUT
+OTHERS = ("venv", "pip", "build", "pytest", "mypy")
+"""Modules of other people that pages run."""
 
-    for page in PAGES:
-        for verb in re.findall(r"`evenroad\s+([a-z]+)", page.read_text()):
-            assert verb in ABOUT, f"{page.name} names evenroad {verb}"
+
+def _source(module):
+    """The file of a module of the repository."""
+    path = Path(*module.split("."))
+    folders = (ROOT, ROOT / "src", ROOT / "studies" / "src")
+    found = (folder / f"{path}{end}" for folder in folders for end in (".py", "/__main__.py"))
+    return next((file for file in found if file.exists()), ROOT / f"{path}.py")
 
 
 def test_the_readme_is_short_and_its_python_five_lines_long():
@@ -103,9 +111,6 @@ def test_the_readme_is_short_and_its_python_five_lines_long():
     (code,) = [each.code for each in run_pages.blocks(ROOT / "README.md") if each.language == "python"]
     assert len([line for line in code.splitlines() if line.strip()]) <= 5
 
-
-OLD_BENCHMARKS = "git switch -d 5e2a3ee"
-"""The last commit with the benchmarks that have left, as pages with their figures name it."""
 
 LEAVES = {
     "01": ("maze.json", "maze-plan.png"),
