@@ -64,6 +64,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
         "links",
         "counts",
         "deviation",
+        "notes",
     ]
     return {
         "status": str(result.status),

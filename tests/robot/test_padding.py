@@ -101,6 +101,7 @@ def test_a_file_of_moveit_pads_links_wherever_its_parameters_lie(tmp_path):
         "joint_limits: {}": "it must have default_robot_padding",
         "default_robot_link_padding: {tip: 0.1}": "unknown link in default_robot_link_padding",
         "default_robot_link_padding: [0.1]": "must be a mapping, link -> number",
+        "default_robot_padding: 0\na: {default_robot_pading: 1}": "did you mean 'default_robot_padding'",
         "default_robot_padding: -0.1": "the padding of 'base_link' in",
         "default_robot_scale: 0.9": "the scale of 'base_link' in .* must be at least 1, got 0.9",
         "default_robot_scale: 99": "the scale of .*, in metres, must be at most 1",

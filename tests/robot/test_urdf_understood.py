@@ -173,3 +173,11 @@ def test_rates_that_are_none_are_refused(wrong, tmp_path):
     text = two_joints().replace(LIMIT, LIMIT.replace("/>", f" {wrong}/>"), 1)
     with pytest.raises(InvalidValue, match=wrong.partition("=")[0]):
         read_urdf(write(tmp_path, text))
+
+
+def test_a_plan_hands_on_the_notes_about_its_robot(tmp_path):
+    file = write(tmp_path, two_joints().replace("<origin", "<zzz/><origin", 1))
+    result = er.plan(er.Scene([]), [0.0, 0.0], [0.5, 0.5], robot=file)
+    assert "<zzz> of <joint> 'a'" in result.notes[0]
+    assert er.io.plan_record(result, {})["notes"] == result.notes
+    assert er.plan(ArmWorld(load_model(file).robot), [0.0, 0.0], [0.5, 0.5]).notes == ()

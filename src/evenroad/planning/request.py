@@ -67,6 +67,11 @@ class Request:
         return () if self.given is None else self.given.names
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """What was read otherwise than the files say."""
+        return () if self.model is None else self.model.notes
+
+    @property
     def tip(self) -> str:
         """The link that goal poses place, or nothing."""
         return self.given.poses[0][0].tip if self.given is not None and self.given.poses else ""

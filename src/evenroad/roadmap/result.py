@@ -124,6 +124,8 @@ class PlanResult:
         `complete`, no path has a clearance of its `dispersion`.
     roadmap : SearchedGraph or None
         The searched graph; None if start or goal is invalid, and for a reused roadmap.
+    notes : tuple of str
+        What was read of the robot otherwise than its files say, and what seems unusual in them, one line each.
     world : World or None
         World of the query; None in a plan that was read from a file.
 
@@ -156,6 +158,7 @@ class PlanResult:
     stages: tuple[Stage, ...] = ()
     certificate: Certificate | None = None
     roadmap: SearchedGraph | None = None
+    notes: tuple[str, ...] = ()
     world: World | None = field(default=None, repr=False)
 
     @cached_property

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from evenroad._checks import require_known, require_positive
+from evenroad._understood import Kind, require_understood
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable, shown
 from evenroad.geometry.parts import spread
@@ -110,9 +111,15 @@ def _read_padding(robot: Robot, path: Path) -> dict[str, float]:
 
 
 def _entries(document: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Yield names and values of all parameters about padding, however deep they lie."""
+    """Yield names and values of all parameters about padding, however deep they lie among those of others.
+
+    Raises UnknownName for one that is misspelt.
+    """
+    known = (*_PADDING, *_SCALE, *_OTHERS)
+    # What is another planner's parameter is left out; one that is nearly ours is meant for it.
+    require_understood(document, Kind(known), "the file of padding", [])
     for name, value in document.items():
-        if name in (*_PADDING, *_SCALE, *_OTHERS):
+        if name in known:
             yield name, value
         elif isinstance(value, dict):
             yield from _entries(value)
