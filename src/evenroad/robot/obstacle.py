@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
 from struct import Struct
@@ -160,8 +160,8 @@ class Obstacle:
 Bodies: TypeAlias = "Sequence[Obstacle | Shape]"
 
 
-def as_obstacles(bodies: object, taken: Container[str], scene: str) -> tuple[Obstacle, ...]:
-    """Return shapes and obstacles as obstacles; a shape without a name gets one that neither they nor `taken` has."""
+def as_obstacles(bodies: object, taken: Callable[[str], bool], scene: str) -> tuple[Obstacle, ...]:
+    """Return shapes and obstacles as obstacles; a shape without a name gets one that is new and not `taken`."""
     if isinstance(bodies, Shape | Obstacle):
         bodies = [bodies]
     if isinstance(bodies, str) or not isinstance(bodies, Iterable):
@@ -180,7 +180,7 @@ def as_obstacles(bodies: object, taken: Container[str], scene: str) -> tuple[Obs
     for each in listed:
         if isinstance(each, Shape):
             name = each.name or next(
-                text for k in count() if (text := f"{each.kind} {k}") not in own and text not in taken
+                text for k in count() if (text := f"{each.kind} {k}") not in own and not taken(text)
             )
             own.add(name)
             each = Obstacle(name, each)

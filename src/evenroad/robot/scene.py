@@ -2,32 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-from functools import cached_property
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls
-from evenroad._checks import counted
+from evenroad._checks import counted, require_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES
+from evenroad.robot.changes import Changes
 from evenroad.robot.held import HeldObject
 from evenroad.robot.obstacle import MARGIN as MARGIN
-from evenroad.robot.obstacle import Bodies, as_obstacles, box_rows, boxes_of, smaller_rows
+from evenroad.robot.obstacle import Bodies, as_obstacles, box_rows, smaller_rows
 from evenroad.robot.obstacle import Cut as Cut
 from evenroad.robot.obstacle import Obstacle as Obstacle
 from evenroad.robot.obstacle import Seen as Seen
-from evenroad.robot.scene_changes import SceneChanges
-from evenroad.robot.scene_delta import rows_of
+from evenroad.robot.obstacles import Boxes, Obstacles, named_twice
 
 
 @explains_calls
 @dataclass(frozen=True, init=False, repr=False)
-class Scene(SceneChanges):
+class Scene(Changes):
     """Obstacles, no two of one name; allowed contacts and named configurations.
 
     Parameters
@@ -65,7 +65,7 @@ class Scene(SceneChanges):
     """
 
     name: str
-    obstacles: tuple[Obstacle, ...]
+    obstacles: Sequence[Obstacle]
     allowed: frozenset[tuple[str, str]]
     states: Mapping[str, Mapping[str, float]]
     limits: Mapping[str, tuple[float, float]]
@@ -95,8 +95,13 @@ class Scene(SceneChanges):
             scene = scene_of(obstacles, _named(name))
             set_fields(self, **{each.name: getattr(scene, each.name) for each in fields(scene)})
             return
-        set_fields(self, name=_named(name), obstacles=as_obstacles(obstacles, (), name), **values)
-        self._require_names()
+        known = obstacles if isinstance(obstacles, Obstacles) else None
+        all_of_them = Obstacles(as_obstacles(obstacles, lambda name: False, name)) if known is None else known
+        set_fields(self, name=_named(name), obstacles=all_of_them, **values)
+        if attached:
+            self._require_attached()
+        if known is None:
+            _require_different(self.name, all_of_them.names)
 
     @classmethod
     def of_boxes(
@@ -141,43 +146,33 @@ class Scene(SceneChanges):
         texts = tuple(names) if len(names) else tuple([f"box {i}" for i in range(len(rows))])
         if len(texts) != len(rows):
             raise InvalidValue(f"names must be {len(rows)}, one a box, got {len(texts)}")
-        scene = scene_of_rows(rows, texts, _named(name), allowed)
-        if len(set(texts)) < len(texts):
-            scene._require_names()
-        return scene
+        _require_different(_named(name), texts)
+        return cls(Boxes(rows, texts), name=name, allowed=allowed)
 
-    def __getattr__(self, name: str) -> Any:
-        # Boxes of arrays, and those of a changed scene, become objects when these are first used.
-        if name != "obstacles" or not self.__dict__.keys() & {"rows", "delta"}:
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-        delta = self.__dict__.get("delta")
-        obstacles = boxes_of(self.rows, self.names) if delta is None else delta.obstacles()
-        return self.__dict__.setdefault(name, obstacles)
+    @property
+    def table(self) -> Obstacles:
+        """The obstacles, which also give their names and rows."""
+        assert isinstance(self.obstacles, Obstacles)
+        return self.obstacles
 
-    @cached_property
+    @property
     def names(self) -> tuple[str, ...]:
         """Names of the obstacles."""
-        if (delta := self.__dict__.get("delta")) is not None:
-            names: tuple[str, ...] = delta.names()
-            return names
-        return tuple([obstacle.name for obstacle in self.obstacles])
+        return self.table.names
 
-    @cached_property
+    @property
     def rows(self) -> Floats:
         """The obstacles but clouds and meshes, (n, 17), as the native kernel takes them.
 
         Their kind; full extents of a box, or radius and length without caps, and zeros [m]; rotation to the root link's
         frame, row by row; centre in that frame [m]; clearance [m].
         """
-        delta = self.__dict__.get("delta")
-        return rows_of(self.obstacles) if delta is None else delta.rows()
+        return self.table.rows
 
-    @cached_property
+    @property
     def surfaces(self) -> tuple[tuple[int, Obstacle], ...]:
         """The clouds and meshes among the obstacles, with their numbers."""
-        if len(self.rows) == len(self.names):
-            return ()
-        return tuple((number, each) for number, each in enumerate(self.obstacles) if not each.row)
+        return self.table.surfaces
 
     @property
     def solid_names(self) -> tuple[str, ...]:
@@ -189,20 +184,95 @@ class Scene(SceneChanges):
         listed = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
         return f"Scene({self.name!r}, {counted(len(names), 'obstacle')}{': ' if names else ''}{listed})"
 
-    def _require_names(self) -> None:
+    def _require_attached(self) -> None:
         held = [each.name for each in self.attached]
-        if len(set(held)) < len(held):
-            twice = sorted({name for name in held if held.count(name) > 1})
+        if twice := named_twice(held):
             raise InvalidValue(f"scene {self.name!r} has something attached twice: {', '.join(twice)}")
-        names = self.names
-        if both := sorted(set(held) & set(names)):
+        if both := sorted(name for name in held if self.table.has(name)):
             raise InvalidValue(
                 f"scene {self.name!r} has {both[0]!r} attached and as an obstacle: a robot that holds it would touch it"
             )
-        if len(set(names)) < len(names):
-            # What is allowed to touch the one would be allowed to touch the other.
-            twice = sorted({name for name in names if names.count(name) > 1})
-            raise InvalidValue(f"obstacles of scene {self.name!r} must have names of their own, twice: {twice}")
+
+    def _require_known(self, names: Iterable[str]) -> None:
+        for name in names:
+            if not self.table.has(name):
+                require_known(f"obstacle of scene {self.name!r}:", name, self.names)
+
+    def _moved(self, poses: Mapping[str, Pose]) -> Scene:
+        self._require_known(poses)
+        for name, pose in poses.items():
+            if not isinstance(pose, Pose):
+                raise InvalidValue(f"the pose of obstacle {name!r} must be a Pose, got {shown(pose)}")
+        return self._with_parts(self.table.moving(poses), self.allowed, self.near_ends)
+
+    def _named_new(self, bodies: Sequence[object]) -> tuple[Obstacle, ...]:
+        """Return shapes and obstacles, also lists of such, as obstacles with names that this scene does not have.
+
+        Raises InvalidValue if a name is taken, or something is no shape.
+        """
+        flat = [each for part in bodies for each in (part if isinstance(part, list | tuple | Obstacles) else [part])]
+        added = as_obstacles(flat, self.table.has, self.name)
+        names = [each.name for each in added]
+        if any(map(self.table.has, names)) or named_twice(names):
+            _require_different(self.name, (*self.names, *names))
+        return added
+
+    def _with(self, obstacles: Sequence[object], allowed: Sequence[tuple[str, str]]) -> Scene:
+        added = self._named_new(obstacles)
+        if self.attached and any(each.name == one.name for each in self.attached for one in added):
+            return replace(self, obstacles=self.table.adding(added))  # which names the two
+        return self._with_parts(self.table.adding(added), self.allowed.union(allowed), self.near_ends)
+
+    def _without(self, names: Sequence[str]) -> Scene:
+        self._require_known(names)
+        allowed = frozenset([each for each in self.allowed if each[1] not in names])
+        near_ends = frozenset([each for each in self.near_ends if each[1] not in names])
+        return self._with_parts(self.table.removing(names), allowed, near_ends)
+
+    def _with_parts(
+        self,
+        obstacles: Obstacles,
+        allowed: frozenset[tuple[str, str]],
+        near_ends: frozenset[tuple[str, str, float]],
+    ) -> Scene:
+        """Return a scene with other parts, which fit each other: `replace` would look at them again."""
+        scene = object.__new__(Scene)
+        set_fields(scene, obstacles=obstacles, allowed=allowed, near_ends=near_ends)
+        set_fields(scene, name=self.name, states=self.states, limits=self.limits, attached=self.attached)
+        return scene
+
+    def with_clearance(self, clearance: Mapping[str, float]) -> Scene:
+        """Return the scene with obstacles from which robots keep more away.
+
+        Parameters
+        ----------
+        clearance : mapping of str to float
+            Obstacle -> distance to keep, 0 to 1 [m], beside the clearance of a world and the padding of links.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        UnknownName
+            If there is no such obstacle.
+        InvalidValue
+            If a distance is not such a number.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> scene = er.load_scene("box-reach").with_clearance({"box top": 0.01})
+        >>> scene.obstacles[scene.names.index("box top")].clearance
+        0.01
+        """
+        if not isinstance(clearance, Mapping):
+            raise InvalidValue(f"clearance must be a mapping, obstacle -> metres, got {shown(clearance)}")
+        for name in clearance:
+            require_known(f"obstacle of scene {self.name!r}:", name, self.names)
+        changed = (replace(each, clearance=clearance.get(each.name, each.clearance)) for each in self.obstacles)
+        return replace(self, obstacles=Obstacles(changed))
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of what decides results: obstacles and allowed contacts, in any order."""
@@ -221,16 +291,7 @@ def smaller_scene(scene: Scene, by: float) -> Scene:
     solid = [name for number, name in enumerate(scene.names) if number not in dict(scene.surfaces)]
     names = tuple(name for name, is_left in zip(solid, left.tolist(), strict=True) if is_left)
     allowed = frozenset(each for each in scene.allowed if each[1] in names)
-    return scene_of_rows(rows, names, scene.name, allowed)
-
-
-def scene_of_rows(rows: Floats, names: tuple[str, ...], name: str, allowed: frozenset[tuple[str, str]]) -> Scene:
-    """Return a scene of obstacles by their rows and names, which are not looked at again."""
-    scene = object.__new__(Scene)
-    rows.setflags(write=False)
-    scene.__dict__.update(name=name, allowed=allowed, states={}, limits={}, attached=(), near_ends=frozenset())
-    scene.__dict__.update(rows=rows, names=names, surfaces=())
-    return scene
+    return Scene(Boxes(rows, names), name=scene.name, allowed=allowed)
 
 
 def _named(name: object) -> str:
@@ -238,6 +299,12 @@ def _named(name: object) -> str:
     if not isinstance(name, str):
         raise InvalidValue(f"the name of a scene must be a text, got {shown(name)}")
     return name
+
+
+def _require_different(scene: str, names: Sequence[str]) -> None:
+    """Raise InvalidValue if two obstacles have one name: what may touch the one would be allowed to touch the other."""
+    if twice := named_twice(names):
+        raise InvalidValue(f"obstacles of scene {scene!r} must have names of their own, twice: {twice}")
 
 
 def limits_in_words(scene: Scene | None, joint: str, lower: float, upper: float, whose: str = "its limits") -> str:

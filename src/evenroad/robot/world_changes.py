@@ -14,10 +14,10 @@ from evenroad._native.robot import Scene as NativeScene
 from evenroad.geometry.pose import Pose
 from evenroad.robot.changes import Changes
 from evenroad.robot.kernel.robot_tables import RobotTables
+from evenroad.robot.obstacles import rows_of
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.robot.scene_delta import delta_of, rows_of
 
 _STAYS = ("robot", "resolution", "clearance", "_space", "bounds", "robot_tables")
 
@@ -43,7 +43,8 @@ class WorldChanges(Changes):
         return self._changed(self.scene._moved(poses), poses, poses)
 
     def _with(self, obstacles: Sequence[object], allowed: Sequence[tuple[str, str]]) -> Self:
-        scene, added = self.scene._with_these(obstacles, allowed)
+        added = self.scene._named_new(obstacles)
+        scene = self.scene._with(added, allowed)
         if allowed or scene.surfaces:
             return self.within(scene)
         return self._changed(scene, (), [each.name for each in added], rows_of(added))
@@ -114,7 +115,7 @@ class WorldChanges(Changes):
             if name in come:
                 bodies = [capsule.link == link for capsule in self.robot_tables.capsules]
                 tested[bodies, list(come).index(name)] = False
-        rows = delta_of(scene).rows(come) if rows is None else rows
+        rows = scene.table.rows_named(list(come)) if rows is None else rows
         native = before.changed(
             prepared(self.robot).native, np.array(left, np.int64), rows, np.array(at, np.int64), tested, self.clearance
         )
@@ -136,6 +137,5 @@ class WorldChanges(Changes):
         if "_since" not in self.__dict__:
             return None
         since, changed = self.__dict__["_since"]
-        there = self.scene.numbers
-        gone = [name for name in changed if name in since.scene.numbers]
-        return made(since)._changed(self.scene, gone, [name for name in changed if name in there])
+        gone = [name for name in changed if since.scene.table.has(name)]
+        return made(since)._changed(self.scene, gone, [name for name in changed if self.scene.table.has(name)])

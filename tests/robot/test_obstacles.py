@@ -1,5 +1,7 @@
 """Scenes that were changed hold what lists of their obstacles would hold, however often they were changed."""
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +9,8 @@ import pytest
 
 import evenroad as er
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.robot.scene_delta import MOST
+from evenroad.robot.obstacle import Obstacle
+from evenroad.robot.obstacles import MOST
 
 
 def ball(rng, name):
@@ -44,31 +47,28 @@ def test_after_any_changes_a_scene_is_that_of_the_list_of_its_obstacles(asked_ev
             case _:
                 # Names of what is gone come back.
                 fresh = next(f"ball {i}" for i in range(100) if f"ball {i}" not in listed)
-                scene = scene.with_(ball(rng, fresh))
-                listed[fresh] = scene.obstacles[-1] if step % asked_every == 0 else ball_of(scene, fresh)
+                added = ball(rng, fresh)
+                scene = scene.with_(added)
+                listed[fresh] = Obstacle(fresh, added)
         if step % asked_every == 0:
             assert_same(scene, listed)
     assert_same(scene, listed)
     assert replace(scene) == scene
 
 
-def ball_of(scene, name):
-    """The obstacle that came last, without asking for all of them where they are not known."""
-    return scene.delta.more[name] if "delta" in scene.__dict__ else scene.obstacles[-1]
-
-
-def test_a_chain_of_changes_holds_no_more_than_its_last_base():
+def test_a_chain_of_changes_frees_what_it_was_changed_from():
     rng = np.random.default_rng(0)
-    scene = er.Scene([ball(rng, "kept")])
+    first = er.Scene([ball(rng, "kept"), ball(rng, "gone")])
+    begun, scene = weakref.ref(first.table), first.without("gone")
+    del first
     for i in range(5 * MOST):
         scene = (
             scene.with_(ball(rng, f"passing {i}")).without(f"passing {i}").moved({"kept": er.Pose((i * 1e-3, 0, 0))})
         )
-    assert len(scene.delta) <= MOST + 1
     for i in range(5 * MOST):
         scene = scene.with_(ball(rng, f"staying {i}"))
-    base = scene.delta.base
-    assert "delta" not in base.__dict__
+    gc.collect()
+    assert begun() is None
     assert len(scene.names) == 5 * MOST + 1
 
 
