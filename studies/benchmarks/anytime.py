@@ -27,10 +27,10 @@ from studies.benchmarks.rows import parser_of
 
 from evenroad.planning.arm_trees import connect
 from evenroad.planning.connectors import ArmTrees
+from evenroad.points.reversed_halton import shifted_cube_points
 from evenroad.roadmap.attempt import NO_LIMIT
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
-from evenroad.robot.tree_sequences import shifted_cube_points
 from evenroad.space.path import path_length
 
 TREES = ArmTrees(shortest=True)

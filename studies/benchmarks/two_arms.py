@@ -27,11 +27,11 @@ from studies.benchmarks.rows import parser_of
 
 import evenroad as er
 from evenroad.planning.arm_trees import connect
+from evenroad.points.reversed_halton import shifted_cube_points
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle
-from evenroad.robot.tree_sequences import shifted_cube_points
 
 TUNING, REPORTING = range(1_000, 1_200), range(2_000, 2_200)
 

@@ -278,7 +278,7 @@ def recorded(tmp_path_factory):
             patch.setattr(_native.robot, name, recording(f"robot.{name}", calls))
         for name in ("Improver", "Trees"):
             patch.setattr(_native.planning, name, recording(f"planning.{name}", calls))
-        patch.setattr("evenroad.robot.tree_sequences.Drivers", recording("planning.Drivers", calls))
+        patch.setattr("evenroad.planning.drivers.Drivers", recording("planning.Drivers", calls))
         patch.setattr("evenroad.world.gridmap.gridmap.Disk", recording("world.Disk", calls))
         patch.setattr("evenroad.robot.arm_world.Checker", recording("robot.Checker", calls))
         patch.setattr("evenroad.planning.connectors.answer", recording("planning.answer", calls))

@@ -12,12 +12,12 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Box
 from evenroad.planning.arm_trees import connect, grown_trees, shorten, smooth
+from evenroad.points.reversed_halton import ball_points, cube_points, reversed_halton, sphere_points
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
-from evenroad.robot.tree_sequences import ball_points, cube_points, reversed_halton, sphere_points
 from tests.robot.kernel_arms import STRAIGHT, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
 from tests.robot.paths import GOAL, START, box_world, dense_states, proved

@@ -13,11 +13,11 @@ from evenroad._arrays import Bools, Floats, Ints
 from evenroad._fingerprint import fingerprint_of
 from evenroad._native import robot as kernel
 from evenroad.constraints.keep import Keep
+from evenroad.points.reversed_halton import share_pairs
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.cartesian_path import Followed, moves_of
 from evenroad.robot.chain import Chain, chain_of, default_tip
 from evenroad.robot.constraint import Constraint
-from evenroad.robot.tree_sequences import share_pairs
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.path import path_length

@@ -13,9 +13,10 @@ from evenroad._checks import require_count, require_positive
 from evenroad._native import planning
 from evenroad._native.robot import Checker
 from evenroad.errors import InvalidValue
+from evenroad.planning.drivers import native_points
+from evenroad.points.reversed_halton import PAIRS, ball_points, cube_points, share_pairs, sphere_points
 from evenroad.roadmap.connector import Connection
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.tree_sequences import PAIRS, ball_points, cube_points, native_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 

@@ -12,11 +12,12 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._native.planning import Answer, Drivers, Improver, Points, answer
 from evenroad.planning import arm_trees
+from evenroad.planning.drivers import drivers, drivers_by, native_points
+from evenroad.points.reversed_halton import cube_points, shifted_cube_points
 from evenroad.roadmap.attempt import NO_LIMIT
 from evenroad.roadmap.connector import Connection, Connector, Search, Smooth
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.robot import ArmWorld
-from evenroad.robot.tree_sequences import cube_points, drivers, drivers_by, native_points, shifted_cube_points
 from evenroad.space.batch import as_batch
 from evenroad.world import World
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from evenroad._arrays import Floats, Ints
 from evenroad.constraints.kept_world import KeptWorld
+from evenroad.points.reversed_halton import cube_points, shifted_cube_points
 from evenroad.roadmap.connector import Connection
-from evenroad.robot.tree_sequences import cube_points, shifted_cube_points
 from evenroad.world import World
 
 BATCH = 16

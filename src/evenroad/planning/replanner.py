@@ -22,6 +22,7 @@ from evenroad.planning.connectors import drivers_of
 from evenroad.planning.read_request import request_in
 from evenroad.planning.request import ConfigurationLike, Reading, unreached
 from evenroad.planning.trees import variant_of
+from evenroad.points.reversed_halton import PAIRS, share_pairs
 from evenroad.roadmap.answer import path_message, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.query import Query
@@ -30,7 +31,6 @@ from evenroad.robot import ArmWorld, Scene
 from evenroad.robot.arm_world import VALIDATION_TOLERANCE
 from evenroad.robot.obstacle import Bodies
 from evenroad.robot.states import as_configuration
-from evenroad.robot.tree_sequences import PAIRS, share_pairs
 from evenroad.space.path import path_length
 
 VARIANTS = 8

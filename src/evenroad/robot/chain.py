@@ -13,12 +13,12 @@ from evenroad._checks import require_known
 from evenroad._native import robot as kernel
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import IDENTITY, Pose
+from evenroad.points.reversed_halton import cube_points
 from evenroad.robot.kernel.moving_tree import MovingFrame, MovingTree
 from evenroad.robot.kernel.robot_tables import RobotTables
 from evenroad.robot.pose_task import PoseTask
 from evenroad.robot.prepared_robots import prepared
 from evenroad.robot.robot import Robot
-from evenroad.robot.tree_sequences import cube_points
 
 TURN = 2.0 * math.pi
 

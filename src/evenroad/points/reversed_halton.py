@@ -1,13 +1,10 @@
-"""Even sequences that drive an arm's trees and its shortening: reversed Halton points, of no random numbers."""
+"""Even points of balls, spheres and cubes that drive trees and smoothing: Halton's with reversed digits."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._native.planning import Drivers, Points
 from evenroad._shared import once
 
 Floats = npt.NDArray[np.float64]
@@ -23,27 +20,6 @@ _SHORTEST = 0.6
 _FEW = 3
 """So many pairs of these steps have one in which only some joints move: out of a narrow place hardly any others lead.
 """
-
-
-@once
-def native_points(points: Callable[[int], Floats], number: int) -> Points:
-    """Return the points that one of these functions gives for a number, as the native kernel takes them.
-
-    They are checked once, which takes longer than a short plan.
-    """
-    return Points(points(number))
-
-
-@once
-def drivers(dim: int) -> Drivers:
-    """Return the sequences that drive the queries of an arm with `dim` joints."""
-    return drivers_by(native_points(cube_points, dim), dim)
-
-
-def drivers_by(samples: Points, dim: int) -> Drivers:
-    """Return the same with other points that trees grow towards."""
-    others = native_points(ball_points, dim), native_points(share_pairs, PAIRS), native_points(sphere_points, dim)
-    return Drivers(samples, *others)
 
 
 @once
