@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property, wraps
 from typing import Any, TypeVar
 
@@ -39,6 +39,11 @@ class once_property(cached_property[Made]):
             return self
         assert self.attrname is not None
         return instance.__dict__.setdefault(self.attrname, self.func(instance))
+
+
+def state_without(value: object, made: Iterable[str]) -> dict[str, Any]:
+    """Return the state of which a copy of a value is made; what it has `made` from its fields, it makes anew."""
+    return {name: each for name, each in vars(value).items() if name not in made}
 
 
 class OwnLock:

@@ -16,7 +16,7 @@ from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad._native.robot import Checker
 from evenroad._native.robot import Scene as NativeScene
-from evenroad._shared import once_property
+from evenroad._shared import once_property, state_without
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import PointCloud
 from evenroad.robot.distance import ArmDistances
@@ -110,7 +110,7 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
             raise InvalidValue(f"{which}: plan does, or give it allowed_near_ends(robot, scene, start_and_goals)")
         made = prepared(self.robot)
         require_few_segments(self.resolution, made.longest / self.resolution)
-        self.__dict__.update(_space=made.space, bounds=made.bounds, robot_tables=made.tables)
+        set_fields(self, _space=made.space, bounds=made.bounds, robot_tables=made.tables)
         _ = self.native_scene  # at once: it refuses obstacles that are too far
 
     @property
@@ -150,7 +150,7 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy is made of: it makes checks of its own."""
         made = ("native_scene", "checker", "_measuring", "roomier", "_numbered", "_numbers", "_last", "_since")
-        return {name: value for name, value in self.__dict__.items() if name not in made}
+        return state_without(self, made)
 
     def valid(self, q: Any) -> Any:
         """Return which configurations, (n, dim), are within the limits, up to 1e-5, and touch nothing: (n,).

@@ -131,9 +131,9 @@ class Obstacle:
             return replace(self, body=replace(self.body, pose=pose))
         # Nothing else changes, so nothing is looked at again.
         body, moved = object.__new__(type(self.body)), object.__new__(Obstacle)
-        body.__dict__.update(self.body.__dict__, pose=pose)
         numbers = (*_ROW.unpack(self.row)[:4], *pose.rotation, *pose.xyz, self.clearance)
-        moved.__dict__.update(self.__dict__, body=body, row=_ROW.pack(*numbers))
+        set_fields(body, **{**vars(self.body), "pose": pose})
+        set_fields(moved, **{**vars(self), "body": body, "row": _ROW.pack(*numbers)})
         return moved
 
     @property

@@ -14,7 +14,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import as_batch, as_row, require_known, require_positive
 from evenroad._native.trajectory import TorqueLimits
-from evenroad._shared import once_property
+from evenroad._shared import once_property, state_without
 from evenroad.errors import InvalidValue
 from evenroad.robot import Robot
 from evenroad.robot.masses import Mass, read_masses
@@ -83,7 +83,7 @@ class Dynamics:
         return TorqueLimits(native_links(self.robot, self.masses), np.array(self.efforts), np.array(self.gravity))
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "native"}
+        return state_without(self, ["native"])
 
 
 def native_links(robot: Robot, masses: Iterable[Mass] = ()) -> tuple[Ints, Ints, Bools, Floats]:

@@ -15,7 +15,7 @@ from evenroad._arrays import Floats
 from evenroad._checks import as_row, require_known, require_positive
 from evenroad._native.trajectory import TipLimits as NativeTip
 from evenroad._native.trajectory import TorqueLimits, further_shares
-from evenroad._shared import once_property
+from evenroad._shared import once_property, state_without
 from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.robot import Robot
 from evenroad.robot.prepared_robots import prepared
@@ -65,7 +65,7 @@ class TipLimits:
         return NativeTip(moving, dim, fixed.frame - 1, fixed.translation, self.speed, self.acceleration)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "native"}
+        return state_without(self, ["native"])
 
 
 @dataclass(frozen=True)
