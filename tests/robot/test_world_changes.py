@@ -8,7 +8,7 @@ import pytest
 
 import evenroad as er
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.robot.world_changes import FEW, MOST
+from evenroad.robot.kernel.numbered_scene import FEW, MOST
 from tests.robot.kernel_arms import ur5
 from tests.threads import together
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,10 +18,13 @@ from evenroad._native.robot import Checker
 from evenroad._native.robot import Scene as NativeScene
 from evenroad._shared import once_property, state_without
 from evenroad.errors import InvalidValue
+from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PointCloud
-from evenroad.robot.distance import ArmDistances
+from evenroad.robot.changes import Changes
+from evenroad.robot.distance import LEAST, MOST, WITH, Distance
 from evenroad.robot.given import as_robot, as_scene
 from evenroad.robot.kernel.native_scene import native_scene
+from evenroad.robot.kernel.numbered_scene import NumberedScene, numbered_scene
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
 from evenroad.robot.obstacle import MOST_CLEARANCE
 from evenroad.robot.prepared_robots import prepared
@@ -29,12 +32,13 @@ from evenroad.robot.robot import Robot
 from evenroad.robot.robot_in_scene import with_planes, within_scene
 from evenroad.robot.scene import Scene, limits_in_words, smaller_scene
 from evenroad.robot.states import as_configuration
-from evenroad.robot.world_changes import WorldChanges
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import SLACK
+from evenroad.space.path import resample
 from evenroad.world.bisection import require_few_segments
-from evenroad.world.one_or_many import OneOrMany, one_or_many
+from evenroad.world.clearance import largest_kept
+from evenroad.world.one_or_many import OneOrMany, is_one, one_or_many
 from evenroad.world.protocol import Apart
 
 VALIDATION_TOLERANCE = 1e-6
@@ -43,7 +47,7 @@ VALIDATION_TOLERANCE = 1e-6
 
 @explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
-class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
+class ArmWorld(Changes, OneOrMany):
     """The configurations in which a robot touches neither a scene's obstacles nor itself.
 
     Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested as capsules.  Where
@@ -91,6 +95,8 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
     _space: JointSpace = field(init=False, repr=False)
     bounds: Floats = field(init=False, repr=False)
     robot_tables: RobotTables = field(init=False, repr=False)
+    _since: tuple[ArmWorld, Mapping[str, None]] | None = field(init=False, default=None)
+    """The world that this one was changed from, and the names of the obstacles that differ."""
 
     def __post_init__(self) -> None:
         scene = as_scene(self.scene)
@@ -135,10 +141,16 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
         return f"ArmWorld({self.robot!r}, {self.scene!r})"
 
     @once_property
+    def _numbered(self) -> NumberedScene:
+        """The obstacles as native checks read them, by their numbers."""
+        made = prepared(self.robot)
+        return numbered_scene(made.native, made.tables, self.robot.links, self.scene, self.clearance)
+
+    @property
     def native_scene(self) -> NativeScene:
         """The obstacles as native checks read them."""
-        made = prepared(self.robot)
-        return native_scene(made.native, made.tables, self.robot.links, self.scene, self.clearance)
+        native: NativeScene = self._numbered.native
+        return native
 
     @once_property
     def checker(self) -> Checker:
@@ -149,8 +161,8 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy is made of: it makes checks of its own."""
-        made = ("native_scene", "checker", "_measuring", "roomier", "_numbered", "_numbers", "_last", "_since")
-        return state_without(self, made)
+        made = ("checker", "roomier", "fixed_contact", "_measuring", "_bare", "_unpadded", "_numbered")
+        return {**state_without(self, made), "_since": None}
 
     def valid(self, q: Any) -> Any:
         """Return which configurations, (n, dim), are within the limits, up to 1e-5, and touch nothing: (n,).
@@ -182,13 +194,13 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
     @once_property
     def roomier(self) -> ArmWorld:
         """The same world with 5 mm more clearance, which paths keep where they can."""
-        if (changed := self._after_changes(lambda since: since.roomier)) is not None:
-            return changed
-        # What this world has read is not read again: that would take as long as a short plan.
-        world = object.__new__(type(self))
-        world.__dict__.update({each.name: self.__dict__[each.name] for each in fields(self)})
-        world.__dict__["clearance"] = min(self.clearance + 0.005, MOST_CLEARANCE)
-        return world
+        if self._since is None:
+            # What this world has read is not read again: that would take as long as a short plan.
+            return self._copy(self.scene, min(self.clearance + 0.005, MOST_CLEARANCE))
+        since, changed = self._since
+        gone, come = ([name for name in changed if each.scene.table.has(name)] for each in (since, self))
+        roomier: ArmWorld = since.roomier
+        return roomier._changed(self.scene, gone, come)
 
     @property
     def bodies(self) -> str:
@@ -247,6 +259,146 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
         # Ranges are those of the robot.
         scene = smaller_scene(self.scene, spare) if spare > 0.0 else replace(self.scene, limits={})
         return replace(self, robot=robot, scene=scene, clearance=self.clearance + max(-spare, 0.0)).valid
+
+    @once_property
+    def _measuring(self) -> Checker:
+        """The native checks of this world as it is without a clearance, with the obstacles up to 1 m farther."""
+        made = prepared(self.robot)
+        scene = native_scene(made.native, made.tables, self.robot.links, self.scene, MOST)
+        return Checker(made.native, scene, self.resolution, 0.0, False)
+
+    @once_property
+    def _bare(self) -> ArmWorld:
+        """The same world without a clearance of its own."""
+        return replace(self, clearance=0.0) if self.clearance else self
+
+    @once_property
+    def _unpadded(self) -> ArmWorld:
+        """The same world without what is kept away beside contact: no clearance of it or of an obstacle, no padding."""
+        kept = {each.name: 0.0 for each in self.scene.obstacles if each.clearance}
+        if not (kept or self.robot.padding or self.clearance):
+            return self
+        bare = replace(self.robot, padding=())
+        return replace(self, robot=bare, scene=self.scene.with_clearance(kept), clearance=0.0)
+
+    def distance(self, q: Any) -> Distance:
+        """Return how far the robot is from contact, and which two bodies are nearest.
+
+        Bodies are those that the world plans with, without its clearance: capsules, against obstacles the spheres that
+        cover them, or what decides in their place.  The distance is never larger than theirs, and some micrometres
+        smaller at most; of a world without a clearance it is > 0 exactly where `valid` says so.  Pairs that may touch
+        do not count.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, dim) or (dim,), mapping or str
+            Configurations within the limits; a mapping or a named state is one.
+
+        Returns
+        -------
+        Distance
+            ``metres`` and ``pair``, of one configuration or of each.
+
+        Raises
+        ------
+        InvalidValue
+            As `valid`, or if a configuration is outside of the limits.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.ArmWorld("ur5", "box-reach").distance("home").pair
+        ('forearm_link', 'wrist_2_link')
+        """
+        batch = as_batch("q", self._row(q)[np.newaxis] if is_one(q) else q, self.space.dim)
+        metres, pairs = self._distances(batch)
+        bare = self._bare
+        if bare.fixed_contact is not None:
+            pairs = [bare.fixed_contact] * len(batch)
+        if (outside := np.flatnonzero(np.isnan(metres))).size:
+            raise InvalidValue(f"q has no distance in row {outside[0]}: {self.explain(batch[outside[0]])}")
+        metres = np.where(bare.valid(batch), np.maximum(metres, LEAST), 0.0)
+        return Distance(float(metres[0]), pairs[0]) if is_one(q) else Distance(metres, pairs)
+
+    def _distances(self, q: Floats, *, to_itself: bool = True) -> Distance:
+        """Return the distances of configurations, (n, dim); without `to_itself` those from obstacles alone."""
+        metres, nearest = self._measuring.distances(q, MOST, to_itself)
+        return Distance(
+            metres, [self._names(WITH[kind], *of, anew=True) if kind else None for kind, *of in nearest.tolist()]
+        )
+
+    def nearest_along(self, path: Floats) -> tuple[str, str] | None:
+        """Return the link and the obstacle that come nearest to each other along a path, (p, dim); None beyond 1 m."""
+        metres, pairs = self._unpadded._distances(resample(path, self.space, self.resolution / 4.0)[0], to_itself=False)
+        pair: tuple[str, str] | None = pairs[int(metres.argmin())]
+        return pair
+
+    def path_clearance(self, path: Floats) -> float | None:
+        """Return the distance from obstacles that a path, (p, dim), is proved to keep, to 0.1 mm; None if none [m].
+
+        The clearances of obstacles and the padding of links are part of it.
+        """
+
+        def keeps(distance: float) -> bool:
+            return bool(replace(self._unpadded, clearance=distance).validate(path).all())
+
+        return largest_kept(keeps, self.clearance, MOST_CLEARANCE, 1e-4)
+
+    def _moved(self, poses: Mapping[str, Pose]) -> ArmWorld:
+        return self._changed(self.scene._moved(poses), poses, poses)
+
+    def _with(self, obstacles: Sequence[object], allowed: Sequence[tuple[str, str]]) -> ArmWorld:
+        added = self.scene._named_new(obstacles)
+        scene = self.scene._with(added, allowed)
+        return self.within(scene) if allowed else self._changed(scene, (), [each.name for each in added])
+
+    def _without(self, names: Sequence[str]) -> ArmWorld:
+        return self._changed(self.scene._without(names), names, ())
+
+    def within(self, scene: Scene) -> ArmWorld:
+        """Return the same world with the obstacles of another scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            Its ranges of joints are not looked at.
+
+        Returns
+        -------
+        ArmWorld
+
+        Raises
+        ------
+        UnknownName, InvalidValue
+            If the scene does not fit the robot.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.ArmWorld("ur5", "box-reach").within(er.Scene()).scene.names
+        ()
+        """
+        world = self._copy(scene, self.clearance)
+        _ = world.native_scene  # at once: it refuses obstacles that are too far
+        return world
+
+    def _copy(self, scene: Scene, clearance: float) -> ArmWorld:
+        """Return a world of the same robot, of a scene and a clearance that fit it: `replace` would read all again."""
+        world = object.__new__(type(self))
+        set_fields(world, robot=self.robot, scene=scene, resolution=self.resolution, clearance=clearance, _since=None)
+        set_fields(world, _space=self._space, bounds=self.bounds, robot_tables=self.robot_tables)
+        return world
+
+    def _changed(self, scene: Scene, gone: Collection[str], come: Collection[str]) -> ArmWorld:
+        """Return the same world with a scene in which some obstacles are gone and others have come."""
+        robot, before = prepared(self.robot).native, self._numbered
+        numbered = before.changed(robot, self.robot_tables, scene, gone, come, self.clearance)
+        if numbered is None:
+            return self.within(scene)
+        since, changed = (self, {}) if self._since is None else self._since
+        world = self._copy(scene, self.clearance)
+        set_fields(world, _numbered=numbered, _since=(since, {**changed, **dict.fromkeys(gone), **dict.fromkeys(come)}))
+        return world
 
     def fingerprint(self) -> str:
         """Return a text that is equal for worlds of equal robot, scene, resolution and clearance."""
@@ -320,4 +472,4 @@ class ArmWorld(ArmDistances, WorldChanges, OneOrMany):
             return capsules[first].link, capsules[second].link
         if kind == "surface":
             return capsules[capsule].link, self.scene.names[other]
-        return capsules[capsule].link, self.scene.solid_names[other] if anew else self._number_name(other)
+        return capsules[capsule].link, self.scene.solid_names[other] if anew else self._numbered.name_of(other)
