@@ -22,8 +22,8 @@ FEW, MOST = 128, 128
 class NumberedScene:
     """A native scene, and the names of its obstacles by their numbers: `solid` were there when it was made.
 
-    `base` are all obstacles of the scene that it was made of.  Those that came `later` have numbers after them; of these
-    `last` were given away.
+    `base` are all obstacles of the scene that it was made of.  Those that came `later` have numbers after them;
+    `last` of these were given away.
     """
 
     native: NativeScene
