@@ -1,7 +1,7 @@
 """The bank of trained sets: one folder per family, one float32 array (sets, n, d) per cell, one index.
 
 ``data/hickernell/d02-n0512.npy`` is in the bank if ``data/index.json`` has its record: ``{"hickernell": {"2": {"512":
-{...}}}}``.  The wheel of evenroad has the files of up to 64 points; larger ones come with evenroad-studies.
+{...}}}}``.  The wheel of evenroad has the files of up to 32 points; larger ones come with evenroad-studies.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ STUDIES, LARGE_SETS = "evenroad_studies", "sets"
 """The package with the files of larger sets, and their folder in it."""
 MAKERS = "evenroad.trained"
 """Group of entry points of another package that make a set where the bank has none: family -> function."""
-MOST_IN_THE_CORE = 64
+MOST_IN_THE_CORE = 32
 """Number of points of the largest sets in evenroad's own wheel."""
 SEED = 20261121
 """Seed of the bank: set i of every cell is of ``SeedSequence(SEED, spawn_key=(i,))``."""
@@ -113,7 +113,7 @@ def large_file(family: str, name: str, which: str = "") -> Path:
 
 
 def has_large_sets() -> bool:
-    """Return whether the sets of more than 64 points are installed, with the studies."""
+    """Return whether the sets of more than 32 points are installed, with the studies."""
     return bool(_large_folders())
 
 

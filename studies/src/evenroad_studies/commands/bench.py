@@ -84,7 +84,7 @@ class Bench:
             raise InvalidValue("--limit does not go with --scheduler, whose workers run tasks in threads")
         if not has_large_sets():
             warnings.warn(
-                "without the large sets of evenroad-studies the suites leave out trained sets of more than 64 points",
+                "without the large sets of evenroad-studies the suites leave out trained sets of more than 32 points",
                 stacklevel=2,
             )
         suite = self._suite()

@@ -19,7 +19,7 @@ def as_installed(tmp_path, monkeypatch):
     folder = tmp_path / "data"
     (folder / "hickernell").mkdir(parents=True)
     shutil.copy(DATA / INDEX, folder / INDEX)
-    shutil.copy(DATA / "hickernell" / cell_name(64, 2), folder / "hickernell")
+    shutil.copy(DATA / "hickernell" / cell_name(32, 2), folder / "hickernell")
     monkeypatch.setattr(bank, "DATA", folder)
     return Bank(folder)
 
@@ -36,7 +36,7 @@ def large_sets(tmp_path, monkeypatch):
 
 
 def test_a_small_set_is_there(as_installed):
-    assert as_installed.cell("hickernell", 64, 2).load().shape == (64, 64, 2)
+    assert as_installed.cell("hickernell", 32, 2).load().shape == (64, 32, 2)
 
 
 def test_a_large_set_names_the_package_that_has_it_and_it_is_known_whether_it_is_there(as_installed, monkeypatch):
