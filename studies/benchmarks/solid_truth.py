@@ -56,12 +56,18 @@ def random_box(rng: np.random.Generator) -> Solid:
     return Solid(size, random_pose(rng, away), hollow)
 
 
+def lies_within(one: Solid, other: Solid) -> bool:
+    """Return whether a box lies within another."""
+    return bool((other.distance(one.mesh().vertices) < 0.0).all())
+
+
 def boxes(rng: np.random.Generator, count: int) -> Row:
     """Return the row of one to four boxes in one mesh, some inside out, or facing both ways."""
     solids = [random_box(rng) for _ in range(rng.integers(1, 5))]
     if len(solids) > 1:
-        # Which of several that cross is a hollow is said by the page, not by a closed form.
-        solids = [Solid(each.size, each.pose) for each in solids]
+        # What lies within another one would be a hollow where it faces the other way.
+        plain = [Solid(each.size, each.pose) for each in solids]
+        solids = [each for each in plain if not any(lies_within(each, other) for other in plain if other is not each)]
     parts = [each.mesh(inverted=bool(rng.random() < 0.3)) for each in solids]
     mesh = half_turned(merged(tuple(parts))) if rng.random() < 0.2 else merged(tuple(parts))
     places = places_of(solids, rng, count)

@@ -90,8 +90,10 @@ class TriangleMesh:
     @cached_property
     def facing(self) -> Ints:
         """The triangles, those of closed parts turned so that what they wind around is solid."""
-        turned = self._closed[3][:, np.newaxis]
-        return np.where(turned, self.triangles[:, ::-1], self.triangles)
+        turned = self._closed[3]
+        if not turned.any():
+            return self.triangles
+        return np.where(turned[:, np.newaxis], self.triangles[:, ::-1], self.triangles)
 
     @cached_property
     def outer(self) -> Floats:

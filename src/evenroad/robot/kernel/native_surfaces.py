@@ -55,9 +55,12 @@ def make_surface(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) 
         return native.Surface.of_cloud(body.points, *pose, body.radius, clearance, reach)
     mesh = body.triangles
     corners = body.pose.apply(mesh.vertices)[mesh.facing]
-    closed, turned = closed_parts(mesh)
-    solid = corners[closed]
-    near, first, bounding = _within(corners, first_of_parts(mesh), closed, reach)
+    (closed, turned), first = closed_parts(mesh), first_of_parts(mesh)
+    # A large mesh is not copied.
+    solid = corners if closed.all() else corners[closed]
+    found = [_within(solid, first[closed], reach), _within(corners[~closed], first[~closed], reach)]
+    near, first = (np.concatenate(each) for each in zip(*found, strict=True))
+    bounding = np.arange(len(near)) < len(found[0][0])
     if len(near) == 0:
         if not native.winding_at(np.zeros(3), solid, turned):
             return None
@@ -68,18 +71,13 @@ def make_surface(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) 
     return native.Surface(np.ascontiguousarray(near), clearance + padding, solid, turned, reach, first, bounding)
 
 
-def _within(corners: Floats, first: Bools, closed: Bools, reach: float) -> tuple[Floats, Bools, Bools]:
-    """Return the pieces of triangles that a surface of this reach needs, (p, 3, 3); of each whether it is of the first
-    of a part, and of a closed part.
+def _within(corners: Floats, first: Bools, reach: float) -> tuple[Floats, Bools]:
+    """Return the pieces of triangles that a surface of this reach needs, (p, 3, 3), and whether each is of the first of
+    a part.
     """
     farther = (1.0 + BEYOND) * reach + LEAST_BEYOND
-    found = [(native.pieces_within(corners[of], first[of], farther, PIECE * farther), of is closed)
-             for of in (closed, ~closed) if of.any()]  # fmt: skip
-    return (
-        np.concatenate([pieces.reshape(-1, 3, 3) for (pieces, _), _ in found]),
-        np.concatenate([of_first for (_, of_first), _ in found]),
-        np.concatenate([np.full(len(of_first), is_closed) for (_, of_first), is_closed in found]),
-    )
+    pieces, of_first = native.pieces_within(corners, first, farther, PIECE * farther)
+    return pieces.reshape(-1, 3, 3), of_first
 
 
 _surfaces = lru_cache(maxsize=64)(make_surface)
