@@ -59,7 +59,7 @@ def test_factors_of_all_joints_scale_velocities_and_accelerations(arm, tmp_path)
 def test_pilz_decelerations_below_zero_are_kept(arm, tmp_path):
     text = "joint_limits: {elbow_joint: {has_deceleration_limits: true, max_deceleration: -2.5}}\n"
     limits = limits_of(arm, write(tmp_path, text))
-    assert limits.acceleration[2] == 2.5
+    assert (limits.acceleration[2], limits.deceleration[2]) == (6.3, 2.5)
     off = text.replace("true", "false")
     assert limits_of(arm, write(tmp_path, off)) == limits_of(arm)
 

@@ -25,8 +25,7 @@ def dense(seed, step=2e-4):
     path, limits = curve(seed)[0], limits_from(seed)
     deviation = np.where(np.random.default_rng(seed).random(len(path)) < 0.3 * (seed % 2), 0.0, 0.08)
     highest = ANY_SPEED if limits.along_path is None else limits.along_path**2
-    most = np.array(limits.velocity), np.array(limits.acceleration)
-    return path, deviation, limits, made(path, deviation, most, (step, 1_000_000), highest)
+    return path, deviation, limits, made(path, deviation, limits.most, (step, 1_000_000), highest)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -77,7 +76,7 @@ def test_lengths_and_the_deviation_are_those_of_the_rounded_path(seed):
 
 @pytest.mark.parametrize(("way", "velocity"), [(4.0, 1.0), (0.3, 5.0)])
 def test_a_line_is_driven_as_by_hand(way, velocity):
-    most = np.array([velocity]), np.array([2.0])
+    most = np.array([velocity]), np.array([2.0]), np.array([2.0])
     *_, duration, off, used = made(np.array([[0.0], [way]]), np.zeros(2), most, (1e-5, 1_000_000))
     by_hand = 2.0 * np.sqrt(way / 2.0) if way <= velocity**2 / 2.0 else way / velocity + velocity / 2.0
     assert duration == pytest.approx(by_hand, rel=5e-4)
@@ -86,13 +85,15 @@ def test_a_line_is_driven_as_by_hand(way, velocity):
 
 
 def test_too_many_steps_are_none_and_senseless_numbers_are_refused():
-    path, most = np.array([[0.0], [1.0]]), (np.ones(1), np.ones(1))
+    path, most = np.array([[0.0], [1.0]]), (np.ones(1), np.ones(1), np.ones(1))
     positions, *_, duration, _, _ = made(path, np.zeros(2), most, (0.1, 10))
     assert len(positions) == 0
     assert duration == pytest.approx(2.0, rel=1e-3)
     assert len(made(path, np.zeros(2), most, (0.1, 21))[0]) in (21, 22)
     zero = np.zeros(1)
-    for wrong in ((zero, most[1]), (most[0], zero), (most[0], np.ones(2))):
+    for wrong in (
+        *((*most[:k], zero, *most[k + 1 :]) for k in range(3)), (*most[:2], np.ones(2)), most[:2],
+    ):  # fmt: skip
         with pytest.raises(ValueError, match="must"):
             made(path, np.zeros(2), wrong, (0.1, 10))
     with pytest.raises(ValueError, match="must"):

@@ -9,13 +9,13 @@ class TorqueLimits:
 class TipLimits:
     def __init__(self, links: Links, dim: int, link: int, point: Floats, speed: float, acceleration: float) -> None: ...
 
+Most = tuple[Floats, Floats, Floats]
 Within = tuple[float, float, float, tuple[TorqueLimits | None, TipLimits | None], float]
 
 def fastest(
     path: tuple[Floats, Floats, Floats, Floats, Floats],
     stops: Floats,
-    velocity: Floats,
-    acceleration: Floats,
+    most: Most,
     within: Within,
 ) -> tuple[Floats, Floats, Floats, Floats] | None: ...
 def further_shares(
@@ -27,12 +27,11 @@ def states(
 def largest_shares(
     path: tuple[Floats, Floats, Floats, Floats, Floats],
     law: tuple[Floats, Floats, Floats, Floats],
-    velocity: Floats,
-    acceleration: Floats,
+    most: Most,
     samples: int,
 ) -> tuple[float, float]: ...
 def timed(
-    waypoints: Floats, deviation: Floats, most: tuple[Floats, Floats], within: Within, steps: tuple[float, int]
+    waypoints: Floats, deviation: Floats, most: Most, within: Within, steps: tuple[float, int]
 ) -> tuple[
     str,
     tuple[Floats, Floats, Floats],
@@ -47,6 +46,7 @@ def timed(
     Floats,
 ]: ...
 def rounded(waypoints: Floats, deviation: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats]: ...
+def bends_of(waypoints: Floats, same: float) -> Ints: ...
 def averages(
     path: tuple[Floats, Floats, Floats, Floats, Floats],
     law: tuple[Floats, Floats, Floats, Floats],

@@ -35,12 +35,17 @@ def require_within_limits(trajectory: Trajectory) -> None:
     """
     dt, limits = float(trajectory.times[1]), trajectory.limits
     q, v, a = trajectory.positions, trajectory.velocities, trajectory.accelerations
-    fastest, push = np.array(limits.velocity), np.array(limits.acceleration)
+    fastest, push, slower = limits.most
+    # Where a joint may slow down faster than it speeds up, so may the velocities between states.
+    slows = a * v < 0.0
+    push, faster = np.maximum(push, slower), push
     off = 4.0 * _ROUNDING * (1.0 + float(np.abs(q).max()))
     moved, middle = np.diff(q, axis=0), 0.5 * dt * (v[1:] + v[:-1])
     used = [
         ("velocity", v, fastest),
         ("velocity", moved / dt, fastest + off / dt),
+        ("acceleration", np.where(slows | (v == 0.0), 0.0, a), faster),
+        ("deceleration", np.where(slows, a, 0.0), slower),
         ("acceleration", a, push),
         ("acceleration", np.diff(v, axis=0) / dt, push + off / dt),
         ("acceleration", np.diff(moved, axis=0) / dt**2, push + off / dt**2),

@@ -147,7 +147,10 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
 
 def trajectory_record(trajectory: Trajectory, order: Sequence[str] | None = None) -> dict[str, Any]:
     """Return a trajectory as plain JSON values, as :func:`load_trajectory` reads them."""
-    limits = {kind: getattr(trajectory.limits, kind) for kind in ("velocity", "acceleration", "jerk")}
+    kinds = "velocity", "acceleration", "jerk", "deceleration"
+    limits = {
+        kind: value for kind in kinds if (value := getattr(trajectory.limits, kind)) is not None or kind == "jerk"
+    }
     return {
         "format": FORMAT,
         "units": {"time": "s", "angle": "rad", "length": "m"},

@@ -57,7 +57,9 @@ class InMotion:
             first = path[1] - path[0]
             off = first / np.linalg.norm(first) - sign * direction
             if np.linalg.norm(off) > _ALONG:
-                push = np.min(np.array(limits.acceleration) / np.maximum(np.abs(direction), 1e-12))
+                # At the start the robot has to be able to stop, at the goal to get as fast.
+                pushes = limits.stopping if sign > 0.0 else limits.acceleration
+                push = np.min(np.array(pushes) / np.maximum(np.abs(direction), 1e-12))
                 turning = path[0] + sign * direction * (farther * speed**2 / (2.0 * push))
                 path = np.concatenate([path[:1], turning[np.newaxis], path[1:]])
             waypoints = path if sign > 0.0 else path[::-1]

@@ -27,6 +27,7 @@ SECONDS_TO_FULL_SPEED = 0.5
 """Default time from rest to full speed [s]: URDF has no acceleration."""
 
 _KINDS = ("velocity", "acceleration", "jerk")
+_OPTIONAL = ("jerk", "deceleration")
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,9 @@ class Limits:
     position : tuple of pairs of float or None
         Lower and upper limit of each joint within those of the robot, infinite where there is none [rad; m for
         prismatic ones].  A path that leaves them gets no times.
+    deceleration : tuple of float or None
+        Largest acceleration of each joint against its velocity, where it slows down, > 0 [rad/s^2]; None: as where it
+        speeds up.  Where jerk is limited, the smaller of both holds for both.
     """
 
     velocity: tuple[float, ...]
@@ -97,11 +101,12 @@ class Limits:
     tip: TipLimits | None = None
     torque: Dynamics | None = None
     position: tuple[tuple[float, float], ...] | None = None
+    deceleration: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
-        for kind in _KINDS:
+        for kind in (*_KINDS, "deceleration"):
             values = getattr(self, kind)
-            if kind == "jerk" and values is None:
+            if kind in _OPTIONAL and values is None:
                 continue
             row = as_row(kind, values, None if kind == "velocity" else len(self.velocity))
             if min(row) <= 0.0:
@@ -140,6 +145,7 @@ class Limits:
             return tuple(value * speed**power for value in row)
 
         jerk = None if self.jerk is None else scaled(self.jerk, 3)
+        slower = None if self.deceleration is None else scaled(self.deceleration, 2)
         along = None if self.along_path is None else self.along_path * speed
         return replace(
             self,
@@ -147,7 +153,24 @@ class Limits:
             acceleration=scaled(self.acceleration, 2),
             jerk=jerk,
             along_path=along,
+            deceleration=slower,
         )
+
+    @property
+    def stopping(self) -> tuple[float, ...]:
+        """Largest acceleration of each joint where it slows down."""
+        return self.acceleration if self.deceleration is None else self.deceleration
+
+    @property
+    def most(self) -> tuple[Floats, Floats, Floats]:
+        """Largest velocities, accelerations and decelerations, as the native kernel takes them."""
+        return np.array(self.velocity), np.array(self.acceleration), np.array(self.stopping)
+
+    def symmetric(self) -> Limits:
+        """Return the limits with one acceleration a joint: the smaller one, of speeding up and of slowing down."""
+        if self.deceleration is None:
+            return self
+        return replace(self, acceleration=tuple(map(min, self.acceleration, self.deceleration)), deceleration=None)
 
     @property
     def is_plain(self) -> bool:
@@ -208,7 +231,7 @@ def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limit
     """
     joints = {joint.name: joint for joint in robot.joints}
     given = LimitsFile({}, {}, {}) if file is None else read_limits(Path(file), joints)
-    velocity, acceleration, jerk = [], [], []
+    velocity, acceleration, deceleration, jerk = [], [], [], []
     for name in robot.group:
         joint, said = joints[name], given.rates.get(name, {})
         fastest = said.get("velocity", joint.velocity)
@@ -220,9 +243,10 @@ def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limit
         velocity.append(fastest * given.scaling.get("velocity", 1.0))
         push = said.get("acceleration", joint.acceleration)
         push = push if push < math.inf else fastest / SECONDS_TO_FULL_SPEED
-        # One number for both ways: the smaller one.
-        push = min(push, said.get("deceleration", joint.deceleration))
-        acceleration.append(push * given.scaling.get("acceleration", 1.0))
+        slower = said.get("deceleration", joint.deceleration)
+        scale = given.scaling.get("acceleration", 1.0)
+        acceleration.append(push * scale)
+        deceleration.append((slower if slower < math.inf else push) * scale)
         jerk.append(said.get("jerk", joint.jerk))
     positions = tuple(given.positions.get(name, (-math.inf, math.inf)) for name in robot.group)
     return Limits(
@@ -230,6 +254,7 @@ def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limit
         tuple(acceleration),
         _jerks(jerk, acceleration),
         position=positions if np.isfinite(positions).any() else None,
+        deceleration=None if deceleration == acceleration else tuple(deceleration),
     )
 
 

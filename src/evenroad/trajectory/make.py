@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_batch, require_positive
-from evenroad._native.trajectory import distances_to, largest_share
+from evenroad._native.trajectory import bends_of, distances_to, largest_share
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import RoundedPath, rounded
 from evenroad.trajectory.corners import TRIES, drivable, less_at, require_steps, with_rests
@@ -99,7 +99,9 @@ def make_trajectory(
     deviation = require_positive("deviation", deviation, or_zero=True)
     step = require_positive("step", step)
     moving = path if isinstance(path, InMotion) else InMotion(path)
-    waypoints = _apart(as_batch("path", moving.path, len(limits.velocity)))
+    given = as_batch("path", moving.path, len(limits.velocity))
+    # Waypoints between which it is straight: more of them on a motion change nothing.
+    waypoints = given[bends_of(given, _SAME)] if len(given) else given
     if len(waypoints) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
     joints = tuple(names) if names is not None else tuple(f"joint_{i + 1}" for i in range(waypoints.shape[1]))
@@ -112,6 +114,7 @@ def make_trajectory(
         "held": dict(held or {}),
         "controller": tuple(controller),
     }
+    limits = limits if limits.jerk is None else limits.symmetric()
     window = 0.0 if limits.jerk is None else float(np.max(2.0 * np.divide(limits.acceleration, limits.jerk)))
     for farther in FARTHER:
         led, speeds = moving.led(waypoints, limits, farther)
@@ -128,19 +131,6 @@ def make_trajectory(
         return _averaged_path(world, part, limits, cuts, (window, step, deviation))
 
     return Trajectory(waypoints=waypoints, **said, **averaged(waypoints, np.full(len(waypoints), deviation)))
-
-
-def _apart(path: Floats) -> Floats:
-    """Return a path without repeated waypoints, up to rounding; the first and the last stay as they are."""
-    if len(path) < 2 or np.abs(np.diff(path, axis=0)).max(axis=1).min() > _SAME:
-        return path.copy()
-    kept: list[Floats] = []
-    for position in path:
-        if not kept or np.max(np.abs(position - kept[-1])) > _SAME:
-            kept.append(position)
-    if len(kept) > 1:
-        kept[-1] = path[-1]
-    return np.array(kept).reshape(-1, path.shape[1])
 
 
 def _averaged_path(

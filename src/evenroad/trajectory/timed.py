@@ -35,11 +35,10 @@ def timed_path(
     It has these speeds along the path at start and goal.  Raises as :func:`evenroad.trajectory.make_trajectory`.
     """
     highest = _ANY_SPEED if limits.along_path is None else limits.along_path**2
-    most = np.array(limits.velocity), np.array(limits.acceleration)
     within = highest, *speeds, limits.further, 1.0
     for tried in range(TRIES):
         outcome, states, lengths, corners, stops, duration, deviation, used, further, is_slower_at_start, cuts = timed(
-            waypoints, cuts, most, within, (step, MOST_STATES)
+            waypoints, cuts, limits.most, within, (step, MOST_STATES)
         )
         shares = dict(zip(("velocity", "acceleration"), used, strict=True)) | named_shares(further)
         if outcome == "too long":

@@ -69,8 +69,7 @@ class TimeLaw:
 
     def largest_shares(self, limits: Limits, samples: int) -> tuple[float, float]:
         """Return the largest shares of velocity and acceleration at `samples` times in each interval."""
-        most = np.array(limits.velocity), np.array(limits.acceleration)
-        return largest_shares(self.path.columns, self.columns, *most, samples)
+        return largest_shares(self.path.columns, self.columns, limits.most, samples)
 
 
 def fastest(path: RoundedPath, limits: Limits, speeds: tuple[float, float] = (0.0, 0.0), share: float = 1.0) -> TimeLaw:
@@ -80,9 +79,10 @@ def fastest(path: RoundedPath, limits: Limits, speeds: tuple[float, float] = (0.
     About 400 intervals make a whole path.  Of limits of a tip and of torques a share is used.  The law is slower at the
     start where these limits do not let it be as fast.
     """
-    most = np.array(limits.velocity), _WITHIN * np.array(limits.acceleration)
+    velocity, faster, slower = limits.most
+    most = velocity, _WITHIN * faster, _WITHIN * slower
     highest = _ANY_SPEED if limits.along_path is None else limits.along_path**2
-    found = native_fastest(path.columns, path.stops, *most, (highest, *speeds, limits.further, _WITHIN * share))
+    found = native_fastest(path.columns, path.stops, most, (highest, *speeds, limits.further, _WITHIN * share))
     if found is None:
         steady = TimeLaw(path, path.starts, path.starts, np.ones(len(path.starts)), np.zeros(len(path.bend)))
         raise limits.too_heavy(steady.at(np.linspace(0.0, path.length, 600))[0])

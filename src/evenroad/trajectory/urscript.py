@@ -71,7 +71,9 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
     columns |= dict(zip(trajectory.names, path.T, strict=True))
     waypoints = np.column_stack([columns[name] for name in names])
     radii = [*(trajectory.radii or np.zeros(len(path) - 2)), 0.0]
-    fastest = f"a={min(trajectory.limits.acceleration):.6g}, v={min(*trajectory.limits.velocity, _FASTEST):.6g}"
+    fastest = (
+        f"a={min(trajectory.limits.symmetric().acceleration):.6g}, v={min(*trajectory.limits.velocity, _FASTEST):.6g}"
+    )
     first, *waits = _waits(trajectory)
     moves = [f"sleep({first:.6g})"] if first else []
     for q, radius, wait in zip(waypoints[1:], radii, waits, strict=True):

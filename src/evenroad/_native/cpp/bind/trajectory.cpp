@@ -67,6 +67,23 @@ struct LawArrays {
   TimeLaw law() const { return {times.span(), lengths.span(), speeds.span(), accelerations.span()}; }
 };
 
+/// The largest velocities, accelerations and decelerations in arrays of Python.
+struct MostArrays {
+  Floats velocity, acceleration, deceleration;
+
+  MostArrays(nb::tuple given, std::size_t dim)
+      : velocity(PathArrays::column(given, 0, 3), "velocity"),
+        acceleration(given[1], "acceleration"),
+        deceleration(given[2], "deceleration") {
+    for (const auto* each : {&velocity, &acceleration, &deceleration}) {
+      each->of_shape({dim});
+      for (const double value : each->span()) require(value > 0.0, "velocity, acceleration, deceleration must be > 0");
+    }
+  }
+
+  trajectory::Most most() const { return {velocity.span(), acceleration.span(), deceleration.span()}; }
+};
+
 /// Return further limits of a pair: of torques and of a tip, either may be None; they are its own.
 trajectory::FurtherLimits further_of(nb::handle given, std::size_t dim) {
   const auto pair = value_of<nb::tuple>(given, "further limits");
@@ -92,15 +109,14 @@ trajectory::Within within_of(nb::tuple given, std::size_t dim) {
 }
 
 /// Return the fastest law, None where torques cannot hold the robot.
-nb::object fastest(nb::tuple path, nb::handle stops, nb::handle velocity, nb::handle acceleration, nb::tuple within) {
+nb::object fastest(nb::tuple path, nb::handle stops, nb::tuple most, nb::tuple within) {
   const PathArrays arrays(path);
-  const Floats at(stops, "stops"), speeds(velocity, "velocity"), pushes(acceleration, "acceleration");
+  const Floats at(stops, "stops");
   const std::size_t dim = arrays.path().dim();
-  speeds.of_shape({dim}), pushes.of_shape({dim});
+  const MostArrays limits(most, dim);
   const trajectory::Within kept = within_of(within, dim);
   trajectory::OwnTimeLaw law = without_gil([&] {
-    return trajectory::fastest(arrays.path(), trajectory::grid_of(arrays.path()), at.span(),
-                               {speeds.span(), pushes.span()}, kept);
+    return trajectory::fastest(arrays.path(), trajectory::grid_of(arrays.path()), at.span(), limits.most(), kept);
   });
   if (law.times.empty()) return nb::none();
   return nb::make_tuple(as_row(std::move(law.times)), as_row(std::move(law.lengths)), as_row(std::move(law.speeds)),
@@ -131,16 +147,13 @@ nb::tuple states(nb::tuple path, nb::tuple law, nb::handle times) {
                         as_rows(std::move(accelerations)));
 }
 
-nb::tuple largest_shares(nb::tuple path, nb::tuple law, nb::handle velocity, nb::handle acceleration,
-                         std::int64_t samples) {
+nb::tuple largest_shares(nb::tuple path, nb::tuple law, nb::tuple most, std::int64_t samples) {
   const PathArrays arrays(path);
   const LawArrays when(law);
-  const Floats speeds(velocity, "velocity"), pushes(acceleration, "acceleration");
-  speeds.of_shape({arrays.path().dim()}), pushes.of_shape({arrays.path().dim()});
+  const MostArrays limits(most, arrays.path().dim());
   require_below(samples - 2, MOST_SAMPLES, "samples less two");
   const trajectory::Shares shares = without_gil([&] {
-    return trajectory::largest_shares(arrays.path(), when.law(), {speeds.span(), pushes.span()},
-                                      static_cast<std::size_t>(samples));
+    return trajectory::largest_shares(arrays.path(), when.law(), limits.most(), static_cast<std::size_t>(samples));
   });
   return nb::make_tuple(shares.velocity, shares.acceleration);
 }
@@ -164,6 +177,17 @@ nb::tuple rounded(nb::handle waypoints, nb::handle deviation) {
   return nb::make_tuple(as_row(std::move(path.starts)), as_rows(std::move(path.origin), dim),
                         as_rows(std::move(path.out), dim), as_rows(std::move(path.along), dim),
                         as_row(std::move(path.bend)), as_row(std::move(path.corners)), as_row(std::move(path.stops)));
+}
+
+/// Return the rows of waypoints between which a path is straight; those nearer than `same` are one.
+nb::object bends_of(nb::handle waypoints, double same) {
+  const FloatRows points(waypoints, "waypoints");
+  require(points.shape(0) >= 1, "waypoints must be 1 or more");
+  require(same >= 0.0, "same must be >= 0");
+  return as_row(without_gil([&] {
+    const std::vector<std::size_t> rows = trajectory::bends_of(points.matrix(), same);
+    return std::vector<std::int64_t>(rows.begin(), rows.end());
+  }));
 }
 
 nb::tuple averages(nb::tuple path, nb::tuple law, double window, nb::handle times) {
@@ -224,25 +248,22 @@ const char* name_of(trajectory::Outcome outcome) {
 /// and of a tip's speed and acceleration, whether it is slower than asked for at the start, and how far each corner is
 /// rounded.
 ///
-/// `most` are the largest velocities and accelerations; `steps` the step and the largest number of steps.
+/// `most` are the largest velocities, accelerations and decelerations; `steps` the step and the largest number of
+/// steps.
 nb::tuple timed(nb::handle waypoints, nb::handle deviation, nb::tuple most, nb::tuple within, nb::tuple steps) {
   const FloatRows way(waypoints, "waypoints");
-  const Floats cuts(deviation, "deviation"), speeds(PathArrays::column(most, 0, 2), "velocity");
-  const Floats pushes(most[1], "acceleration");
+  const Floats cuts(deviation, "deviation");
   const double step = value_of<double>(PathArrays::column(steps, 0, 2), "step");
   const std::int64_t count = value_of<std::int64_t>(steps[1], "steps");
   const std::size_t dim = way.shape(1);
   require_path(way);
-  cuts.of_shape({way.shape(0)}), speeds.of_shape({dim}), pushes.of_shape({dim});
-  for (const auto* each : {&speeds, &pushes}) {
-    for (const double value : each->span()) require(value > 0.0, "velocity and acceleration must be > 0");
-  }
+  cuts.of_shape({way.shape(0)});
+  const MostArrays limits(most, dim);
   require(step > 0.0 && step <= LONGEST, "step must be > 0 and at most 1e9");
   require_below(count - 1, MOST_TIMES, "steps less one");
   const trajectory::Within kept = within_of(within, dim);
   trajectory::Timed made = without_gil([&] {
-    return trajectory::timed(way.matrix(), cuts.span(), {speeds.span(), pushes.span()}, kept,
-                             {step, static_cast<std::size_t>(count)});
+    return trajectory::timed(way.matrix(), cuts.span(), limits.most(), kept, {step, static_cast<std::size_t>(count)});
   });
   const auto& [torque, speed, acceleration] = made.further;
   return nb::make_tuple(name_of(made.outcome),
@@ -266,6 +287,7 @@ void add_trajectory(nb::module_& module) {
   part.def("distances_to", &distances_to);
   part.def("timed", &timed);
   part.def("rounded", &rounded);
+  part.def("bends_of", &bends_of);
   part.def("averages", &averages);
   part.def("largest_share", &largest_share, nb::arg("rows"), nb::arg("most"), nb::arg("of_steps") = false);
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace evenroad::trajectory {
 
@@ -14,8 +16,15 @@ constexpr double STRAIGHT = 1e-6;
 /// A corner within that of a reversal has no arc [rad].
 constexpr double REVERSAL = 1e-3;
 
-/// A line shorter than this share of its motion is none.
-constexpr double NO_LINE = 1e-12;
+/// A line, and what an arc takes of a line, shorter than these shares of the whole path are none: lengths are sums
+/// along it, and have its rounding.
+constexpr double NO_LINE = 1e-12, NO_ARC = 1e-11;
+
+/// Waypoints nearer to each other than this share of the whole path are one.
+constexpr double NO_MOTION = 1e-11;
+
+/// A waypoint so near to the straight way past it is on it: a share of the path, and one of its largest coordinate.
+constexpr double OFF_PATH = 1e-13, OFF_ROUNDING = 8.0 * std::numeric_limits<double>::epsilon();
 
 /// Half of the angle of a corner, and the lengths that its arc takes of both motions: 0 where there is no arc.
 struct Corner {
@@ -34,9 +43,51 @@ double half_angle(std::span<const double> before, std::span<const double> after)
   return std::atan2(std::sqrt(apart), std::sqrt(together));
 }
 
+/// Return whether a place is within a distance of the straight way from one place to another.
+bool is_between(std::span<const double> place, std::span<const double> from, std::span<const double> to, double off) {
+  double along = 0.0, squared = 0.0, away = 0.0;
+  for (std::size_t k = 0; k < place.size(); k++) {
+    along += (place[k] - from[k]) * (to[k] - from[k]);
+    squared += (to[k] - from[k]) * (to[k] - from[k]);
+  }
+  const double share = squared > 0.0 ? std::clamp(along / squared, 0.0, 1.0) : 0.0;
+  for (std::size_t k = 0; k < place.size(); k++) {
+    const double gap = place[k] - from[k] - share * (to[k] - from[k]);
+    away += gap * gap;
+  }
+  return away <= off * off;
+}
+
 void append(std::vector<double>& row, std::span<const double> more) { row.insert(row.end(), more.begin(), more.end()); }
 
 }  // namespace
+
+std::vector<std::size_t> bends_of(Matrix<const double> waypoints, double same) {
+  double whole = 0.0, largest = 0.0;
+  for (std::size_t i = 0; i < waypoints.rows; i++) {
+    double squared = 0.0;
+    for (std::size_t k = 0; k < waypoints.columns; k++) {
+      largest = std::max(largest, std::abs(waypoints(i, k)));
+      const double step = i > 0 ? waypoints(i, k) - waypoints(i - 1, k) : 0.0;
+      squared += step * step;
+    }
+    whole += std::sqrt(squared);
+  }
+  const double apart = std::max(same, NO_MOTION * whole), off = OFF_PATH * whole + OFF_ROUNDING * largest;
+  const auto is_same = [&](std::size_t i, std::size_t j) {
+    return std::ranges::equal(waypoints[i], waypoints[j], [&](double a, double b) { return std::abs(a - b) <= apart; });
+  };
+  std::vector<std::size_t> bends{0};
+  // The waypoint after the last bend that may be one, too.
+  std::size_t next = 0;
+  for (std::size_t i = 1; i < waypoints.rows; i++) {
+    if (is_same(i, next)) continue;
+    if (next != 0 && !is_between(waypoints[next], waypoints[bends.back()], waypoints[i], off)) bends.push_back(next);
+    next = i;
+  }
+  if (next != 0) bends.push_back(waypoints.rows - 1);
+  return bends;
+}
 
 Blends rounded(Matrix<const double> waypoints, std::span<const double> deviation) {
   const std::size_t motions = waypoints.rows - 1, dim = waypoints.columns;
@@ -51,13 +102,15 @@ Blends rounded(Matrix<const double> waypoints, std::span<const double> deviation
     lengths[i] = std::sqrt(squared);
     for (double& each : directions[i]) each /= lengths[i];
   }
+  const double whole = std::reduce(lengths.begin(), lengths.end());
   std::vector<Corner> corners(motions + 1);
   for (std::size_t i = 1; i < motions; i++) {
     const double half = half_angle(directions[i - 1], directions[i]);
     corners[i].half = half;
     if (!corners[i].turns() || half >= 0.5 * std::numbers::pi - REVERSAL || deviation[i] <= 0.0) continue;
-    corners[i].cut =
+    const double cut =
         std::min(0.5 * std::min(lengths[i - 1], lengths[i]), deviation[i] * std::sin(half) / (1.0 - std::cos(half)));
+    if (cut > NO_ARC * whole) corners[i].cut = cut;
   }
   Blends path;
   double total = 0.0;
@@ -89,7 +142,7 @@ Blends rounded(Matrix<const double> waypoints, std::span<const double> deviation
       if (corner.turns()) path.stops.push_back(total);
     }
     const double line = lengths[i] - corner.cut - corners[i + 1].cut;
-    if (line <= NO_LINE * lengths[i]) continue;
+    if (line <= NO_LINE * whole) continue;
     for (std::size_t k = 0; k < dim; k++) start[k] = waypoints(i, k) + corner.cut * after[k];
     add(start, nowhere, after, 0.0);
     total += line;

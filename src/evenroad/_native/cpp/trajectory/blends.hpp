@@ -1,6 +1,7 @@
 // Corners of a path, rounded by arcs of circles (Kunz and Stilman 2012, section IV).
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,12 @@ namespace evenroad::trajectory {
 struct Blends {
   std::vector<double> starts, origin, out, along, bend, corners, stops;
 };
+
+/// Return the rows of waypoints between which a path is straight: its first, those at which it bends, and its last.
+///
+/// Waypoints that differ by at most `same` in every coordinate, or by that share of the path that rounding is, are one;
+/// what the last one repeats it replaces.  There is one row where the path leads nowhere.
+std::vector<std::size_t> bends_of(Matrix<const double> waypoints, double same);
 
 /// Round the corners of a path of two waypoints or more, no two in a row equal: the arc at waypoint i passes it within
 /// deviation[i], and replaces at most half of both motions.  Where that is 0 the path stops at its corner.

@@ -18,11 +18,6 @@ constexpr std::size_t NO_ROW = static_cast<std::size_t>(-1);
 constexpr int MOST_TRIED = 64;
 constexpr double ROUNDING = 1e-12;
 
-/// The least and the most acceleration along an interval; there is none where the first is larger.
-struct Push {
-  double least, most;
-};
-
 /// What changes with the squared speed: value + rise * square.
 struct Line {
   double value, rise;
@@ -33,7 +28,7 @@ struct Line {
 /// The limits of acceleration along the intervals of a path, from which both passes read.
 class Limits {
  public:
-  Limits(const Curve& curve, const Further& further, std::span<const double> acceleration) : curve_(curve) {
+  Limits(const Curve& curve, const Further& further, const Pushes& pushes) : curve_(curve) {
     for (std::size_t i = 0; further.size() > 0 && i < curve.row.size(); i++) {
       further_.push_back({between_.size(), between_.size(), NO_LIMIT});
       for (std::size_t k = 0; k < further.size(); k++) {
@@ -48,11 +43,13 @@ class Limits {
       if (curve.row[i] == row) continue;
       row = curve.row[i];
       rows_.push_back({sides_.size(), sides_.size(), NO_LIMIT});
-      for (std::size_t j = 0; j < acceleration.size(); j++) {
-        const double bend = curve.behind_bend(row, j);
-        add(curve.ahead(row, j), curve.ahead_bend(row, j), acceleration[j]);
+      for (std::size_t j = 0; j < pushes.faster.size(); j++) {
+        const double bend = curve.behind_bend(row, j), ahead = curve.ahead(row, j), behind = curve.behind(row, j);
+        const Push within =
+            allowed(pushes.faster[j], pushes.slower[j], std::min(ahead, behind), std::max(ahead, behind));
+        add(ahead, curve.ahead_bend(row, j), within);
         // At the far end the square is larger by twice the step times the push.
-        if (!curve.is_line[row]) add(curve.behind(row, j) + bend * (2.0 * curve.steps[i]), bend, acceleration[j]);
+        if (!curve.is_line[row]) add(behind + bend * (2.0 * curve.steps[i]), bend, within);
       }
       if (curve.is_line[row] && rows_.back().end > rows_.back().begin) keep_least();
     }
@@ -65,9 +62,9 @@ class Limits {
     if (square > row.flat) return {1.0, 0.0};
     Push push{-square / twice, (next - square) / twice};
     for (std::size_t side = row.begin; side < row.end; side++) {
-      const auto [value, rise] = sides_[side];
-      push.least = std::max(push.least, rise * square - value);
-      push.most = std::min(push.most, rise * square + value);
+      const auto [least, most, rise] = sides_[side];
+      push.least = std::max(push.least, rise * square + least);
+      push.most = std::min(push.most, rise * square + most);
     }
     if (further_.empty()) return push;
     if (square > further_[i].flat) return {1.0, 0.0};
@@ -100,6 +97,11 @@ class Limits {
     double flat;
   };
 
+  /// What lies between two lines of one rise.
+  struct Side {
+    double least, most, rise;
+  };
+
   /// What lies between two lines.
   struct Between {
     Line low, high;
@@ -117,23 +119,26 @@ class Limits {
     row.end++;
   }
 
-  /// Add that |slope * push + rise * square| is at most an acceleration.
-  void add(double slope, double rise, double most) {
+  /// Add that slope * push + rise * square is within accelerations.
+  void add(double slope, double rise, const Push& within) {
     Row& row = rows_.back();
     if (std::abs(slope) < FLAT) {
-      if (rise != 0.0) row.flat = std::min(row.flat, most / std::abs(rise));
+      if (rise != 0.0) row.flat = std::min(row.flat, (rise > 0.0 ? within.most : within.least) / rise);
       return;
     }
-    const double inverse = 1.0 / slope;
-    sides_.push_back({most * std::abs(inverse), -rise * inverse});
+    const double inverse = 1.0 / slope, least = within.least * inverse, most = within.most * inverse;
+    sides_.push_back({std::min(least, most), std::max(least, most), -rise * inverse});
     row.end++;
   }
 
-  /// Keep the least limit alone: along a line none of them changes with the speed.
+  /// Keep the least limits alone: along a line none of them changes with the speed.
   void keep_least() {
     Row& row = rows_.back();
-    const auto first = sides_.begin() + static_cast<std::ptrdiff_t>(row.begin);
-    *first = *std::ranges::min_element(first, sides_.end(), {}, &Line::value);
+    Side& first = sides_[row.begin];
+    for (std::size_t side = row.begin; side < row.end; side++) {
+      first.least = std::max(first.least, sides_[side].least);
+      first.most = std::min(first.most, sides_[side].most);
+    }
     row.end = row.begin + 1;
     sides_.resize(row.end);
   }
@@ -144,8 +149,7 @@ class Limits {
     const Row& row = rows_[curve_.row[i]];
     Line least{0.0, -1.0 / twice}, most{next / twice, -1.0 / twice};
     for (std::size_t side = row.begin; side < row.end; side++) {
-      const auto [value, rise] = sides_[side];
-      const Line low{-value, rise}, high{value, rise};
+      const Line low{sides_[side].least, sides_[side].rise}, high{sides_[side].most, sides_[side].rise};
       if (low.at(square) > least.at(square)) least = low;
       if (high.at(square) < most.at(square)) most = high;
     }
@@ -163,8 +167,8 @@ class Limits {
 
   const Curve& curve_;
   std::vector<Row> rows_;
-  /// The largest accelerations along the path that each joint allows; the least are the same with the value negative.
-  std::vector<Line> sides_;
+  /// The accelerations along the path that each joint allows.
+  std::vector<Side> sides_;
   /// The further limits of each interval, of which none share a row.
   std::vector<Row> further_;
   std::vector<Between> between_;
@@ -173,9 +177,9 @@ class Limits {
 }  // namespace
 
 std::vector<double> squared_speeds(const Curve& curve, const Further& further, std::span<const double> ceiling,
-                                   std::span<const double> acceleration) {
+                                   const Pushes& pushes) {
   const std::size_t m = ceiling.size();
-  const Limits limits(curve, further, acceleration);
+  const Limits limits(curve, further, pushes);
   std::vector<double> highest(m), squares(m);
   highest.back() = ceiling.back();
   for (std::size_t i = m - 1; i-- > 0;) highest[i] = limits.highest(i, ceiling[i], highest[i + 1]);

@@ -1,6 +1,7 @@
 // The fastest speeds along a path within limits of acceleration: TOPP-RA (Pham and Pham 2018), algorithm 1.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,26 @@ struct Curve {
   std::span<const double> steps;
 };
 
+/// Largest accelerations of each joint: where it speeds up, and where it slows down.
+struct Pushes {
+  std::span<const double> faster, slower;
+};
+
+/// The least and the most acceleration of a joint, or along a path; there is none where the first is larger.
+struct Push {
+  double least, most;
+};
+
+/// Return the accelerations of a joint that moves in directions from `low` to `high`: one that turns back both slows
+/// down and speeds up.
+inline Push allowed(double faster, double slower, double low, double high) {
+  // Along an axis the directions of others are 0 but for rounding.
+  constexpr double NO_DIRECTION = 1e-9;
+  if (low >= -NO_DIRECTION) return {-slower, faster};
+  if (high <= NO_DIRECTION) return {-faster, slower};
+  return {-std::min(faster, slower), std::min(faster, slower)};
+}
+
 /// Further limits, of a torque or of a tip: |slope * push + rise * square + rest| is at most 1, (states, limits) each.
 ///
 /// Interval i begins in the state `row[i]`, and ends in the next one.
@@ -31,9 +52,9 @@ struct Further {
 
 /// Return the squares of the speeds at the ends of all intervals.
 ///
-/// They are at most `ceiling`, and each joint accelerates by at most `acceleration`: back for what can be stopped, on.
+/// They are at most `ceiling`, and each joint accelerates by at most `pushes`: back for what can be stopped, on.
 /// The first is that of `ceiling`; it is less where one is too fast to keep all limits.
 std::vector<double> squared_speeds(const Curve& curve, const Further& further, std::span<const double> ceiling,
-                                   std::span<const double> acceleration);
+                                   const Pushes& pushes);
 
 }  // namespace evenroad::trajectory

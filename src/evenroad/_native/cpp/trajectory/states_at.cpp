@@ -54,19 +54,16 @@ void StatesAt::write(std::span<const double> t, Matrix<double> positions, Matrix
 }
 
 /// Return the shares that speed 1 and acceleration 1 along a line use.
-Shares along_line(const RoundedPath& path, std::size_t piece, const Most& most) {
-  Shares shares;
-  for (std::size_t k = 0; k < path.dim(); k++) {
-    const double direction = std::abs(path.along(piece, k));
-    shares.velocity = std::max(shares.velocity, direction / most.velocity[k]);
-    shares.acceleration = std::max(shares.acceleration, direction / most.acceleration[k]);
-  }
+SharesAlong along_line(const RoundedPath& path, std::size_t piece, const Most& most) {
+  SharesAlong shares;
+  for (std::size_t k = 0; k < path.dim(); k++) shares.add(k, std::abs(path.along(piece, k)), most);
   return shares;
 }
 
 Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const Most& most, std::size_t samples) {
   const std::vector<std::size_t> pieces = pieces_of(path, law);
-  Shares shares, along;
+  Shares shares;
+  SharesAlong along;
   for (std::size_t i = 0; i < law.intervals(); i++) {
     if (path.bend[pieces[i]] <= 0.0) {
       // Along a line nothing is largest but at an end.
@@ -75,7 +72,7 @@ Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const Most& m
         const Place place(law, i, (law.times[i + 1] - law.times[i]) * share);
         shares.velocity = std::max(shares.velocity, along.velocity * place.speed);
       }
-      shares.acceleration = std::max(shares.acceleration, along.acceleration * std::abs(law.accelerations[i]));
+      shares.acceleration = std::max(shares.acceleration, along.of_push(law.accelerations[i]));
       continue;
     }
     for (std::size_t sample = 0; sample < samples; sample++) {
@@ -86,7 +83,7 @@ Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const Most& m
         const double direction = turn.direction(path, k);
         const double push = direction * law.accelerations[i] + turn.curve(path, k) * (place.speed * place.speed);
         shares.velocity = std::max(shares.velocity, std::abs(direction * place.speed) / most.velocity[k]);
-        shares.acceleration = std::max(shares.acceleration, std::abs(push) / most.acceleration[k]);
+        shares.acceleration = std::max(shares.acceleration, most.share(k, push, direction, direction));
       }
     }
   }

@@ -20,8 +20,11 @@ constexpr double INTERVALS = 400.0, PER_ARC = 12.0, PER_LINE = 4.0;
 /// The largest angle of an interval of an arc [rad].
 constexpr double ANGLE = 0.05;
 
-/// Intervals of a line that are shorter than this share of it are none.
-constexpr double NO_INTERVAL = 1e-9;
+/// The shortest interval of a line, as a share of the whole path: lengths are sums along it, and have its rounding.
+constexpr double LEAST_INTERVAL = 1e-13;
+
+/// A squared speed that is larger by this share is no larger.
+constexpr double NO_FASTER = 1e-9;
 
 /// Return the square of the largest speed at a state within these velocities.
 double square_within(const RoundedPath& path, const Turn& turn, std::span<const double> velocity) {
@@ -48,6 +51,11 @@ struct Sides {
   }
 };
 
+/// The largest accelerations along a line, where a robot gets faster and where it gets slower.
+struct AlongLine {
+  double faster = std::numeric_limits<double>::infinity(), slower = faster;
+};
+
 /// Lengths along a path, and the squares of the speeds there.
 struct Speeds {
   std::vector<double> lengths, squares;
@@ -55,12 +63,19 @@ struct Speeds {
   void add(double length, double square) { lengths.push_back(length), squares.push_back(square); }
 
   /// Add what lies within a line, to a length: the most acceleration, the largest speed, and the most deceleration.
-  void add_line(double end, double square, double ceiling, double most) {
+  ///
+  /// No interval is shorter than the least one: a robot that gets faster within less does so more gently.
+  void add_line(double end, double square, double ceiling, const AlongLine& most, double least) {
     const double begin = lengths.back(), before = squares.back(), length = end - begin;
-    const double peak = std::min(ceiling, 0.5 * (before + square) + most * length);
-    const double fast = begin + (peak - before) / (2.0 * most), brakes = end - (peak - square) / (2.0 * most);
-    for (const double at : {fast, brakes}) {
-      if (at - lengths.back() > NO_INTERVAL * length && end - at > NO_INTERVAL * length) add(at, peak);
+    const double share = most.faster / (most.faster + most.slower);
+    const double peak = std::min(ceiling, (1.0 - share) * before + share * square + 2.0 * share * most.slower * length);
+    const double up = (peak - before) / (2.0 * most.faster), down = (peak - square) / (2.0 * most.slower);
+    const bool rises = peak > before * (1.0 + NO_FASTER), falls = peak > square * (1.0 + NO_FASTER);
+    // Else one of both is all of the line.
+    if (std::min(up, down) >= least || std::max(up, down) <= length - least) {
+      const double fast = begin + std::max(up, least), brakes = end - std::max(down, least);
+      if (rises && end - fast >= least) add(fast, peak);
+      if (falls && brakes - lengths.back() >= least) add(brakes, peak);
     }
     add(end, square);
   }
@@ -167,9 +182,10 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
   }
   const Curve curve{sides.ahead, sides.ahead_bend, sides.behind, sides.behind_bend, row, {is_line.get(), rows}, steps};
   const Further further = used ? used->further(state) : Further{};
-  std::vector<double> squares = squared_speeds(curve, further, ceiling, most.acceleration);
+  std::vector<double> squares = squared_speeds(curve, further, ceiling, {most.acceleration, most.deceleration});
   if (is_lean) {
     Speeds all;
+    const double least = LEAST_INTERVAL * path.starts.back();
     all.add(0.0, squares[0]);
     for (std::size_t i = 0; i < intervals; i++) {
       const std::size_t k = row[i];
@@ -177,13 +193,14 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
         all.add(law.lengths[i + 1], squares[i + 1]);
         continue;
       }
-      double push = std::numeric_limits<double>::infinity();
+      AlongLine push;
       for (std::size_t j = 0; j < path.dim(); j++) {
-        push = std::min(push, most.acceleration[j] / std::abs(sides.ahead(k, j)));
+        push.faster = std::min(push.faster, most.acceleration[j] / std::abs(sides.ahead(k, j)));
+        push.slower = std::min(push.slower, most.deceleration[j] / std::abs(sides.ahead(k, j)));
       }
       const double square =
           std::min(within.highest, square_within(path, Turn(path, pieces[i], law.lengths[i]), most.velocity));
-      all.add_line(law.lengths[i + 1], squares[i + 1], square, push);
+      all.add_line(law.lengths[i + 1], squares[i + 1], square, push, least);
     }
     law.lengths = std::move(all.lengths), squares = std::move(all.squares);
   }

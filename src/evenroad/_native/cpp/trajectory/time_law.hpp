@@ -1,6 +1,7 @@
 // A path of lines and arcs, and when one is where along it.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -33,9 +34,15 @@ struct OwnTimeLaw {
   std::vector<double> times, lengths, speeds, accelerations;
 };
 
-/// Largest velocity and acceleration of each coordinate.
+/// Largest velocity of each coordinate, its largest acceleration where it speeds up, and that where it slows down.
 struct Most {
-  std::span<const double> velocity, acceleration;
+  std::span<const double> velocity, acceleration, deceleration;
+
+  /// Return the share of what is allowed that an acceleration uses of a coordinate in directions from `low` to `high`.
+  double share(std::size_t k, double push, double low, double high) const {
+    const Push within = allowed(acceleration[k], deceleration[k], low, high);
+    return push / (push < 0.0 ? within.least : within.most);
+  }
 };
 
 /// Return the lengths between which the acceleration is constant, and the piece of each interval.
@@ -80,6 +87,19 @@ class StatesAt {
 /// Largest shares of what is allowed.
 struct Shares {
   double velocity = 0.0, acceleration = 0.0;
+};
+
+/// The shares of speed 1, and of acceleration 1 forwards and backwards, along a piece of a path.
+struct SharesAlong {
+  double velocity = 0.0, faster = 0.0, slower = 0.0;
+
+  double of_push(double push) const { return push < 0.0 ? -push * slower : push * faster; }
+
+  void add(std::size_t k, double direction, const Most& most) {
+    velocity = std::max(velocity, direction / most.velocity[k]);
+    faster = std::max(faster, direction / most.acceleration[k]);
+    slower = std::max(slower, direction / most.deceleration[k]);
+  }
 };
 
 /// Return the largest shares at so many times, from 2 on, in each interval.

@@ -39,12 +39,10 @@ constexpr int PARTS = 2;
 constexpr double SAME = 1e-9;
 
 /// Return the largest shares that speed 1 and acceleration 1 use in any direction of a piece's plane.
-Shares of_plane(const RoundedPath& path, std::size_t piece, const Most& most) {
-  Shares shares;
+SharesAlong of_plane(const RoundedPath& path, std::size_t piece, const Most& most) {
+  SharesAlong shares;
   for (std::size_t k = 0; k < path.dim(); k++) {
-    const double largest = std::hypot(path.along(piece, k), path.out(piece, k));
-    shares.velocity = std::max(shares.velocity, largest / most.velocity[k]);
-    shares.acceleration = std::max(shares.acceleration, largest / most.acceleration[k]);
+    shares.add(k, std::hypot(path.along(piece, k), path.out(piece, k)), most);
   }
   return shares;
 }
@@ -54,11 +52,13 @@ Shares of_plane(const RoundedPath& path, std::size_t piece, const Most& most) {
 /// Along a line the ends use most.  Along an arc a share between two places is at most that at one of them and an
 /// eighth of the squared angle between them times the largest second derivative.  The squared speed is linear there.
 Shares used_in(const RoundedPath& path, const TimeLaw& law, std::size_t i, std::size_t piece, const Most& most,
-               const Shares& plane) {
+               const SharesAlong& plane) {
   const double push = law.accelerations[i], bend = path.bend[piece];
   const double first = law.speeds[i] * law.speeds[i], last = law.speeds[i + 1] * law.speeds[i + 1];
   const double fastest = std::max(first, last);
-  if (bend <= 0.0) return {plane.velocity * std::sqrt(fastest), plane.acceleration * std::abs(push)};
+  if (bend <= 0.0) return {plane.velocity * std::sqrt(fastest), plane.of_push(push)};
+  const double angle = (law.lengths[i + 1] - law.lengths[i]) * bend / PARTS, eighth = 0.125 * angle * angle;
+  const Turn begin(path, piece, law.lengths[i]), end(path, piece, law.lengths[i + 1]);
   double velocity = 0.0, acceleration = 0.0;
   for (int part = 0; part <= PARTS; part++) {
     const double share = static_cast<double>(part) / PARTS;
@@ -67,12 +67,11 @@ Shares used_in(const RoundedPath& path, const TimeLaw& law, std::size_t i, std::
     for (std::size_t k = 0; k < path.dim(); k++) {
       const double direction = turn.direction(path, k);
       velocity = std::max(velocity, direction * direction * square / (most.velocity[k] * most.velocity[k]));
-      acceleration =
-          std::max(acceleration, std::abs(direction * push + turn.curve(path, k) * square) / most.acceleration[k]);
+      const auto [low, high] = std::minmax({begin.direction(path, k), end.direction(path, k)});
+      acceleration = std::max(acceleration, most.share(k, direction * push + turn.curve(path, k) * square, low, high));
     }
   }
-  const double angle = (law.lengths[i + 1] - law.lengths[i]) * bend / PARTS, eighth = 0.125 * angle * angle;
-  const double bent = plane.acceleration * (5.0 * std::abs(push) + bend * fastest);
+  const double bent = std::max(plane.faster, plane.slower) * (5.0 * std::abs(push) + bend * fastest);
   const double turned = 2.0 * plane.velocity * plane.velocity * (fastest + 2.0 * std::abs(push) / bend);
   return {std::sqrt(velocity + eighth * turned), acceleration + eighth * bent};
 }
@@ -80,7 +79,8 @@ Shares used_in(const RoundedPath& path, const TimeLaw& law, std::size_t i, std::
 /// Return bounds of the shares that a law uses at any time.
 Shares used_at_all_times(const RoundedPath& path, const TimeLaw& law, const Most& most) {
   const std::vector<std::size_t> pieces = pieces_of(path, law);
-  Shares shares, plane;
+  Shares shares;
+  SharesAlong plane;
   for (std::size_t i = 0; i < law.intervals(); i++) {
     if (i == 0 || pieces[i] != pieces[i - 1]) plane = of_plane(path, pieces[i], most);
     const Shares own = used_in(path, law, i, pieces[i], most, plane);
@@ -130,12 +130,14 @@ class Tried {
         velocity_(most.velocity.begin(), most.velocity.end()) {
     within_.share *= WITHIN_FURTHER;
     for (const double each : most.acceleration) acceleration_.push_back(each * WITHIN);
+    for (const double each : most.deceleration) deceleration_.push_back(each * WITHIN);
   }
 
   /// Make the law; it is empty where torques cannot hold the robot.
   void make() {
     const bool is_lean = !within_.further.torque && !within_.further.tip;
-    law_ = fastest(path_, is_lean ? lean_grid_of(path_) : grid_of(path_), stops_, {velocity_, acceleration_}, within_);
+    law_ = fastest(path_, is_lean ? lean_grid_of(path_) : grid_of(path_), stops_,
+                   {velocity_, acceleration_, deceleration_}, within_);
   }
 
   OwnTimeLaw& law() { return law_; }
@@ -147,7 +149,9 @@ class Tried {
   /// Use less of velocities and accelerations, or of further limits, than was used by these shares.
   void use_less(const Shares& used) {
     for (double& each : velocity_) each *= LESS / std::max(used.velocity, 1.0);
-    for (double& each : acceleration_) each *= LESS / std::max(used.acceleration, 1.0);
+    for (auto* row : {&acceleration_, &deceleration_}) {
+      for (double& each : *row) each *= LESS / std::max(used.acceleration, 1.0);
+    }
   }
   void use_less(const FurtherShares& used) { within_.share *= LESS / worst(used); }
 
@@ -158,7 +162,7 @@ class Tried {
   std::span<const double> stops_;
   const Most& most_;
   Within within_;
-  std::vector<double> velocity_, acceleration_;
+  std::vector<double> velocity_, acceleration_, deceleration_;
   OwnTimeLaw law_;
 };
 
@@ -277,7 +281,7 @@ Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, c
   std::vector<double> deviations(deviation.begin(), deviation.end());
   int at_start = 0, at_goal = 0;
   if (waypoints.rows >= 3 && within.start > 0.0) {
-    at_start = rounded_less(waypoints, false, within.start, most.acceleration, deviations[1]);
+    at_start = rounded_less(waypoints, false, within.start, most.deceleration, deviations[1]);
   }
   if (waypoints.rows >= 3 && within.goal > 0.0) {
     at_goal = rounded_less(waypoints, true, within.goal, most.acceleration, deviations[waypoints.rows - 2]);
