@@ -152,7 +152,8 @@ def test_a_goal_that_an_arm_cannot_leave_is_explained():
     ]
     start = [0.0, -1.0, *home[2:]]
     for planner in (None, er.PRM(64)):
-        result = er.plan(er.Scene(tuple(posts), name="balls"), start, goal, planner, robot="ur5", seconds=0.2)
+        limits = {"motions": 3000}
+        result = er.plan(er.Scene(tuple(posts), name="balls"), start, goal, planner, robot="ur5", limits=limits)
         assert not result.solved
         assert "The goal is nearly enclosed: " in result.message
         assert "'forearm_link' touches 'ball" in result.message

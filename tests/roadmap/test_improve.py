@@ -29,7 +29,7 @@ class Detours:
     def searches(self, dim):
         yield Search(NO_LIMIT, "none")
 
-    def connect(self, world, start, goals, *, variant, most_motions, seconds):
+    def connect(self, world, start, goals, *, variant, most_motions):
         self.asked.append(variant)
         self.most.append(most_motions)
         if variant == 2:

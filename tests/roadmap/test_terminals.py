@@ -108,7 +108,7 @@ def test_both_signs_of_a_quaternion_are_one_place():
 class Astray(PlainTrees):
     """Trees that connect the start to a place that nobody asked for."""
 
-    def connect(self, world, start, goals, *, variant, most_motions, seconds):
+    def connect(self, world, start, goals, *, variant, most_motions):
         return Connection(np.array([start, C]), 0, 1, 1, 1)
 
 

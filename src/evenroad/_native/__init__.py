@@ -19,8 +19,9 @@ points = kernel.points
 roadmap = kernel.roadmap
 robot = kernel.robot
 space = kernel.space
+time_limit = kernel.time_limit
 trajectory = kernel.trajectory
 world = kernel.world
 
-for _part in (picture, planning, points, roadmap, robot, space, trajectory, world):
+for _part in (picture, planning, points, roadmap, robot, space, time_limit, trajectory, world):
     sys.modules[f"{__name__}.{_part.__name__.rpartition('.')[2]}"] = _part

@@ -24,6 +24,7 @@ class Answer:
     length: float
     counts: tuple[int, int, int, int]
     seconds: tuple[float, float]
+    is_cut: bool
     def smooth_apart(self, checker: Checker, roomier: Checker, drivers: Drivers) -> None: ...
 
 class Trees:
@@ -70,7 +71,7 @@ class ManyQueries:
         ends: Floats,
         drivers: Drivers,
         motions: int,
-        seconds: float,
+        seconds: tuple[float, float],
         smoothing: Literal["none", "quick", "tight", "apart"],
     ) -> None: ...
     def go_on(self, threads: int, seconds: float) -> int: ...
@@ -82,7 +83,7 @@ def answer(
     goal: Floats,
     drivers: Drivers,
     motions: int,
-    seconds: float,
+    search_seconds: float,
     smoothing: Literal["none", "quick", "tight", "apart"],
 ) -> Answer: ...
 def shorten(checks: Checks, path: Floats, pairs: Points, most_shortcuts: int) -> tuple[Floats, int]: ...

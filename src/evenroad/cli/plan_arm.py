@@ -8,6 +8,7 @@ from operator import and_
 from pathlib import Path
 from typing import Any
 
+from evenroad._time_limit import within
 from evenroad.cli.plan import PlanArm, wants_points
 from evenroad.cli.plan_parts import (
     KEPT,
@@ -44,30 +45,30 @@ def plan_arm(plan: PlanArm) -> int:
     kept = None if plan.roadmap is None else load_roadmap(plan.roadmap)
     if plan.via and (plan.roadmap is not None or plan.improve or wants_points(plan)):
         raise InvalidValue("--via goes without --roadmap, --improve and points")
-    request = arm_request(
-        plan.robot,
-        scene,
-        " ".join(plan.start),
-        goals,
-        Reading(plan.deg, plan.tip, plan.frame),
-        resolution=plan.resolution,
-        clearance=plan.clearance,
-        **plan.options(),
-    )
-    world = request.world
-    planner = chosen_planner(plan, request) if kept is None else kept.within(world)
+    with within(budget.seconds):
+        request = arm_request(
+            plan.robot,
+            scene,
+            " ".join(plan.start),
+            goals,
+            Reading(plan.deg, plan.tip, plan.frame),
+            resolution=plan.resolution,
+            clearance=plan.clearance,
+            **plan.options(),
+        )
+        world = request.world
+        planner = chosen_planner(plan, request) if kept is None else kept.within(world)
+        options = Options(budget, not plan.raw, plan.seed, plan.certified, constraints)
+        # Constraints have a world of their own kind, with its own planner.
+        by = None if not wants_points(plan) and kept is None and _keeps(constraints) else planner
+        make = None
+        if plan.via:
+            from evenroad.cli.plan_via import plan_through
 
-    options = Options(budget, not plan.raw, plan.seed, plan.certified, constraints)
-    # Constraints have a world of their own kind, with its own planner.
-    by = None if not wants_points(plan) and kept is None and _keeps(constraints) else planner
-    make = None
-    if plan.via:
-        from evenroad.cli.plan_via import plan_through
-
-        found, make = plan_through(plan, request, goals, constraints, options)
-    else:
-        found = solve(request, by, options)
-    result, meshes = finished(request, found, certified=plan.certified)
+            found, make = plan_through(plan, request, goals, constraints, options)
+        else:
+            found = solve(request, by, options)
+        result, meshes = finished(request, found, certified=plan.certified)
     record = plan_record(result, _options(plan, request, result) | common_query(plan)) | {
         "no_body": [] if request.model is None else list(request.model.bodiless),
         "drawn_only": [] if request.model is None else list(request.model.drawn_only),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from time import perf_counter as now
 from typing import Protocol
 
 import numpy as np
@@ -12,6 +11,7 @@ from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count, require_positive
 from evenroad._native import planning
 from evenroad._native.robot import Checker
+from evenroad._time_limit import BudgetSpent, within
 from evenroad.errors import InvalidValue
 from evenroad.planning.drivers import native_points
 from evenroad.points.reversed_halton import PAIRS, ball_points, cube_points, share_pairs, sphere_points
@@ -23,8 +23,8 @@ from evenroad.space.batch import as_batch
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
 
-_SLICE = 1000
-"""Batches of sixteen checks between two looks at the clock: about 10 ms."""
+_SLICE = 10_000
+"""Batches of sixteen checks between two looks at what interrupts: about 100 ms."""
 
 
 class PlansWithTrees(Protocol):
@@ -64,16 +64,15 @@ def connect(
     most = require_count("most_motions", most_motions)
     terminals = _start_and_goals(start, goals, dim)
     samples = native_points(cube_points, dim) if sequence is None else _as_sequence(sequence, dim)
-    return joined(world, terminals, samples, most, limit)
+    with within(limit):
+        return joined(world, terminals, samples, most)
 
 
-def joined(
-    world: PlansWithTrees, terminals: Floats, samples: planning.Points, most_motions: int, seconds: float
-) -> Connection:
+def joined(world: PlansWithTrees, terminals: Floats, samples: planning.Points, most_motions: int) -> Connection:
     """Do as `connect`, for a start and goals in one array, (1 + g, dim)."""
     if world.fixed_contact is not None:
         return Connection(np.empty((0, terminals.shape[1])), -1, 0, 0, 0)
-    return _grown(world, terminals, samples, most_motions, seconds)[0]
+    return _grown(world, terminals, samples, most_motions)[0]
 
 
 def grown_trees(
@@ -88,7 +87,8 @@ def grown_trees(
     terminals = _start_and_goals(start, goals, dim)
     if world.fixed_contact is not None:
         return np.empty((0, dim)), np.empty((0, 2), dtype=np.int64)
-    _, trees = _grown(world, terminals, native_points(cube_points, dim), MOST_MOTIONS, limit)
+    with within(limit):
+        _, trees = _grown(world, terminals, native_points(cube_points, dim), MOST_MOTIONS)
     vertices, edges, before = [], [], 0
     for nodes, parents in trees.trees:
         # A root has no parent: a negative number.
@@ -179,7 +179,7 @@ def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:
 
 
 def _grown(
-    world: PlansWithTrees, terminals: Floats, samples: planning.Points, most: int, seconds: float
+    world: PlansWithTrees, terminals: Floats, samples: planning.Points, most: int
 ) -> tuple[Connection, planning.Trees]:
     """Return what two trees found, and the trees."""
     order = range(len(terminals) - 1)
@@ -191,12 +191,15 @@ def _grown(
         terminals = np.concatenate([terminals[:1], goals[order]])
     checks = checks_of(world)
     trees = planning.Trees(checks, terminals, samples, native_points(ball_points, terminals.shape[1]))
-    deadline = now() + seconds
-    while trees.grow(most, _SLICE) == "paused" and now() < deadline:
-        continue
+    is_over = False
+    try:
+        while trees.grow(most, _SLICE) == "paused":
+            continue
+    except BudgetSpent:
+        is_over = True
     motions, configurations, _ = checks.counts
     goal = order[trees.goal] if trees.goal >= 0 else -1
-    return Connection(trees.path, goal, sum(trees.sizes), configurations, motions), trees
+    return Connection(trees.path, goal, sum(trees.sizes), configurations, motions, is_over), trees
 
 
 def _start_and_goals(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> Floats:

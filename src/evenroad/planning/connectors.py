@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import count
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -11,6 +12,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._native.planning import Answer, Drivers, Improver, Points, answer
+from evenroad._time_limit import BudgetSpent
 from evenroad.planning import arm_trees
 from evenroad.planning.drivers import drivers, drivers_by, native_points
 from evenroad.points.reversed_halton import cube_points, shifted_cube_points
@@ -101,13 +103,12 @@ class ArmTrees:
         *,
         variant: int,
         most_motions: int,
-        seconds: float,
     ) -> Connection:
         """See :func:`evenroad.planning.arm_trees.connect`; each variant >= 1 is driven by another even sequence."""
         inside, terminals = self.inside or world, np.concatenate([start[np.newaxis], goals])
         dim = len(start)
         samples = Points(shifted_cube_points(dim, variant)) if variant else native_points(cube_points, dim)
-        return arm_trees.joined(inside, terminals, samples, most_motions, seconds)
+        return arm_trees.joined(inside, terminals, samples, most_motions)
 
     def answer(
         self,
@@ -117,17 +118,22 @@ class ArmTrees:
         *,
         variant: int,
         most_motions: int,
-        seconds: float,
+        search_seconds: float,
         smooth: Smooth,
     ) -> Answer:
-        """Return the smoothed path to one goal, (dim,), or why there is none, of one call of compiled code."""
+        """Return the smoothed path to one goal, (dim,), or why there is none, of one call of compiled code.
+
+        Trees grow for that time at most [s].
+        """
         inside, by, smoothing = self.inside or world, drivers_of(len(start), variant), smoothing_of(smooth)
         if self.shortest and smoothing == "apart":
             smoothing = "tight"
-        found = answer(inside.checker, start, goal, by, most_motions, seconds, smoothing)
+        found = answer(inside.checker, start, goal, by, most_motions, search_seconds, smoothing)
         # Where a world is new, one with more room takes as long as a short plan.
         if smoothing == "apart" and found.ended == "solved" and found.counts[0] > 2:
-            found.smooth_apart(inside.checker, inside.roomier.checker, by)
+            # Where there is no time to make the world with more room the path stays as trees found it.
+            with suppress(BudgetSpent):
+                found.smooth_apart(inside.checker, inside.roomier.checker, by)
         return found
 
     def improver(
@@ -171,13 +177,12 @@ class Cells:
         *,
         variant: int = 0,
         most_motions: int = 2**31 - 1,
-        seconds: float = np.inf,
     ) -> Connection:
         """Find a path from a free map point, (2,), to the goal, of (g, 2), that is nearest on the lattice.
 
         It leads over cell centres, and over half cells in narrow passages.  It is found wherever
         `DiskWorld.may_connect` holds, except through passages hardly wider than the disk.  At most `most_motions` are
-        checked.  The size of the map bounds the time: `seconds` is not used, and there are no variants.
+        checked.  There are no variants.
 
         Goals more than 1000 pixels away are sought over tiles of the map first, and cells are searched around that way
         alone: a path may be longer than over all cells, by 3 % at most in 59 far queries of four kinds of maps.
@@ -204,14 +209,12 @@ class PlainTrees:
         """See :func:`restarts`."""
         return restarts(dim)
 
-    def connect(
-        self, world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float
-    ) -> Connection:
+    def connect(self, world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int) -> Connection:
         """See :func:`evenroad.planning.plain_trees.grow_trees`."""
         # Imported late: an arm has compiled trees.
         from evenroad.planning.plain_trees import grow_trees
 
-        return grow_trees(world, start, goals, variant=variant, most_motions=most_motions, seconds=seconds)
+        return grow_trees(world, start, goals, variant=variant, most_motions=most_motions)
 
     def smooth(self, world: World, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """See :func:`evenroad.roadmap.shortcut.shortcut`."""

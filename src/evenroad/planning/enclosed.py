@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad.roadmap.points_of import as_points
+from evenroad._time_limit import BudgetSpent, look_at_clock
+from evenroad.points.reversed_halton import cube_points
 from evenroad.roadmap.result import PlanResult, Status
 from evenroad.world import Explains, World
 
@@ -25,16 +26,26 @@ _SHARES = np.linspace(0.05, 1.0, 20)
 def with_reasons(world: World, result: PlanResult) -> PlanResult:
     """Return a result without a path whose message also says what encloses the start or the goals.
 
-    Nothing is added where there is a path or a proof that there is none.  It costs some hundred checks for the start
-    and for each goal.
+    Nothing is added where there is a path or a proof that there is none, or no time.  It costs some hundred checks for
+    the start and for each goal.
     """
     if result.path is not None or result.status not in (Status.NOT_CONNECTED, Status.BUDGET_SPENT):
         return result
+    if result.message.startswith("proved"):
+        return result
+    try:
+        return _with_sentences(world, result)
+    except BudgetSpent:
+        return result
+
+
+def _with_sentences(world: World, result: PlanResult) -> PlanResult:
+    look_at_clock()
     # Imported late: most plans have no constraints.
     from evenroad.constraints.kept_world import KeptWorld
 
     # Under constraints most short motions leave them: that says nothing.
-    if result.message.startswith("proved") or isinstance(world, KeptWorld):
+    if isinstance(world, KeptWorld):
         return result
     several = len(result.goals) > 1
     named = [("the start", result.start)] + [
@@ -49,10 +60,10 @@ def with_reasons(world: World, result: PlanResult) -> PlanResult:
 
 def why_enclosed(world: World, name: str, configuration: Floats) -> str | None:
     """Return how few short motions leave a free configuration, (dim,), and what blocks them; None where enough do."""
-    samples = world.space.from_cube(as_points(DIRECTIONS, world.space).points)
+    samples = world.space.from_cube(cube_points(world.space.cube_dim)[:DIRECTIONS])
     here = np.broadcast_to(configuration, samples.shape)
     distances = world.space.distance(here, samples)
-    step = SHORT * float(np.median(distances))
+    step = SHORT * float(np.sort(distances)[DIRECTIONS // 2])
     reached = world.space.interpolate(here, samples, np.minimum(1.0, step / np.maximum(distances, step)))
     free = world.motion_valid(here, reached)
     number = int(np.count_nonzero(free))

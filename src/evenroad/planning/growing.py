@@ -15,7 +15,7 @@ from evenroad._checks import require_count, require_known
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import connector_of
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.answer import answer, refusal
+from evenroad.roadmap.answer import answer, in_its_time, refusal
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.points_of import as_points
 from evenroad.roadmap.problem import Problem
@@ -81,6 +81,7 @@ class GrowingPRM:
         if self.informed and self.edge_cost is not None:
             raise InvalidValue("informed must be False where edge_cost is given: costs may be below distances")
 
+    @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
         """Return the best path of all stages; see :class:`GrowingPRM`."""
         world, budget = problem.world, problem.budget

@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from evenroad._time_limit import BudgetSpent, until
 from evenroad.planning.connectors import ArmTrees
 from evenroad.planning.growing import GrowingPRM
 from evenroad.roadmap.answer import connected, path_message
 from evenroad.roadmap.attempt import NO_LIMIT, Attempt
-from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.budget import BEFORE_REASONS, Budget
 from evenroad.roadmap.connector import Connector
 from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.result import PlanResult, Stage, led
@@ -54,10 +55,13 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
     rounds = NO_LIMIT if budget.rounds is None else budget.rounds
     motions = NO_LIMIT if budget.motions is None else max(budget.motions - attempt.motions_checked, 0)
     stages, length = [stage], improver.length
-    with attempt.watch("search"):
+    with attempt.watch("search"), until(attempt.time.part(attempt.began, BEFORE_REASONS)):
         state = "paused"
-        while state == "paused" and now() < attempt.deadline:
-            state = improver.improve(rounds, motions, _SLICE)
+        while state == "paused":
+            try:
+                state = improver.improve(rounds, motions, _SLICE)
+            except BudgetSpent:
+                state = "spent"
             if improver.length < length:
                 length, nodes = improver.length, stage.points + improver.nodes
                 checked = attempt.motions_checked + improver.motions
@@ -88,8 +92,11 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
 
 def _gap(result: PlanResult) -> str:
     """Return in words how far from the shortest path a path can be."""
-    assert result.gap is not None
-    return f"at most {100.0 * result.gap:.3g} % longer than the shortest"
+    try:
+        assert result.gap is not None
+        return f"at most {100.0 * result.gap:.3g} % longer than the shortest"
+    except BudgetSpent:
+        return "there was no time to say how much longer than the shortest it may be"
 
 
 def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage: Stage, variant: int) -> PlanResult:
@@ -101,6 +108,8 @@ def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage:
         if not _goes_on(attempt, best, number):
             break
         connection = attempt.connect(connector, variant + number, most)
+        if connection.spent:
+            break
         done, nodes = number, nodes + connection.nodes
         counts["configurations_checked"] += connection.configurations
         if connection.goal < 0:
@@ -122,7 +131,8 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
     if left is None or not _goes_on(attempt, first, 1):
         return replace(first, counts=first.counts | {"rounds": 0}, stages=(stage,))
     before = attempt.elapsed()
-    grown = GrowingPRM(until="budget", informed=True).solve(rest_of(attempt, left))
+    with until(attempt.time.part(attempt.began, BEFORE_REASONS)):
+        grown = GrowingPRM(until="budget", informed=True).solve(rest_of(attempt, left))
     stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
     best = grown if grown.cost is not None and grown.cost < _cost(first) else first
     message = f"{best.message}: {_gap(best)}"

@@ -14,12 +14,13 @@ from evenroad._checks import as_batch, require_count
 from evenroad._native.planning import ManyQueries
 from evenroad._rng import RngLike
 from evenroad._threads import in_order, processors
+from evenroad._time_limit import within
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.connectors import RESTART, drivers_of, smoothing_of
 from evenroad.planning.many_results import Part, PlanResults, joined
 from evenroad.planning.plan import budget_of, plan
 from evenroad.planning.trees import TreesGoOn, variant_of
-from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.budget import BEFORE_PROOF, Budget
 from evenroad.roadmap.connector import Smooth, require_smooth
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.terminals import from_start_to_goal
@@ -104,8 +105,12 @@ def plan_many(
     report = (lambda done: None) if progress is None else (lambda done: progress(done, count))
 
     def query(row: int) -> PlanResult:
-        planner = TreesGoOn(solved.pathless[row]) if row in solved.pathless else None
-        return plan(different[of[row]], first[row], last[row], planner, limits=budget, smooth=smooth, rng=variant)
+        # Another thread may do that: its time is what the first search has left.
+        answer = solved.pathless.get(row)
+        spent, planner = (0.0, None) if answer is None else (answer.seconds[0], TreesGoOn(answer))
+        rest = None if budget.seconds is None else budget.seconds - spent
+        with within(rest):
+            return plan(different[of[row]], first[row], last[row], planner, limits=budget, smooth=smooth, rng=variant)
 
     terminals = np.stack([first, last], axis=1)
     solved = by_compiled_code(different, of, terminals, budget, smooth, variant, min(workers, 1024), report)
@@ -160,6 +165,7 @@ def by_compiled_code(
     rows = np.flatnonzero(is_arm[of])
     arms = [world for world, arm in zip(different, is_arm, strict=True) if arm]
     smoothing, first = smoothing_of(smooth), RESTART
+    seconds = np.inf if budget.seconds is None else budget.seconds
     queries = ManyQueries(
         [world.checker for world in arms],
         [world.roomier.checker if smoothing == "apart" else None for world in arms],
@@ -167,7 +173,7 @@ def by_compiled_code(
         np.ascontiguousarray(terminals[rows]).reshape(-1, dim),
         drivers_of(dim, variant),
         first if budget.motions is None else min(first, budget.motions),
-        np.inf if budget.seconds is None else budget.seconds,
+        (BEFORE_PROOF * seconds, seconds),
         smoothing,
     )
     while (done := queries.go_on(threads, _SLICE)) < len(rows):

@@ -7,11 +7,10 @@ Trees of robots are compiled, see `arm_trees`; these are for worlds in Python.
 
 from __future__ import annotations
 
-from time import perf_counter as now
-
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
+from evenroad._time_limit import BudgetSpent
 from evenroad.constraints.kept_world import KeptWorld
 from evenroad.points.reversed_halton import cube_points, shifted_cube_points
 from evenroad.roadmap.connector import Connection
@@ -55,50 +54,70 @@ class _Tree:
         return nodes
 
 
-def grow_trees(
-    world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float
-) -> Connection:
+def grow_trees(world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int) -> Connection:
     """Join a start, (dim,), to one of the goals, (g, dim), that are free; each variant scrambles the sequence anew."""
-    trees = [_Tree(start[np.newaxis]), _Tree(np.asarray(goals, dtype=np.float64))]
-    deadline, motions, turn, step = now() + seconds, 0, 0, np.inf
-    samples = np.empty((0, len(start)))
-    # The straight motions to the goals come first: many queries need no trees.
-    ahead = np.asarray(goals, dtype=np.float64)
-    for first in range(-BATCH, MOST_SAMPLES, BATCH):
-        own, other = trees[turn], trees[1 - turn]
-        if first >= len(samples):
-            samples = _samples(world, max(FIRST, 2 * len(samples)), variant)
-            if first == 0:
-                step = _step(world, samples)
-        targets = ahead if first < 0 else samples[first : first + BATCH]
+    both = _Both([_Tree(start[np.newaxis]), _Tree(np.asarray(goals, dtype=np.float64))])
+    path, spent = np.empty((0, len(start))), False
+    try:
+        path = both.joined(world, variant, most_motions)
+    except BudgetSpent:
+        spent = True
+    goal = int(np.flatnonzero((goals == path[-1]).all(axis=1))[0]) if len(path) else -1
+    return Connection(path, goal, sum(len(tree.nodes) for tree in both.trees), 0, both.motions, spent)
+
+
+class _Both:
+    """The tree of a start and that of its goals, and the number of motions checked for them."""
+
+    def __init__(self, trees: list[_Tree]) -> None:
+        self.trees, self.motions = trees, 0
+
+    def joined(self, world: World, variant: int, most_motions: int) -> Floats:
+        """Grow the trees until they meet; return the path, (p, dim), without waypoints where they do not."""
+        trees, turn, step = self.trees, 0, np.inf
+        # The straight motions to the goals come first: many queries need no trees.
+        ahead, samples = trees[1].nodes.copy(), trees[0].nodes[:0]
+        for first in range(-BATCH, MOST_SAMPLES, BATCH):
+            own, other = trees[turn], trees[1 - turn]
+            if first >= len(samples):
+                samples = _samples(world, max(FIRST, 2 * len(samples)), variant)
+                if first == 0:
+                    step = _step(world, samples)
+            targets = ahead if first < 0 else samples[first : first + BATCH]
+            fresh = self._extend(world, own, targets, np.inf if first < 0 else step)
+            walks = [(turn, fresh, other.nearest(world, own.nodes[fresh]))] if len(fresh) else []
+            if first < 0 and not len(fresh) and isinstance(world, KeptWorld):
+                # A straight motion may leave a constraint where a walk along it leads on, from one end or the other.
+                step = _step(world, _samples(world, FIRST, variant))
+                away = world.space.distance(np.broadcast_to(trees[0].nodes[:1], ahead.shape), ahead)
+                near = np.argsort(away, kind="stable")[:NEAR]
+                walks = [(1, near, np.zeros_like(near)), (0, np.zeros_like(near), near)]
+            for of, nodes, begins in walks:
+                row, reached, checked = _reach(world, trees[1 - of], trees[of].nodes[nodes], begins, step, most_motions)
+                self.motions += checked
+                if row >= 0:
+                    return self._path(of, int(nodes[row]), reached)
+            if self.motions >= most_motions:
+                break
+            turn = 1 - turn
+        return trees[0].nodes[:0]
+
+    def _extend(self, world: World, own: _Tree, targets: Floats, step: float) -> Ints:
+        """Grow a tree towards configurations, (n, dim), by a step each; return the new nodes."""
         near = own.nearest(world, targets)
-        new = _towards(world, own.nodes[near], targets, np.inf if first < 0 else step)
+        new = _towards(world, own.nodes[near], targets, step)
         free = world.motion_valid(own.nodes[near], new)
-        motions += len(new)
+        self.motions += len(new)
         begin = len(own.nodes)
         own.add(new[free], near[free])
-        fresh = np.arange(begin, len(own.nodes))
-        walks = [(turn, fresh, other.nearest(world, own.nodes[fresh]))] if len(fresh) else []
-        if first < 0 and not len(fresh) and isinstance(world, KeptWorld):
-            # A straight motion may leave a constraint where a walk along it leads on, from one end or the other.
-            step = _step(world, _samples(world, FIRST, variant))
-            away = world.space.distance(np.broadcast_to(start, ahead.shape), ahead)
-            near = np.argsort(away, kind="stable")[:NEAR]
-            walks = [(1, near, np.zeros_like(near)), (0, np.zeros_like(near), near)]
-        for of, nodes, begins in walks:
-            row, reached, checked = _reach(world, trees[1 - of], trees[of].nodes[nodes], begins, step, most_motions)
-            motions += checked
-            if row >= 0:
-                branches = trees[of].branch(int(nodes[row]))[::-1], trees[1 - of].branch(reached)
-                path = np.concatenate([trees[of].nodes[branches[0]], trees[1 - of].nodes[branches[1]]])
-                path = path if of == 0 else path[::-1]
-                path = path[np.append(True, (path[1:] != path[:-1]).any(axis=1))]
-                goal = int(np.flatnonzero((goals == path[-1]).all(axis=1))[0])
-                return Connection(path, goal, sum(len(tree.nodes) for tree in trees), 0, motions)
-        if motions >= most_motions or now() >= deadline:
-            break
-        turn = 1 - turn
-    return Connection(np.empty((0, len(start))), -1, sum(len(tree.nodes) for tree in trees), 0, motions)
+        return np.arange(begin, len(own.nodes))
+
+    def _path(self, of: int, node: int, reached: int) -> Floats:
+        """Return the path through a node of a tree and the node of the other one that is there, too."""
+        branches = self.trees[of].branch(node)[::-1], self.trees[1 - of].branch(reached)
+        path = np.concatenate([self.trees[of].nodes[branches[0]], self.trees[1 - of].nodes[branches[1]]])
+        path = path if of == 0 else path[::-1]
+        return path[np.append(True, (path[1:] != path[:-1]).any(axis=1))]
 
 
 def _samples(world: World, n: int, variant: int) -> Floats:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad._shared import once
+from evenroad._time_limit import BudgetSpent, within
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.enclosed import with_reasons
@@ -18,7 +19,7 @@ from evenroad.planning.read_request import mesh_check, read_request
 from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request, unreached
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.answer import require_certified
+from evenroad.roadmap.answer import out_of_time, require_certified
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Smooth
 from evenroad.roadmap.problem import Planner, Problem
@@ -87,7 +88,8 @@ def plan(
         for a disk on a map, points that grow for any other world.  A PointSet stands for ``er.PRM(points)``,
         a Roadmap, or its file, for that roadmap within the world.
     seconds : float, optional
-        Largest wall time of planning, > 0.  Default: 5; for planners on points that are drawn beforehand 60.
+        Largest wall time, > 0: the call ends by then, with what has been found.  What the world is made of is read and
+        packed before the time begins.  Default: 5; for planners on points that are drawn beforehand 60.
     limits : mapping or Budget, optional
         Other limits: ``motions``, ``samples``, ``rounds``; integers >= 1.  With these the same call gives the same
         answer on every machine, unless the time runs out first.  A :class:`evenroad.roadmap.Budget` says the time, too.
@@ -130,10 +132,14 @@ def plan(
     """
     given = None if planner is None else _as_planner(planner)
     reading = Reading(degrees, tip, frame) if degrees or tip or frame else _PLAIN
-    request = read_request(world, start, goal, reading, given, **of_world)
-    within = None if given is None else _within(given, request.world)
-    options = Options(budget_of(within, seconds, limits), smooth, rng, certified, constraints)
-    return finished(request, solve(request, within, options), certified=certified)[0]
+    options = Options(budget_of(given, seconds, limits), smooth, rng, certified, constraints)
+    with within(options.budget.seconds):
+        request = read_request(world, start, goal, reading, given, **of_world)
+        try:
+            by = None if given is None else _within(given, request.world)
+        except BudgetSpent:
+            return _out_of_time(request, options)
+        return finished(request, _solved(request, by, options), certified=certified)[0]
 
 
 def _as_planner(planner: object) -> Planner | Roadmap:
@@ -163,7 +169,9 @@ def _within(planner: Planner | Roadmap, world: World) -> Planner:
     return planner
 
 
-def budget_of(planner: Planner | None, seconds: float | None, limits: Budget | Mapping[str, int] | None) -> Budget:
+def budget_of(
+    planner: Planner | Roadmap | None, seconds: float | None, limits: Budget | Mapping[str, int] | None
+) -> Budget:
     """Return a planner's budget: the given limits, else its own."""
     if seconds is None and limits is None:
         return _default_budget(getattr(planner, "seconds", RRTConnect.seconds))
@@ -187,6 +195,11 @@ def _default_budget(seconds: float) -> Budget:
 
 def solve(request: Request, planner: Planner | None, options: Options) -> PlanResult:
     """Plan a request; the path is free in its world."""
+    with within(options.budget.seconds):
+        return _solved(request, planner, options)
+
+
+def _solved(request: Request, planner: Planner | None, options: Options) -> PlanResult:
     given, motion = request.given, None if options.constraints is None else _motion_of(options.constraints)
     if (result := unreached(request)) is not None:
         return result
@@ -207,9 +220,16 @@ def solve(request: Request, planner: Planner | None, options: Options) -> PlanRe
         found = (default_planner(world) if planner is None else planner).solve(problem)
         return found if found.solved else with_reasons(world, found)
 
-    if motion is None:
-        return plan_once(request.world, request.start, request.goals, options.smooth)
-    return motion.plan(request, plan_once, options.smooth)
+    try:
+        if motion is None:
+            return plan_once(request.world, request.start, request.goals, options.smooth)
+        return motion.plan(request, plan_once, options.smooth)
+    except BudgetSpent:
+        return _out_of_time(request, options)
+
+
+def _out_of_time(request: Request, options: Options) -> PlanResult:
+    return out_of_time(Problem(request.world, request.start, request.goals, budget=options.budget))
 
 
 def _motion_of(constraints: Constraint) -> TipMotion:
@@ -247,7 +267,11 @@ def finished(request: Request, result: PlanResult, *, certified: bool = False) -
         result = require_certified(world, result)
     if result.path is None or not result.solved:
         return result, None
-    meshes = mesh_check(request, result.path)
+    try:
+        meshes = mesh_check(request, result.path)
+    except BudgetSpent:
+        message = f"{result.message}, but there was no time to check it with the meshes of the robot's file"
+        return replace(result, status=Status.BUDGET_SPENT, message=message), MeshCheck("not checked", message="no time")
     if meshes is None or meshes.verdict != "in collision":
         return result, meshes
     message = (
@@ -262,10 +286,13 @@ def _with_proof(request: Request, result: PlanResult) -> PlanResult:
     world: Any = request.world
     if result.status is not Status.NOT_CONNECTED or not isinstance(request.world, ShowsApart):
         return result
-    if request.given is None:
-        found = world.apart(request.start, request.goals)
-    else:
-        found = request.given.apart(world)(request.start, request.goals, False)
+    try:
+        if request.given is None:
+            found = world.apart(request.start, request.goals)
+        else:
+            found = request.given.apart(world)(request.start, request.goals, False)
+    except BudgetSpent:
+        return replace(result, message=f"{result.message}; there was no time for a proof that there is no path")
     if found is None or not found.proved:
         return result
     return replace(result, message=f"{found.message}; {result.message.partition(': try')[0]}")

@@ -10,7 +10,7 @@ from evenroad._checks import require_count, require_known
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import connector_of
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.answer import answer, refusal
+from evenroad.roadmap.answer import answer, in_its_time, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.points_of import as_points
 from evenroad.roadmap.problem import Problem
@@ -88,6 +88,7 @@ class PRM:
     def __repr__(self) -> str:
         return _text(self)
 
+    @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
         """Return the shortest path along the roadmap, smoothed; see :class:`PRM`."""
         query = _query(self, problem, search=self.search, success_only=self.success_only)
@@ -134,6 +135,7 @@ class FMT:
     def __repr__(self) -> str:
         return _text(self)
 
+    @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
         """Return the path along the tree, smoothed; see :class:`FMT`."""
         return _on_points(self, problem, _query(self, problem), "fmt*", march)

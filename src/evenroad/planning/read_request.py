@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, Unpack
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._time_limit import off_the_clock
 from evenroad.errors import InvalidValue, listed, near, shown
 from evenroad.geometry.pose import Pose
 from evenroad.planning.request import ConfigurationLike, Goal, PathLike, Reading, Request
@@ -51,6 +52,9 @@ def read_request(
 ) -> Request:
     """Return world, start and goals, as far as they can be read; parameters and errors as :func:`evenroad.plan`."""
     if isinstance(world, ArmWorld) and not of_world:
+        if "checker" not in vars(world):
+            with off_the_clock():
+                _ = world.checker
         return request_in(world, start, goal, reading)
     if isinstance(world, str | os.PathLike):
         # The radius distinguishes a map from a scene, whose names and suffixes are the same.
@@ -59,7 +63,8 @@ def read_request(
             from evenroad.world import load_map
 
             reading_of_map = {name: of_world.pop(name) for name in ("unknown_is_free", "rules") if name in of_world}
-            world = load_map(world, **reading_of_map)
+            with off_the_clock():
+                world = load_map(world, **reading_of_map)
         elif "robot" not in of_world:
             raise InvalidValue(
                 f"{os.fspath(world)!r} needs radius=, of a disk on this map, or robot=, the arm in this scene"
@@ -124,25 +129,27 @@ def arm_request(
 
     Joints outside the group keep the values of `reading.held`, else those of the named states of start and goal.
     """
-    scene = scene if isinstance(scene, Scene) else load_scene(scene)
-    source, model = None, None
-    if isinstance(robot, Robot):
-        if options:
-            raise InvalidValue(f"{', '.join(options)} must go with the file of a robot, not with a Robot")
-    else:
-        model = padded_model(robot, **options)
-        source, robot = model.file, model.robot
-    goals = _goal_list(goal, len(robot.group))
-    texts = [target for target in (start, *goals) if isinstance(target, str)]
-    robot = at_states(in_scene(robot, scene), texts, scene)
-    if reading.held:
-        robot = with_group(robot, robot.group, {**robot.held, **reading.held})
-    scene = scene_seen_by(robot, scene)
-    first = _configuration(robot, scene, "start", start, reading)
-    _refuse_what_is_none(robot, scene, goals, reading)
-    robot = standing_at(robot, first)
-    # Where a goal pose is not reached, contacts near the endpoints stay allowed.
-    world = ArmWorld(robot, open_everywhere(scene), resolution=resolution, clearance=clearance)
+    with off_the_clock():
+        scene = scene if isinstance(scene, Scene) else load_scene(scene)
+        source, model = None, None
+        if isinstance(robot, Robot):
+            if options:
+                raise InvalidValue(f"{', '.join(options)} must go with the file of a robot, not with a Robot")
+        else:
+            model = padded_model(robot, **options)
+            source, robot = model.file, model.robot
+        goals = _goal_list(goal, len(robot.group))
+        texts = [target for target in (start, *goals) if isinstance(target, str)]
+        robot = at_states(in_scene(robot, scene), texts, scene)
+        if reading.held:
+            robot = with_group(robot, robot.group, {**robot.held, **reading.held})
+        scene = scene_seen_by(robot, scene)
+        first = _configuration(robot, scene, "start", start, reading)
+        _refuse_what_is_none(robot, scene, goals, reading)
+        robot = standing_at(robot, first)
+        # Where a goal pose is not reached, contacts near the endpoints stay allowed.
+        world = ArmWorld(robot, open_everywhere(scene), resolution=resolution, clearance=clearance)
+        _ = world.checker
     given = _goals_in(world, first, goals, reading)
     if scene.near_ends and not given.unreached:
         start_and_goals = np.concatenate([first[np.newaxis], given.configurations])

@@ -88,4 +88,6 @@ def unreached(request: Request) -> PlanResult | None:
     if given is None or not given.unreached:
         return None
     status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
+    if given.spent:
+        status = Status.BUDGET_SPENT
     return replace(refused(request, status, given.unreached), timings={"goals": given.seconds})

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._time_limit import BudgetSpent
 from evenroad.constraints.driven_world import DifferentialDrive, driven_world
 from evenroad.constraints.keep import Keep
 from evenroad.constraints.kept_world import KeptWorld, keeps_of, kept_line, kept_world
@@ -117,7 +119,9 @@ def _through(world: KeptWorld, result: PlanResult, shorten: Smooth) -> PlanResul
     if result.path is None:
         return result
     raw = world.path_through(result.path)
-    path = world.shortened(raw) if shorten else raw
+    path = raw
+    with suppress(BudgetSpent):
+        path = world.shortened(raw) if shorten else raw
     return _with_path(world, result, path, raw, world.deviation(world.largest(path)))
 
 

@@ -14,10 +14,12 @@ from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._native.planning import Answer
 from evenroad._rng import RngLike, generator, seed_of
+from evenroad._time_limit import seconds_left
 from evenroad.errors import InvalidValue
 from evenroad.planning.connectors import ARM_TREES, CELLS, RESTART, ArmTrees, connector_of, trees_for
-from evenroad.roadmap.answer import connected, gave_up, path_message, proof_of, refusal, shown_apart
+from evenroad.roadmap.answer import connected, gave_up, in_its_time, path_message, proof_of, refusal, shown_apart
 from evenroad.roadmap.attempt import Attempt
+from evenroad.roadmap.budget import BEFORE_PROOF
 from evenroad.roadmap.connector import Connection, Connector, require_smooth
 from evenroad.roadmap.problem import Planner, Problem
 from evenroad.roadmap.query import Query
@@ -58,6 +60,7 @@ class RRTConnect:
 
     improve: bool = False
 
+    @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
         """Return a path, a proof that there is none, or what was tried; see :class:`RRTConnect`."""
         return solve_by(problem, trees_for(problem.world, shortest=self.improve), improve=self.improve)
@@ -81,6 +84,7 @@ class GridSearch:
 
     improve: bool = False
 
+    @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
         """Return a path, or the proof that there is none; see :class:`GridSearch`."""
         # Imported late, as other planners and worlds here: a plan of an arm needs none of them.
@@ -118,6 +122,7 @@ class TreesGoOn:
 
     first: Answer
 
+    @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
         """Return what `RRTConnect` returns, which would begin with the same search."""
         return solve_by(problem, ARM_TREES, first=self.first)
@@ -157,7 +162,7 @@ def solve_by(
     if connection.goal >= 0:
         result = connected(attempt, connection)
         return improved(attempt, connector, result, variant)
-    if (left := attempt.left()) is None:
+    if connection.spent or (left := attempt.left()) is None:
         return gave_up(attempt, connection)
     return _growing(improve).solve(rest_of(attempt, left))
 
@@ -170,7 +175,7 @@ def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Ans
     connection, is_tried = _NOTHING, False
     for number, search in enumerate(connector.searches(attempt.world.space.dim)):
         if number == 0 and first is not None:
-            found = Connection(first.raw, -1, *first.counts[:3])
+            found = Connection(first.raw, -1, *first.counts[:3], spent=first.ended == "paused")
             attempt.take(found.motions, first.seconds[0])
         elif connector.varies:
             found = _connection(attempt, connector, search.most, variant + number)
@@ -181,7 +186,7 @@ def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Ans
         connection = _after(connection, found)
         if connection.goal >= 0:
             break
-        has_ended = found.motions < search.most or attempt.left() is None
+        has_ended = found.spent or found.motions < search.most or attempt.left() is None
         proof = "any" if has_ended and not is_tried else search.proof
         if proof != "none" and (apart_for := shown_apart(attempt, quickly=proof == "quick")) is not None:
             return apart_for
@@ -202,7 +207,7 @@ def _answer(problem: Problem, connector: ArmTrees, variant: int) -> Answer:
         problem.goals[0],
         variant=variant,
         most_motions=most if budget.motions is None else min(most, budget.motions),
-        seconds=np.inf if budget.seconds is None else budget.seconds,
+        search_seconds=BEFORE_PROOF * seconds_left(),
         smooth=problem.smooth,
     )
 
@@ -229,7 +234,7 @@ def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult
         start,
         goals,
         Status.SOLVED,
-        path_message(path, length, 0, 1),
+        path_message(path, length, 0, 1, is_cut=found.is_cut),
         planner=connector.planner,
         goal_index=0,
         path=path,
@@ -263,7 +268,7 @@ def _connection(attempt: Attempt, connector: Connector, most: int, variant: int)
     start, goals = attempt.query.start, attempt.free_goals
     nearest = int(np.argmin(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals)))
     near = attempt.connect(connector, variant, min(most, TO_NEAREST), nearest)
-    if near.goal >= 0 or attempt.left() is None:
+    if near.goal >= 0 or near.spent or attempt.left() is None:
         return near
     found = attempt.connect(connector, variant, most - near.motions)
     return _after(near, found)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
+from evenroad._time_limit import look_at_clock
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import BELOW_ONE, as_unit_points
 
@@ -97,6 +98,7 @@ def anneal(
     moments, normal = (np.zeros((d, n)), np.zeros((d, n))), np.empty((d, n))
     highest_rate, spread = (first_rate(n, d), noise_over_rate(objective, n, d)) if rates is None else rates
     for step in range(1, steps + 1):
+        look_at_clock()
         value, gradient = objective.of_columns(columns)
         if value < best_value:
             best_value = value

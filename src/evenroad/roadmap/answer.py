@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
+from functools import wraps
 from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._time_limit import BudgetSpent, is_limited, until, within
 from evenroad.errors import EvenroadError
 from evenroad.roadmap.attempt import Attempt, Searched
+from evenroad.roadmap.budget import BEFORE_REASONS
 from evenroad.roadmap.connector import Connection
 from evenroad.roadmap.neighbours import flat_metric
+from evenroad.roadmap.problem import Problem
 from evenroad.roadmap.result import PlanResult, SearchedGraph, Status, make_result
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.roadmap.shortcut import shortcut
@@ -28,9 +33,12 @@ def refusal(attempt: Attempt) -> PlanResult | None:
     if free[0] and attempt.goals.size:
         return None
     row = int(free[0])
-    reason = f": {world.explain(terminals[row])}" if isinstance(world, Explains) else ""
-    if not row and isinstance(world, ExplainsStarts):
-        reason = f": {world.explain_start(terminals[0])}"
+    try:
+        reason = f": {world.explain(terminals[row])}" if isinstance(world, Explains) else ""
+        if not row and isinstance(world, ExplainsStarts):
+            reason = f": {world.explain_start(terminals[0])}"
+    except BudgetSpent:
+        reason = "; there was no time to say what blocks it"
     within = world.space.contains(terminals[1:] if row else terminals[:1])
     if within.any():
         status = (Status.START_INVALID, Status.GOAL_INVALID)[row]
@@ -92,11 +100,37 @@ def connected(attempt: Attempt, connection: Connection) -> PlanResult:
     return _with_path(attempt, path, length, goal, _counts_of(attempt, connection), by_connector=True)
 
 
+def in_its_time(solve: Callable[[Any, Problem], PlanResult]) -> Callable[[Any, Problem], PlanResult]:
+    """Return a planner's `solve` that ends with the problem's time, and says so where it has nothing to hand out."""
+
+    @wraps(solve)
+    def solved(planner: Any, problem: Problem) -> PlanResult:
+        try:
+            if is_limited():
+                # By the caller of the planner: the problem has what is left of that.
+                return solve(planner, problem)
+            with within(problem.budget.seconds):
+                return solve(planner, problem)
+        except BudgetSpent:
+            return out_of_time(problem)
+
+    return solved
+
+
+def out_of_time(problem: Problem) -> PlanResult:
+    """Return the result of a query whose time was over before a search."""
+    message = (
+        f"no path within {problem.budget.text(samples=False)}: the time was over before a search was; give it more"
+    )
+    return make_result(problem.world, problem.start, problem.goals, Status.BUDGET_SPENT, message)
+
+
 def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
     """Return the result of a connector that found no path within the budget."""
+    cut = ", and there was no time for a proof that there is none" if attempt.proof_cut else ""
     message = (
         f"no path within {attempt.query.budget.text(samples=False)}: {connection.nodes} nodes were grown and"
-        f" {connection.motions} motions checked; give it more time"
+        f" {connection.motions} motions checked{cut}; give it more time"
     )
     return replace(_result(attempt, Status.BUDGET_SPENT, message), counts=_counts_of(attempt, connection))
 
@@ -108,10 +142,16 @@ def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None
     """
     world, query = attempt.world, attempt.query
     with attempt.watch("proof"):
+        attempt.proof_tried |= not quickly
         if not isinstance(world, ShowsApart):
             return None
         prove = query.apart or (lambda start, goals, quick: world.apart(start, goals, quickly=quick))
-        found = prove(query.start, query.goals, quickly)
+        try:
+            with until(attempt.time.part(attempt.began, BEFORE_REASONS)):
+                found = prove(query.start, query.goals, quickly)
+        except BudgetSpent:
+            attempt.proof_cut = True
+            return None
     if found is None:
         return None
     status = Status.NOT_CONNECTED if found.proved else Status.BUDGET_SPENT
@@ -131,20 +171,25 @@ def _with_path(
 ) -> PlanResult:
     """Return the result with a path, smoothed if wanted: by the connector where there is one and costs are lengths."""
     world, query = attempt.world, attempt.query
-    path, length, cost = raw, raw_cost, query.edge_cost
+    path, length, cost, is_cut = raw, raw_cost, query.edge_cost, False
     if query.smooth:
-        with attempt.watch("shortcut"):
-            if by_connector and query.connector is not None:
-                path, counts["shortcut_motions"] = query.connector.smooth(world, raw, quick=query.smooth == "quick")
-            else:
-                path, counts["shortcut_motions"] = shortcut(world, raw, cost, attempt.deadline)
+        counts["shortcut_motions"] = 0
+        with attempt.watch("shortcut"), until(attempt.time):
+            try:
+                if by_connector and query.connector is not None:
+                    path, counts["shortcut_motions"] = query.connector.smooth(world, raw, quick=query.smooth == "quick")
+                else:
+                    path, counts["shortcut_motions"] = shortcut(world, raw, cost)
+                    is_cut = attempt.time.is_over
+            except BudgetSpent:
+                is_cut = True
             if path is not raw:
                 measure = world.space.distance if cost is None else cost
                 length = float(np.sum(measure(path[:-1], path[1:])))
     return _result(
         attempt,
         Status.SOLVED,
-        path_message(path, length, goal, len(query.goals), "length" if cost is None else "cost"),
+        path_message(path, length, goal, len(query.goals), "length" if cost is None else "cost", is_cut=is_cut),
         goal_index=goal,
         path=path,
         milestone_path=raw,
@@ -155,10 +200,13 @@ def _with_path(
     )
 
 
-def path_message(path: Floats, cost: float, goal: int, goals: int, named: str = "length") -> str:
-    """Return what a result says about its path."""
+def path_message(
+    path: Floats, cost: float, goal: int, goals: int, named: str = "length", *, is_cut: bool = False
+) -> str:
+    """Return what a result says about its path; `is_cut` says that there was no time to smooth it to the end."""
     to = f" to goal {goal}" if goals > 1 else ""
-    return f"path of {named} {cost:.6g} with {len(path)} waypoints{to}"
+    cut = ", not smoothed to the end: the time was spent" if is_cut else ""
+    return f"path of {named} {cost:.6g} with {len(path)} waypoints{to}{cut}"
 
 
 def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tuple[str, str]:
@@ -257,7 +305,11 @@ def require_certified(world: World, result: PlanResult) -> PlanResult:
     if not (isinstance(world, ValidatesPaths) and world.proof == "certified"):
         message = "the path is free at the states tested; motions of this world cannot be proved free"
         return replace(result, status=Status.NOT_CERTIFIED, message=message)
-    failed = np.flatnonzero(~world.validate(result.path))
+    try:
+        failed = np.flatnonzero(~world.validate(result.path))
+    except BudgetSpent:
+        message = f"{result.message}; there was no time to prove it once more"
+        return replace(result, status=Status.NOT_CERTIFIED, message=message)
     if not len(failed):
         return replace(result, proof="certified")
     first, last = ("(" + ", ".join(f"{x:.6g}" for x in result.path[failed[0] + i]) + ")" for i in (0, 1))

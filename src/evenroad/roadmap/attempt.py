@@ -8,8 +8,9 @@ from time import perf_counter as now
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints32
+from evenroad._time_limit import BudgetSpent, Deadline, until
 from evenroad.points.pointset import Origin
-from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch
+from evenroad.roadmap.budget import BEFORE_PROOF, BEFORE_REASONS, Budget, Stopwatch
 from evenroad.roadmap.connector import Connection, Connector
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.query import BOUND, Query, edge_costs
@@ -27,12 +28,10 @@ from evenroad.roadmap.search import (
     length_along,
     search_problem,
 )
-from evenroad.world import World
+from evenroad.world import ShowsApart, World
 
 NO_LIMIT = 2**31 - 1
 """Number of motions that stands for no limit."""
-_LONG = 1e8
-"""Number of seconds that stands for no limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,8 +49,9 @@ class Attempt:
 
     `origin`, `rule` and `planner` are those of :class:`PlanResult`.  `grows` says whether the planner draws its points
     itself, until the budget is spent.  `checked` configurations were checked outside a graph, and `motions_checked`
-    motions in earlier graphs: both count for the budget.  `spent` says whether it ran out.  `goals` are the rows of the
-    query's goals, (g,), after `valid_terminals` only the free ones.
+    motions in earlier graphs: both count for the budget.  `spent` says whether it ran out.  `proof_tried` says whether
+    the world has tried to prove that there is no path, or cannot, and `proof_cut` that there was no time for it.
+    `goals` are the rows of the query's goals, (g,), after `valid_terminals` only the free ones.
     """
 
     world: World
@@ -64,6 +64,8 @@ class Attempt:
     checked: int = 0
     motions_checked: int = 0
     spent: bool = False
+    proof_tried: bool = False
+    proof_cut: bool = False
 
     def __post_init__(self) -> None:
         self.began = now()
@@ -94,7 +96,8 @@ class Attempt:
         """Return which of the samples, (n, dim), are known to be free, as far as time allows: (n,)."""
         states = self.states(samples, np.empty((0, 2), dtype=np.int32))
         try:
-            states.evaluate_nodes(np.arange(len(samples)))
+            with until(self.search_end()):
+                states.evaluate_nodes(np.arange(len(samples)))
         except BudgetSpent:
             self.spent = True
         self.checked += states.configurations_checked
@@ -118,19 +121,19 @@ class Attempt:
         """Return the states of a graph, by default unknown, with the rest of the budget to evaluate more."""
         most = self.query.budget.motions
         most = None if most is None else most - self.motions_checked
-        return EdgeStates(self.world, configurations, edges, self.watch, most, self.deadline, cache)
+        return EdgeStates(self.world, configurations, edges, self.watch, most, cache)
 
     def search(self, find: Finder, states: EdgeStates, problem: SearchProblem | None = None) -> Searched:
         """Find a path that the world confirms, over all edges of `states`, or as `problem` says."""
         space, q, edges = self.world.space, states.configurations, states.edges
         cost, goals = self.query.edge_cost, len(self.goals)
-        with self.watch("search"):
-            if problem is not None or self.query.success_only:
-                what = problem or Terminals.last(len(q), goals)
-            else:
-                costs, bound = edge_costs(space, q, edges, cost), 1.0 if cost is None else BOUND
-                what = search_problem(states, costs, goals, bound=bound)
+        with self.watch("search"), until(self.search_end()):
             try:
+                if problem is not None or self.query.success_only:
+                    what = problem or Terminals.last(len(q), goals)
+                else:
+                    costs, bound = edge_costs(space, q, edges, cost), 1.0 if cost is None else BOUND
+                    what = search_problem(states, costs, goals, bound=bound)
                 while not confirm(states, found := find(what, states)):
                     pass
             except BudgetSpent:
@@ -151,12 +154,23 @@ class Attempt:
         goals = goals if goal is None else goals[goal : goal + 1]
         if motions is not None:
             most = min(most, max(motions - self.motions_checked, 1))
-        seconds = min(max(self.deadline - now(), 1e-3), _LONG)
-        with self.watch("search"):
-            limits = dict(variant=variant, most_motions=most, seconds=seconds)
-            found = connector.connect(self.world, start, goals, **limits)  # type: ignore[arg-type]
+        with self.watch("search"), until(self.search_end()):
+            try:
+                found = connector.connect(self.world, start, goals, variant=variant, most_motions=most)
+            except BudgetSpent:
+                found = Connection(np.empty((0, len(start))), -1, 0, 0, 0, spent=True)
         self.motions_checked += found.motions
         return found if goal is None or found.goal < 0 else replace(found, goal=goal)
+
+    def search_end(self) -> Deadline:
+        """Return when a search ends, so that there is time for a proof that there is no path, and for the reasons."""
+        is_proof_due = not (self.grows or self.proof_tried) and isinstance(self.world, ShowsApart)
+        return self.time.part(self.began, BEFORE_PROOF if is_proof_due else BEFORE_REASONS)
+
+    @property
+    def time(self) -> Deadline:
+        """The end of its time."""
+        return Deadline(self.deadline)
 
     def take(self, motions: int, seconds: float) -> None:
         """Count an earlier search: its motions, and its time."""

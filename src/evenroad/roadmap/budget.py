@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import perf_counter as now
 
-import numpy as np
-import numpy.typing as npt
-
 from evenroad._checks import require_count, require_positive
+from evenroad._time_limit import Deadline
 
-_FIRST_BATCH = 32
-"""Number of rows in the first batch of checks where time is limited."""
-_FAST = 0.02
-"""Time that a batch of checks should take [s]; faster batches grow, slower ones shrink."""
+BEFORE_PROOF, BEFORE_REASONS = 0.7, 0.9
+"""Shares of the time after which a search leaves the rest to a proof that there is no path, where none was tried; and
+after which both leave the rest to the reasons for it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,8 +20,8 @@ class Budget:
     Attributes
     ----------
     seconds : float or None
-        Wall time, > 0, compared before each call of the world; what a planner finds within it depends on the
-        machine.  Shortcutting stops when it runs out.  None: no limit.
+        Wall time, > 0; what a planner finds within it depends on the machine.  A path that is found by then is the
+        answer, smoothed or not.  None: no limit.
     motions : int or None
         Largest number of motions checked, >= 1, without those of shortcutting.  None: no limit.
     samples : int
@@ -58,51 +53,8 @@ class Budget:
         return ", ".join(limits)
 
     def deadline(self) -> float:
-        """Return the deadline of a query that begins now, on the clock of ``time.perf_counter``."""
-        return now() + (math.inf if self.seconds is None else self.seconds)
-
-    def rest(self, deadline: float, motions: int) -> Budget:
-        """Return the rest of the budget until a deadline and after this number of motions: at least 1 ms and one
-        motion.
-        """
-        return replace(
-            self,
-            seconds=None if self.seconds is None else max(deadline - now(), 1e-3),
-            motions=None if self.motions is None else max(self.motions - motions, 1),
-        )
-
-
-class BudgetSpent(Exception):
-    """The budget does not allow another check; caught where the budget was given."""
-
-
-class Pace:
-    """The number of rows per check where time is limited: as many as take some milliseconds."""
-
-    size: int = _FIRST_BATCH
-
-
-def in_time(
-    rows: npt.NDArray[np.integer], deadline: float, pace: Pace | None = None
-) -> Iterator[npt.NDArray[np.integer]]:
-    """Yield `rows` in batches, all at once if there is no deadline.
-
-    The pace carries over from call to call.  Raises BudgetSpent when the deadline (of ``time.perf_counter``) has passed
-    and rows are left.
-    """
-    pace = Pace() if pace is None else pace
-    first, is_limited = 0, math.isfinite(deadline)
-    while first < len(rows):
-        began = now()
-        if began >= deadline:
-            raise BudgetSpent
-        size = pace.size if is_limited else len(rows)
-        yield rows[first : first + size]
-        first += size
-        if now() - began >= _FAST:
-            pace.size = max(pace.size // 2, 1)
-        elif size <= len(rows):
-            pace.size = 2 * pace.size
+        """Return the deadline of a query that begins now, or the earlier one of this thread."""
+        return Deadline.after(self.seconds).at
 
 
 class Stopwatch:

@@ -33,6 +33,8 @@ class Connection:
     """Number of configurations checked."""
     motions: int
     """Number of motions checked."""
+    spent: bool = False
+    """Whether the time was over before the search was."""
 
 
 class Search(NamedTuple):
@@ -58,10 +60,11 @@ class Connector(Protocol):
     def searches(self, dim: int) -> Iterator[Search]:
         """Yield the searches to make in a space of this dimension, each of another variant where it `varies`."""
 
-    def connect(
-        self, world: Any, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float
-    ) -> Connection:
-        """Join the start, (dim,), to one of the goals, (g, dim), within the budget; the same variant, the same path."""
+    def connect(self, world: Any, start: Floats, goals: Floats, *, variant: int, most_motions: int) -> Connection:
+        """Join the start, (dim,), to one of the goals, (g, dim), within the budget; the same variant, the same path.
+
+        Where the time of this thread is over it raises BudgetSpent, or returns that it is.
+        """
 
     def smooth(self, world: Any, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """Return a path, (q, dim), that is not longer than `path`, (p, dim), and how many motions were checked."""

@@ -12,9 +12,10 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._npz import Path
 from evenroad._shared import OwnLock
+from evenroad._time_limit import BudgetSpent, within
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.answer import answer, connected, refusal, shown_apart
+from evenroad.roadmap.answer import answer, connected, out_of_time, refusal, shown_apart
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.connector import Connector, Smooth
@@ -237,6 +238,13 @@ class WorldRoadmap:
             budget=budget or Budget(),
             connector=connector,
         )
+        try:
+            with within(query.budget.seconds):
+                return self._answered(query, connector)
+        except BudgetSpent:
+            return out_of_time(Problem(self.world, query.start, query.goals, budget=query.budget))
+
+    def _answered(self, query: Query, connector: Connector | None) -> PlanResult:
         roadmap = self.roadmap
         rule, planner = f"{roadmap.rule} of all points", query.planner
         with self._lock:

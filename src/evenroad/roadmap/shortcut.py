@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from time import perf_counter as now
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad.roadmap.budget import BudgetSpent, in_time
+from evenroad._time_limit import BudgetSpent, in_time, look_at_clock
 from evenroad.roadmap.query import EdgeCost
 from evenroad.roadmap.search import confirmed, shortest_path
 from evenroad.space import Space
@@ -29,9 +27,7 @@ WORTH_WHILE = 1e-2
 """Share of shortening below which a round is the last one with its number of waypoints."""
 
 
-def shortcut(
-    world: World, path: Floats, cost: EdgeCost | None = None, deadline: float = math.inf
-) -> tuple[Floats, int]:
+def shortcut(world: World, path: Floats, cost: EdgeCost | None = None) -> tuple[Floats, int]:
     """Return a path that does not cost more, all of whose new motions `world` calls free.
 
     Each round puts waypoints evenly along the path, few at first, joins every pair that `world` says can be joined,
@@ -40,11 +36,10 @@ def shortcut(
     world has a strict check (`ValidatesPaths`), the motions of a round's path have to pass it, too.  Those that fail
     are removed, in time with those beside them, and the next shortest path is tried.
 
-    `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  At the deadline, on the clock of
-    ``time.perf_counter``, the best path so far is the answer.  The second number is that of the motions checked,
-    without strict checks.
+    `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  When the time is over, the
+    best path so far is the answer.  The second number is that of the motions checked, without strict checks.
     """
-    work = _Shortcut(path, world, world.space.distance if cost is None else cost, deadline)
+    work = _Shortcut(path, world, world.space.distance if cost is None else cost)
     try:
         for most in SPREADS:
             for _ in range(MAX_ROUNDS):
@@ -62,8 +57,8 @@ def shortcut(
 class _Shortcut:
     """A path that becomes shorter, and the number of checks for it."""
 
-    def __init__(self, path: Floats, world: World, cost: EdgeCost, deadline: float) -> None:
-        self.path, self.world, self.cost, self.deadline = path, world, cost, deadline
+    def __init__(self, path: Floats, world: World, cost: EdgeCost) -> None:
+        self.path, self.world, self.cost = path, world, cost
         self.length = self._total(path)
         self.checked = 0
 
@@ -105,8 +100,7 @@ class _Shortcut:
 
     def _holds(self, waypoints: Floats, kept: Indices, pairs: _Pairs) -> bool:
         """Return whether the world confirms a path; if it does not, some of its pairs are not usable any more."""
-        if now() >= self.deadline:
-            raise BudgetSpent
+        look_at_clock()
         along = pairs.along(kept)
         passed = confirmed(self.world, waypoints[kept], ~pairs.trusted[along])
         pairs.trusted[along[passed]] = True
@@ -121,7 +115,7 @@ class _Shortcut:
         """Return which pairs of waypoints i < j can be joined, (w, w)."""
         first, second = np.triu_indices(len(waypoints), k=1)
         free = np.zeros((len(waypoints), len(waypoints)), dtype=np.bool_)
-        for rows in in_time(np.arange(len(first)), self.deadline):
+        for rows in in_time(np.arange(len(first))):
             i, j = first[rows], second[rows]
             free[i, j] = self.world.motion_valid(waypoints[i], waypoints[j])
             self.checked += len(rows)

@@ -17,6 +17,7 @@ from evenroad._fingerprint import fingerprint_of
 from evenroad._native.robot import Checker
 from evenroad._native.robot import Scene as NativeScene
 from evenroad._shared import once_property, state_without
+from evenroad._time_limit import require_time_for
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PointCloud
@@ -236,6 +237,7 @@ class ArmWorld(Changes, OneOrMany):
         bodies inside the robot's true shapes, see :mod:`evenroad.robot.separated`.
         """
         terminals = as_batch("start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim)
+        require_time_for("evenroad.robot.separated")
         # Imported late: few plans need the proof.
         from evenroad.robot.separated import apart
 

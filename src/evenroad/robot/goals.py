@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._time_limit import require_time_for
 from evenroad.geometry.pose import Pose
 from evenroad.robot.chain import chain_of, default_tip, frame_pose
 from evenroad.robot.inverse_kinematics import Checks, Reached, reach, reach_quickly, task_of
@@ -44,9 +45,14 @@ class Goals:
     @property
     def unreached(self) -> str:
         """Why no goal can be planned to, or nothing."""
-        if len(self.names) or not self.poses:
+        if (len(self.names) and not self.spent) or not self.poses:
             return ""
-        return "; ".join(reached.why for _, reached in self.poses)
+        return "; ".join(reached.why for _, reached in self.poses if reached.spent or not self.spent)
+
+    @property
+    def spent(self) -> bool:
+        """Whether there was no time to look for the postures of some pose."""
+        return any(reached.spent for _, reached in self.poses)
 
     @property
     def in_collision(self) -> bool:
@@ -62,6 +68,7 @@ class Goals:
         poses = [] if straight else [goal for goal, _ in self.poses]
 
         def prove(start: Floats, goals: Floats, quickly: bool) -> Apart | None:
+            require_time_for("evenroad.robot.separated")
             # Imported late: few plans need the proof.
             from evenroad.robot.separated import apart
 
@@ -112,7 +119,7 @@ def goals_of(
         poses.append((goal, reached))
         rows.append(reached.configurations)
         names += [str(goal)] * len(reached.configurations)
-    if many and not names:
+    if many and not names and not found[0].spent:
         # Nothing was reached soon: all are looked at again, in full.
         poses = [(goal, reach(world, goal, start)) for goal, _ in poses]
         rows = [reached.configurations for _, reached in poses]

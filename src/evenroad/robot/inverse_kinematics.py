@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
 from evenroad._checks import as_row
+from evenroad._time_limit import BudgetSpent
 from evenroad.robot.chain import Chain, chain_of, default_tip, frame_pose
 from evenroad.robot.closed_form import branches, closed_form
 from evenroad.robot.pose_goal import PoseGoal
@@ -66,11 +67,16 @@ class Reached:
     """Without a free one: a posture in collision, or the nearest configuration, (dim,)."""
     reason: Callable[[], str] = str
     """Without a free one: returns why, which takes longer than to find it out."""
+    spent: bool = False
+    """Whether the time was over before the search was done: then there is none."""
 
     @cached_property
     def why(self) -> str:
         """Without a free one: why."""
-        return self.reason()
+        try:
+            return self.reason()
+        except BudgetSpent:
+            return "no configuration was found, and there was no time to say why"
 
     @property
     def in_collision(self) -> bool:
@@ -87,6 +93,13 @@ def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike, *, quickly: bool 
     """
     start = np.array(as_row("start", start, len(world.robot.group)))  # type: ignore[arg-type]
     chain, task = task_of(world.robot, goal)
+    try:
+        return _reached(world, goal, chain, task, start, quickly=quickly)
+    except BudgetSpent:
+        return _spent(goal, start)
+
+
+def _reached(world: Checks, goal: PoseGoal, chain: Chain, task: PoseTask, start: Floats, *, quickly: bool) -> Reached:
     solved, best = np.empty((0, len(start))), start
     spare = len(chain.moving) > task.numbers
     solver, free = "numeric", np.empty(0, dtype=np.bool_)
@@ -111,6 +124,13 @@ def reach_quickly(world: Checks, goals: Sequence[PoseGoal], start: Floats) -> li
 
     Raises as that.
     """
+    try:
+        return _reached_quickly(world, goals, start)
+    except BudgetSpent:
+        return [_spent(goal, start) for goal in goals]
+
+
+def _reached_quickly(world: Checks, goals: Sequence[PoseGoal], start: Floats) -> list[Reached]:
     found: list[Reached | None] = [None] * len(goals)
     together: dict[tuple[int, bool], list[tuple[int, PoseTask]]] = {}
     chains: dict[int, Chain] = {}
@@ -149,6 +169,8 @@ def _with_others(world: Checks, goal: PoseGoal, rows: Floats, start: Floats, sol
     alone = replace(goal, others=())
     for other in goal.others:
         reached = [reach(world, other, row) for row in rows[:_SIDE]]
+        if any(each.spent for each in reached):
+            return _spent(goal, start)
         rows = np.concatenate([each.configurations[:_SIDE] for each in reached])
         if not len(rows):
             return Reached(rows, 0, 0, solver, start, partial(_why_not_both, alone, reached[0].reason))
@@ -161,6 +183,12 @@ def _with_others(world: Checks, goal: PoseGoal, rows: Floats, start: Floats, sol
     rows = rows[kept]
     rows = rows[np.argsort(np.linalg.norm(rows - start, axis=1), kind="stable")][:MOST]
     return Reached(rows, len(rows), 0, solver, rows[0])
+
+
+def _spent(goal: PoseGoal, start: Floats) -> Reached:
+    """Return that there was no time to look for all postures of a goal."""
+    why = f"no free configuration was found for {goal} in the time that there was; give it more"
+    return Reached(np.empty((0, len(start))), 0, 0, "numeric", start, lambda: why, spent=True)
 
 
 def _why_not_both(goal: PoseGoal, reason: Callable[[], str]) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
+from evenroad._time_limit import look_at_clock, require_time_for
 from evenroad.robot.kernel.moving_tree import moving_tree
 from evenroad.robot.kernel.native_robot import shape_speeds
 from evenroad.robot.kernel.placed_capsules import LARGEST_EXCESS, place_capsule, speed_bounds
@@ -32,8 +33,10 @@ BEYOND = 1e-4
 """Distance that cells reach beyond the limits of joints, where rounding may put a configuration [rad or m]."""
 _SLOWEST = 0.05
 """Least speed of links by which cells are sized [m/rad]."""
-_AT_ONCE = 65_536
+_AT_ONCE = 16_384
 """Number of cells that are checked at once."""
+_LABELLED = 5e-8
+"""Time in which a cell's piece is found, which is not interrupted [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,10 +115,13 @@ def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], mo
     cells = cells_around(first, configuration[: len(reach)], np.array(reach), most)
     if bodies.shapes is None and not thinner(first, 0.5 * cells.size, SLACK + 4.0 * bodies.margin).capsules:
         return None
+    require_time_for("scipy.ndimage")
     # Imported here, as most plans need no proof.
     from scipy.ndimage import label
 
-    number = _joined(label(_free_cells(bodies, first, cells))[0], cells.whole)
+    free = _free_cells(bodies, first, cells)
+    look_at_clock(_LABELLED * free.size)
+    number = _joined(label(free)[0], cells.whole)
     cell = cells.cell(configuration[: len(reach)])
     # A configuration in no cell, or in a blocked one, contradicts the check.
     if cell is None or number[cell] == 0:
@@ -256,6 +262,7 @@ def _free_cells(bodies: Bodies, first: Robot, cells: Cells) -> Bools:
     for begin in range(0, len(free), _AT_ONCE):
         rows = np.unravel_index(np.arange(begin, min(begin + _AT_ONCE, len(free))), shape)
         q = np.stack([middles[k][row] for k, row in enumerate(rows)], axis=1)
+        look_at_clock()
         free[begin : begin + _AT_ONCE] = tests.unblocked(0.5 * cells.size, q)
     return free.reshape(shape)
 

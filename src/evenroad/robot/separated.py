@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
+from evenroad._time_limit import look_at_clock
 from evenroad.robot.chain import Chain
 from evenroad.robot.inverse_kinematics import task_of
 from evenroad.robot.locked import BEYOND, Bodies, Piece, piece_of
@@ -146,6 +147,7 @@ def shown_by(
     for joints, reach, cells in tries:
         if joints > len(group):
             break
+        look_at_clock()
         if joints == SPLIT and unreached and is_cut_off(bodies, start, np.array(unreached), joints, split):
             unreached = []
         piece = piece_of(bodies, start, reach, cells) if unreached or undecided else None

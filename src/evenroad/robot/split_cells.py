@@ -8,10 +8,12 @@ with the fewest of them are split, until start and goal are apart or joined by c
 from __future__ import annotations
 
 from collections.abc import Iterator
+from time import perf_counter as now
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad._time_limit import look_at_clock, require_time_for
 from evenroad.robot.locked import Bodies, Cells, CellTests, cells_around, first_links
 
 COARSE = 500
@@ -89,6 +91,7 @@ def is_cut_off(bodies: Bodies, start: Floats, goals: Floats, joints: int, most: 
 
     False where that is not shown with `most` cells.
     """
+    require_time_for("scipy.sparse.csgraph")
     # Imported here, as most plans need no proof.
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import dijkstra
@@ -99,7 +102,11 @@ def is_cut_off(bodies: Bodies, start: Floats, goals: Floats, joints: int, most: 
     corner = np.stack(np.meshgrid(*(np.arange(2),) * joints, indexing="ij"), axis=-1).reshape(-1, joints)
     new = np.stack(np.meshgrid(*map(np.arange, cells.count), indexing="ij"), axis=-1).reshape(-1, joints)
     level = np.zeros(len(new), dtype=np.int64)
+    pace = 0.0
     while True:
+        # A round that would not end in time is not begun: its searches of the graph are not interrupted.
+        look_at_clock(pace * (len(leaves) + len(new)))
+        began = now()
         for depth in np.unique(level).tolist():
             here = new[level == depth]
             size = cells.size / 2**depth
@@ -124,6 +131,7 @@ def is_cut_off(bodies: Bodies, start: Floats, goals: Floats, joints: int, most: 
         split = ~leaves.clear & (through <= MORE * least + 1.0) & (leaves.level < DEEPEST)
         if least < 0.5 or not split.any() or len(leaves) + (len(corner) - 1) * int(split.sum()) > most:
             return False
+        pace = 1.5 * (now() - began) / len(leaves)
         level = np.repeat(leaves.level[split] + 1, len(corner))
         new = (2 * leaves.number[split][:, np.newaxis] + corner).reshape(-1, joints)
         leaves.keep(~split)

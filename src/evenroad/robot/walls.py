@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
+from evenroad._time_limit import look_at_clock, require_time_for
 from evenroad.geometry.hulls import Hull
 from evenroad.robot.joint import Joint
 from evenroad.robot.kernel.hull_trees import HullTrees, contacts, hull_trees
@@ -80,6 +81,7 @@ def _walls_of(
     trees = hull_trees({link: [(hull.points[np.newaxis], 0.0) for hull in of] for link, of in solid.items()})
     walls: list[list[float]] = [[] for _ in group]
     for first, second in pairs:
+        look_at_clock()
         moving = _between(robot, first, second) if first in solid and second in solid else []
         for k in {coordinate for _, coordinate in moving}:
             others = [each for each in moving if each[1] != k]
@@ -154,6 +156,7 @@ class _Pair:
         half, poses, met = self._in_middles(np.array([value]), _CELLS)
         left = np.ones(len(poses), dtype=np.bool_)
         for _ in range(_MOST_POINTS):
+            look_at_clock()
             # Hulls that seem to meet only say where to look.
             cell = int(left.argmax())
             hulls = [of[number] for of, number in zip(self.solid, met[cell], strict=True)]
@@ -182,6 +185,7 @@ def _deepest(other: Hull, still: Hull, pose: Floats) -> Floats:
 
     What the solver says of it is not relied on.
     """
+    require_time_for("scipy.optimize")
     from scipy.optimize import linprog
 
     own, sides = _sides(other), _sides(still)

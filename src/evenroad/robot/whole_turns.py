@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints
+from evenroad._time_limit import look_at_clock
 from evenroad.robot.chain import TURN, Chain
 
 MOST = 64
@@ -12,6 +13,8 @@ MOST = 64
 
 _MOST_TURNING = 8
 """Largest number of joints that are tried in other turns, too."""
+_AT_ONCE = 256
+"""Number of postures of which each is compared with all others at once."""
 
 
 def wrapped(chain: Chain, q: Floats) -> Floats:
@@ -26,14 +29,25 @@ def distinct(chain: Chain, q: Floats, apart: float) -> Floats:
     """Return postures of which no two are nearer than `apart`, modulo turns; the first of each stays."""
     if len(q) < 2:
         return q
-    gap = np.abs(q[:, np.newaxis] - q)
+    kept = q[:0]
+    for begin in range(0, len(q), _AT_ONCE):
+        look_at_clock()
+        some = q[begin : begin + _AT_ONCE]
+        some = some[~_near(chain, some, kept, apart).any(axis=1)]
+        near = _near(chain, some, some, apart)
+        new: list[int] = []
+        for row in range(len(some)):
+            if not near[row, new].any():
+                new.append(row)
+        kept = np.concatenate([kept, some[new]])
+    return kept
+
+
+def _near(chain: Chain, a: Floats, b: Floats, apart: float) -> Bools:
+    """Return which postures of two sets, (n, dim) and (m, dim), are nearer than `apart`: (n, m)."""
+    gap = np.abs(a[:, np.newaxis] - b)
     gap = np.where(chain.turns, np.minimum(gap, np.abs(TURN - gap)), gap)
-    near = gap.max(axis=2) < apart
-    kept: list[int] = []
-    for row in range(len(q)):
-        if not near[row, kept].any():
-            kept.append(row)
-    return q[kept]
+    return np.asarray(gap.max(axis=2, initial=0.0) < apart)
 
 
 def with_turns(chain: Chain, q: Floats, start: Floats, of: Ints) -> tuple[Floats, Ints]:

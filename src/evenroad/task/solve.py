@@ -10,6 +10,7 @@ from time import perf_counter as now
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._rng import RngLike
+from evenroad._time_limit import BudgetSpent, Deadline, look_at_clock, off_the_clock, until
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.plan import Options, budget_of, finished, solve
 from evenroad.planning.read_request import request_in
@@ -55,7 +56,7 @@ class _Search:
 
     steps: tuple[Step, ...]
     reading: Reading
-    deadline: float
+    deadline: Deadline
     tried: int = 0
     deepest: int = -1
     why: PlanResult | None = None
@@ -64,7 +65,7 @@ class _Search:
         """Return choices for all motions, the cheapest first; of each motion `width` are gone on with."""
         level = [first]
         while any(isinstance(step, Move) for step in self.steps[level[0].number :]):
-            begun = (branch for branch in level if now() < self.deadline)
+            begun = (branch for branch in level if not self.deadline.is_over)
             level = [later for branch in begun for later in self._later(branch, width) if not later.failed]
             level = sorted(level, key=lambda branch: branch.cost)[:width]
             if not level:
@@ -168,36 +169,47 @@ def plan_task(
     if not isinstance(world, ArmWorld):
         raise InvalidValue(f"a task is planned in an ArmWorld, got {shown(world)}")
     began, budget = now(), budget_of(None, seconds, limits)
-    deadline = budget.deadline()
+    with off_the_clock():
+        _ = world.checker
+    deadline = Deadline.after(budget.seconds)
 
     def plan_between(request: Request, constraints: Constraint | None) -> PlanResult:
         # Half of what is left, so that another choice has time, too.
-        rest = budget if budget.seconds is None else replace(budget, seconds=max(0.5 * (deadline - now()), 1e-3))
+        rest = budget if budget.seconds is None else replace(budget, seconds=max(0.5 * deadline.left, 1e-3))
         return finished(request, solve(request, None, Options(rest, smooth, rng, constraints=constraints)))[0]
 
     search = _Search(steps, reading, deadline)
-    first = _Branch(Stage(world, request_in(world, start, start, reading).start, world.robot), 0)
-    motions = None
-    for width in WIDTHS:
-        for branch in search.whole(first, width):
-            motions = _planned(search, branch, first.stage.q, plan_between) if now() < deadline else None
-            if motions is not None:
-                break
-        if motions is not None or now() >= deadline:
-            break
+    motions, cut = None, False
+    try:
+        with until(deadline):
+            first = _Branch(Stage(world, request_in(world, start, start, reading).start, world.robot), 0)
+            motions = _motions(search, first, plan_between)
+    except BudgetSpent:
+        cut = True
     timings = {"task": now() - began}
     if motions is not None:
         cost = sum(part.cost or 0.0 for motion in motions for part in motion.parts)
         message = f"{len(motions)} motions of length {cost:.6g}"
         return TaskResult(steps, Status.SOLVED, message, motions, None, timings, search.tried)
-    status = Status.NOT_CONNECTED if search.why is None else search.why.status
+    status = Status.BUDGET_SPENT if search.why is None else search.why.status
     why = "the time is spent" if search.why is None else search.why.message
-    message = f"step {search.deepest} of the task cannot be done: {why}"
+    message = f"step {max(search.deepest, 0)} of the task cannot be done: {why}"
     if search.tried > 1:
         message += f"; {search.tried} choices were tried in all"
-    if search.why is not None and now() >= deadline:
+    if search.why is not None and cut:
         message += ", then the time was spent"
     return TaskResult(steps, status, message, (), max(search.deepest, 0), timings, search.tried)
+
+
+def _motions(search: _Search, first: _Branch, plan_between: PlanBetween) -> tuple[Motion, ...] | None:
+    """Return the motions of the cheapest choices that can be planned, of more and more choices; None without any."""
+    for width in WIDTHS:
+        for branch in search.whole(first, width):
+            look_at_clock()
+            if (motions := _planned(search, branch, first.stage.q, plan_between)) is not None:
+                return motions
+        look_at_clock()
+    return None
 
 
 def _planned(search: _Search, branch: _Branch, start: Floats, plan_between: PlanBetween) -> tuple[Motion, ...] | None:

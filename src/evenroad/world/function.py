@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, cast
 
 import numpy as np
@@ -12,6 +12,7 @@ from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import as_row, counted, require_positive
 from evenroad._fingerprint import fingerprint_of
+from evenroad._time_limit import Pace, in_time, look_at_clock
 from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.space import BoxSpace, Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
@@ -82,6 +83,7 @@ class FunctionWorld(OneOrMany):
     resolution: float | Sequence[float] | None = None
     vectorised: bool | None = None
     name: str | None = None
+    _pace: Pace = field(default_factory=Pace, init=False, repr=False)
 
     def __post_init__(self) -> None:
         if not callable(self.is_valid):
@@ -177,10 +179,13 @@ class FunctionWorld(OneOrMany):
         if self.vectorised is None:
             set_fields(self, vectorised=self._takes_many(states))
         if self.vectorised:
-            free[owner[~self._evaluate(states)]] = False
+            for rows in in_time(np.arange(len(states)), self._pace):
+                some = slice(rows[0], rows[-1] + 1)
+                free[owner[some][~self._evaluate(states[some])]] = False
             return
         for i, state in zip(owner, states, strict=True):
             if free[i]:
+                look_at_clock()
                 free[i] = self._evaluate_one(state)
 
     def _takes_many(self, states: Floats) -> bool:
@@ -194,6 +199,7 @@ class FunctionWorld(OneOrMany):
                 return True
         except Exception:
             pass
+        look_at_clock()
         try:
             return not isinstance(self.is_valid(states[0]), bool | np.bool_)
         except Exception:

@@ -15,6 +15,7 @@ import numpy as np
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
+from evenroad._time_limit import look_at_clock
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import ALL_SYMMETRIES
@@ -37,6 +38,9 @@ SPREAD, EVENNESS = 1.0, 0.3
 
 PARTS = (0.25, 0.5, 0.75, 1.0)
 """Parts of a doubling: for digit m, the first 2^(m-1) (1 + part) points are scored."""
+
+_OF_BLOCK = 5e-3
+"""Time that a block of vectors takes to score [s]."""
 
 TIE = 1e-9
 """Difference below which scores are equal: rounding does not choose between mirrored lattices."""
@@ -141,6 +145,7 @@ def _scores(vectors: Ints, digit: int) -> Floats:
     scores = np.empty(len(vectors))
     block = max(1, 2**19 // (size * d))
     for first in range(0, len(vectors), block):
+        look_at_clock(_OF_BLOCK)
         some = vectors[first : first + block, :, np.newaxis]
         gaps = steps * some % size / size
         gaps = np.minimum(gaps, 1.0 - gaps)

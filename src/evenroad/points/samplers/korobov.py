@@ -18,6 +18,7 @@ import numpy as np
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
+from evenroad._time_limit import look_at_clock
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import ALL_SYMMETRIES
@@ -164,6 +165,7 @@ def _least_energy(candidates: Ints, n: int, d: int) -> int:
     limit = np.inf
     first, looks = 1, 0
     while first <= half:
+        look_at_clock()
         last = min(half, first + BLOCK // len(vectors))
         log_sums = np.logaddexp(log_sums, _log_energies(vectors, n, first, last))
         first, looks = last + 1, looks + 1

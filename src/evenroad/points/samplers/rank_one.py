@@ -14,6 +14,7 @@ from math import gcd
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
+from evenroad._time_limit import look_at_clock
 from evenroad.errors import InvalidValue
 from evenroad.points.samplers.korobov import MAX_N, TIE, integer_power, korobov_generator, multipliers, powers
 
@@ -70,6 +71,7 @@ def _descended(n: int, first: tuple[int, ...]) -> tuple[int, ...]:
         score, before = np.inf, np.inf
         for _ in range(SWEEPS):
             for axis in range(1, d):
+                look_at_clock()
                 squared, kernel = _terms(np.delete(z, axis), steps, n)
                 others = squared.sum(axis=0), kernel.prod(axis=0)
                 scores = _score(*_summed(others[0] + of_tried[0], others[1] * of_tried[1], steps, n, d), n, d)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -10,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad.roadmap.budget import BudgetSpent, Pace, Stopwatch, in_time
+from evenroad._time_limit import BudgetSpent, Pace, in_time
+from evenroad.roadmap.budget import Stopwatch
 from evenroad.world import World
 
 States: TypeAlias = npt.NDArray[np.int8]
@@ -40,8 +40,8 @@ class EdgeStates:
     """The states of nodes and edges, filled in as the world checks them; nothing is checked twice.
 
     The nodes are `configurations`, (nodes, dim); the motions of `edges`, (m, 2), are checked from the first node to the
-    second.  `cache` holds earlier states and is updated in place.  At most `most_motions` are checked, before the
-    deadline. `configurations_checked` and `motions_checked` count; `watch` gets the phases ``validity`` and
+    second.  `cache` holds earlier states and is updated in place.  At most `most_motions` are checked, in the
+    time that there is.  `configurations_checked` and `motions_checked` count; `watch` gets the phases ``validity`` and
     ``motions``.
     """
 
@@ -52,7 +52,6 @@ class EdgeStates:
         edges: Ints32,
         watch: Stopwatch | None = None,
         most_motions: int | None = None,
-        deadline: float = math.inf,
         cache: StateCache | None = None,
     ) -> None:
         self.world, self.configurations, self.edges = world, configurations, edges
@@ -60,13 +59,13 @@ class EdgeStates:
         self.node_states, self.edge_states, self.confirmed = cache.nodes, cache.edges, cache.confirmed
         self.configurations_checked = self.motions_checked = 0
         self.watch = Stopwatch() if watch is None else watch
-        self.most_motions, self.deadline = most_motions, deadline
+        self.most_motions = most_motions
         self._node_pace, self._edge_pace = Pace(), Pace()
 
     def evaluate_nodes(self, nodes: npt.NDArray[np.integer]) -> None:
         """Check those of the nodes whose state is unknown; BudgetSpent if time does not allow all."""
         unknown = nodes[self.node_states[nodes] == UNKNOWN]
-        for rows in in_time(unknown, self.deadline, self._node_pace):
+        for rows in in_time(unknown, self._node_pace):
             with self.watch("validity"):
                 free = self.world.valid(self.configurations[rows])
             self.node_states[rows] = np.where(free, FREE, BLOCKED)
@@ -78,7 +77,7 @@ class EdgeStates:
         wanted = len(unknown)
         if self.most_motions is not None:
             unknown = unknown[: self.most_motions - self.motions_checked]
-        for rows in in_time(unknown, self.deadline, self._edge_pace):
+        for rows in in_time(unknown, self._edge_pace):
             pairs = self.edges[rows]
             a, b = self.configurations[pairs[:, 0]], self.configurations[pairs[:, 1]]
             with self.watch("motions"):

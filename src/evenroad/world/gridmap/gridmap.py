@@ -14,6 +14,7 @@ from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_positive
 from evenroad._native.world import Components, Disk
+from evenroad._time_limit import look_at_clock
 from evenroad.errors import distinguished
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
@@ -24,6 +25,8 @@ from evenroad.world.protocol import Apart
 
 PROVED = "proved: there is no path; start and goal lie in two components of the free space"
 
+_OF_CELL = 3e-8
+"""Time that each cell of a map takes at least where components are made [s]."""
 _CLOSE = 1e-3
 """Largest error of a reported clearance, which is too small by it [pixels]."""
 _INTERVALS = 300_000
@@ -262,6 +265,7 @@ class DiskWorld(OneOrMany):
 
     @cached_property
     def _components(self) -> Components:
+        look_at_clock(_OF_CELL * self.grid.occupied.size)
         return Components(self.disk)
 
     def fingerprint(self) -> str:

@@ -4,18 +4,23 @@
 #include <typeinfo>
 
 #include "bind/parts.hpp"
+#include "common/time_limit.hpp"
 
 namespace nb = nanobind;
 
 namespace {
 
-/// Raise evenroad.errors.InvalidValue for what the bindings, or the tables of a kernel, refuse.
+/// Raise evenroad.errors.InvalidValue for what the bindings, or the tables of a kernel, refuse, and BudgetSpent where
+/// the time is over.
 void translate(const std::exception_ptr& thrown, void*) {
   try {
     std::rethrow_exception(thrown);
   } catch (const std::invalid_argument& error) {
     nb::object kind = nb::module_::import_("evenroad.errors").attr("InvalidValue");
     PyErr_SetString(kind.ptr(), error.what());
+  } catch (const evenroad::TimeIsOver& over) {
+    nb::object kind = nb::module_::import_("evenroad._time_limit").attr("BudgetSpent");
+    PyErr_SetString(kind.ptr(), over.what());
   } catch (const std::bad_cast&) {
     nb::object kind = nb::module_::import_("evenroad.errors").attr("InvalidValue");
     PyErr_SetString(kind.ptr(), "what a tuple or list holds must be of the types that the stubs name");
@@ -34,6 +39,7 @@ NB_MODULE(EVENROAD_MODULE, module) {
   evenroad::bind::add_roadmap(module);
   evenroad::bind::add_robot(module);
   evenroad::bind::add_space(module);
+  evenroad::bind::add_time_limit(module);
   evenroad::bind::add_trajectory(module);
   evenroad::bind::add_world(module);
 }

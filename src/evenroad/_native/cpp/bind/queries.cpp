@@ -2,6 +2,7 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string_view.h>
 
+#include <limits>
 #include <string_view>
 
 #include "bind/planning.hpp"
@@ -50,7 +51,7 @@ struct Answer {
 };
 
 Answer answer(std::shared_ptr<Checker> checker, nb::handle start, nb::handle goal, const Drivers& drivers,
-              std::int64_t motions, double seconds, std::string_view smoothing) {
+              std::int64_t motions, double search_seconds, std::string_view smoothing) {
   const std::size_t size = checker->dim();
   const Floats first(start, "start"), last(goal, "goal");
   const auto from = first.of_shape({size}).span(), to = last.of_shape({size}).span();
@@ -60,7 +61,8 @@ Answer answer(std::shared_ptr<Checker> checker, nb::handle start, nb::handle goa
   std::vector<double> ends(from.begin(), from.end());
   ends.insert(ends.end(), to.begin(), to.end());
   return without_gil([&] {
-    return Answer{planning::answer(std::move(checker), {ends.data(), 2, size}, by, {motions, seconds}, how), size};
+    const planning::QueryLimits limits{motions, search_seconds, std::numeric_limits<double>::infinity()};
+    return Answer{planning::answer(std::move(checker), {ends.data(), 2, size}, by, limits, how), size};
   });
 }
 
@@ -93,7 +95,7 @@ std::vector<std::shared_ptr<Checker>> checkers_from(nb::sequence given, std::siz
 }
 
 void make_many_queries(ManyQueries* made, nb::sequence checkers, nb::sequence roomier, nb::handle of, nb::handle ends,
-                       const Drivers& drivers, std::int64_t motions, double seconds, std::string_view smoothing) {
+                       const Drivers& drivers, std::int64_t motions, nb::tuple seconds, std::string_view smoothing) {
   const FloatRows rows(ends, "ends");
   const Array<const std::int64_t, 1> numbers(of, "of");
   rows.of_shape({2 * numbers.size(), rows.shape(1)});
@@ -102,10 +104,13 @@ void make_many_queries(ManyQueries* made, nb::sequence checkers, nb::sequence ro
   require(worlds.size() == with_room.size(), "roomier must have one entry for each of the checkers");
   require_below(numbers.span(), worlds.size(), "of");
   require_budget(motions, "motions");
+  require(seconds.size() == 2, "seconds must be those of the search and of all");
+  const planning::QueryLimits limits{motions, value_of<double>(seconds[0], "seconds"),
+                                     value_of<double>(seconds[1], "seconds")};
   std::vector<planning::QueryWorld> pairs;
   for (std::size_t i = 0; i < worlds.size(); i++) pairs.push_back({worlds[i], with_room[i]});
-  planning::ManyQueries queries(std::move(pairs), numbers.span(), rows.matrix(), drivers.of(rows.shape(1)),
-                                {motions, seconds}, smoothing_from(smoothing));
+  planning::ManyQueries queries(std::move(pairs), numbers.span(), rows.matrix(), drivers.of(rows.shape(1)), limits,
+                                smoothing_from(smoothing));
   new (made) ManyQueries{rows, numbers, std::move(queries)};
 }
 
@@ -146,6 +151,7 @@ void add_queries(nb::module_& part) {
                    [](const Answer& answer) {
                      return nb::make_tuple(answer.found.search_seconds, answer.found.smoothing_seconds);
                    })
+      .def_prop_ro("is_cut", [](const Answer& answer) { return answer.found.is_cut; })
       .def("smooth_apart", &smooth_answer);
   part.def("answer", &answer);
   nb::class_<ManyQueries>(part, "ManyQueries")

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/time_limit.hpp"
 #include "planning/shortcuts.hpp"
 
 namespace evenroad::planning {
@@ -66,6 +67,7 @@ Improver::Improver(Matrix<const double> ends, const Sequences& sequences, const 
 Progress Improver::improve(Effort most, std::int64_t batches) {
   const std::int64_t pause = checks_.counts.batches + batches;
   while (length() > (1.0 + STRAIGHT) * least()) {
+    look_at_clock();
     if (motions_ >= most.motions) return Progress::SPENT;
     if (checks_.counts.batches >= pause) return Progress::PAUSED;
     TreePlanner* trees = trees_ ? &*trees_ : nullptr;

@@ -7,6 +7,8 @@
 #include <future>
 #include <utility>
 
+#include "common/time_limit.hpp"
+
 namespace evenroad::planning {
 
 ManyQueries::ManyQueries(std::vector<QueryWorld> worlds, std::span<const std::int64_t> of, Matrix<const double> ends,
@@ -20,14 +22,14 @@ ManyQueries::ManyQueries(std::vector<QueryWorld> worlds, std::span<const std::in
       answers_(of.size()) {}
 
 std::size_t ManyQueries::go_on(std::size_t threads, double seconds) {
-  const auto began = std::chrono::steady_clock::now();
+  const auto began = SteadyClock::now();
   std::atomic<std::size_t> next = count_;
   const auto work = [&] {
     do {
       const std::size_t query = next.fetch_add(1);
       if (query >= answers_.size()) return;
       answers_[query] = answered(query);
-    } while (std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() < seconds);
+    } while (std::chrono::duration<double>(SteadyClock::now() - began).count() < seconds);
   };
   std::vector<std::future<void>> others;
   for (std::size_t i = 1; i < std::min(threads, answers_.size() - count_); i++) {
@@ -42,6 +44,7 @@ std::size_t ManyQueries::go_on(std::size_t threads, double seconds) {
 Answer ManyQueries::answered(std::size_t query) const {
   const QueryWorld& world = worlds_[static_cast<std::size_t>(of_[query])];
   const Matrix<const double> ends{ends_[2 * query].data(), 2, ends_.columns};
+  const TimeLimit time(limits_.seconds);
   Answer found = answer(world.checker, ends, drivers_, limits_, smoothing_);
   if (world.roomier && found.growth == Growth::SOLVED) smooth_apart(found, world.checker, world.roomier, drivers_);
   found.raw = {};

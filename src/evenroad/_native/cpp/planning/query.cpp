@@ -1,8 +1,7 @@
 // What a query asks of compiled code is done in one go: Python reads it before, and goes on where there is no path.
 #include "planning/query.hpp"
 
-#include <chrono>
-
+#include "common/time_limit.hpp"
 #include "planning/apart.hpp"
 #include "planning/native_checks.hpp"
 #include "planning/path_proof.hpp"
@@ -11,18 +10,18 @@ namespace evenroad::planning {
 
 namespace {
 
-/// Batches of sixteen checks between two looks at the clock: about 10 ms.
-constexpr std::int64_t SLICE = 1000;
+/// Batches of sixteen checks after which trees pause: the clock alone ends them.
+constexpr std::int64_t NO_PAUSE = std::int64_t{1} << 60;
 
 /// After so many batches no waypoint slides any more.
 constexpr std::int64_t SLIDING = 500;
 
 class Clock {
  public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+  double seconds() const { return std::chrono::duration<double>(SteadyClock::now() - began_).count(); }
 
  private:
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  SteadyClock::time_point began_ = SteadyClock::now();
 };
 
 /// Divide a straight path into so many equal motions.
@@ -36,44 +35,30 @@ void divide(Path& path, std::int64_t motions, const Joints& joints) {
   }
 }
 
-}  // namespace
-
-Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double> ends, const Drivers& drivers,
-              QueryLimits limits, Smoothing smoothing) {
-  const Clock clock;
-  Answer found;
-  if (checker->is_never_free()) return found;
-  NativeChecks checks(std::move(checker));
-  TreePlanner trees(ends, drivers.sequences, checks);
-  do {
-    found.growth = trees.grow(limits.motions, SLICE);
-  } while (found.growth == Growth::PAUSED && clock.seconds() < limits.seconds);
-  found.raw = found.path = trees.path();
-  found.nodes = trees.tree(0).size() + trees.tree(1).size();
-  found.configurations = checks.counts.configurations, found.motions = checks.counts.motions;
-  found.search_seconds = clock.seconds();
-  if (found.growth != Growth::SOLVED) return found;
-  found.raw_length = found.length = length_of(found.raw, checks.joints);
-  const bool is_smoothed = smoothing == Smoothing::QUICK || smoothing == Smoothing::TIGHT;
-  if (!is_smoothed || found.raw.size() <= 2 * ends.columns) return found;
-  Path path(found.raw, checks.joints);
-  if (smoothing == Smoothing::QUICK) {
-    shorten(path, drivers.guides.pairs, MOST_SHORTCUTS, checks);
-  } else {
-    smooth(path, drivers.guides, {SLIDING}, true, checks);
+/// Grow trees until they meet, or no longer.
+Growth grown(TreePlanner& trees, QueryLimits limits) {
+  const TimeLimit time(limits.search_seconds);
+  try {
+    return trees.grow(limits.motions, NO_PAUSE);
+  } catch (const TimeIsOver&) {
+    return Growth::PAUSED;
   }
-  found.path = path.points();
-  found.length = length_of(found.path, checks.joints);
-  found.smoothing_motions = checks.counts.motions - found.motions;
-  found.smoothing_seconds = clock.seconds() - found.search_seconds;
-  return found;
 }
 
-void smooth_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
-                  std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
-  // One step of a tree is short: it stays as it is.
-  if (answer.nodes <= 2) return;
-  const Clock clock;
+/// Do what may be left undone; return whether there was time for it.
+template <class Work>
+bool ends_in_time(Work work) {
+  try {
+    work();
+    return true;
+  } catch (const TimeIsOver&) {
+    return false;
+  }
+}
+
+/// Write the path of an answer, smoothed in both worlds.
+void smooth_path_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
+                       std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
   NativeChecks checks(std::move(checker));
   Path path(answer.raw, checks.joints);
   const bool is_straight = path.size() == 2;
@@ -94,6 +79,47 @@ void smooth_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
     answer.length = length_of(answer.path, checks.joints);
   }
   answer.smoothing_motions += checks.counts.motions;
+}
+
+}  // namespace
+
+Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double> ends, const Drivers& drivers,
+              QueryLimits limits, Smoothing smoothing) {
+  const Clock clock;
+  Answer found;
+  if (checker->is_never_free()) return found;
+  NativeChecks checks(std::move(checker));
+  TreePlanner trees(ends, drivers.sequences, checks);
+  found.growth = grown(trees, limits);
+  found.raw = found.path = trees.path();
+  found.nodes = trees.tree(0).size() + trees.tree(1).size();
+  found.configurations = checks.counts.configurations, found.motions = checks.counts.motions;
+  found.search_seconds = clock.seconds();
+  if (found.growth != Growth::SOLVED) return found;
+  found.raw_length = found.length = length_of(found.raw, checks.joints);
+  const bool is_smoothed = smoothing == Smoothing::QUICK || smoothing == Smoothing::TIGHT;
+  if (!is_smoothed || found.raw.size() <= 2 * ends.columns) return found;
+  found.is_cut = !ends_in_time([&] {
+    Path path(found.raw, checks.joints);
+    if (smoothing == Smoothing::QUICK) {
+      shorten(path, drivers.guides.pairs, MOST_SHORTCUTS, checks);
+    } else {
+      smooth(path, drivers.guides, {SLIDING}, true, checks);
+    }
+    found.path = path.points();
+    found.length = length_of(found.path, checks.joints);
+  });
+  found.smoothing_motions = checks.counts.motions - found.motions;
+  found.smoothing_seconds = clock.seconds() - found.search_seconds;
+  return found;
+}
+
+void smooth_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
+                  std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
+  // One step of a tree is short: it stays as it is.
+  if (answer.nodes <= 2) return;
+  const Clock clock;
+  answer.is_cut |= !ends_in_time([&] { smooth_path_apart(answer, std::move(checker), std::move(roomier), drivers); });
   answer.smoothing_seconds += clock.seconds();
 }
 

@@ -21,10 +21,10 @@ struct Drivers {
   Guides guides;
 };
 
-/// What a query may take: motions of the trees, and seconds.
+/// What a query may take: motions of the trees, seconds until a path is found, and seconds in all.
 struct QueryLimits {
   std::int64_t motions;
-  double seconds;
+  double search_seconds, seconds;
 };
 
 /// What a query found, and what it took.
@@ -36,6 +36,8 @@ struct Answer {
   double raw_length = 0.0, length = 0.0;
   std::int64_t nodes = 0, configurations = 0, motions = 0, smoothing_motions = 0;
   double search_seconds = 0.0, smoothing_seconds = 0.0;
+  /// Whether there was no time to smooth the path: it is as trees found it, or as it was smoothed before.
+  bool is_cut = false;
 };
 
 /// Answer a query from the first row of `ends` to the second.  A path that is to keep apart from obstacles is left to

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/time_limit.hpp"
+
 namespace evenroad::planning {
 
 namespace {
@@ -40,6 +42,7 @@ Growth TreePlanner::grow(std::int64_t most_motions, std::int64_t batches) {
   if (!is_planted()) return Growth::NOT_FREE;
   const std::int64_t pause = checks_.counts.batches + batches;
   while (true) {
+    look_at_clock();
     if (is_spent()) return Growth::SPENT;
     if (checks_.counts.batches >= pause) return Growth::PAUSED;
     if (idle_ > MOST_IDLE) return Growth::SPENT;

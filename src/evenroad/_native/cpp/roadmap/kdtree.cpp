@@ -7,11 +7,14 @@
 #include <limits>
 #include <numeric>
 
+#include "common/time_limit.hpp"
+
 namespace evenroad::roadmap {
 
 namespace {
 
 constexpr std::size_t LEAF_SIZE = 12;
+constexpr int POINTS_A_LOOK = 64;
 constexpr double INF = std::numeric_limits<double>::infinity();
 
 /// A part of the points: a range of the tree's order, its bounding box, and the lowest index in it.
@@ -215,7 +218,9 @@ std::vector<std::int32_t> k_nearest(const Periodic& set, std::size_t k, bool ear
   const Tree tree(set.points);
   const auto find = set.wraps() ? find_nearest<true> : find_nearest<false>;
   // Queries in tree order touch the same leaves one after the other, which keeps them in the cache.
+  ClockWatch clock(POINTS_A_LOOK);
   for (const std::int32_t query : tree.order()) {
+    clock.look();
     find(tree, set, query, earlier ? query : n, Nearest({&found[query * k], k}, distances));
   }
   return found;
@@ -225,7 +230,9 @@ std::vector<std::int32_t> pairs_within(const Periodic& set, double radius) {
   std::vector<std::int32_t> pairs;
   const Tree tree(set.points);
   const auto find = set.wraps() ? find_within<true> : find_within<false>;
+  ClockWatch clock(POINTS_A_LOOK);
   for (std::size_t query = 0; query < set.points.rows; query++) {
+    clock.look();
     find(tree, set, static_cast<std::int32_t>(query), radius * radius, pairs);
   }
   return pairs;

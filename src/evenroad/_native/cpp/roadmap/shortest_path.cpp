@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/time_limit.hpp"
+
 namespace evenroad::roadmap {
 
 namespace {
@@ -90,8 +92,10 @@ Path shortest_path(const Graph& graph, const Costs& costs, const States& states,
   std::int32_t end = -1;
   cost[start] = 0;
   open.put(start, costs.bounds[start]);
+  ClockWatch clock(512);
   // Ties with the goal are looked at, too: one of them may have the lower node.
   while (!open.empty() && (end < 0 || open.least() <= cost[end])) {
+    clock.look();
     const std::int32_t node = open.take();
     if (is_goal[node]) {
       if (end < 0 || cost[node] < cost[end] || (cost[node] == cost[end] && node < end)) end = node;

@@ -95,7 +95,7 @@ Mask blocked_lanes(Workspace& workspace, const Lengths& lengths, Mask settled, W
 }  // namespace
 
 Mask blocked_where_placed(Workspace& workspace, const Lengths& lengths, Wanted wanted) {
-  workspace.counts.batches++;
+  workspace.begin_batch();
   return meeting_anything(workspace, lengths, 0, wanted, nullptr);
 }
 
@@ -104,7 +104,7 @@ Mask blocked_where_placed(Workspace& workspace, Wanted wanted) {
 }
 
 Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted, Mask settled) {
-  workspace.counts.batches++;
+  workspace.begin_batch();
   return blocked_lanes(workspace, lengths, settled, wanted, nullptr);
 }
 

@@ -11,13 +11,14 @@
 //   workspace->counts                               how many motions, configurations and batches were checked
 //   workspace->judge_by(&checker.wider(margin))     larger bodies until judge_by(nullptr)
 //
-// Results depend on the arguments alone, not on what the workspace was used for before.  Nothing here throws, and
-// nothing takes memory, once a workspace is made.
+// Results depend on the arguments alone, not on what the workspace was used for before.  Nothing here
+// takes memory once a workspace is made, and nothing throws but where the time is over.
 #pragma once
 
 #include <memory>
 #include <mutex>
 
+#include "common/time_limit.hpp"
 #include "robot/motion.hpp"
 #include "robot/self_contact.hpp"
 #include "robot/speeds.hpp"
@@ -29,6 +30,9 @@ namespace evenroad::robot {
 struct Counts {
   std::int64_t motions = 0, configurations = 0, batches = 0;
 };
+
+/// Batches between two looks at the clock, which takes as long as a hundredth of one.
+inline constexpr int BATCHES_A_LOOK = 4;
 
 struct Workspace;
 class Checker;
@@ -98,6 +102,13 @@ struct Workspace {
   std::vector<Stretch> waiting;
   Speeds speeds;
   Counts counts;
+  ClockWatch clock{BATCHES_A_LOOK};
+
+  /// Count a batch of sixteen, which may be one too many for the time that there is.
+  void begin_batch() {
+    counts.batches++;
+    clock.look();
+  }
 };
 
 /// Write rows, (n, dim), from number `first` on into the lanes, and return the mask of those that are out of bounds:

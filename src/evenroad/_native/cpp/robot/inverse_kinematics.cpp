@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/time_limit.hpp"
+
 namespace evenroad::robot {
 
 namespace {
@@ -13,6 +15,7 @@ constexpr double EXACT = 1e-10;  // an error is none that is no larger [m, rad]
 constexpr double LONGEST = 0.8;  // no joint moves by more in a step [rad or m]
 constexpr int LOOK = 8;          // after so many steps the error must have halved
 constexpr double DAMPING = 0.03;
+constexpr int SOLVED_A_LOOK = 4;  // configurations between two looks at the clock
 constexpr double INF = std::numeric_limits<double>::infinity();
 
 /// By how much a tip has to move and to turn, or does so with a coordinate: in the root's frame.
@@ -205,8 +208,10 @@ class Solver {
 std::vector<double> reach(const Chain& chain, const PoseTask& task, const Limits& limits, int steps, std::size_t enough,
                           Matrix<double> q) {
   Solver solver(chain, limits);
+  ClockWatch clock(SOLVED_A_LOOK);
   std::vector<double> missing(q.rows, INF);
   for (std::size_t i = 0, found = 0; i < q.rows && found < enough; i++) {
+    clock.look();
     missing[i] = solver.solve(q[i], task, steps);
     found += missing[i] == 0.0;
   }
@@ -217,8 +222,10 @@ std::vector<double> follow(const Chain& chain, PoseTask task, std::span<const do
                            std::span<const double> towards, Matrix<const double> poses, const Limits& limits, int steps,
                            double longest) {
   Solver solver(chain, limits);
+  ClockWatch clock(SOLVED_A_LOOK);
   std::vector<double> path, before(from.begin(), from.end()), q = before;
   for (std::size_t i = 0; i < poses.rows; i++) {
+    clock.look();
     std::copy_n(poses[i].begin(), 9, task.pose.rotation.begin());
     std::copy_n(poses[i].begin() + 9, 3, task.pose.origin.begin());
     for (std::size_t k = 0; i > 0 && k < towards.size(); k++) {

@@ -29,6 +29,7 @@ Projection::Projection(const Keeps& keeps, const Projecting& how)
       step_(keeps.dim()) {}
 
 bool Projection::move(std::span<double> q, int steps) {
+  clock_.look();
   for (int count = 0;; count++) {
     state_.place(q);
     for (std::size_t row = 0, k = 0; k < keeps_.each.size(); row += keeps_.each[k++].rows) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "common/time_limit.hpp"
 #include "robot/keep_state.hpp"
 
 namespace evenroad::robot {
@@ -29,6 +30,7 @@ class Projection {
 
   const Keeps& keeps_;
   const Projecting& how_;
+  ClockWatch clock_{16};
   KeepState state_;
   std::vector<double> error_;
   OwnMatrix<double> columns_, square_;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <queue>
 
+#include "common/time_limit.hpp"
+
 namespace evenroad::world {
 
 namespace {
@@ -21,7 +23,9 @@ class WaySearch {
     const std::int16_t part = tiles_.part_at(start);
     if (part < 0) return std::nullopt;
     leave(tile, part, -1, start, 0.0);
+    ClockWatch clock(8);
     while (!queue_.empty()) {
+      clock.look();
       const Waiting next = queue_.top();
       queue_.pop();
       if (next.node < 0) return traced(next);

@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/time_limit.hpp"
+
 namespace evenroad::world {
 
 namespace {
+
+/// Cells between two looks at the clock.
+constexpr int CELLS_A_LOOK = 1024;
 
 /// Which piece of a cell each of its parts belongs to, -1 of none.
 using Pieces = std::array<std::array<std::int16_t, PARTS>, PARTS>;
@@ -85,7 +90,9 @@ Components::Components(const Disk& disk) : cells_(disk.rows(), disk.columns()), 
   const std::size_t cells = cells_.values.size();
   // Cells first, and behind them the pieces of those at gates.
   std::vector<std::int32_t> parent(cells + first_.back(), -1);
+  ClockWatch clock(CELLS_A_LOOK);
   for (std::size_t cell = 0; cell < cells; cell++) {
+    clock.look();
     const auto row = static_cast<std::int64_t>(cell) / disk.columns(),
                column = static_cast<std::int64_t>(cell) % disk.columns();
     const bool whole = number_.values[cell] < 0 && disk.cell(row, column) != BLOCKED;
@@ -102,9 +109,11 @@ Components::Components(const Disk& disk) : cells_(disk.rows(), disk.columns()), 
 
 void Components::number_gates(const Disk& disk) {
   Pieces pieces;
+  ClockWatch clock(CELLS_A_LOOK / 16);
   first_.push_back(0);
   for (std::int64_t row = 0; row < disk.rows(); row++) {
     for (std::int64_t column = 0; column < disk.columns(); column++) {
+      clock.look();
       const bool is_gate = disk.is_gate(row, column);
       number_(row, column) = is_gate ? static_cast<std::int32_t>(opened_.size()) : -1;
       if (!is_gate) continue;
@@ -119,11 +128,13 @@ void Components::unite_neighbours(std::vector<std::int32_t>& parent) const {
   const auto rows = static_cast<std::int64_t>(cells_.rows), columns = static_cast<std::int64_t>(cells_.columns);
   const std::int64_t cells = rows * columns;
   Pieces here, there;
+  ClockWatch clock(CELLS_A_LOOK);
   const auto place = [&](std::int32_t gate, std::int16_t piece) {
     return piece < 0 ? -1 : cells + first_[gate] + piece;
   };
   for (std::int64_t row = 1; row < rows - 1; row++) {
     for (std::int64_t column = 1; column < columns - 1; column++) {
+      clock.look();
       const std::int64_t cell = row * columns + column;
       const std::int32_t gate = number_.values[cell];
       if (gate >= 0) pieces_of(opened_[gate], here);

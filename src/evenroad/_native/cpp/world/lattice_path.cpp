@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/time_limit.hpp"
 #include "world/corridor.hpp"
 #include "world/node_memory.hpp"
 
@@ -103,7 +104,9 @@ class LatticeSearch {
   LatticePath run(Point start) {
     LatticePath found;
     Buckets queue = seeded(start);
+    ClockWatch clock(256);
     while (!queue.empty() && motions_ < most_) {
+      clock.look();
       const Node node = queue.take();
       NodeState& state = *nodes_.find(node);
       if (state.is_closed) continue;

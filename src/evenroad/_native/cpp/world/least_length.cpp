@@ -11,6 +11,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "common/time_limit.hpp"
+
 namespace evenroad::world {
 
 namespace {
@@ -51,7 +53,9 @@ class AnyAngleSearch {
 
   double run(Point start, std::int64_t most) {
     if (begin(start)) return distance(start, goal_);
+    ClockWatch clock(256);
     for (std::int64_t done = 0; !queue_.empty(); done++) {
+      clock.look();
       const Interval next = queue_.top();
       if (done >= most) return next.estimate;
       queue_.pop();

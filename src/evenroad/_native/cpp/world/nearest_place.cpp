@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/time_limit.hpp"
+
 namespace evenroad::world {
 
 namespace {
@@ -77,6 +79,7 @@ std::optional<Point> nearest_free(const Disk& disk, Point at) {
   Best best;
   for (std::int64_t ring = 0; ring < std::max(disk.rows(), disk.columns()); ring++) {
     if (ring > 1 && static_cast<double>(ring) - 1.0 > std::sqrt(best.squared)) break;
+    look_at_clock();
     const std::int64_t bottom = std::min(row + ring, last_row);
     for (std::int64_t r = std::max<std::int64_t>(row - ring, 1); r <= bottom; r++) {
       const std::int64_t step = std::max<std::int64_t>(std::abs(r - row) == ring ? 1 : 2 * ring, 1);

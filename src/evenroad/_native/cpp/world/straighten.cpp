@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "common/time_limit.hpp"
 #include "world/lattice_path.hpp"
 
 namespace evenroad::world {
@@ -93,6 +94,7 @@ class Smoother {
  private:
   bool is_free(Point from, Point to) {
     motions_++;
+    clock_.look();
     return disk_.is_motion_free(from, to);
   }
 
@@ -120,6 +122,7 @@ class Smoother {
 
   const Disk& disk_;
   double close_;
+  ClockWatch clock_{16};
   std::int64_t motions_ = 0;
 };
 

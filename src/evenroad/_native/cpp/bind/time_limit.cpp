@@ -1,0 +1,13 @@
+// evenroad._native.time_limit: the time that this thread may take.
+#include "common/time_limit.hpp"
+
+#include "bind/parts.hpp"
+
+namespace evenroad::bind {
+
+void add_time_limit(nanobind::module_& module) {
+  nanobind::module_ part = module.def_submodule("time_limit", "The time that this thread may take.");
+  part.def("end_after", [](double seconds) { end_of_time = evenroad::end_after(seconds); });
+}
+
+}  // namespace evenroad::bind
