@@ -10,14 +10,16 @@ from scipy.ndimage import label
 from evenroad.geometry.shapes import Capsule
 from evenroad.planning import plan
 from evenroad.roadmap import Budget
-from evenroad.robot import ArmWorld, Robot, Scene, in_scene
+from evenroad.robot import ArmWorld, Robot, Scene, in_scene, load_robot
 from evenroad.robot.joint import Joint, Mimic
-from evenroad.robot.locked import BEYOND, SLACK, Bodies, first_links, piece_of, thinner
+from evenroad.robot.locked import BEYOND, SLACK, Bodies, CellTests, first_links, piece_of, thinner
 from evenroad.robot.scene import Obstacle
-from evenroad.robot.separated import apart
+from evenroad.robot.separated import apart, inner_bodies
+from evenroad.robot.split_cells import is_cut_off
 from tests.plan_on import may_connect
 from tests.robot.kernel_arms import STRAIGHT, Z, edge, random_scene, random_tree, walk
 from tests.robot.post_scenes import at, flat_arm, free_places, posts
+from tests.robot.urdf_texts import joint, link, urdf, write
 
 
 def bodies(world):
@@ -208,6 +210,75 @@ def test_first_links_keep_what_is_held_and_bodies_thinner_than_a_cell_prove_noth
     assert thinner(robot, np.array([1.0, 1.0]), SLACK).capsules == ()
     world = ArmWorld(flat_arm(), posts(at(1.0, 0.3)))
     assert piece_of(bodies(world), np.array([0.0, 0.5]), (np.inf, np.inf), 4) is None
+
+
+PLATE = "<collision><origin xyz='0.25 0 0'/><geometry><box size='0.5 0.01 0.02'/></geometry></collision>"
+
+
+@pytest.fixture(scope="module")
+def plate(tmp_path_factory):
+    """A thin plate that turns about its end, as the file has it."""
+    limit = "<limit lower='-1' upper='1' velocity='1' effort='1'/>"
+    text = urdf(link("base", ""), link("plate", PLATE), joint("turn", "base", "plate", inside=limit, axis="0 0 1"))
+    return load_robot(write(tmp_path_factory.mktemp("plate"), text.replace("0 0 0.3", "0 0 0")))
+
+
+def block(*xyz, turn=0.0):
+    cosine, sine = math.cos(turn), math.sin(turn)
+    rotation = (cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0)
+    return Scene((Obstacle.of("block", "box", (0.5, 0.4, 0.4), xyz, rotation),), name="block")
+
+
+def cell_tests(of):
+    return CellTests(of, first_links(of.robot, 1))
+
+
+def test_no_cell_of_true_shapes_is_blocked_that_a_corner_leaves_at_its_rim(plate):
+    """The corner moves by nearly as much as is said of the whole link."""
+    half, seen = 0.05, {True: 0, False: 0}
+    for deep in np.linspace(0.012, 0.03, 60):
+        world = ArmWorld(plate, block(0.7, 0.205 - deep, 0.0))
+        blocked = not cell_tests(inner_bodies(world)).unblocked(np.array([half]), np.zeros((1, 1)))[0]
+        free = world.valid(np.array([[-half], [0.0]]))
+        assert not free[1]
+        assert not (blocked and free[0])
+        seen[bool(blocked)] += 1
+        seen[bool(free[0])] += 1
+    assert min(seen.values()) > 10
+
+
+@pytest.mark.parametrize("share", [0.5, 0.95])
+def test_bodies_that_touch_by_less_than_what_is_left_out_block_no_cell(plate, share):
+    """Of capsules and of true shapes: what rounding and left out corners may add to bodies shows nothing."""
+    still, middle = np.zeros(1), np.zeros((1, 1))
+
+    def corner_in_block(deep):
+        # The corner alone, which no capsule inside of the plate comes near to.
+        away = (0.25 - deep) / math.sqrt(2.0)
+        return ArmWorld(plate, block(0.5 + away, 0.005 + away, 0.0, turn=0.25 * math.pi))
+
+    one = replace(flat_arm(joints=1), capsules=(Capsule((0.3, 0.0, 0.0), (0.3, 0.0, 0.0), 0.04, link="link0"),))
+    arm, cornered = ArmWorld(one, posts((0.3, 0.09 - share * 1e-4))), corner_in_block(share * 5e-4)
+    for world, of in ((arm, bodies(arm)), (cornered, inner_bodies(cornered))):
+        assert not world.valid(middle)[0]
+        assert cell_tests(of).unblocked(still, middle)[0]
+    # A millimetre shows it.
+    arm, cornered = ArmWorld(one, posts((0.3, 0.089))), corner_in_block(1e-3)
+    for of in (bodies(arm), inner_bodies(cornered)):
+        assert not cell_tests(of).unblocked(still, middle)[0]
+
+
+def test_a_start_in_a_blocked_cell_or_in_none_shows_nothing():
+    """It contradicts the checks, so what they say of other cells is no proof."""
+    world = ArmWorld(flat_arm(), posts(at(1.0, 0.3)))
+    blocked, free, beyond = np.array([1.0, 0.5]), np.array([0.0, 0.5]), np.array([-3.5, 0.5])
+    assert piece_of(bodies(world), free, (np.inf,), 200) is not None
+    for start in (blocked, beyond):
+        assert piece_of(bodies(world), start, (np.inf,), 200) is None
+    behind = np.array([2.0, 0.5])
+    assert is_cut_off(bodies(world), free, behind[np.newaxis], 1, 4_000)
+    for start, goals in ((blocked, [behind]), (free, [blocked]), (free, [behind, blocked]), (beyond, [behind])):
+        assert not is_cut_off(bodies(world), start, np.array(goals), 1, 4_000)
 
 
 def test_where_a_thinner_body_touches_its_cell_is_blocked_throughout():

@@ -10,11 +10,14 @@ from evenroad.planning.arm_trees import connect
 from evenroad.robot import ArmWorld, CartesianLine, HeldObject, Obstacle, PoseGoal, Scene, load_robot
 from evenroad.robot.chain import chain_of, default_tip
 from evenroad.robot.inverse_kinematics import task_of
+from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.locked import Cells, Piece
 from evenroad.robot.separated import apart, is_beyond
 from tests.plan_on import may_connect
-from tests.robot.kernel_arms import random_tree
+from tests.robot.kernel_arms import STRAIGHT, Z, random_tree
+
+X = (1.0, 0.0, 0.0)
 
 START = np.array([0.0, 0.6, 0.0, -0.8, 0.0, 0.5, 0.0])
 WITNESSES = (
@@ -283,3 +286,30 @@ def test_a_clouds_balls_and_a_closed_mesh_block_as_they_are(tmp_path):
     assert not may_connect(ArmWorld(robot, Scene((Obstacle("cloud", wider),), name="cloud")), A, B)
     found = apart(ArmWorld(robot, Scene((Obstacle("cloud", wider),), name="cloud")), A, B[np.newaxis], quickly=True)
     assert found.proved
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_a_joint_slides_by_is_a_lever_of_the_joints_before_it(seed):
+    """An arm that turns, slides and turns: its first joint moves the third by as much as the second has slid."""
+    rng = np.random.default_rng(seed)
+    far = rng.uniform(0.02, 0.1, 3)
+    links = ("base", "arm", "slider", "hand", "tip")
+    kinds = (("revolute", 0.0, Z, -3, 3), ("prismatic", far[0], X, 0, 1), ("revolute", far[1], Z, -3, 3))
+    kinds += (("fixed", far[2], Z, 0, 0),)
+    joints = tuple(
+        Joint(f"joint{i}", kind, links[i], links[i + 1], (x, 0.0, 0.0), STRAIGHT, axis, *limits)
+        for i, (kind, x, axis, *limits) in enumerate(kinds)
+    )
+    ball = er.geometry.Capsule((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.01, link="arm")
+    robot = er.Robot("slider", links, joints, (ball,), (), ("joint0", "joint1", "joint2"))
+    chain, half = chain_of(robot, "tip"), rng.uniform(0.2, 0.4)
+    for q in rng.uniform([-half, 0.9, -3.0], [half, 1.0, 3.0], (40, 3)):
+        place = chain.tip_poses(q[np.newaxis])[0]
+        # The cell holds the posture at its rim.
+        cells = Cells(
+            np.array([q[0] - 2.0 * half, q[1]]), np.array([q[0], q[1] + 1e-3]), np.ones(2, int), np.full(2, np.inf)
+        )
+        piece = Piece(cells, np.ones((1, 1), dtype=bool))
+        for more in ({}, {"position_only": True}):
+            pose = Pose(tuple(place[9:]), tuple(place[:9]))
+            assert not is_beyond(piece, *task_of(robot, PoseGoal(pose, "tip", **more)))

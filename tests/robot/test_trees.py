@@ -11,8 +11,10 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Box
+from evenroad.planning import plan
 from evenroad.planning.arm_trees import connect, grown_trees, shorten, smooth
 from evenroad.points.reversed_halton import ball_points, cube_points, reversed_halton, sphere_points
+from evenroad.roadmap import Budget
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import link_poses
@@ -21,6 +23,7 @@ from evenroad.robot.scene import Obstacle, Scene
 from tests.robot.kernel_arms import STRAIGHT, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
 from tests.robot.paths import GOAL, START, box_world, dense_states, proved
+from tests.robot.post_scenes import at, flat_arm, free_places, posts
 
 
 @pytest.fixture(scope="module")
@@ -295,3 +298,21 @@ def test_trees_that_are_shown_are_free_and_begin_at_the_ends():
     assert world.motion_valid(nodes[links[:, 0]], nodes[links[:, 1]]).all()
     roots = nodes[np.setdiff1d(np.arange(len(nodes)), links[:, 0])]
     np.testing.assert_allclose(np.sort(roots, axis=0), np.sort([START, GOAL], axis=0))
+
+
+def test_paths_among_posts_that_no_state_shows_are_free_by_proof_alone():
+    """States are so far apart that most posts stand between two of them: nothing but proofs keeps paths away."""
+    plans = 0
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        robot = flat_arm(joints=3)
+        robot = replace(robot, capsules=tuple(replace(each, radius=0.01) for each in robot.capsules))
+        scene = posts(*map(at, rng.uniform(-3.0, 3.0, 9), rng.uniform(0.25, 1.4, 9)), radius=0.01)
+        world = ArmWorld(robot, scene, resolution=0.6)
+        fine, places = replace(world, resolution=1e-3), free_places(world, rng, 8)
+        for start, goal in zip(places[::2], places[1::2], strict=True):
+            path = plan(world, start, goal, limits=Budget(motions=4_000)).path
+            if path is not None:
+                assert fine.motion_valid(path[:-1], path[1:]).all()
+                plans += 1
+    assert plans > 6
