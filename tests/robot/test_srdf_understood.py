@@ -91,7 +91,7 @@ def test_a_robot_of_several_groups_is_shown_with_their_names_where_a_plan_needs_
     (two_joints(SPHERE.replace("0.05", "60")), "link 'lower' is 120 m long"),
     (two_joints(SPHERE.replace("0.05", "0.00004")), "link 'base' is 0.1 m long, 'lower' 8e-05 m"),
     (two_joints().replace("0 0 0.3", "0 0 300"), "is 300 m away"),
-    (two_joints().replace("0.05", "0.00005"), "is 0.3 m away"),
+    (two_joints().replace("0.05", "0.0002"), "is 0.3 m away"),
 ])  # fmt: skip
 def test_sizes_of_another_unit_are_noted(text, says, tmp_path):
     (note,) = load_model(write(tmp_path, text)).notes
@@ -99,6 +99,6 @@ def test_sizes_of_another_unit_are_noted(text, says, tmp_path):
     assert "metres are expected" in note
 
 
-def test_an_arm_beside_its_screws_is_no_matter(tmp_path):
+def test_an_arm_beside_a_link_for_a_sensor_is_no_matter(tmp_path):
     assert load_model(write(tmp_path, two_joints(SPHERE.replace("0.05", "0.0002")))).notes == ()
     assert load_model(write(tmp_path, urdf(link("base"), link("up"), joint("a", "base", "up")))).notes == ()

@@ -16,8 +16,11 @@ from evenroad.robot.joint import Joint
 from evenroad.robot.robot_model import LinkBody
 from evenroad.robot.urdf import Urdf
 
-_LARGE, _UNLIKE = 20.0, 1000.0
-"""Size of a link or joint [m], and how many times another, beyond which a file seems to have another unit."""
+_LARGE, _UNLIKE = 20.0, 500.0
+"""Size of a link or joint [m], and how many times the median, beyond which a file seems to have another unit.
+
+Many robots have links of 1 mm in place of sensors.
+"""
 
 
 def opened(shapes: Sequence[Shape]) -> tuple[Shape, ...]:
@@ -81,7 +84,8 @@ def size_notes(capsules: Mapping[str, Sequence[Capsule]], joints: Iterable[Joint
     far = max(joints, key=lambda joint: np.linalg.norm(joint.xyz), default=None)
     away = 0.0 if far is None else float(np.linalg.norm(far.xyz))
     hint = "metres are expected; a mesh in millimetres has scale 0.001 0.001 0.001"
-    if sizes[largest] > _LARGE or sizes[largest] > _UNLIKE * sizes[smallest]:
+    middle = float(np.median(list(sizes.values())))
+    if sizes[largest] > min(_LARGE, _UNLIKE * middle) or middle > _UNLIKE * sizes[smallest]:
         both = f"link {largest!r} is {sizes[largest]:.3g} m long, {smallest!r} {sizes[smallest]:.3g} m"
         return (f"{both}: {hint}",)
     if far is not None and (away > _LARGE or away > _UNLIKE * sizes[largest]):
