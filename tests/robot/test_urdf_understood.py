@@ -12,6 +12,7 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot import ArmWorld, load_model, with_limits
 from evenroad.robot.masses import read_masses
 from evenroad.robot.urdf import read_urdf
+from evenroad.task import MoveTo, Task
 from evenroad.trajectory import limits_of
 from tests.robot.urdf_texts import LIMIT, SPHERE, joint, link, two_joints, urdf, write
 
@@ -136,6 +137,10 @@ def test_a_hand_that_stands_beyond_its_soft_limits_starts_and_goes_within_them(t
         assert result.path[0].tolist() == [2.7]
         assert "soft limits" in er.plan(world, [0.5], [2.7], **more).message
         assert not er.plan(world, [3.1], [0.5], **more).solved
+    world = ArmWorld(load_model(file).robot, scene)
+    assert Task([MoveTo("0.5")]).plan(world, [2.7]).solved
+    assert er.Replanner(world, [0.5]).update([2.7]).solved
+    assert er.plan_many(world, [[2.7]], [[0.5]]).status == [er.Status.SOLVED]
     hard = with_limits(load_model(file).robot, {"a": (-3.0, 3.0)})
     assert er.plan(ArmWorld(hard, scene), [0.5], [2.7]).solved
 
@@ -162,10 +167,11 @@ def test_accelerations_and_jerks_of_the_file_are_kept_in_time(tmp_path):
     robot = load_model(write(tmp_path, two_joints().replace(LIMIT, more, 1))).robot
     limits = limits_of(robot)
     assert limits.velocity == (2.0, 2.0)
-    assert limits.acceleration[0] == 0.25
+    assert limits.acceleration[0] == 0.5
+    assert limits.deceleration[0] == 0.25
     assert limits.jerk[0] == 4.0
     times = er.plan(ArmWorld(robot, er.Scene([])), [0.9, 0.0], [-0.9, 0.5]).trajectory()
-    assert np.abs(times.accelerations[:, 0]).max() <= 0.25
+    assert np.abs(times.accelerations[:, 0]).max() <= 0.5
 
 
 @pytest.mark.parametrize("wrong", ["acceleration='-1'", "jerk='fast'"])

@@ -162,14 +162,19 @@ def request_in(world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[
     """Read start and goals of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
     goals = _goal_list(goal, world.dim)
     first = _configuration(world.robot, world.scene, "start", start, reading)
-    robot = standing_at(world.robot, first)
-    world = world if robot is world.robot else replace(world, robot=robot)
+    world = reaching(world, first)
     if len(goals) == 1 and type(goals[0]) is np.ndarray:
         # Most goals: read at once, as `goals_of` would.
         given = Goals(_configuration(world.robot, world.scene, "goal", goals[0], reading)[np.newaxis], ("",))
     else:
         given = _goals_in(world, first, goals, reading)
     return Request(world, first, given.configurations, given)
+
+
+def reaching(world: ArmWorld, start: Floats) -> ArmWorld:
+    """Return a world whose arm can stand at the start, (dim,), beyond soft limits: itself where it does not."""
+    robot = standing_at(world.robot, start)
+    return world if robot is world.robot else replace(world, robot=robot)
 
 
 def mesh_check(request: Request, path: Floats) -> MeshCheck | None:

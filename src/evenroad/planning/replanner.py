@@ -19,7 +19,7 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
 from evenroad.planning.arm_trees import checks_of
 from evenroad.planning.connectors import drivers_of
-from evenroad.planning.read_request import request_in
+from evenroad.planning.read_request import reaching, request_in
 from evenroad.planning.request import ConfigurationLike, Reading, unreached
 from evenroad.planning.trees import variant_of
 from evenroad.points.reversed_halton import PAIRS, share_pairs
@@ -168,7 +168,7 @@ class Replanner:
             if moved is not None:
                 world = world.moved(moved)
             start = as_configuration(world.robot, q, world.scene, name="q")
-            self.world, self.path = world, None
+            self.world, self.path = reaching(world, start), None
             result = self._kept(start, began)
             result = self._planned(start, began) if result is None else result
             self.path = result.path

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -104,6 +105,11 @@ class Robot:
     def dof(self) -> int:
         """Number of values in a configuration."""
         return len(self.group)
+
+    @cached_property
+    def has_soft_limits(self) -> bool:
+        """Whether some joint has hard limits around those that are planned within."""
+        return any(joint.hard is not None for joint in self.joints)
 
     @property
     def limits(self) -> Floats:

@@ -58,7 +58,7 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
 
 def standing_at(robot: Robot, q: Floats) -> Robot:
     """Return the robot with its soft limits as wide as where it stands, (dim,), itself where it stands within them."""
-    if all(joint.hard is None for joint in robot.joints):
+    if not robot.has_soft_limits:
         return robot
     values = dict(zip(robot.group, q.tolist(), strict=True))
     joints = tuple(_reaching(joint, values.get(joint.name, joint.neutral)) for joint in robot.joints)

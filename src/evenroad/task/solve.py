@@ -182,7 +182,8 @@ def plan_task(
     motions, cut = None, False
     try:
         with until(deadline):
-            first = _Branch(Stage(world, request_in(world, start, start, reading).start, world.robot), 0)
+            begin = request_in(world, start, start, reading)
+            first = _Branch(Stage(begin.world, begin.start, begin.world.robot), 0)
             motions = _motions(search, first, plan_between)
     except BudgetSpent:
         cut = True
