@@ -116,19 +116,24 @@ def require_file(path: str | os.PathLike[str]) -> None:
     """Raise OSError for what is there and no file: a pipe would be waited for, and some devices never end."""
     mode = os.stat(path).st_mode
     if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
-        raise OSError(errno.EINVAL, "it is a device or a pipe, not a file", os.fspath(path))
+        raise OSError(errno.ESPIPE, "it is a device or a pipe, not a file", os.fspath(path))
+
+
+def open_file(path: str | os.PathLike[str]) -> IO[bytes]:
+    """Open a file to read its bytes; OSError if it cannot be read, or is a device or a pipe."""
+    require_file(path)
+    return open(path, "rb")
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
     """Return the content of a file; OSError if it cannot be read, or is a device or a pipe."""
-    require_file(path)
-    return Path(path).read_bytes()
+    with open_file(path) as file:
+        return file.read()
 
 
 def looks_like(path: str | os.PathLike[str]) -> str:
     """Return the type of a readable file by its content."""
-    require_file(path)
-    with open(path, "rb") as file:
+    with open_file(path) as file:
         begin = file.read(4096).lstrip()
     if not begin:
         return "empty"

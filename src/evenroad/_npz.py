@@ -14,7 +14,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._files import atomic_write, not_a
+from evenroad._files import atomic_write, not_a, open_file
 from evenroad._shared import OwnLock
 from evenroad.errors import BrokenFile, shown
 
@@ -68,7 +68,7 @@ def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
 
     arrays = {}
     # Opened here, not by NumPy, which leaves the handle open when the archive is broken.
-    with reading(path, f".npz {what}", b"PK"), open(path, "rb") as file:
+    with reading(path, f".npz {what}", b"PK"), open_file(path) as file:
         if file.read(6) == np.lib.format.MAGIC_PREFIX:
             raise BrokenFile(f"{path} is a plain array, not a .npz {what}")
         with zipfile.ZipFile(file) as archive:

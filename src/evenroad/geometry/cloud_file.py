@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
+from evenroad._files import open_file, read_bytes
 from evenroad._npz import read_array, reading
 from evenroad.errors import BrokenFile, UnknownName, shown
 
@@ -56,7 +57,7 @@ def load_cloud(path: str | os.PathLike[str]) -> Floats:
 
 
 def _read_npy(file: Path) -> npt.NDArray[np.generic]:
-    with file.open("rb") as stream:
+    with open_file(file) as stream:
         array = read_array(stream, file.stat().st_size)
     if array.dtype.names:
         return _columns(array)
@@ -66,7 +67,7 @@ def _read_npy(file: Path) -> npt.NDArray[np.generic]:
 
 
 def _read_xyz(file: Path) -> Floats:
-    lines = (line.split("#")[0].replace(",", " ").split() for line in file.read_text().splitlines())
+    lines = (line.split("#")[0].replace(",", " ").split() for line in read_bytes(file).decode().splitlines())
     rows = [[float(word) for word in words[:3]] for words in lines if words]
     if len({len(row) for row in rows}) > 1:
         raise ValueError("not every line has three numbers")
@@ -74,7 +75,7 @@ def _read_xyz(file: Path) -> Floats:
 
 
 def _read_ply(file: Path) -> Floats:
-    header, data = _header(file.read_bytes(), b"end_header")
+    header, data = _header(read_bytes(file), b"end_header")
     if not header or header[0] != ["ply"]:
         raise ValueError("it does not begin with 'ply'")
     kind = next(words[1] for words in header if words[0] == "format")
@@ -100,7 +101,7 @@ def _read_ply(file: Path) -> Floats:
 
 
 def _read_pcd(file: Path) -> Floats:
-    header, data = _header(file.read_bytes(), b"DATA")
+    header, data = _header(read_bytes(file), b"DATA")
     said = {words[0]: words[1:] for words in header}
     kind = said["DATA"][0]
     if kind not in ("ascii", "binary", "binary_compressed"):

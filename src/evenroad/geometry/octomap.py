@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from evenroad._arrays import Floats, Ints, unique_rows
+from evenroad._files import read_bytes
 from evenroad.errors import BrokenFile
 
 _LEVELS = 16
@@ -26,7 +27,7 @@ def read_octomap(file: Path) -> tuple[Floats, Ints]:
     an occupied cell.
     """
     try:
-        header, data = file.read_bytes().split(b"\ndata\n", 1)
+        header, data = read_bytes(file).split(b"\ndata\n", 1)
         lines = [line.split() for line in header.decode("ascii").splitlines() if line and not line.startswith("#")]
         said = {words[0]: words[1] for words in lines}
         resolution, count = float(said["res"]), int(said["size"])

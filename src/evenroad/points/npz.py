@@ -11,7 +11,7 @@ import numpy as np
 
 from evenroad._call import explains_calls
 from evenroad._checks import as_file, require_known
-from evenroad._files import atomic_write
+from evenroad._files import atomic_write, open_file, require_file
 from evenroad._npz import Arrays, Path, read_array, read_json, read_npz, reading, write_npz
 from evenroad.errors import BrokenFile, shown
 from evenroad.points.pointset import Origin, PointSet
@@ -73,11 +73,12 @@ def load_points(path: str | os.PathLike[str]) -> PointSet:
     suffix = as_file("what points are read from", path, "points of an array are PointSet(array)").suffix
     if suffix == ".csv":
         try:
+            require_file(path)
             return PointSet(np.loadtxt(path, delimiter=",", ndmin=2))
         except (OSError, UnicodeDecodeError) as error:
             raise BrokenFile(f"cannot read the points {path}: {error}") from error
     if suffix != ".npz":
-        with reading(path, ".npy array of shape (n, d)", b"\x93NUMPY"), open(path, "rb") as file:
+        with reading(path, ".npy array of shape (n, d)", b"\x93NUMPY"), open_file(path) as file:
             array = read_array(file, os.path.getsize(path))
         return PointSet(array)
     arrays = read_npz(path, "point set", ("points", "origin", "hash"))

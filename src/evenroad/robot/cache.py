@@ -21,7 +21,7 @@ import numpy as np
 
 from evenroad import __version__
 from evenroad._arrays import Floats
-from evenroad._files import atomic_write, cache_folder
+from evenroad._files import atomic_write, cache_folder, read_bytes
 from evenroad._fingerprint import fingerprint_of
 from evenroad._seal import read_sealed, sealed
 from evenroad.errors import BrokenFile
@@ -54,7 +54,7 @@ def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | S
     for what, path in (*meshes, *others):
         try:
             # An empty file is refused where none at all is fine.
-            content = b"absent" if path is None else b"present" + path.read_bytes()
+            content = b"absent" if path is None else b"present" + read_bytes(path)
         except OSError as error:
             raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
         digest.update(hashlib.sha256(content).digest())

@@ -26,7 +26,7 @@ from evenroad.robot.pairs import SelfPairs, pairs_of, self_pairs
 from evenroad.robot.robot import Padding, Robot
 from evenroad.robot.robot_model import RobotModel
 from evenroad.robot.srdf import Srdf, read_srdf, with_moving_base
-from evenroad.robot.urdf import Urdf, read_urdf
+from evenroad.robot.urdf import Urdf, read_urdf, require_few_links
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.robot.xml_file import outermost
 
@@ -209,6 +209,7 @@ def _build(
 ) -> RobotModel:
     urdf, srdf, chosen = _planned(urdf, srdf_path, group)
     given = {} if bodies_path is None else read_bodies(bodies_path, urdf.links)
+    require_few_links(len(urdf.links), len({shape.link for shape in urdf.shapes}), file.path)
     urdf = replace(urdf, shapes=opened(urdf.shapes))
     capsules = capsules_of(urdf, given, progress)
     if not capsules:

@@ -18,9 +18,10 @@ from evenroad.geometry.shapes import Mesh, Shape, shape_of
 from evenroad.robot.joint import Joint, Kind
 from evenroad.robot.mjcf_contacts import Contacts, contacts_of, untested_pairs
 from evenroad.robot.mjcf_equalities import name_of, with_equalities
+from evenroad.robot.mjcf_guard import require_bounded
 from evenroad.robot.mjcf_states import keyframes, note_left_out
 from evenroad.robot.planes import DEPTH, SIDE, Plane
-from evenroad.robot.urdf import Urdf, as_tree
+from evenroad.robot.urdf import Urdf, as_tree, require_few_links
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.robot.xml_file import read_xml
 
@@ -45,13 +46,17 @@ def read_mjcf(file: RobotFile) -> Urdf:
     not installed.
     """
     read_xml(file.path, "robot", "an MJCF", "mujoco")
+    require_bounded(file.path)
     mujoco = require_extra("mujoco", "mjcf", f"{file.path} is an MJCF, which")
     try:
         spec = mujoco.MjSpec.from_file(str(file.path))
+        # Memory for a simulation, which is none of ours.
+        spec.memory = -1
         model = spec.compile()
     except (ValueError, RuntimeError) as error:
         said = " ".join(str(error).split())
         raise BrokenFile(f"MuJoCo cannot read {file.path}: {said}") from error
+    require_few_links(model.nbody, len(set(model.geom_bodyid.tolist())), file.path)
     return _Reader(mujoco, model, file, spec.modelname).urdf()
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from evenroad._checks import require_known
+from evenroad._files import read_bytes
 from evenroad._yaml import numbers
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, shown
 from evenroad.geometry.mesh import TriangleMesh
@@ -36,7 +37,7 @@ def read_scene_text(path: Path) -> Scene:
     is not > 0, a quaternion has no direction, or two objects share a name.
     """
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = read_bytes(path).decode().splitlines()
     except (OSError, ValueError) as error:
         raise BrokenFile(f"cannot read scene {path}: {getattr(error, 'strerror', None) or error}") from error
     return Scene(tuple(_from_text(lines, path)), name=lines[0].strip() or path.stem if lines else path.stem)

@@ -188,6 +188,9 @@ class _Samples:
         for first, second in pairs:
             reach = balls[first][3] + balls[second][3]
             rows = some[np.linalg.norm(centres[first] - centres[second], axis=1) <= reach]
+            self.touching[first, second] = rows
+            if not len(rows):
+                continue
             rows = rows[self._touching(trees, first, second, rows)]
             inside = self._touching(self._parts, first, second, rows)
             self.touching[first, second] = rows[inside]
@@ -219,7 +222,7 @@ class _Samples:
     def never_free(self, tested: Sequence[tuple[str, str]]) -> str:
         """Return which tested pair blocks most, if one of them touches in all samples of the group."""
         rows = self.looked_at
-        times = {pair: np.isin(rows, self.touching[pair]) for pair in tested}
+        times = {pair: np.isin(rows, self.touching[pair]) for pair in tested if len(self.touching[pair])}
         if not times or not np.any(list(times.values()), axis=0).all():
             return ""
         (first, second), worst = max(times.items(), key=lambda item: item[1].sum())

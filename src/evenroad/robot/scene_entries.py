@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from evenroad._checks import require_known, require_positive
+from evenroad._files import open_file
 from evenroad._npz import read_array, reading
 from evenroad._yaml import numbers, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName, shown
@@ -146,7 +147,7 @@ def _heights(entry: dict[str, Any], path: Path, where: str) -> TriangleMesh:
     file = _file(entry, path, where)
     (spacing,) = numbers(entry["spacing"], 1, f"spacing of {where}")
     require_positive(f"spacing of {where}", spacing)
-    with reading(file, ".npy of heights", b"\x93NUMPY"), open(file, "rb") as stream:
+    with reading(file, ".npy of heights", b"\x93NUMPY"), open_file(file) as stream:
         heights = read_array(stream, file.stat().st_size)
     (depth,) = numbers(entry.get("depth", spacing * max(np.shape(heights), default=0)), 1, f"depth of {where}")
     return height_map(heights, spacing, depth=require_positive(f"depth of {where}", depth, or_zero=True))

@@ -98,7 +98,7 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     passive = frozenset(
         name for joint in root.findall("passive_joint") if known.joint(name := _attribute(joint, "name", path))
     )
-    reader = _Groups(elements, known, path)
+    reader = _Groups(elements, known, path, {joint.child: joint for joint in urdf.joints})
     groups = {name: _in_order(reader.joints(name, ()) - passive, urdf) for name in elements}
     states: dict[tuple[str, str], dict[str, float]] = {}
     for state in root.findall("group_state"):
@@ -154,6 +154,8 @@ def with_moving_base(urdf: Urdf, srdf: Path) -> Urdf:
     return urdf
 
 
+_DEEPEST = 100
+"""Largest number of groups of an SRDF inside of each other."""
 _MISSING = {
     "joint": "joints that the robot lacks",
     "link": "links that the robot lacks",
@@ -198,13 +200,24 @@ class _Groups:
     elements: Mapping[str, Element]
     known: _Model
     path: Path
+    by_child: Mapping[str, Joint]
+    done: dict[str, set[str]] = field(default_factory=dict)
 
     def joints(self, name: str, inside: tuple[str, ...]) -> set[str]:
-        """Return the joints of a group; `inside` are the groups that led to it."""
+        """Return the joints of a group; `inside` are the groups that led to it.
+
+        A group is read once: nested ones that repeat each other would be exponentially many.
+        """
         if name in inside:
             raise BrokenFile(f"groups of {self.path} contain each other: {' -> '.join([*inside, name])}")
-        by_child = {joint.child: joint for joint in self.known.urdf.joints}
-        found: set[str] = set()
+        if len(inside) > _DEEPEST:
+            raise BrokenFile(f"groups of {self.path} are nested more than {_DEEPEST} deep")
+        if name not in self.done:
+            self.done[name] = self._read(name, inside)
+        return self.done[name]
+
+    def _read(self, name: str, inside: tuple[str, ...]) -> set[str]:
+        by_child, found = self.by_child, set[str]()
         require_known(f"group in {self.path}:", name, self.elements)
         for part in self.elements[name]:
             if part.tag == "joint":

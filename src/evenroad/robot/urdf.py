@@ -24,6 +24,8 @@ from evenroad.robot.urdf_xml import RobotFile, drawn_only, find_mesh, read_urdf_
 _KINDS = ("revolute", "continuous", "prismatic", "fixed", "planar", "floating")
 _ANY = 1000.0
 """A range of more than this is that of a joint without limits [rad or m]."""
+_MOST_LINKS, _MOST_BODIES = 1000, 500
+"""Largest number of links of a robot, and of those with bodies: each pair of these is looked at."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,15 @@ def read_urdf(source: Path | RobotFile) -> Urdf:
         drawn_only(root),
         notes + soft_notes(joints),
     )
+
+
+def require_few_links(links: int, bodies: int, path: Path) -> None:
+    """Raise BrokenFile for a robot with too many links: their pairs would take minutes and gigabytes."""
+    if links > _MOST_LINKS or bodies > _MOST_BODIES:
+        allowed = (
+            f"a robot may have {_MOST_LINKS}, {_MOST_BODIES} of them with bodies; a scene may include larger files"
+        )
+        raise BrokenFile(f"{path} has {links} links, {bodies} of them with bodies: {allowed}")
 
 
 def as_tree(

@@ -9,6 +9,7 @@ from keyword import iskeyword
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
+from evenroad._files import read_bytes
 from evenroad._yaml import require_keys
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName, shown
 from evenroad.robot.xacro.files import Files
@@ -86,7 +87,7 @@ def expanded(
 
 def _known_arguments(files: Iterable[Path]) -> set[str]:
     """Return the arguments that some xacros declare or use, in parts that are left out, too."""
-    text = "".join(each.read_text(errors="replace") for each in files)
+    text = "".join(read_bytes(each).decode(errors="replace") for each in files)
     return {declared or used for declared, used in _ARGUMENT.findall(text)}
 
 

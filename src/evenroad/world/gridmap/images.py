@@ -12,7 +12,7 @@ import numpy.typing as npt
 from PIL import Image
 
 from evenroad._checks import require_positive
-from evenroad._files import looks_like, not_a
+from evenroad._files import looks_like, not_a, open_file
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.world.gridmap.gridmap import GridMap
 
@@ -48,7 +48,7 @@ def open_image(path: str | os.PathLike[str]) -> Image.Image:
     """Return the decoded image at `path`: mode L, I;16 (grey, 16 bit), RGB or RGBA.  Errors as `load_image`."""
     file = Path(path)
     try:
-        with file.open("rb") as stream:
+        with open_file(file) as stream:
             return _decoded(stream, file)
     except BrokenFile:
         raise

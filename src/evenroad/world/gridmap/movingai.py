@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad._files import not_a
+from evenroad._files import not_a, open_file
 from evenroad.errors import BrokenFile
 from evenroad.world.gridmap.gridmap import GridMap
 from evenroad.world.gridmap.images import LARGEST_IMAGE
@@ -33,7 +33,7 @@ def load_movingai_map(path: str | os.PathLike[str]) -> GridMap:
     """
     file = Path(path)
     try:
-        with file.open("rb") as stream:
+        with open_file(file) as stream:
             # The header comes first: it says how much there is to read.
             lines = [_line(stream.readline(_LONGEST_HEADER)) for _ in _HEADER]
             rows, columns = _size(lines, file)
