@@ -42,6 +42,8 @@ from evenroad.world.clearance import largest_kept
 from evenroad.world.one_or_many import OneOrMany, is_one, one_or_many
 from evenroad.world.protocol import Apart
 
+_OF_ROBOT = ("robot", "resolution", "_space", "bounds", "robot_tables")
+"""Attributes that are the same in every scene."""
 VALIDATION_TOLERANCE = 1e-6
 """Distance from contact down to which `ArmWorld.validate` proves a motion free [m]; checks keep about twice that."""
 
@@ -384,11 +386,10 @@ class ArmWorld(Changes, OneOrMany):
         _ = world.native_scene  # at once: it refuses obstacles that are too far
         return world
 
-    def _copy(self, scene: Scene, clearance: float) -> ArmWorld:
+    def _copy(self, scene: Scene, clearance: float, **more: object) -> ArmWorld:
         """Return a world of the same robot, of a scene and a clearance that fit it: `replace` would read all again."""
         world = object.__new__(type(self))
-        set_fields(world, robot=self.robot, scene=scene, resolution=self.resolution, clearance=clearance, _since=None)
-        set_fields(world, _space=self._space, bounds=self.bounds, robot_tables=self.robot_tables)
+        vars(world).update({name: getattr(self, name) for name in _OF_ROBOT}, scene=scene, clearance=clearance, **more)
         return world
 
     def _changed(self, scene: Scene, gone: Collection[str], come: Collection[str]) -> ArmWorld:
@@ -398,9 +399,8 @@ class ArmWorld(Changes, OneOrMany):
         if numbered is None:
             return self.within(scene)
         since, changed = (self, {}) if self._since is None else self._since
-        world = self._copy(scene, self.clearance)
-        set_fields(world, _numbered=numbered, _since=(since, {**changed, **dict.fromkeys(gone), **dict.fromkeys(come)}))
-        return world
+        changed = {**changed, **dict.fromkeys(gone), **dict.fromkeys(come)}
+        return self._copy(scene, self.clearance, _numbered=numbered, _since=(since, changed))
 
     def fingerprint(self) -> str:
         """Return a text that is equal for worlds of equal robot, scene, resolution and clearance."""
