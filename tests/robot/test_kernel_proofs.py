@@ -167,6 +167,14 @@ def test_a_post_of_a_millimetre_is_not_missed_wherever_it_is_in_a_motion(kind):
     assert world.motion_certified(a, b, 1e-4).all()
 
 
+def test_short_motions_that_end_beyond_a_limit_are_not_proved_among_many():
+    world = needle(gap=0.5)
+    inside, beyond = np.linspace(1.98, 2.0, 40)[:, np.newaxis], np.linspace(2.001, 2.01, 40)[:, np.newaxis]
+    assert world.motion_certified(inside, inside[::-1], 1e-6).all()
+    for a, b in ((inside, beyond), (beyond, inside), (beyond, beyond)):
+        assert not world.motion_certified(a, b, 1e-6).any()
+
+
 ROUND = np.array([[0.0], [1.9]])
 
 

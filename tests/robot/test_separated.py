@@ -117,6 +117,21 @@ def test_no_pose_is_beyond_a_piece_that_holds_a_posture_of_it(seed):
                 assert not is_beyond(piece, *task_of(robot, PoseGoal(pose, link, **more)))
 
 
+def test_a_pose_that_may_be_turned_is_reached_with_the_tip_turned(arm7):
+    """Its last joint is then elsewhere than the pose itself says."""
+    q = np.array([0.3, 0.9, 0.0, -0.02, 0.0, 0.01, 0.0])
+    place, away = chain_of(arm7, default_tip(arm7)).tip_poses(q[np.newaxis])[0], 0.3
+    cells = Cells(q[:2] - 1e-4, q[:2] + 1e-4, np.ones(2, dtype=int), np.full(2, np.inf))
+    piece, rotation = Piece(cells, np.ones((1, 1), dtype=bool)), place[:9].reshape(3, 3)
+    for axis in np.eye(3):
+        x, y, z = axis
+        across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        for angle in (-away, away):
+            turn = np.eye(3) + np.sin(angle) * across + (1.0 - np.cos(angle)) * across @ across
+            pose = Pose(tuple(place[9:]), tuple((rotation @ turn).ravel()))
+            assert not is_beyond(piece, *task_of(arm7, PoseGoal(pose, angle_tolerance=away + 1e-6)))
+
+
 def test_a_pose_is_beyond_a_piece_from_where_the_links_are_too_short_or_cannot_fold(arm7):
     cells = Cells(np.zeros(2), np.full(2, 0.01), np.ones(2, dtype=int), np.full(2, np.inf))
     piece = Piece(cells, np.ones((1, 1), dtype=bool))
