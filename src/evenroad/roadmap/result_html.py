@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from html import escape
-
 import numpy as np
 
 from evenroad._arrays import Floats
@@ -14,6 +12,9 @@ _COLOURS = ("#1b9e5a", "#2f5fd0", "#d1343b", "#e6a23c", "#6b8aa8", "#3b3f46", "#
 
 def as_html(rows: dict[str, str], path: Floats | None) -> str:
     """Return a table of rows, and a drawing of the coordinates of a path, (p, dim), over its length."""
+    # Imported late: only notebooks show a plan so.
+    from html import escape
+
     cells = "".join(
         f'<tr><th style="text-align:left">{escape(name)}</th><td style="text-align:left">{escape(text)}</td></tr>'
         for name, text in rows.items()

@@ -8,9 +8,8 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from evenroad._arrays import Ints32
+from evenroad._arrays import Bools, Ints, Ints32
 from evenroad._checks import require_known
 from evenroad.roadmap.query import edge_costs
 from evenroad.roadmap.search import FINDERS, FREE, UNKNOWN, EdgeStates, join, length_along, search_problem
@@ -69,7 +68,7 @@ def is_connected(states: EdgeStates) -> bool:
     label = np.arange(len(states.node_states), dtype=np.int32)
     join(label, states.edges[states.edge_states == FREE])
     while label[-2] != label[-1]:
-        asked = min((_edges_leaving(states.edges, states.edge_states, label, label[end]) for end in (-2, -1)), key=len)
+        asked = min((_edges_leaving(states, label == label[end]) for end in (-2, -1)), key=len)
         if not len(asked):
             return False
         states.evaluate_edges(asked)
@@ -113,13 +112,7 @@ def _first_to_connect(label: Ints32, edges: Ints32) -> int:
     return row - 1
 
 
-@njit(cache=True, nogil=True)
-def _edges_leaving(edges, states, label, component):  # type: ignore[no-untyped-def]
-    """Return the unknown edges with one end in a component and the other outside."""
-    leaving = np.empty(edges.shape[0], dtype=np.int64)
-    count = 0
-    for e in range(edges.shape[0]):
-        if states[e] == UNKNOWN and (label[edges[e, 0]] == component) != (label[edges[e, 1]] == component):
-            leaving[count] = e
-            count += 1
-    return leaving[:count].copy()
+def _edges_leaving(states: EdgeStates, inside: Bools) -> Ints:
+    """Return the unknown edges with one end in a component, (n,), and the other outside."""
+    edges = states.edges
+    return np.flatnonzero((states.edge_states == UNKNOWN) & (inside[edges[:, 0]] != inside[edges[:, 1]]))
