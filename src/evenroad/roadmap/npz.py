@@ -70,8 +70,8 @@ def load_roadmap(file: Path) -> Roadmap:
     arrays = read_npz(file, "roadmap", _NAMES, _OF_ONE_ARM)
     if "robot" in arrays:
         raise BrokenFile(
-            f"{file} is a roadmap made for one arm, which evenroad plans with no more: er.plan_many and er.Replanner"
-            " take many queries, and er.build_roadmap builds a roadmap of even points"
+            f"{file} is a roadmap made for one arm, which evenroad no longer reads: er.plan_many and er.Replanner take"
+            " many queries, and er.build_roadmap builds a roadmap of even points"
         )
     _require_whole(file, arrays)
     points = points_of(file, arrays)
