@@ -9,6 +9,7 @@ import evenroad as er
 from evenroad.geometry import Mesh, PointCloud, Pose
 from evenroad.robot.scene import Obstacle
 from tests.robot.solid_bodies import (
+    LONG,
     RADIUS,
     SOLIDS,
     Solid,
@@ -133,3 +134,12 @@ def test_a_held_solid_within_a_solid_is_blocked(tmp_path):
     for name in SOME:
         scene, places, apart = sampled(name, tmp_path)
         assert not er.ArmWorld(robot, scene).valid(at(places[apart < 0.0])).any()
+
+
+def test_a_face_just_beyond_reach_counts_between_a_place_and_the_middle_of_its_cell():
+    end = er.ArmWorld(ARM).robot_tables.reach + 1e-4
+    places = np.random.default_rng(4).normal(0.0, 0.02, (200, 3))
+    places[:, 0] = np.sqrt((LONG - 1e-9) ** 2 - (places[:, 1:] ** 2).sum(axis=1))
+    for face in np.linspace(-0.9, 0.6, 12):
+        slab = Solid((end - face, 4.0, 4.0), Pose((0.5 * (end + face), 0.0, 0.0)))
+        assert not er.ArmWorld(ARM, er.Scene([Mesh(slab.mesh())])).valid(at(places)).any()
