@@ -1,10 +1,12 @@
 """Files whose cost would not follow their size: groups of groups, chains without an end, pipes and devices."""
 
 import os
+from contextlib import suppress
 
 import pytest
 
 from evenroad.errors import BrokenFile
+from evenroad.geometry.mesh_file import load_mesh
 from evenroad.io import load_plan
 from evenroad.points import load_points
 from evenroad.robot import load_model, load_scene
@@ -83,3 +85,10 @@ def test_pipes_and_devices_are_no_input_files(tmp_path, no_file, suffix, read):
         path, read = write(tmp_path, f"obstacles: {{c: {{{entry}}}}}", "scene.yaml"), load_scene
     with pytest.raises(BrokenFile, match="a device or a pipe|is missing|there is no"):
         read(path)
+
+
+def test_a_pipe_that_a_mesh_names_is_not_waited_for(tmp_path, no_file):
+    no_file(".mtl")
+    mesh = write(tmp_path, "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj")
+    with suppress(BrokenFile):
+        assert len(load_mesh(mesh).triangles) == 1

@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 import math
 import os
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_positive
+from evenroad._files import require_file
 from evenroad._npz import require_unpackable
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.geometry.mesh import TriangleMesh, merged
@@ -78,7 +81,7 @@ def _parts(file: Path) -> tuple[float, list[tuple[str, Floats, Ints]]]:
         import trimesh
 
         require_bounded(file)
-        scene = trimesh.load_scene(file, process=False)
+        scene = trimesh.load_scene(file, process=False, resolver=_files_beside(file))
         unit = 1.0 if scene.units is None else trimesh.units.unit_conversion(scene.units, "meters")
         keys = [scene.graph[node][1] for node in scene.graph.nodes_geometry]
         require_few_triangles(sum(len(getattr(scene.geometry[key], "faces", ())) for key in keys), file.stat().st_size)
@@ -101,6 +104,20 @@ def _parts(file: Path) -> tuple[float, list[tuple[str, Floats, Ints]]]:
     # trimesh's readers raise whatever their parsers do, down to struct.error and KeyError.
     except Exception as error:
         raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
+
+
+def _files_beside(file: Path) -> Any:
+    """Return what gives trimesh the files that a mesh names: those in its folder, and no pipe or device."""
+    from trimesh.resolvers import FilePathResolver
+
+    class FilesBeside(FilePathResolver):
+        def absolute(self, name: str) -> Path:
+            path = Path(super().absolute(name))
+            with suppress(FileNotFoundError):
+                require_file(path)
+            return path
+
+    return FilesBeside(str(file))
 
 
 _STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
