@@ -18,6 +18,7 @@ SEEDS = {
     "int": lambda: 5,
     "generator": lambda: np.random.default_rng(5),
     "seed sequence": lambda: np.random.SeedSequence(5),
+    "random state": lambda: np.random.RandomState(5),
     "entropy": lambda: None,
 }
 
@@ -201,3 +202,17 @@ class TestEven(SetContract):
 
     def test_it_is_the_default_family_whatever_the_dimension(self):
         assert self.engine(d=9, n=50).points.origin.family == "even"
+
+
+def test_every_name_of_scipys_module_is_there():
+    assert [name for name in scipy_qmc.__all__ if not hasattr(qmc, name)] == []
+
+
+@pytest.mark.parametrize("engine", [qmc.Even, qmc.Korobov])
+def test_points_are_below_one_in_single_precision_too(engine):
+    # Of a lattice without a shift coordinates are 0: reflected, they were the largest float64 below 1.
+    class Unshifted(engine):
+        family = "sukharev"
+
+    highest = [Unshifted(2, n=16, rng=seed).random(16).astype(np.float32).max() for seed in range(8)]
+    assert max(highest) < 1.0

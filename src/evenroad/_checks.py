@@ -20,6 +20,9 @@ LARGEST_COUNT = 2**31 - 1
 # Made once: a union takes as long as the rest of a check.
 _WHOLE, _REAL = (int, np.integer), (int, float, np.integer, np.floating)
 
+LONGEST_NAME = 4096
+"""Largest length of a file's name, as Linux has it."""
+
 FARTHEST = 1e9
 """Largest length and coordinate of bodies [m]: squares and cubes stay finite in single precision."""
 
@@ -83,6 +86,9 @@ def as_file(what: str, path: object, instead: str = "") -> Path:
     if not isinstance(path, str | os.PathLike):
         hint = f"; {instead}" if instead else ""
         raise InvalidValue(f"{what} must be the name of a file, a text or a Path, got {shown(path)}{hint}")
+    name = os.fspath(path)
+    if len(name) > LONGEST_NAME or "\n" in name or "\0" in name or name.lstrip()[:1] == "<":
+        raise InvalidValue(f"{what} must be the name of a file, not what stands in it, got {shown(path)}")
     return Path(path)
 
 

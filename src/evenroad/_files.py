@@ -114,6 +114,8 @@ def not_a(wanted: str, path: str | os.PathLike[str], why: str = "") -> BrokenFil
 
 def require_file(path: str | os.PathLike[str]) -> None:
     """Raise OSError for what is there and no file: a pipe would be waited for, and some devices never end."""
+    if "\0" in os.fspath(path):
+        raise OSError(errno.EINVAL, "no name of a file has a zero byte", os.fspath(path))
     mode = os.stat(path).st_mode
     if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
         raise OSError(errno.ESPIPE, "it is a device or a pipe, not a file", os.fspath(path))

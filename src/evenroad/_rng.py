@@ -9,13 +9,14 @@ import numpy as np
 from evenroad.errors import InvalidValue, shown
 
 # As text: NumPy loads its generators where they are first used.
-RngLike: TypeAlias = "int | np.integer | np.random.SeedSequence | np.random.Generator"
+RngLike: TypeAlias = "int | np.integer | np.random.SeedSequence | np.random.Generator | np.random.RandomState"
 
 
 def generator(rng: RngLike) -> np.random.Generator:
     """Return the generator of `rng`, or raise InvalidValue.
 
-    An int (>= 0) or SeedSequence seeds a new PCG64.  A Generator is spawned, as in ``scipy.stats.qmc``.
+    An int (>= 0) or SeedSequence seeds a new PCG64.  A Generator is spawned, as in ``scipy.stats.qmc``; of a
+    RandomState, NumPy's old generator, the next numbers are the seed.
     """
     if isinstance(rng, np.random.Generator):
         return rng.spawn(1)[0]
@@ -23,8 +24,10 @@ def generator(rng: RngLike) -> np.random.Generator:
         return np.random.default_rng(rng)
     if isinstance(rng, int | np.integer) and not isinstance(rng, bool) and rng >= 0:
         return np.random.default_rng(int(rng))
+    if isinstance(rng, np.random.RandomState):
+        return np.random.default_rng(rng.randint(0, 2**32, size=4, dtype=np.uint32).tolist())
     raise InvalidValue(
-        f"rng must be an int >= 0, a numpy SeedSequence or a numpy Generator, got {shown(rng)}"
+        f"rng must be an int >= 0, a numpy SeedSequence, Generator or RandomState, got {shown(rng)}"
         " (nothing here draws hidden entropy: pass a seed)"
     )
 

@@ -17,12 +17,15 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from scipy.stats.qmc import Halton as Halton
 from scipy.stats.qmc import LatinHypercube as LatinHypercube
+from scipy.stats.qmc import MultinomialQMC as MultinomialQMC
+from scipy.stats.qmc import MultivariateNormalQMC as MultivariateNormalQMC
 from scipy.stats.qmc import PoissonDisk as PoissonDisk
 from scipy.stats.qmc import QMCEngine as QMCEngine
 from scipy.stats.qmc import Sobol as Sobol
 from scipy.stats.qmc import discrepancy as discrepancy
 from scipy.stats.qmc import geometric_discrepancy as geometric_discrepancy
 from scipy.stats.qmc import scale as scale
+from scipy.stats.qmc import update_discrepancy as update_discrepancy
 
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
@@ -30,7 +33,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
 from evenroad._shared import OwnLock
 from evenroad.errors import Exhausted, InvalidValue
-from evenroad.points.pointset import PointSet
+from evenroad.points.pointset import PointSet, below_one
 from evenroad.points.randomise import randomise
 from evenroad.points.samplers import make_sampler
 from evenroad.points.samplers.growing import LONGEST
@@ -163,7 +166,7 @@ class SequenceEngine(_SharedEngine):
         super().__init__(d=d, optimization=optimization, rng=random)
         self._init_quad = {"d": d, "optimization": optimization}
         # The same for every call; an int stays, so that the points are those of `draw`.
-        is_seed = given is not None and not isinstance(given, np.random.Generator)
+        is_seed = given is not None and not isinstance(given, np.random.Generator | np.random.RandomState)
         self._drawn_with: RngLike = given if is_seed else int(self.rng.integers(2**62))  # type: ignore[assignment]
 
     def _random(self, n: object = 1, *, workers: object = 1) -> Floats:
@@ -172,7 +175,7 @@ class SequenceEngine(_SharedEngine):
         if count == 0:
             return np.empty((0, self.d))
         sampler = make_sampler(self.family, start=self.num_generated)
-        return sampler.draw(count, self.d, rng=self._drawn_with).points.copy()
+        return below_one(sampler.draw(count, self.d, rng=self._drawn_with).points).copy()
 
     def _count(self, n: object) -> int:
         count = require_count("n", n, at_least=0)
@@ -232,6 +235,7 @@ class FamilyEngine(_SharedEngine):
         self._init_quad = {"d": d, "n": n, "optimization": optimization, **options}
         sampler = make_sampler(self.family, **options)
         drawn = sampler.draw(self.n, d, rng=self.rng)
+        drawn = PointSet(below_one(drawn.points), drawn.origin)
         self.points: PointSet = randomise(drawn, sampler.symmetries, rng=self.rng)
 
     def _random(self, n: object = 1, *, workers: object = 1) -> Floats:

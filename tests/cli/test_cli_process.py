@@ -148,3 +148,16 @@ assert run("{words} --out {tmp_path}/a".split()) == 0
 print(sorted({HEAVY | unused!r} & set(sys.modules)))
 """
     assert python("-c", code).stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])
+def test_output_fits_into_every_encoding(tmp_path, encoding):
+    file = tmp_path / "arm.urdf"
+    text = (PACKAGE / "robot" / "data" / "ur5.urdf").read_text()
+    file.write_text(text.replace("wrist_3_joint", "手首_ž").replace('name="ur5"', 'name="ромашка"'), encoding="utf-8")
+    for command in (["robot", str(file)], ["plan", "empty.yaml", "--robot", str(tmp_path / "не.urdf")]):
+        given = [sys.executable, "-m", "evenroad", *command]
+        done = subprocess.run(given, capture_output=True, env={**os.environ, "PYTHONIOENCODING": encoding}, check=False)
+        assert done.returncode == (0 if command[0] == "robot" else 2), done.stderr
+        both = (done.stdout + done.stderr).decode(encoding)
+        assert ("手首_ž" if encoding == "utf-8" else r"\u624b\u9996") in both or command[0] == "plan"

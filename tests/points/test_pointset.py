@@ -12,6 +12,7 @@ from hypothesis.extra import numpy as hnp
 
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.points import Origin, PointSet, draw, load_points, save_points
+from evenroad.points.randomise import Symmetry, randomise
 from tests.refused import refused
 
 unit = st.floats(0, 1, exclude_max=True, allow_subnormal=True)
@@ -219,3 +220,19 @@ def test_a_failed_save_leaves_the_old_file_and_no_litter(saved, monkeypatch):
     refused(BrokenFile, "No space left", save_points, saved, PointSet([[0.5]]))
     assert saved.read_bytes() == before
     assert list(saved.parent.iterdir()) == [saved]
+
+
+def test_as_single_and_half_precision_points_are_below_one():
+    points = PointSet(np.array([[np.nextafter(1.0, 0.0), 0.25], [1.0 - 1e-5, 0.0]]))
+    for kind in (np.float16, np.float32, np.float64):
+        given = np.asarray(points, dtype=kind)
+        assert given.max() < 1.0
+        assert np.abs(given - points.points).max() <= np.finfo(kind).eps
+    assert np.asarray(points)[0, 0] == np.nextafter(1.0, 0.0)
+
+
+def test_reflected_zeros_are_below_one_in_single_precision():
+    zeros = PointSet(np.zeros((2, 5)))
+    flipped = [randomise(zeros, {Symmetry.REFLECTION}, rng=seed).points for seed in range(4)]
+    assert max(each.max() for each in flipped) > 0.9
+    assert max(each.astype(np.float32).max() for each in flipped) < 1.0

@@ -65,7 +65,7 @@ def test_whole_turns_count_where_a_joint_wraps_and_nowhere_else():
     space = JointSpace((-math.pi, -9.0), (math.pi, 9.0), (True, False))
     asked = [A, B + np.array([5 * math.tau, 0.0])]
     said = led(in_(space), result([A, B], start=asked[0], goals=asked[1:])).message
-    assert said == "; whole turns from the goal's numbers ends coordinate 0 at 0.8"
+    assert said == "; coordinate 0 ends at 0.8, whole turns from the goal"
     with pytest.raises(AssertionError, match="end"):
         led(in_(space), result([A, B], start=A, goals=[B + np.array([0.0, math.tau])]))
 
@@ -81,7 +81,7 @@ def test_a_path_in_one_turn_is_handed_out_in_the_numbers_of_its_start_and_withou
     turned = [3.0, math.tau - 3.0, 3.1, math.tau - 3.1, math.tau - 2.0]
     assert on.path[:, 0] == pytest.approx(4 * math.tau + np.array(turned), abs=1e-12)
     assert on.milestone_path[:, 0] == pytest.approx(4 * math.tau + np.array([3.0, math.tau - 2.0]), abs=1e-12)
-    assert on.message.endswith(f"coordinate 0 at {5 * math.tau - 2.0:.6g}")
+    assert on.message.endswith(f"coordinate 0 ends at {5 * math.tau - 2.0:.6g}, whole turns from the goal")
 
 
 def test_of_half_a_turn_a_waypoint_says_in_which_direction():

@@ -2,9 +2,12 @@ import importlib.metadata
 
 import pytest
 
-from evenroad.errors import UnknownName
-from evenroad.robot import find, load_robot
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.io import load_plan
+from evenroad.points import load_points
+from evenroad.robot import find, load_robot, load_scene
 from evenroad.robot.find import find_robot
+from evenroad.world import load_map
 from tests.robot.urdf_texts import two_joints, write
 
 
@@ -59,3 +62,12 @@ def test_without_the_wheel_the_error_names_the_extra_that_brings_it(monkeypatch)
     monkeypatch.setattr("importlib.metadata.distribution", missing)
     with pytest.raises(UnknownName, match=r"shipped: arm7, ur5; panda.* pip install 'evenroad\[robots\]'"):
         find_robot("panda")
+
+
+@pytest.mark.parametrize("read", [load_robot, load_scene, load_map, load_points, load_plan])
+@pytest.mark.parametrize("text", ["<robot name='r'>" + "<link/>" * 9000, "a: 1\nb: 2\n", "x" * 5000, "a\0b"])
+def test_what_stands_in_a_file_is_no_name_of_one(read, text):
+    with pytest.raises(InvalidValue, match="must be the name of a file, not what stands in it") as raised:
+        read(text)
+    assert len(str(raised.value)) < 400
+    assert "\n" not in str(raised.value)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from evenroad import FunctionWorld
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.space import BoxSpace
-from evenroad.trajectory import Limits, make_trajectory
+from evenroad.trajectory import InMotion, Limits, load_trajectory, make_trajectory
 from tests.refused import refused
 
 
@@ -145,8 +145,22 @@ def test_waypoints_that_repeat_are_one():
     assert nearly.positions[-1, 1] == pytest.approx(1 + 1e-12, abs=1e-15)
 
 
+@pytest.mark.parametrize("path", [[[0.3, 0.4]], [[0.3, 0.4]] * 2, [[0.3, 0.4], [0.3 + 1e-12, 0.4]]])
+@pytest.mark.parametrize("jerk", [None, (5.0, 5.0)])
+def test_a_robot_that_stays_where_it_is_has_one_state(path, jerk, tmp_path):
+    world = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: q[:, 0] < 0.9, 0.01)
+    made = make_trajectory(path, Limits((1.0, 1.0), (1.0, 1.0), jerk), world=world)
+    assert made.duration == 0.0
+    assert made.at([0.0, 0.0]).tolist() == [[0.3, 0.4]] * 2
+    assert made.positions.tolist() == [[0.3, 0.4]]
+    made.save(tmp_path / "still.json")
+    made.save(tmp_path / "still.csv")
+    assert load_trajectory(tmp_path / "still.json").positions.tolist() == [[0.3, 0.4]]
+    refused(NotAvailable, "stands", make_trajectory, [[0.95, 0.4]], made.limits, world=world)
+
+
 @pytest.mark.parametrize(("path", "options", "said"), [
-    ([[0, 0], [0, 0]], {}, "somewhere"), ([[0, 0], [1e-12, 1e-12]], {}, "somewhere"),
+    (np.empty((0, 2)), {}, "somewhere"), (InMotion([[0, 0], [0, 0]], start=(0.1, 0.0)), {}, "somewhere"),
     ([[0, 0, 0]], {}, r"shape \(n, 2\)"), ([[0, 0], [np.nan, 1]], {}, "finite"),
     ([[0, 0], [1, 1]], {"deviation": -1.0}, "deviation"), ([[0, 0], [1, 1]], {"step": 0.0}, "step"),
     ([[0, 0], [1, 1]], {"names": ["a"]}, "names"), ([[0, 0], [1, 1]], {"step": 1e-9}, "longer steps"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import _thread
 import gc
+import io
 import signal
 import sys
 import threading
@@ -28,7 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             return _run(arguments)
         except KeyboardInterrupt:
-            return _interrupted()
+            return interrupted()
     # Imports make many objects and no garbage, and looking for some takes time.
     gc.set_threshold(100_000, 50, 50)
     warnings.formatwarning = lambda message, *where: f"evenroad: warning: {message}\n"
@@ -48,17 +49,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except KeyboardInterrupt:
             # It came while files were closed.
             signal.signal(signal.SIGINT, signal.SIG_IGN)
-        return _interrupted()
+        return interrupted()
 
 
 def _run(arguments: Sequence[str]) -> int:
+    for stream in (sys.stdout, sys.stderr):
+        # What a pipe's encoding lacks is written as an escape: no answer fails for its name.
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     # Imported late, since Ctrl-C may come while this loads.
     from evenroad.cli.verbs import run
 
     return run(arguments)
 
 
-def _interrupted() -> int:
+def interrupted() -> int:
+    """Say that Ctrl-C came, and return its exit code."""
     print("evenroad: interrupted; what was finished is kept", file=sys.stderr)
     return INTERRUPTED
 

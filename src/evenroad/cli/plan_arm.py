@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from evenroad._time_limit import within
+from evenroad.cli import interrupted
 from evenroad.cli.plan import PlanArm, wants_points
 from evenroad.cli.plan_parts import (
     KEPT,
@@ -18,12 +19,13 @@ from evenroad.cli.plan_parts import (
     finish,
     made_of,
     output_files,
+    solve_until_stopped,
 )
 from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
 from evenroad.cli.trajectory import limits_of_tip, require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
-from evenroad.planning.plan import Options, finished, solve
+from evenroad.planning.plan import Options, finished
 from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Goal, Reading, Request
 from evenroad.roadmap import PlanResult, load_roadmap
@@ -61,13 +63,13 @@ def plan_arm(plan: PlanArm) -> int:
         options = Options(budget, not plan.raw, plan.seed, plan.certified, constraints)
         # Constraints have a world of their own kind, with its own planner.
         by = None if not wants_points(plan) and kept is None and _keeps(constraints) else planner
-        make = None
+        make, stopped = None, False
         if plan.via:
             from evenroad.cli.plan_via import plan_through
 
             found, make = plan_through(plan, request, goals, constraints, options)
         else:
-            found = solve(request, by, options)
+            found, stopped = solve_until_stopped(request, by, options)
         result, meshes = finished(request, found, certified=plan.certified)
     record = plan_record(result, _options(plan, request, result) | common_query(plan)) | {
         "no_body": [] if request.model is None else list(request.model.bodiless),
@@ -84,7 +86,8 @@ def plan_arm(plan: PlanArm) -> int:
 
         save_arm_picture(file, result, world, request.source)
 
-    return finish(files, result, record, world.robot.group, draw, rows)
+    code = finish(files, result, record, world.robot.group, draw, rows)
+    return interrupted() if stopped else code
 
 
 def _options(plan: PlanArm, request: Request, result: PlanResult) -> dict[str, Any]:

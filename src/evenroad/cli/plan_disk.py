@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from evenroad.cli import interrupted
 from evenroad.cli.plan import PlanDisk, wants_points
 from evenroad.cli.plan_parts import (
     chosen_budget,
@@ -15,11 +16,12 @@ from evenroad.cli.plan_parts import (
     finish,
     made_of,
     output_files,
+    solve_until_stopped,
 )
 from evenroad.cli.sampler import chosen_rule
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
-from evenroad.planning.plan import Options, finished, solve
+from evenroad.planning.plan import Options, finished
 from evenroad.planning.read_request import read_request
 from evenroad.planning.request import Reading
 from evenroad.world import GridMap, load_map
@@ -54,7 +56,8 @@ def plan_disk(plan: PlanDisk) -> int:
     of_roadmap = dict(search="full", certify=plan.guarantees) if wants_points(plan) else {}
     planner = chosen_planner(plan, request, **of_roadmap)
     options = Options(budget, smooth=not plan.raw, certified=plan.certified)
-    result, _ = finished(request, solve(request, planner, options), certified=plan.certified)
+    found, stopped = solve_until_stopped(request, planner, options)
+    result, _ = finished(request, found, certified=plan.certified)
     query = {
         "map": str(plan.world),
         "robot_radius": plan.robot_radius,
@@ -75,7 +78,8 @@ def plan_disk(plan: PlanDisk) -> int:
 
         record["certificate"] = guarantees(result.certificate)
         more = guarantee_rows(result.certificate)
-    return finish(files, result, record, ("x", "y"), draw, more)
+    code = finish(files, result, record, ("x", "y"), draw, more)
+    return interrupted() if stopped else code
 
 
 def _position(name: str, words: tuple[str, ...]) -> tuple[float, float]:

@@ -14,6 +14,7 @@ from evenroad.cli.plan import PlanOptions, wants_points
 from evenroad.cli.sampler import chosen_rule, chosen_sampler, draw_points, require_seed
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
+from evenroad.planning.plan import Options, solve
 from evenroad.planning.prm import PRM
 from evenroad.planning.request import Request
 from evenroad.planning.trees import RRTConnect, default_planner
@@ -101,6 +102,16 @@ def made_of(world: Any, **names: str | None) -> dict[str, Any]:
     """Return the record of what a plan was made in: the name of each file, and the SHA-256 of what was read of it."""
     values = {"robot": world.robot, "scene": world.scene} if hasattr(world, "robot") else {"map": world}
     return {name: {"name": names.get(name), "sha256": value.fingerprint()} for name, value in values.items()}
+
+
+def solve_until_stopped(request: Request, planner: Planner | None, options: Options) -> tuple[PlanResult, bool]:
+    """Return a plan, and whether Ctrl-C ended it early: of a path that becomes shorter the best one is kept."""
+    try:
+        return solve(request, planner, options), False
+    except KeyboardInterrupt as stop:
+        if (best := getattr(stop, "best", None)) is None:
+            raise
+        return best, True
 
 
 def finish(

@@ -106,9 +106,22 @@ class GrowingPRM:
         if (refused := refusal(attempt)) is not None:
             return refused
         growth = _Growth(attempt, rule, informed=self.informed)
-        while growth.take(points) and not growth.is_done(self.until) and points.n < budget.samples:
-            points = _draw(sampler, min(2 * points.n, budget.samples), problem, points)
+        try:
+            while growth.take(points) and not growth.is_done(self.until) and points.n < budget.samples:
+                points = _draw(sampler, min(2 * points.n, budget.samples), problem, points)
+        except KeyboardInterrupt:
+            if growth.best is None:
+                raise
+            raise Interrupted(growth.result(points.n)) from None
         return growth.result(points.n)
+
+
+class Interrupted(KeyboardInterrupt):
+    """A Ctrl-C while a path became shorter: `best` is the shortest result so far."""
+
+    def __init__(self, best: PlanResult) -> None:
+        super().__init__()
+        self.best = best
 
 
 class _Growth:

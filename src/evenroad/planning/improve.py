@@ -11,7 +11,7 @@ import numpy as np
 
 from evenroad._time_limit import BudgetSpent, until
 from evenroad.planning.connectors import ArmTrees
-from evenroad.planning.growing import GrowingPRM
+from evenroad.planning.growing import GrowingPRM, Interrupted
 from evenroad.roadmap.answer import connected, path_message
 from evenroad.roadmap.attempt import NO_LIMIT, Attempt
 from evenroad.roadmap.budget import BEFORE_REASONS, Budget
@@ -54,7 +54,7 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
     )
     rounds = NO_LIMIT if budget.rounds is None else budget.rounds
     motions = NO_LIMIT if budget.motions is None else max(budget.motions - attempt.motions_checked, 0)
-    stages, length = [stage], improver.length
+    stages, length, stopped = [stage], improver.length, False
     with attempt.watch("search"), until(attempt.time.part(attempt.began, BEFORE_REASONS)):
         state = "paused"
         while state == "paused":
@@ -62,6 +62,8 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
                 state = improver.improve(rounds, motions, _SLICE)
             except BudgetSpent:
                 state = "spent"
+            except KeyboardInterrupt:
+                state, stopped = "spent", True
             if improver.length < length:
                 length, nodes = improver.length, stage.points + improver.nodes
                 checked = attempt.motions_checked + improver.motions
@@ -85,9 +87,16 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
         if not np.array_equal(raw, first.path):
             more |= dict(milestone_path=raw, milestone_cost=path_length(raw, space))
     best = led(attempt.world, replace(first, stages=tuple(stages), **more))
-    if not improver.rounds:
-        return best
-    return replace(best, message=f"{best.message}, the best of {improver.rounds + 1}: {_gap(best)}")
+    if improver.rounds:
+        best = replace(best, message=f"{best.message}, the best of {improver.rounds + 1}: {_gap(best)}")
+    return _unless_stopped(best, stopped)
+
+
+def _unless_stopped(best: PlanResult, stopped: bool) -> PlanResult:
+    """Return the best path, or raise it to whom Ctrl-C was meant for."""
+    if stopped:
+        raise Interrupted(replace(best, message=f"{best.message}; interrupted"))
+    return best
 
 
 def _gap(result: PlanResult) -> str:
@@ -101,20 +110,24 @@ def _gap(result: PlanResult) -> str:
 
 def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage: Stage, variant: int) -> PlanResult:
     """Plan repeatedly, each time with another sequence."""
-    best, stages, nodes, counts, done = first, [stage], stage.points, dict(first.counts), 0
+    best, stages, nodes, counts, done, stopped = first, [stage], stage.points, dict(first.counts), 0, False
     # A round that is much longer than the first costs the time of many others.
     most = max(LEAST_MOTIONS, LONGER * attempt.motions_checked)
     for number in count(1):
         if not _goes_on(attempt, best, number):
             break
-        connection = attempt.connect(connector, variant + number, most)
+        try:
+            connection = attempt.connect(connector, variant + number, most)
+            result = None if connection.goal < 0 else connected(attempt, connection)
+        except KeyboardInterrupt:
+            stopped = True
+            break
         if connection.spent:
             break
         done, nodes = number, nodes + connection.nodes
         counts["configurations_checked"] += connection.configurations
-        if connection.goal < 0:
+        if result is None:
             continue
-        result = connected(attempt, connection)
         if attempt.query.smooth:
             counts["shortcut_motions"] += result.counts["shortcut_motions"]
         if _cost(result) < _cost(best):
@@ -122,7 +135,8 @@ def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage:
             stages.append(Stage(nodes, nodes, attempt.motions_checked, best.cost, attempt.elapsed()))
     counts |= {"nodes": nodes, "edges_checked": attempt.motions_checked, "rounds": done}
     message = f"{best.message}, the best of {done + 1}: {_gap(best)}" if done else best.message
-    return replace(best, message=message, counts=counts, stages=tuple(stages), timings=attempt.watch.seconds)
+    best = replace(best, message=message, counts=counts, stages=tuple(stages), timings=attempt.watch.seconds)
+    return _unless_stopped(best, stopped)
 
 
 def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
@@ -130,13 +144,20 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
     left = attempt.left()
     if left is None or not _goes_on(attempt, first, 1):
         return replace(first, counts=first.counts | {"rounds": 0}, stages=(stage,))
-    before = attempt.elapsed()
-    with until(attempt.time.part(attempt.began, BEFORE_REASONS)):
-        grown = GrowingPRM(until="budget", informed=True).solve(rest_of(attempt, left))
+    before, stopped = attempt.elapsed(), True
+    try:
+        with until(attempt.time.part(attempt.began, BEFORE_REASONS)):
+            grown = GrowingPRM(until="budget", informed=True).solve(rest_of(attempt, left))
+        stopped = False
+    except Interrupted as stop:
+        grown = stop.best
+    except KeyboardInterrupt:
+        return _unless_stopped(first, stopped)
     stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
     best = grown if grown.cost is not None and grown.cost < _cost(first) else first
     message = f"{best.message}: {_gap(best)}"
-    return replace(best, message=message, counts=best.counts | {"rounds": len(grown.stages)}, stages=tuple(stages))
+    best = replace(best, message=message, counts=best.counts | {"rounds": len(grown.stages)}, stages=tuple(stages))
+    return _unless_stopped(best, stopped)
 
 
 def _goes_on(attempt: Attempt, best: PlanResult, number: int) -> bool:

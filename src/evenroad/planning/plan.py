@@ -205,6 +205,7 @@ def _solved(request: Request, planner: Planner | None, options: Options) -> Plan
         return result
     straight = motion is not None and motion.line is not None
     apart = None if given is None else given.apart(request.world, straight=straight)
+    stopped = False
 
     def plan_once(world: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
         problem = Problem(
@@ -217,15 +218,28 @@ def _solved(request: Request, planner: Planner | None, options: Options) -> Plan
             apart=apart,
             connector=connector_of(world),
         )
-        found = (default_planner(world) if planner is None else planner).solve(problem)
+        nonlocal stopped
+        try:
+            found = (default_planner(world) if planner is None else planner).solve(problem)
+        except KeyboardInterrupt as stop:
+            if (best := getattr(stop, "best", None)) is None:
+                raise
+            found, stopped = best, True
         return found if found.solved else with_reasons(world, found)
 
     try:
         if motion is None:
-            return plan_once(request.world, request.start, request.goals, options.smooth)
-        return motion.plan(request, plan_once, options.smooth)
+            found = plan_once(request.world, request.start, request.goals, options.smooth)
+        else:
+            found = motion.plan(request, plan_once, options.smooth)
     except BudgetSpent:
-        return _out_of_time(request, options)
+        found = _out_of_time(request, options)
+    if stopped:
+        # Imported late: few plans become shorter until somebody stops them.
+        from evenroad.planning.growing import Interrupted
+
+        raise Interrupted(found)
+    return found
 
 
 def _out_of_time(request: Request, options: Options) -> PlanResult:
@@ -246,8 +260,6 @@ def finished(request: Request, result: PlanResult, *, certified: bool = False) -
     there is no path or nothing to check.
     """
     given, world = request.given, request.world
-    if request.notes:
-        result = replace(result, notes=request.notes)
     if given is not None and given.poses and not given.unreached:
         result = replace(result, timings={"goals": given.seconds, **result.timings})
     if not result.solved and "points" in result.counts:

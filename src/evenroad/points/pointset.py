@@ -200,7 +200,8 @@ class PointSet:
         return iter(self.points)
 
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
-        return np.array(self.points, dtype=dtype, copy=True) if copy else np.asarray(self.points, dtype=dtype)
+        points = self.points if dtype is None else below_one(self.points, dtype)
+        return np.array(points, dtype=dtype, copy=True) if copy else np.asarray(points, dtype=dtype)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, PointSet):
@@ -212,6 +213,17 @@ class PointSet:
 
     def __repr__(self) -> str:
         return f"PointSet(n={self.n}, d={self.d}, origin={str(self.origin)!r}, hash={self.hash[:12]})"
+
+
+def below_one(points: Floats, dtype: npt.DTypeLike = np.float32) -> Floats:
+    """Return coordinates, in [0, 1), that are below 1 as floats of this kind, too; the same array where they are."""
+    kind = np.dtype(dtype)
+    if kind.kind != "f" or kind.itemsize >= 8 or not points.size:
+        return points
+    largest = 1.0 - float(np.finfo(kind).epsneg)
+    if points.max() < 0.5 * (1.0 + largest):
+        return points
+    return np.where(points.astype(kind) < 1.0, points, largest)
 
 
 def as_unit_points(points: object) -> Floats:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._rng import RngLike, generator
-from evenroad.points.pointset import PointSet
+from evenroad.points.pointset import BELOW_ONE, PointSet, below_one
 
 
 class Symmetry(StrEnum):
@@ -22,14 +22,13 @@ class Symmetry(StrEnum):
 
 
 ALL_SYMMETRIES = frozenset(Symmetry)
-LARGEST_COORDINATE = float(np.nextafter(1.0, 0.0))
 
 
 def randomise(points: PointSet, symmetries: Collection[Symmetry], *, rng: RngLike = 0) -> PointSet:
     """Return the points after random transformations of these kinds: permuted, then reflected, then shifted.
 
     The method of the origin records them with all digits: ``annealed, permuted 2 0 1, reflected 0``.  A coordinate
-    reflected to 1 becomes the largest float below.  ``make_sampler(name).symmetries`` keep the quality of its sets.
+    reflected to 1 becomes the largest float32 below.  ``make_sampler(name).symmetries`` keep the quality of its sets.
     """
     random = generator(rng)
     if Symmetry.PERMUTATION in symmetries:
@@ -39,7 +38,7 @@ def randomise(points: PointSet, symmetries: Collection[Symmetry], *, rng: RngLik
     if Symmetry.REFLECTION in symmetries:
         flipped = random.random(points.d) < 0.5
         if flipped.any():
-            mirrored = np.minimum(1.0 - points.points, LARGEST_COORDINATE)
+            mirrored = np.minimum(1.0 - points.points, BELOW_ONE)
             coordinates = np.where(flipped, mirrored, points.points)
             points = _moved(points, coordinates, "reflected", np.flatnonzero(flipped))
     if Symmetry.SHIFT in symmetries:
@@ -51,4 +50,4 @@ def randomise(points: PointSet, symmetries: Collection[Symmetry], *, rng: RngLik
 
 def _moved(points: PointSet, coordinates: npt.NDArray[Any], verb: str, values: npt.NDArray[Any]) -> PointSet:
     how = " ".join([verb, *map(str, values.tolist())])
-    return PointSet(coordinates, points.origin).with_origin(method=f"{points.origin.method}, {how}")
+    return PointSet(below_one(coordinates), points.origin).with_origin(method=f"{points.origin.method}, {how}")

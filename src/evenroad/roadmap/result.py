@@ -16,7 +16,7 @@ from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.certificate import Certificate
 from evenroad.roadmap.result_html import as_html
-from evenroad.roadmap.terminals import from_start_to_goal, turns_at_end
+from evenroad.roadmap.terminals import from_start_to_goal, turns, turns_at_end
 from evenroad.space.path import path_length, resample
 from evenroad.world import BoundsLengths, MeasuresPaths, NamesNearest, World
 
@@ -457,16 +457,14 @@ def led(world: World, result: PlanResult) -> PlanResult:
     Its message says where coordinates that repeat end at other numbers than the goal's.  AssertionError where a path
     does not lead there, which is a bug of evenroad: no robot must drive such a path.
     """
-    path = raw = None
-    if result.path is not None:
-        path = from_start_to_goal(world.space, result.path, result.start, result.goal)
-    if result.milestone_path is result.path:
-        raw = path
-    elif result.milestone_path is not None:
-        raw = from_start_to_goal(world.space, result.milestone_path, result.start, result.goal)
-    said = "" if path is None else turns_at_end(world, path, result.goal)
+    given, milestones, space = result.path, result.milestone_path, world.space
+    path = None if given is None else from_start_to_goal(space, given, result.start, result.goal)
+    raw = path
+    if milestones is not given and milestones is not None:
+        raw = from_start_to_goal(space, milestones, result.start, result.goal)
+    said = "" if path is None or not turns(space) else turns_at_end(world, path, result.goal)
     if said and said not in result.message:
         result = replace(result, message=result.message + said)
-    if path is result.path and raw is result.milestone_path:
+    if path is given and (raw is milestones or milestones is None):
         return result
-    return replace(result, path=path, milestone_path=raw)
+    return replace(result, path=path, milestone_path=None if milestones is None else raw)

@@ -18,13 +18,19 @@ NEAR = 1e-6
 """Distance up to which the end of a path counts as the goal, for numbers of 1: rounding only."""
 
 
+def turns(space: Space) -> bool:
+    """Return whether a coordinate may repeat."""
+    flat = getattr(space, "flat", None)
+    return flat is None or flat.wraps
+
+
 def from_start_to_goal(space: Space, path: Floats, start: Floats, goal: Floats) -> Floats:
     """Return a path, (p, dim), from the very numbers of its start to its goal, both (dim,).
 
     Where coordinates repeat, numbers go on from those of the start, so that the path may end whole periods from those
     of the goal.  AssertionError for a path that leads elsewhere.
     """
-    on = continued(path, space, start)
+    on = continued(path, space, start) if turns(space) else path
     # Most are equal numbers, which is ten times as fast to test.
     if on[0].tolist() != start.tolist() or on[-1].tolist() != goal.tolist():
         _require_near("start", max(_gap(space, on[0], start), _gap_in_numbers(space, on[0], start)), SAME, start)
@@ -39,11 +45,11 @@ def from_start_to_goal(space: Space, path: Floats, start: Floats, goal: Floats) 
 def turns_at_end(world: Any, path: Floats, goal: Floats) -> str:
     """Return in words which coordinates of a path's end are whole periods from the goal; nothing where none is."""
     period = period_of(world.space)
-    if period is None or not (turns := np.rint((path[-1] - goal) / period)).any():
+    if period is None or not (away := np.rint((path[-1] - goal) / period)).any():
         return ""
     names = getattr(getattr(world, "robot", None), "group", None) or [f"coordinate {k}" for k in range(len(goal))]
-    said = ", ".join(f"{names[k]} at {path[-1][k]:.6g}" for k in np.flatnonzero(turns))
-    return f"; whole turns from the goal's numbers ends {said}"
+    said = ", ".join(f"{names[k]} ends at {path[-1][k]:.6g}" for k in np.flatnonzero(away))
+    return f"; {said}, whole turns from the goal"
 
 
 def _gap(space: Space, configuration: Floats, wanted: Floats) -> float:

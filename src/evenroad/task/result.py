@@ -130,6 +130,8 @@ class TaskResult:
             for part in (part for part in motion.parts if part.cost):
                 parts.append(part.trajectory(**_kept(motion, part, options)))
                 pauses, pause = [*pauses, pause], 0.0
+        if not parts and self.parts:
+            parts, pauses = [self.parts[0].trajectory(**_kept(self.motions[0], self.parts[0], options))], [0.0]
         return _joined(parts, [*pauses, pause])
 
 
@@ -150,7 +152,7 @@ def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
     """Return trajectories one after the other, each after its pause, and a last pause."""
     if not parts:
         raise InvalidValue("there is no trajectory: the arm stays where it is")
-    step = float(parts[0].times[1] - parts[0].times[0])
+    step = parts[0].step
     if (seconds := sum(pauses)) > MOST_STATES * step:
         raise InvalidValue(f"the arm would stand still for {seconds:g} s, more than {MOST_STATES} steps of {step:g} s")
     rows: dict[str, list[Floats]] = {"positions": [], "velocities": [], "accelerations": []}

@@ -33,7 +33,7 @@ def require_within_limits(trajectory: Trajectory) -> None:
     A controller takes the positions alone, so speeds and accelerations between them count, too; and the velocities must
     be theirs.
     """
-    dt, limits = float(trajectory.times[1]), trajectory.limits
+    dt, limits = trajectory.step, trajectory.limits
     q, v, a = trajectory.positions, trajectory.velocities, trajectory.accelerations
     fastest, push, slower = limits.most
     # Where a joint may slow down faster than it speeds up, so may the velocities between states.

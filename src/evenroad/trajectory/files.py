@@ -107,13 +107,14 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
     radii = tuple(map(float, record["radii"]))
     if waypoints.ndim != 2 or len(waypoints) < 2 or waypoints.shape[1] != len(names):
         raise ValueError("waypoints must have one number a joint")
-    if len(times) < 2 or len(limits.velocity) != len(names) or any(table.shape != shape for table in tables):
+    if len(times) < 1 or len(limits.velocity) != len(names) or any(table.shape != shape for table in tables):
         raise ValueError(f"times, joint_names, limits and states must belong together, {shape}")
     if len(times) > MOST_STATES:
         raise ValueError(f"there must be at most {MOST_STATES} states")
     if not all(np.isfinite(table).all() for table in (times, waypoints, *tables)):
         raise ValueError("states must be finite numbers")
-    if times[0] != 0.0 or times[1] <= 0.0 or not np.allclose(np.diff(times), times[1], rtol=1e-6, atol=0.0):
+    steps = np.diff(times)
+    if times[0] != 0.0 or (steps <= 0.0).any() or not np.allclose(steps, steps[:1], rtol=1e-6, atol=0.0):
         raise ValueError("times must begin with 0 and grow by equal steps")
     if len(radii) not in (0, len(waypoints) - 2) or not all(0.0 <= radius < math.inf for radius in radii):
         raise ValueError("radii must be one number >= 0 for each waypoint within the path, or none")

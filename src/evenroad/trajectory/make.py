@@ -19,11 +19,9 @@ from evenroad.trajectory.in_motion import FARTHER, InMotion
 from evenroad.trajectory.limits import Limits
 from evenroad.trajectory.timed import TooFast, timed_path
 from evenroad.trajectory.timing import TimeLaw, fastest, paused, slowed
+from evenroad.trajectory.trajectory import STEP as STEP
 from evenroad.trajectory.trajectory import Trajectory
 from evenroad.world import World
-
-STEP = 0.008
-"""Time between two states of a trajectory [s]: the cycle of a UR controller, 125 Hz."""
 
 DEVIATION = 0.05
 """Default for the largest deviation at a corner [rad or m]."""
@@ -70,8 +68,8 @@ def make_trajectory(
     Parameters
     ----------
     path : array_like, shape (p, dim), or InMotion
-        Waypoints joined by straight motions, p >= 2, at least two of them different; and the velocities at both ends,
-        where these are not at rest.
+        Waypoints joined by straight motions; and the velocities at both ends, where these are not at rest.  Where all
+        are equal, the trajectory is one state of no duration.
     limits : Limits
     world : World, optional
         Checks the trajectory, by its strict check if it has one.  Default: no check.
@@ -92,7 +90,7 @@ def make_trajectory(
     Raises
     ------
     InvalidValue
-        If all waypoints are equal, an argument is out of range, or there would be a million states.
+        If there is no waypoint, an argument is out of range, or there would be a million states.
     NotAvailable
         If the trajectory is not free, or violates limits or deviation; mostly the path itself is not free then.
     """
@@ -102,7 +100,7 @@ def make_trajectory(
     given = as_batch("path", moving.path, len(limits.velocity))
     # Waypoints between which it is straight: more of them on a motion change nothing.
     waypoints = given[bends_of(given, _SAME)] if len(given) else given
-    if len(waypoints) < 2:
+    if len(given) == 0 or (len(waypoints) < 2 and (moving.start is not None or moving.goal is not None)):
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
     joints = tuple(names) if names is not None else tuple(f"joint_{i + 1}" for i in range(waypoints.shape[1]))
     if len(joints) != waypoints.shape[1]:
@@ -114,6 +112,8 @@ def make_trajectory(
         "held": dict(held or {}),
         "controller": tuple(controller),
     }
+    if len(waypoints) < 2:
+        return Trajectory(**said, **_standing(world, waypoints[0]))
     limits = limits if limits.jerk is None else limits.symmetric()
     window = 0.0 if limits.jerk is None else float(np.max(2.0 * np.divide(limits.acceleration, limits.jerk)))
     for farther in FARTHER:
@@ -131,6 +131,17 @@ def make_trajectory(
         return _averaged_path(world, part, limits, cuts, (window, step, deviation))
 
     return Trajectory(waypoints=waypoints, **said, **averaged(waypoints, np.full(len(waypoints), deviation)))
+
+
+def _standing(world: World | None, q: Floats) -> dict[str, Any]:
+    """Return the one state of a robot that stays at a configuration, (dim,), and what `timed_path` says besides."""
+    still, there = np.zeros((1, len(q))), np.array([q, q])
+    free, proof = drivable(world, there)
+    if not free.all():
+        raise NotAvailable("the robot is not proved free where it stands")
+    states = {"positions": there[:1], "velocities": still, "accelerations": still}
+    said = {"deviation": 0.0, "stops": 0, "highest": {"velocity": 0.0, "acceleration": 0.0}, "proof": proof}
+    return {"times": np.zeros(1), "waypoints": there} | states | said
 
 
 def _averaged_path(

@@ -110,12 +110,12 @@ def checked_states(
     if trajectory.proof == "unchecked":
         raise InvalidValue("nobody has checked the trajectory in its world: proved_in of evenroad.trajectory does")
     names, (positions, velocities, _) = columns_of_ur(trajectory, order)
-    cycle = float(trajectory.times[1])
+    cycle = trajectory.step
     if not np.isclose(cycle, CYCLES).any():
         raise InvalidValue(f"a controller takes a state every 0.008 s or 0.002 s, these are {cycle:g} s apart")
     # Also the speeds between states as sent.
     driven = np.abs(np.diff(positions, axis=0)) / cycle
-    speeds = np.maximum(np.abs(velocities).max(axis=0), driven.max(axis=0))
+    speeds = np.maximum(np.abs(velocities).max(axis=0), driven.max(axis=0, initial=0.0))
     if speeds.max() > limit * (1.0 + 1e-9):
         name = names[int(np.argmax(speeds))]
         raise InvalidValue(f"{name} moves at up to {speeds.max():.3g} rad/s, faster than the {limit:g} rad/s allowed")

@@ -16,6 +16,9 @@ from evenroad._checks import counted, require_known
 from evenroad.errors import InvalidValue, shown
 from evenroad.trajectory.limits import Limits
 
+STEP = 0.008
+"""Time between two states of a trajectory [s]: the cycle of a UR controller, 125 Hz."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Trajectory:
@@ -112,6 +115,8 @@ class Trajectory:
             times = np.array(np.nan)
         if not np.all((times >= 0.0) & (times <= self.duration)):
             raise InvalidValue(f"t must be from 0 to {self.duration:.9g} s, got {shown(t)}")
+        if len(self.times) == 1:
+            return np.broadcast_to(self.positions[0], (*times.shape, len(self.names))).copy()
         return np.asarray(CubicHermiteSpline(self.times, self.positions, self.velocities)(times))
 
     def columns(self, order: Sequence[str] | None = None) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
@@ -190,7 +195,13 @@ class Trajectory:
         save_trajectory(path, self, order)
 
     def __repr__(self) -> str:
-        return f"Trajectory({self.duration:.4g} s, {counted(len(self.names), 'joint')}, {len(self.times)} states)"
+        joints, states = counted(len(self.names), "joint"), counted(len(self.times), "state")
+        return f"Trajectory({self.duration:.4g} s, {joints}, {states})"
+
+    @property
+    def step(self) -> float:
+        """Time between two states [s]; of a robot that stays where it is, one state, the usual one."""
+        return float(self.times[1]) if len(self.times) > 1 else STEP
 
     @property
     def duration(self) -> float:

@@ -44,7 +44,7 @@ def servoj_script(trajectory: Trajectory, order: Sequence[str] | None = None) ->
     Raises InvalidValue unless there are six joints and the states are 8 ms (CB3) or 2 ms (e-Series) apart.
     """
     _, (positions, _, _) = columns_of_ur(trajectory, order)
-    cycle = float(trajectory.times[1])
+    cycle = trajectory.step
     if not np.isclose(cycle, CYCLES).any():
         raise InvalidValue(
             f"URScript needs states 0.008 s apart (CB3) or 0.002 s (e-Series), these are {cycle:.6g} s apart"
@@ -84,7 +84,7 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
 
 def _waits(trajectory: Trajectory) -> list[float]:
     """Return for how long the trajectory stands still at each of its waypoints [s]."""
-    positions, step = trajectory.positions, float(trajectory.times[1] - trajectory.times[0])
+    positions, step = trajectory.positions, trajectory.step
     waits, waypoint = [0.0] * len(trajectory.waypoints), 0
     for i in np.flatnonzero((positions[1:] == positions[:-1]).all(axis=1)):
         near = np.abs(trajectory.waypoints[waypoint:] - positions[i]).max(axis=1) < _SAME

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from scipy.special import logsumexp
 
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
 from evenroad.points.measures import riesz_rooted, separation
 from evenroad.points.samplers import Growing
-from evenroad.points.samplers.growing import growing_vector
+from evenroad.points.samplers.growing import _log_sums, growing_vector
 from tests.points.samplers.sampler_contract import SamplerContract
 from tests.refused import refused
 
@@ -71,3 +72,12 @@ def test_fewer_digits_of_the_vector_are_those_of_more():
     assert whole[0] == 1
     for digits in (13, 16):
         np.testing.assert_array_equal(growing_vector(5, digits) % 2**digits, whole % 2**digits)
+
+
+def test_sums_of_very_many_dimensions_are_those_of_their_logs():
+    rng = np.random.default_rng(0)
+    ratios, often = rng.uniform(0.3, 0.9, (5, 7)), rng.integers(0, 3, (2, 7)).astype(float)
+    for d in (3, 1024):
+        expected = [[logsumexp(d * np.log(row), b=times) for times in often] for row in ratios]
+        np.testing.assert_allclose(_log_sums(ratios, d, often), expected, rtol=1e-12)
+    refused(InvalidValue, "d must be at most 1024", draw, "growing", 8, 1025)

@@ -93,3 +93,9 @@ def test_even_sets_have_that_vector_and_say_so(n, d):
     drawn = generating_vector(points)
     # Up to a factor, and in some order of the axes.
     assert any(sorted(np.array(told) * int(each) % n) == sorted(drawn) for each in drawn)
+
+
+def test_lattices_of_many_dimensions_are_made_without_a_warning_of_numpys():
+    # Warnings are errors here: of poor lattices the energy is beyond the largest number.
+    assert draw("even", 64, 100).shape == (64, 100)
+    refused(InvalidValue, "d must be at most 1024", draw, "even", 8, 1025)

@@ -13,7 +13,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import UnknownName
 from evenroad.points.bank import TRAINED_FAMILIES, Trained
 from evenroad.points.bank.star import Star as Star
-from evenroad.points.pointset import PointSet
+from evenroad.points.pointset import PointSet, below_one
 from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.even import Even as Even
 from evenroad.points.samplers.growing import Growing as Growing
@@ -110,4 +110,6 @@ def draw(name: str, n: int, d: int, *, rng: RngLike = 0, **options: Any) -> Poin
     >>> er.draw("even", 512, 6, rng=0).points.shape
     (512, 6)
     """
-    return make_sampler(name, **options).draw(n, d, rng=rng)
+    drawn = make_sampler(name, **options).draw(n, d, rng=rng)
+    points = below_one(drawn.points)
+    return drawn if points is drawn.points else PointSet(points, drawn.origin)

@@ -19,6 +19,7 @@ from evenroad._time_limit import look_at_clock
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import ALL_SYMMETRIES
+from evenroad.points.samplers.korobov import require_dimensions
 
 DIGITS = 30
 LONGEST = 2**DIGITS
@@ -29,6 +30,9 @@ SEARCHED, TOGETHER = 20, 11
 
 KEPT, TRIED = 48, 32
 """Number of vectors kept from one digit to the next, and of continuations tried for each."""
+
+MANY = 64 << TOGETHER
+"""Number of coordinates of a lattice from which on fewer vectors are kept and tried: 64 axes of all points."""
 
 WORK = 2 * 10**7
 """Number of coordinates examined to choose a digit that is not searched together."""
@@ -68,6 +72,7 @@ class Growing:
         Raises InvalidValue also if start + n exceeds 2**30.
         """
         n, d = require_count("n", n), require_count("d", d)
+        require_dimensions(d)
         if self.start + n > LONGEST:
             raise InvalidValue(f"the growing lattice ends at index {LONGEST}, asked for {self.start + n}")
         random = generator(rng)
@@ -111,7 +116,8 @@ def _searched(d: int, digits: int) -> Ints:
     else:
         found, scores = np.ones((1, d), dtype=np.int64), np.zeros(1)
         for digit in range(2, digits + 1):
-            found, scores = _best(found, scores, digit, TRIED, KEPT)
+            share = min(1.0, (MANY / (d << digit)) ** 0.5)
+            found, scores = _best(found, scores, digit, max(round(share * TRIED), 2), max(round(share * KEPT), 1))
     vector: Ints = found[0]
     vector.setflags(write=False)
     return vector
@@ -152,12 +158,23 @@ def _scores(vectors: Ints, digit: int) -> Floats:
         squared = (gaps * gaps).sum(axis=1)
         # Relative to the shortest, so that nothing overflows whatever d is.
         shortest = squared.min(axis=1, keepdims=True)
-        energies = np.log((shortest / squared) ** d @ multiples.T) / (2 * d) - 0.5 * np.log(shortest)
+        energies = _log_sums(shortest / squared, d, multiples) / (2 * d) - 0.5 * np.log(shortest)
         kernel = (1.5 - gaps * (1.0 - gaps)).prod(axis=1)
         uneven = (1.5**d + kernel @ multiples.T) / lengths - (4.0 / 3.0) ** d
         logs = 0.5 * np.log(np.maximum(uneven, 1e-300))
         scores[first : first + block] = (SPREAD * energies + EVENNESS * logs).mean(axis=1)
     return scores
+
+
+def _log_sums(ratios: Floats, d: int, multiples: Floats) -> Floats:
+    """Return the logs of the sums of d-th powers of ratios, (m, steps), as often as each beginning has them."""
+    sums = ratios**d @ multiples.T
+    if sums.all():
+        return np.log(sums)
+    # The shortest difference of all is none of this beginning's, beside which its own are nothing in many dimensions.
+    with np.errstate(divide="ignore"):
+        logs: Floats = np.logaddexp.reduce(d * np.log(ratios)[:, np.newaxis] + np.log(multiples), axis=2)
+    return logs
 
 
 @lru_cache(maxsize=2)

@@ -26,6 +26,9 @@ from evenroad.points.randomise import ALL_SYMMETRIES
 MAX_N = 2**26
 """Largest n for which products of two residues, and the multiple of n next to them, are exact in float64."""
 
+MOST_D = 1024
+"""Largest dimension of lattices that are scored by a discrepancy: its products are numbers there."""
+
 WORK = 3 * 10**7
 """Limit on the coordinates that a search examines: it bounds the number of multipliers tried."""
 
@@ -101,6 +104,15 @@ def shifted_lattice(n: int, vector: Sequence[int], shift: Floats) -> Floats:
             np.subtract(rest, np.floor(rest, out=whole), out=block[:, axis])
     points.setflags(write=False)
     return points
+
+
+def require_dimensions(d: int) -> None:
+    """Raise InvalidValue for more dimensions than products over all of them may have."""
+    if d > MOST_D:
+        raise InvalidValue(
+            f"d must be at most {MOST_D} for a lattice with good projections, got {d}: discrepancies in more dimensions"
+            " exceed double precision; korobov, sobol and halton have more"
+        )
 
 
 def korobov_generator(n: int, d: int) -> int:

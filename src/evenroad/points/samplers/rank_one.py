@@ -16,7 +16,15 @@ import numpy as np
 from evenroad._arrays import Floats, Ints
 from evenroad._time_limit import look_at_clock
 from evenroad.errors import InvalidValue
-from evenroad.points.samplers.korobov import MAX_N, TIE, integer_power, korobov_generator, multipliers, powers
+from evenroad.points.samplers.korobov import (
+    MAX_N,
+    TIE,
+    integer_power,
+    korobov_generator,
+    multipliers,
+    powers,
+    require_dimensions,
+)
 
 EVENNESS = 2.0
 """Weight of the discrepancy beside the energy, both as logs: chosen in tuning worlds of ``points_apart``."""
@@ -43,10 +51,12 @@ def rank_one_vector(n: int, d: int) -> tuple[int, ...]:
 
     The score is log(E) / (2 d) + :data:`EVENNESS` log(W), with E the periodic Riesz energy, s = 2d, and W the
     wrap-around L2 discrepancy, which is the root of the mean square of Hickernell's over all shifts.  Axis after axis
-    tries all numbers without common divisor with n, or as many as :data:`TRIED` allows.  InvalidValue if n > 2**26.
+    tries all numbers without common divisor with n, or as many as :data:`TRIED` allows.  InvalidValue if n > 2**26 or
+    d > 1024.
     """
     if n > MAX_N:
         raise InvalidValue(f"n must be at most {MAX_N} for a lattice, got {n}")
+    require_dimensions(d)
     if n <= 3 or d <= 2:
         multiplier = korobov_generator(n, d)
         return tuple(pow(multiplier, axis, n) for axis in range(d))
@@ -101,8 +111,9 @@ def _terms(vector: Ints, steps: Ints, n: int) -> tuple[Floats, Floats]:
 
 def _summed(squared: Floats, kernel: Floats, steps: Ints, n: int, d: int) -> tuple[Floats, Floats]:
     """Return the sums over all differences, each of which stands for its mirror image, too: rows of (m, steps)."""
-    # In units of the spacing, so that nothing overflows, whatever d is.
-    energy = integer_power(n ** (-2.0 / d) / squared, d)
+    # In units of the spacing.  Nobody takes a lattice that is so poor that its energy is beyond the largest number.
+    with np.errstate(over="ignore", under="ignore"):
+        energy = integer_power(n ** (-2.0 / d) / squared, d)
     if 2 * steps[-1] == n:
         energy[..., -1] *= 0.5
         return 2.0 * energy.sum(axis=-1), 2.0 * kernel.sum(axis=-1) - kernel[..., -1]

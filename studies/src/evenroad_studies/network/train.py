@@ -25,6 +25,9 @@ from evenroad_studies.training.objective import Objective, parse_objective
 
 Weights: TypeAlias = npt.NDArray[np.float32]
 
+STEEPEST = 1e30
+"""Largest slope of an objective in a coordinate that a network is trained with: its squares are summed in float32."""
+
 INSET = 1e-4
 """Starts lie so far inside the faces of the cube, where the logit would be infinite."""
 
@@ -133,6 +136,11 @@ def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None 
         value, columns = objective.of_columns(np.ascontiguousarray(points.T))
         if not (math.isfinite(value) and np.isfinite(columns).all()):
             raise InvalidValue(f"the objective '{objective}' is {value} at step {step}: the training has diverged")
+        if np.abs(columns).max() > STEEPEST:
+            raise InvalidValue(
+                f"the network trains in single precision, and for n={config.n}, d={config.d} the slopes of"
+                f" '{objective}' are beyond it: take fewer dimensions, or another sampler"
+            )
         judged = star_discrepancy(points) if config.judge == "star" else value
         if judged < best_value:
             best_value, best_points = judged, points

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from evenroad._checks import require_count
-from evenroad._rng import RngLike, seed_of
+from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue, WorkerLost
 from evenroad.points.anneal import Callback, require_points_for
 from evenroad.points.pointset import Origin, PointSet
@@ -225,6 +225,8 @@ def _root_sequence(rng: RngLike) -> np.random.SeedSequence:
         return rng
     if isinstance(rng, np.random.Generator):
         return rng.bit_generator.seed_seq.spawn(1)[0]  # type: ignore[attr-defined]
+    if isinstance(rng, np.random.RandomState):
+        return generator(rng).bit_generator.seed_seq  # type: ignore[return-value]
     if isinstance(rng, bool) or not isinstance(rng, int | np.integer) or rng < 0:
-        raise InvalidValue(f"rng must be an int >= 0, a numpy SeedSequence or a numpy Generator, got {rng!r}")
+        raise InvalidValue(f"rng must be an int >= 0, a numpy SeedSequence, Generator or RandomState, got {rng!r}")
     return np.random.SeedSequence(int(rng))
