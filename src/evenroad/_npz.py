@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from evenroad._files import atomic_write, not_a, open_file
 from evenroad._shared import OwnLock
-from evenroad.errors import BrokenFile, shown
+from evenroad.errors import BrokenFile, UnknownName, shown
 
 if TYPE_CHECKING:
     import zipfile
@@ -42,7 +42,7 @@ def reading(path: Path, kind: str, begins: bytes = b"") -> Iterator[None]:
     """
     try:
         yield
-    except BrokenFile:
+    except (BrokenFile, UnknownName):
         raise
     except FileNotFoundError:
         raise BrokenFile(f"no such file: {path}") from None

@@ -1,5 +1,7 @@
 """Files of clouds: the same points from every format, and one line for what is wrong with one."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -11,12 +13,12 @@ POINTS = np.array([[0.5, -1.25, 2.0], [3.0, 4.5, -5.75], [0.125, 0.0, 1.0]])
 
 
 def ply(kind, points=POINTS, extra=True, count=None):
-    """A file with a colour before and a face after what matters."""
+    """A file with a colour before and a list after what matters."""
     order = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": "<"}[kind]
     count = len(points) if count is None else count
     head = f"ply\nformat {kind} 1.0\ncomment element vertex 7\nelement vertex {count}\n"
     head += "property uchar red\nproperty float x\nproperty double y\nproperty float32 z\n"
-    head += "element face 1\nproperty list uchar int vertex_indices\nend_header\n" if extra else "end_header\n"
+    head += "element range_grid 1\nproperty list uchar int vertex_indices\nend_header\n" if extra else "end_header\n"
     if kind == "ascii":
         return head.encode() + b"".join(b"255 %r %r %r\n" % tuple(map(float, row)) for row in points) + b"3 0 1 2\n"
     table = np.zeros(len(points), [("r", "u1"), ("x", order + "f4"), ("y", order + "f8"), ("z", order + "f4")])
@@ -124,6 +126,8 @@ def test_arrays_may_have_more_columns_or_fields(tmp_path, columns):
     ("words.pcd", pcd("ascii", count=9), "cut off"), ("head.ply", ply("ascii")[:60], "no 'end_header'"),
     ("kind.ply", ply("ascii").replace(b"ascii", b"text"), "not a readable cloud"),
     ("flat.ply", ply("ascii").replace(b"float32 z", b"float32 height"), "not a readable cloud"),
+    ("mesh_of.ply", ply("ascii").replace(b"range_grid 1", b"face 1"), "of 1 faces, .* shape: mesh"),
+    ("strips.ply", ply("binary_little_endian").replace(b"range_grid", b"tristrips"), "is a mesh of 1 faces"),
     ("faces.ply", ply("ascii").replace(b"vertex 3", b"edge 3"), "first element is not 'vertex'"),
     ("packed.pcd", packed_pcd(POINTS)[:-1], "announced"),
     ("damaged.pcd", packed_pcd(POINTS).replace(b"compressed\n", b"compressed\n#")[:-1], "announced"),
@@ -152,3 +156,32 @@ def test_what_is_missing_or_of_another_kind_is_refused_and_no_pickle_opened(tmp_
     refused(BrokenFile, "complex", load_cloud, tmp_path / "scan.npy")
     np.save(tmp_path / "scan.npy", np.array([{}], dtype=object), allow_pickle=True)
     refused(BrokenFile, "not a readable cloud", load_cloud, tmp_path / "scan.npy")
+
+
+@pytest.mark.parametrize("shape", [(480, 640), (3, 5000), (4, 100), (100, 40), (9, 9)])
+def test_an_image_of_depths_and_points_in_columns_are_no_clouds(tmp_path, shape):
+    table = np.ones(shape)
+    np.save(tmp_path / "table.npy", table)
+    np.savetxt(tmp_path / "table.xyz", table)
+    for name in ("table.npy", "table.xyz"):
+        refused(BrokenFile, "no list of points", load_cloud, tmp_path / name)
+
+
+def test_a_pcd_header_with_an_unknown_or_misspelt_line_is_refused(tmp_path):
+    for old, new, said in (
+        (b"VIEWPOINT", b"UNITS mm\nVIEWPOINT", "'UNITS'"),
+        (b"COUNT", b"COUNTS", "did you mean 'COUNT'"),
+    ):
+        path = tmp_path / "c.pcd"
+        path.write_bytes(pcd("binary").replace(old, new))
+        refused(UnknownName, said, load_cloud, path)
+
+
+def test_a_field_of_millions_of_numbers_takes_no_more_than_they_do(tmp_path):
+    head = "FIELDS x y z f\nSIZE 4 4 4 1\nTYPE F F F U\nCOUNT 1 1 1 3000000\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary\n"
+    path = tmp_path / "wide.pcd"
+    path.write_bytes(head.encode() + POINTS[:1].astype("<f4").tobytes() + bytes(3_000_000))
+    tracemalloc.start()
+    np.testing.assert_array_equal(load_cloud(path), POINTS[:1])
+    assert tracemalloc.get_traced_memory()[1] < 20e6
+    tracemalloc.stop()

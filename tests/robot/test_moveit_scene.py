@@ -114,12 +114,12 @@ BROKEN = {
     "shapes without a number": ("a.scene", OLD.replace("\n2\n", "\ntwo\n"), BrokenFile, "number of shapes, got 'two'"),
     "no object": ("a.yaml", "world: 3", BrokenFile, "'world' in .* got 3"),
     "no id": ("a.yaml", _yaml("primitives: []"), BrokenFile, "must have an 'id'"),
-    "a mesh in YAML": ("a.yaml", _yaml("id: cup, meshes: [{resource: a.stl}]"), InvalidValue,
+    "a mesh in YAML": ("a.yaml", _yaml(f"id: cup, meshes: [{{resource: a.stl}}], mesh{POSE[9:]}"), InvalidValue,
         "mesh of object 'cup' .* must have vertices"),
     "a cone in YAML": ("a.yaml", _yaml(f"id: hat, primitives: [{{type: 4, dimensions: [1, 1]}}], {POSE}"),
         UnknownName, "'hat' .*'cone'"),
     "too few dimensions": ("a.yaml", _yaml(f"id: a, primitives: [{{type: box, dimensions: [1]}}], {POSE}"),
-        InvalidValue, "dimensions of 'a'"),
+        InvalidValue, "dimensions of object 'a'"),
     "no pose": ("a.yaml", _yaml("id: a, primitives: [{type: box, dimensions: [1, 1, 1]}]"), BrokenFile, "1 and 0"),
 }  # fmt: skip
 
@@ -159,7 +159,7 @@ def test_a_planning_scene_has_meshes(tmp_path):
     ("[0, 1, 2]}", "[0, 1, 1.7]}", "mesh of object 'cup' .* must have whole vertex_indices, got 1.7"),
     ("triangles: [{vertex_indices: [0, 1, 2]}]", "triangles: []", "one triangle or more"),
     ("[0, 1, 0]]", "[0, 1]]", "a vertex of a mesh of object 'cup'"),
-    ("mesh_poses: [{", "mesh_poses: [], more: [{", "a pose for each mesh, got 1 and 0"),
+    ("mesh_poses: [{", "mesh_poses: [], subframe_poses: [{", "a pose for each (mesh|subframe), got [01] and [01]"),
 ])  # fmt: skip
 def test_a_mesh_of_a_planning_scene_that_is_none_is_refused(tmp_path, old, new, says):
     text = _yaml(CUP)

@@ -96,3 +96,21 @@ def test_what_is_wrong_in_an_included_file_is_said_in_one_line(tmp_path, entry, 
     with pytest.raises(EvenroadError, match=says) as caught:
         scene_of(tmp_path, entry)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("entry", ["{include: %s}", "{shape: mesh, file: %s}", "{shape: mesh, file: %s, convex: true}"])
+def test_a_gltf_has_one_orientation_in_a_scene_and_that_of_its_file_on_a_link(tmp_path, entry):
+    tall = trimesh.creation.box((0.2, 0.8, 0.1))
+    tall.apply_translation((0.0, 0.4, 0.05))
+    tall.export(tmp_path / "tall.glb")
+    (tmp_path / "s.yaml").write_text("obstacles:\n  tall: " + entry % "tall.glb" + "\n")
+
+    def span(body):
+        corners = body.pose.apply(body.triangles.vertices)
+        return corners.min(axis=0), corners.max(axis=0)
+
+    (obstacle,) = er.load_scene(tmp_path / "s.yaml").obstacles
+    for body in (obstacle.body, er.Mesh(tmp_path / "tall.glb")):
+        np.testing.assert_allclose(span(body), [(-0.1, -0.1, 0.0), (0.1, 0.0, 0.8)], atol=1e-6)
+    on_a_link = er.Mesh(tmp_path / "tall.glb", link="arm")
+    np.testing.assert_allclose(span(on_a_link), [(-0.1, 0.0, 0.0), (0.1, 0.8, 0.1)], atol=1e-6)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from evenroad._arrays import Floats
 from evenroad._files import open_file, read_bytes
 from evenroad._npz import read_array, reading
+from evenroad._understood import Kind, require_understood
 from evenroad.errors import BrokenFile, UnknownName, shown
 
 _PLY_TYPES = {
@@ -21,6 +22,11 @@ _PLY_TYPES = {
 _PLY_ORDERS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": ">"}
 _PCD_TYPES = {"F": "f", "I": "i", "U": "u"}
 _LONGEST_HEADER = 1 << 16
+_MOST_COLUMNS, _FEW_COLUMNS = 32, 8
+"""Largest number of columns of a point, such as colours, normals and times, and of one among fewer points."""
+_SURFACES = ("face", "tristrips")
+"""Elements of a .ply that make it a mesh."""
+_PCD = Kind(("FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "POINTS", "DATA"), harmless={"VERSION", "VIEWPOINT"})
 
 
 def load_cloud(path: str | os.PathLike[str]) -> Floats:
@@ -63,12 +69,25 @@ def _read_npy(file: Path) -> npt.NDArray[np.generic]:
         return _columns(array)
     if np.iscomplexobj(array):
         raise ValueError("its numbers are complex")
+    if array.ndim == 2:
+        _require_points(file, *array.shape)
     return array[:, :3] if array.ndim == 2 and array.shape[1] > 3 else array
+
+
+def _require_points(file: Path, rows: int, columns: int) -> None:
+    """Raise BrokenFile for a table that is no list of points: an image of depths, or points in its columns."""
+    if columns > _MOST_COLUMNS or (columns > _FEW_COLUMNS and columns >= rows):
+        raise BrokenFile(
+            f"{file}, {rows} x {columns} numbers, is no list of points: these have a row each, x y z first"
+        )
 
 
 def _read_xyz(file: Path) -> Floats:
     lines = (line.split("#")[0].replace(",", " ").split() for line in read_bytes(file).decode().splitlines())
-    rows = [[float(word) for word in words[:3]] for words in lines if words]
+    every = [words for words in lines if words]
+    if len(every) > 1:
+        _require_points(file, len(every), max(map(len, every)))
+    rows = [[float(word) for word in words[:3]] for words in every]
     if len({len(row) for row in rows}) > 1:
         raise ValueError("not every line has three numbers")
     return np.array(rows) if rows else np.empty((0, 3))
@@ -89,7 +108,9 @@ def _read_ply(file: Path) -> Floats:
         if words[0] == "element":
             element = words[1]
         elif words[0] == "property" and element == "vertex":
-            fields.append((words[2], order + _PLY_TYPES[words[1]]))
+            fields.append((words[2], order + _PLY_TYPES[words[1]], (1,)))
+    if faces := sum(each for name, each in elements if name in _SURFACES):
+        raise BrokenFile(f"{file} is a mesh of {faces} faces, and not a cloud of their corners: read it as shape: mesh")
     # An ascii file has one line per element behind the points; binary ones would need a reader of lists.
     behind = sum(count for _, count in elements) - count
     if behind and kind == "ascii":
@@ -103,6 +124,7 @@ def _read_ply(file: Path) -> Floats:
 def _read_pcd(file: Path) -> Floats:
     header, data = _header(read_bytes(file), b"DATA")
     said = {words[0]: words[1:] for words in header}
+    require_understood(said, _PCD, f"the header of {file}")
     kind = said["DATA"][0]
     if kind not in ("ascii", "binary", "binary_compressed"):
         raise ValueError(f"its data are {kind!r}, not ascii, binary or binary_compressed")
@@ -116,12 +138,11 @@ def _read_pcd(file: Path) -> Floats:
         data = _rows_of_columns(data, widths, count)
     if sum(counts) * count > len(data):
         raise ValueError(f"it is cut off: {count} points of {sum(counts)} numbers were announced")
-    fields = []
-    for i, (name, letter, size, many) in enumerate(zip(names, said["TYPE"], said["SIZE"], counts, strict=True)):
+    fields = [
         # Names may repeat: '_' is what PCL calls gaps.
-        for k in range(many if count else 1):
-            own = name if many == 1 and name != "_" else f"{name} {i} {k}"
-            fields.append((own, "<" + _PCD_TYPES[letter] + size))
+        (name if many == 1 and name != "_" else f"{name} {i}", "<" + _PCD_TYPES[letter] + size, (many,))
+        for i, (name, letter, size, many) in enumerate(zip(names, said["TYPE"], said["SIZE"], counts, strict=True))
+    ]
     points = _rows(data, count, fields, kind == "ascii")
     return points[~np.isnan(points).all(axis=1)]
 
@@ -182,18 +203,21 @@ def _header(content: bytes, last: bytes) -> tuple[list[list[str]], bytes]:
 
 
 def _rows(
-    data: bytes, count: int, fields: list[tuple[str, str]], ascii_rows: bool, *, may_go_on: bool = False
+    data: bytes, count: int, fields: list[tuple[str, str, tuple[int]]], ascii_rows: bool, *, may_go_on: bool = False
 ) -> Floats:
     """Return x, y and z of `count` rows, (n, 3); ValueError if more follow, unless it `may_go_on`."""
     kind = np.dtype(fields)
     if ascii_rows:
-        words = data.split()
-        there, whole = divmod(len(words), len(fields))
+        words, columns = data.split(), {}
+        width = 0
+        for name, _, (many,) in fields:
+            columns[name] = width
+            width += many
+        there, whole = divmod(len(words), width)
         if there != count or whole:
             raise ValueError(_of_announced(count, there))
-        table = np.array(list(map(float, words))).reshape(count, len(fields))
-        names = [name for name, _ in fields]
-        return np.stack([table[:, names.index(name)] for name in "xyz"], axis=1)
+        table = np.array(list(map(float, words))).reshape(count, width)
+        return np.stack([table[:, columns[name]] for name in "xyz"], axis=1)
     there = len(data) // kind.itemsize
     if there < count or (there > count and not may_go_on):
         raise ValueError(_of_announced(count, there))
@@ -206,4 +230,4 @@ def _of_announced(count: int, there: int) -> str:
 
 
 def _columns(table: npt.NDArray[np.void]) -> Floats:
-    return np.stack([table[name].astype(np.float64) for name in "xyz"], axis=1).reshape(-1, 3)
+    return np.stack([table[name].astype(np.float64).reshape(-1) for name in "xyz"], axis=1)

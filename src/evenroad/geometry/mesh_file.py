@@ -19,6 +19,18 @@ from evenroad._npz import require_unpackable
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.geometry.mesh import TriangleMesh, merged
 
+GLTF = (".glb", ".gltf")
+"""Suffixes of glTF, whose y axis is up, as its specification says."""
+
+
+def load_upright(path: Path) -> TriangleMesh:
+    """Read a mesh that stands in a scene, where z is up: the y axis of a glTF becomes z.  Errors as `load_mesh`."""
+    mesh = load_mesh(path)
+    if path.suffix.lower() not in GLTF:
+        return mesh
+    x, y, z = mesh.vertices.T
+    return replace(mesh, vertices=np.column_stack([x, -z, y]))
+
 
 def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMesh:
     """Read a mesh from a file: .stl, .obj, .dae, .ply and other formats of trimesh.

@@ -18,7 +18,7 @@ from evenroad._checks import FARTHEST, as_batch, as_row, require_positive
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.cloud_file import load_cloud
 from evenroad.geometry.mesh import TriangleMesh, scaled, volume_of
-from evenroad.geometry.mesh_file import load_mesh
+from evenroad.geometry.mesh_file import GLTF, load_mesh, load_upright
 from evenroad.geometry.pose import Vector
 from evenroad.geometry.shape import Placed, Shape
 
@@ -35,9 +35,10 @@ class Mesh(Shape):
     ----------
     source : str, path-like, TriangleMesh, or a pair of arrays
         A file, opened on first use; or vertices, (v, 3) [m], and triangles as rows of these, (t, 3); or an object with
-        `vertices` and `faces`, such as a mesh of trimesh.
+        `vertices` and `faces`, such as a mesh of trimesh.  The y axis of a glTF, which is up, becomes z, but for the
+        mesh of a `link`.
     scale : float or sequence of 3 floats
-        Factors of the coordinates, none of them 0.
+        Factors of the coordinates, z up, none of them 0.
     **placed
         ``xyz``, ``rpy`` or ``xyzw``, or ``pose`` [m, rad]; ``name`` in a scene; ``link``, default the world.
 
@@ -61,6 +62,8 @@ class Mesh(Shape):
     def __init__(self, source: Any, scale: float | Sequence[float] = (1.0, 1.0, 1.0), **placed: Unpack[Placed]) -> None:
         row = as_row("the scale of a mesh", [scale] * 3 if np.ndim(scale) == 0 else scale, 3)  # type: ignore
         source = _surface(source)
+        if isinstance(source, Path) and source.suffix.lower() in GLTF and "link" not in placed:
+            source = load_upright(source)
         if 0.0 in row:
             raise InvalidValue(f"the scale of mesh {source.name} must not be 0, got {row}: it would be flat")
         set_fields(self, scale=row, source=source)

@@ -8,10 +8,12 @@ import numpy as np
 
 from evenroad._arrays import Floats, Ints, unique_rows
 from evenroad._files import read_bytes
-from evenroad.errors import BrokenFile
+from evenroad._understood import Kind, require_understood
+from evenroad.errors import BrokenFile, UnknownName
 
 _LEVELS = 16
 """Depth of the tree; the finest cells are 2^-16 of the root."""
+_HEADER = Kind(("id", "size", "res"))
 _OCCUPIED, _INNER = 2, 3
 """What two bits of a node say of a child; of 1 it is free, of 0 unknown."""
 _SIDES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
@@ -30,7 +32,10 @@ def read_octomap(file: Path) -> tuple[Floats, Ints]:
         header, data = read_bytes(file).split(b"\ndata\n", 1)
         lines = [line.split() for line in header.decode("ascii").splitlines() if line and not line.startswith("#")]
         said = {words[0]: words[1] for words in lines}
+        require_understood(said, _HEADER, f"the header of the OctoMap {file}")
         resolution, count = float(said["res"]), int(said["size"])
+    except UnknownName:
+        raise
     except (OSError, ValueError, KeyError, IndexError) as error:
         raise BrokenFile(f"cannot read the OctoMap {file}: its header must have id, size, res and data") from error
     if said.get("id") != "OcTree" or not header.startswith(b"# Octomap OcTree binary file"):

@@ -15,7 +15,8 @@ from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.geometry.shapes import PRIMITIVES, PointCloud
 from evenroad.robot.find import DATA
 from evenroad.robot.held import HeldObject
-from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
+from evenroad.robot.moveit_scene import read_scene_text
+from evenroad.robot.planning_scene import read_planning_scene
 from evenroad.robot.scan import allowed_within
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot.scene_entries import POSE, mapping_of, obstacle_of, obstacles_of, region_of
@@ -79,7 +80,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     the scene; points within `margin` of the robot, where it stood when it was `seen_at`, are left out when one plans.
     So are those that a cloud's ``cut`` names, a list of shapes, ``{shape: box, size: [0.1, 0.1, 0.2], xyz: [0.5, 0,
     0.1], grow: 0.01}``, and of what is attached where the robot stands, ``{attached: crate, at: grasp, grow: 0.01}``.
-    MoveIt's scenes are read, too (:mod:`evenroad.robot.moveit_scene`).
+    MoveIt's scenes are read, too (:mod:`evenroad.robot.moveit_scene`, :mod:`evenroad.robot.planning_scene`).
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ import numpy as np
 from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.mesh import convex_hull
-from evenroad.geometry.mesh_file import load_objects
+from evenroad.geometry.mesh_file import GLTF, load_objects
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import WORLD, Mesh, Shape
 from evenroad.robot.joint import require_within
@@ -21,7 +21,6 @@ from evenroad.robot.urdf_xml import RobotFile
 
 ROBOT_FILES = (".urdf", ".xacro")
 """Suffixes of what has links and joints."""
-GLTF = (".glb", ".gltf")
 OBJECT_FILES = (*ROBOT_FILES, *GLTF)
 """Suffixes of files that are scenes of their own."""
 Y_UP = Pose.from_rpy((0.0, 0.0, 0.0), (0.5 * np.pi, 0.0, 0.0))
