@@ -6,8 +6,8 @@
 For each robot, in three scenes of twenty boxes, balls and cylinders at random: how many configurations that we call
 free touch an obstacle by more than `DEEP` (uniform ones, others bisected to our edge of contact), how many that coal
 calls free are blocked here, with the makers' shapes and with capsules, the volume of what stands for the robot, and
-the time of a verdict.  Links are not tested against each other.  ``--table`` prints the rows as docs/robots.md has
-them.
+the time of a verdict.  Links are not tested against each other.  ``--table`` prints the rows as docs/guides/robots.md
+has them.
 """
 
 from __future__ import annotations

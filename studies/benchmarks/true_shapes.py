@@ -11,7 +11,7 @@ More ratios say where that comes from.  ``same`` is the time that shapes take fo
 trees that they grow, in parts of what capsules take for the same motions: what a test costs.  ``back`` is the time that
 capsules take from goal to start, in parts of that from start to goal, and ``own`` the same of shapes: what is luck of a
 search.  ``motions`` is how many more motions a plan with shapes looks at.  The last row is of all problems together.
-``--table`` prints the rows as docs/robots.md has them.
+``--table`` prints the rows as docs/guides/robots.md has them.
 """
 
 from __future__ import annotations
