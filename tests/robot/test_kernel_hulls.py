@@ -7,15 +7,20 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
+from evenroad.geometry import Capsule
 from evenroad.geometry.distance import segment_distance
-from evenroad.robot import ArmWorld, Scene, load_model, load_robot
+from evenroad.geometry.hulls import Hull
+from evenroad.robot import ArmWorld, Robot, Scene, load_model, load_robot
+from evenroad.robot.joint import Joint
 from evenroad.robot.kernel.hull_trees import contacts, hull_trees
 from evenroad.robot.kinematics import link_poses
-from tests.robot.kernel_arms import edge, states_along, through_contact
+from tests.robot.kernel_arms import STRAIGHT, X, Y, Z, edge, states_along, through_contact
 from tests.robot.mesh_arms import rod_touches
 from tests.robot.urdf_texts import joint, link, urdf, write
 
 EMPTY = Scene((), name="empty")
+WIDTH = 0.05
+"""Radius of capsules [m]."""
 
 
 def gap(first, second):
@@ -75,6 +80,46 @@ def test_widened_segments_are_capsules():
     sure = np.abs(distance - 0.15) > 1e-6
     touch = contacts(trees, "a", "b", poses, others)[:, 0] >= 0
     np.testing.assert_array_equal(touch[sure], distance[sure] < 0.15)
+
+
+def studded(stems):
+    """A body that three slides and three joints move past another: each of capsules, (n, 2, 3) their segments."""
+    links = ("a", *(f"link {i}" for i in range(5)), "b")
+    moves = [(kind, axis) for kind in ("prismatic", "revolute") for axis in (X, Y, Z)]
+    joints = tuple(
+        Joint(f"to {links[i + 1]}", kind, links[i], links[i + 1], (0.0, 0.0, 0.0), STRAIGHT, axis, -2.0, 2.0)
+        for i, (kind, axis) in enumerate(moves)
+    )
+    hulls, balls = [], []
+    for body, segments in stems.items():
+        hulls += [Hull(segment, WIDTH, body) for segment in segments]
+        # What is not round lets hulls decide: it lies within a capsule.
+        hulls.append(Hull(segments[0, 0] + 0.1 * WIDTH * np.eye(3), 0.0, body))
+        balls.append(Capsule((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 2.0, link=body))
+    group = tuple(each.name for each in joints)
+    return Robot("studded", links, joints, tuple(balls), (("a", "b"),), group, hulls=tuple(hulls))
+
+
+@pytest.mark.parametrize("counts", [(1, 40), (40, 1), (40, 40)])
+def test_of_many_capsules_no_contact_is_left_out(counts):
+    """Whichever of two bodies the search divides: their distances are those of segments."""
+    rng = np.random.default_rng(7)
+    stems = {
+        body: rng.normal(size=(count, 1, 3)) * 0.3 + rng.normal(size=(count, 2, 3)) * 0.03
+        for body, count in zip("ab", counts, strict=True)
+    }
+    world = ArmWorld(studded(stems), EMPTY)
+    q = rng.normal(size=(400, 6)) * 0.3
+    poses = link_poses(world.robot, q)[:, -1]
+    moved = np.einsum("nij,sej->nsei", poses[:, :3, :3], stems["b"]) + poses[:, np.newaxis, np.newaxis, :3, 3]
+    every = np.broadcast_arrays(stems["a"][:, np.newaxis], moved[:, np.newaxis])
+    distance = segment_distance(*(each.reshape(-1, 2, 3) for each in every)).reshape(len(q), -1).min(axis=1)
+    sure = np.abs(distance - 2.0 * WIDTH) > 2e-5
+    assert 10 < (distance < 2.0 * WIDTH).sum() < 390
+    np.testing.assert_array_equal(world.valid(q)[sure], distance[sure] > 2.0 * WIDTH)
+    trees = hull_trees({body: [(segments, WIDTH)] for body, segments in stems.items()})
+    apart = contacts(trees, "a", "b", np.tile(np.eye(4), (len(q), 1, 1)), poses)[:, 0] < 0
+    np.testing.assert_array_equal(apart[sure], distance[sure] > 2.0 * WIDTH)
 
 
 def test_of_many_hulls_the_tree_finds_those_that_touch():

@@ -9,7 +9,9 @@ import pytest
 
 import evenroad as er
 from evenroad.errors import InvalidValue
-from evenroad.geometry.shapes import Capsule
+from evenroad.geometry.hulls import piece_of
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import Box, Capsule
 from evenroad.planning import PRM, plan
 from evenroad.points import draw
 from evenroad.robot.arm_world import ArmWorld
@@ -122,10 +124,13 @@ TURN = Joint("turn", "revolute", "base", "wheel", (0.0, 0.0, 0.0), STRAIGHT, Z, 
 OUT = Joint("out", "prismatic", "wheel", "sled", (0.0, 0.0, 0.0), STRAIGHT, AHEAD, 0.8, 0.9)
 FOLLOWER = replace(TURN, name="follower", mimic=Mimic("turn", -2.0))
 UP, ASIDE = (replace(TURN, kind="prismatic", axis=axis) for axis in (Z, (0.0, 1.0, 0.0)))
+MATE = replace(ASIDE, name="mate", child="mate", mimic=Mimic("turn", -1.0))
 GAUGES = {
     "a wheel": ((TURN,), 1.0),
     "its own post": ((TURN,), 1.0),
     "its own rod": ((TURN,), 1.0),
+    "its own box": ((ASIDE,), 1.0),
+    "its own mate": ((MATE, ASIDE), 1.0),
     "a slide": ((ASIDE,), 1.0),
     "a slide of many balls": ((ASIDE,), 1.0),
     "a lift of many balls": ((UP,), 1.0),
@@ -143,12 +148,17 @@ def test_a_post_of_a_millimetre_is_not_missed_wherever_it_is_in_a_motion(kind):
     half = 0.02 if kind == "its own rod" else 0.0
     # Balls that lie in line ahead: a motion of one hits the post, of the others none.
     places = far + 0.01 * np.arange(20 if "many" in kind else 1)
-    balls = [Capsule((x, 0.0, -half), (x, 0.0, half), 1e-3, link=joints[-1].child) for x in places.tolist()]
+    radius = 3e-3 if kind == "its own box" else 1e-3
+    balls = [Capsule((x, 0.0, -half), (x, 0.0, half), radius, link=joints[-1].child) for x in places.tolist()]
     links, group = (("base", *(each.child for each in joints)), tuple(j.name for j in joints if j.mimic is None))
     robot, scene = Robot(kind, links, joints, tuple(balls), (), group), Scene([er.Sphere(1e-3, xyz=AHEAD)])
     if "own" in kind:
-        own = Capsule((1.0, 0.0, -half), (1.0, 0.0, half), 1e-3, link="base")
-        robot, scene = replace(robot, capsules=(*balls, own), pairs=(("base", "wheel"),)), NOTHING
+        own = replace(balls[0], link="mate" if kind == "its own mate" else "base")
+        robot, scene = replace(robot, capsules=(*balls, own), pairs=((own.link, "wheel"),)), NOTHING
+    if kind == "its own box":
+        # The balls are around boxes, which decide.
+        boxes = [Box((2e-3, 2e-3, 2e-3), pose=Pose(AHEAD), link=link) for link in ("base", "wheel")]
+        robot = replace(robot, hulls=tuple(piece_of(box).hull for box in boxes))
     world, rng = ArmWorld(robot, scene, resolution=0.5), np.random.default_rng(1)
     a = np.full((2000, world.space.dim), 0.9)
     b, share, length = a.copy(), rng.random(2000), rng.uniform(0.1, 1.9, 2000)

@@ -25,11 +25,19 @@ def turned(axis, angle):
     return np.eye(3) + math.sin(angle) * across + (1.0 - math.cos(angle)) * across @ across
 
 
-def random_chain(rng, kinds, mimic=False, shaped=False):
-    """A chain of joints with axes at random and a ball of a fiftieth of a millimetre at its tip.
+def with_tip(joints, place, radius, shaped):
+    """A chain of joints with a ball at a place on its last link.
 
     Where it is `shaped` the ball is the true shape of a capsule of a centimetre.
     """
+    links, group = ["link 0", *(each.child for each in joints)], [each.name for each in joints if each.mimic is None]
+    ball = Capsule(place, place, 0.01 if shaped else radius, link=links[-1])
+    shapes = (Parts(np.array([[place]]), links[-1], "sphere", radius=radius),) if shaped else ()
+    return Robot("chain", tuple(links), tuple(joints), (ball,), (), tuple(group), shapes=shapes)
+
+
+def random_chain(rng, kinds, mimic=False, shaped=False):
+    """A chain of joints with axes at random and a ball of a fiftieth of a millimetre at its tip."""
     joints = []
     for i, kind in enumerate(kinds):
         axis = rng.normal(size=3)
@@ -40,11 +48,7 @@ def random_chain(rng, kinds, mimic=False, shaped=False):
                 tuple(axis / np.linalg.norm(axis)), -6.0, 6.0, mimic=follows,
             )
         )  # fmt: skip
-    links = tuple(f"link {i}" for i in range(len(kinds) + 1))
-    ball = Capsule(PLACE, PLACE, 0.01 if shaped else TINY, link=links[-1])
-    group = tuple(each.name for each in joints if each.mimic is None)
-    shapes = (Parts(np.array([[PLACE]]), links[-1], "sphere", radius=TINY),) if shaped else ()
-    return Robot("chain", links, tuple(joints), (ball,), (), group, shapes=shapes)
+    return with_tip(joints, PLACE, TINY, shaped)
 
 
 def tip(robot, q):
@@ -57,7 +61,7 @@ def tip(robot, q):
             place = place + rotation @ np.array(joint.axis) * value
         else:
             rotation = rotation @ turned(joint.axis, value)
-    return place + rotation @ np.array(PLACE)
+    return place + rotation @ np.array(robot.capsules[0].a)
 
 
 R, P = "revolute", "prismatic"
@@ -91,3 +95,37 @@ def test_a_post_near_the_end_of_a_motion_is_not_missed(kinds, mimic, shaped):
             assert not world.motion_certified(a[np.newaxis], b[np.newaxis], tolerance)[0]
             half = 0.5 * (a + b)
             assert not world.motion_certified(half[np.newaxis], b[np.newaxis], tolerance)[0]
+
+
+def ever_faster(kind, turn, shaped):
+    """A chain whose tip gets faster by all that its acceleration allows, and a motion that begins where it rests."""
+    x, _, z = np.eye(3).tolist()
+    if kind == "wheel":
+        # A wheel rolls: the point that touches the ground is at rest.
+        joints, place, way = ((P, x), (R, z)), (0.0, 1.0, 0.0), (turn, turn)
+    else:
+        # One slide takes back what another one, which a joint turns away, slides out.
+        joints, place, way = ((P, x), (R, z), (P, x)), (0.0, 0.0, 0.0), (-1.0, turn, 1.0)
+    chain = [
+        Joint(
+            f"joint {i}", kind, f"link {i}", f"link {i + 1}", (0.0, 0.0, 0.0), STRAIGHT, tuple(axis), min(end, 0.0),
+            max(end, 0.0),
+        )
+        for i, ((kind, axis), end) in enumerate(zip(joints, way, strict=True))
+    ]  # fmt: skip
+    return with_tip(chain, place, TINY / 10, shaped), np.array(way)
+
+
+@pytest.mark.parametrize("shaped", [False, True])
+@pytest.mark.parametrize("kind", ["wheel", "slides"])
+def test_a_post_near_the_end_of_a_motion_that_gets_faster_throughout_is_not_missed(kind, shaped):
+    """With half of the bound of accelerations some would be proved."""
+    rng = np.random.default_rng(5)
+    for _ in range(100):
+        robot, b = ever_faster(kind, rng.uniform(0.5, 1.2), shaped)
+        # The way from the post to the end is little, but more than both are wide.
+        last = np.linalg.norm(tip(robot, b) - tip(robot, 0.999 * b))
+        at = tip(robot, (1.0 - rng.uniform(0.5, 1.0) * 1e-3 * TINY / last) * b)
+        world = er.ArmWorld(robot, er.Scene([er.Sphere(TINY / 10, xyz=tuple(at))]), resolution=9.0)
+        assert world.valid(b)
+        assert not world.motion_certified(np.zeros((1, len(b))), b[np.newaxis], 1e-6)[0]

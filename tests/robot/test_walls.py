@@ -184,6 +184,16 @@ def test_a_slit_at_the_end_of_the_other_joint_is_seen(make):
     assert not may_connect(ArmWorld(narrower), *(ends - (0.1 * limit, 0.0)))
 
 
+def test_a_plate_in_which_no_point_is_deep_shows_nothing():
+    """Its link's origin, beside it, is in the block for all values: what shows a wall must be in the plate, too."""
+    block = (10.0, 0.2, 0.2), Pose((0.5 - SLIT - 5.0, 0.0, 0.0))
+    plate = (1.0, SLIT, 0.1), Pose((3.0, 0.0, 0.0))
+    robot = crossing(("prismatic", (1.0, 0.0, 0.0), 1.0), block, plate, (-3.0, 0.0, 0.0))
+    ends = np.array([[1.0, -0.7], [1.0, 0.7]])
+    assert ArmWorld(robot).motion_valid(*ends[:, np.newaxis])[0]
+    assert walls_of(robot) == ((), ())
+
+
 @pytest.mark.parametrize(("overlap", "shown"), [(1e-3, True), (2.5e-4, False), (-1e-5, False)])
 def test_bodies_that_hardly_overlap_show_nothing(overlap, shown):
     slide = Joint("slide", "prismatic", "block", "body", (0.0, 0.0, 0.0), STRAIGHT, Z, -1.0, 1.0)
