@@ -117,9 +117,7 @@ def stages(robot: er.Robot) -> dict[str, float]:
         "  read": lambda: read_request.read_request(world, start, goal, Reading()),
         "  solve": lambda: solve(request, None, options),
         "    validity": lambda: world.valid(terminals),
-        "    trees": lambda: ARM_TREES.connect(
-            world, request.start, request.goals, variant=0, most_motions=4_000, seconds=5.0
-        ),
+        "    trees": lambda: ARM_TREES.connect(world, request.start, request.goals, variant=0, most_motions=4_000),
         "      native": native,
         "  finish": lambda: finished(request, result),
         "scene of arrays, world and er.plan": lambda: er.plan(

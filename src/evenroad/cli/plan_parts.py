@@ -175,5 +175,6 @@ def print_plan(result: PlanResult, files: Iterable[str], more: Sequence[tuple[st
     if times:
         spent = ", ".join(f"{phase} {ms:.{int(ms < 10)}f}" for phase, ms in times.items())
         rows.append(("time [ms]", spent))
+    rows += [("note", note) for note in result.notes]
     rows += [*more, ("files", ", ".join(files))]
     print_table(rows, first="green" if result.solved else "red")

@@ -101,6 +101,11 @@ class TriangleMesh:
         return extreme(self.compact.vertices)
 
     @cached_property
+    def sides(self) -> Floats:
+        """The sides of the box around the corners, (3,)."""
+        return np.ptp(self.vertices, axis=0)
+
+    @cached_property
     def is_convex(self) -> bool:
         """Whether it is closed and fills its hull, but for a ten-thousandth of the volume."""
         from scipy.spatial import ConvexHull, QhullError

@@ -260,6 +260,8 @@ def finished(request: Request, result: PlanResult, *, certified: bool = False) -
     there is no path or nothing to check.
     """
     given, world = request.given, request.world
+    if request.notes:
+        result = replace(result, notes=request.notes)
     if given is not None and given.poses and not given.unreached:
         result = replace(result, timings={"goals": given.seconds, **result.timings})
     if not result.solved and "points" in result.counts:

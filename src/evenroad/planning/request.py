@@ -12,7 +12,7 @@ import numpy.typing as npt
 from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
 from evenroad.roadmap.result import PlanResult, Status, make_result
-from evenroad.robot import RobotModel
+from evenroad.robot import ArmWorld, RobotModel
 from evenroad.robot.goals import Goals
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.urdf_xml import RobotFile
@@ -68,8 +68,9 @@ class Request:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was read otherwise than the files say."""
-        return () if self.model is None else self.model.notes
+        """What was read otherwise than the files say, and what seems unusual in them."""
+        of_robot = () if self.model is None else self.model.notes
+        return of_robot + self.world.notes if isinstance(self.world, ArmWorld) else of_robot
 
     @property
     def tip(self) -> str:

@@ -33,6 +33,7 @@ from evenroad.robot.robot import Robot
 from evenroad.robot.robot_in_scene import with_planes, within_scene
 from evenroad.robot.scene import Scene, limits_in_words, smaller_scene
 from evenroad.robot.states import as_configuration
+from evenroad.robot.units import scene_notes
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import SLACK
@@ -156,6 +157,11 @@ class ArmWorld(Changes, OneOrMany):
         return native
 
     @once_property
+    def notes(self) -> tuple[str, ...]:
+        """What is unusual in the sizes of obstacles, or in how far they are, in at most one line."""
+        return scene_notes(self.scene, self.robot_tables.reach + self.clearance)
+
+    @once_property
     def checker(self) -> Checker:
         """The native checks of this world."""
         touches_itself = self.robot_tables.fixed_contact is not None
@@ -164,7 +170,7 @@ class ArmWorld(Changes, OneOrMany):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy is made of: it makes checks of its own."""
-        made = ("checker", "roomier", "fixed_contact", "_measuring", "_bare", "_unpadded", "_numbered")
+        made = ("checker", "roomier", "fixed_contact", "_measuring", "_bare", "_unpadded", "_numbered", "notes")
         return {**state_without(self, made), "_since": None}
 
     def valid(self, q: Any) -> Any:

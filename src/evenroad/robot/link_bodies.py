@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-
-import numpy as np
 
 from evenroad.geometry.fit import fit_capsules, union_volume
 from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.kept import is_new
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Capsule, Mesh, Shape
-from evenroad.robot.joint import Joint
 from evenroad.robot.robot_model import LinkBody
 from evenroad.robot.urdf import Urdf
-
-_LARGE, _UNLIKE = 20.0, 500.0
-"""Size of a link or joint [m], and how many times the median, beyond which a file seems to have another unit.
-
-Many robots have links of 1 mm in place of sensors.
-"""
 
 
 def opened(shapes: Sequence[Shape]) -> tuple[Shape, ...]:
@@ -75,26 +66,3 @@ def link_body(urdf: Urdf, link: str, capsules: tuple[Capsule, ...], given: bool)
         capsule_volume=union_volume(capsules),
         given=given,
     )
-
-
-def size_notes(capsules: Mapping[str, Sequence[Capsule]], joints: Iterable[Joint]) -> tuple[str, ...]:
-    """Return a note where links or joints are so large, or links so unlike, that a file seems to have another unit."""
-    sizes = {link: _size(parts) for link, parts in capsules.items()}
-    largest, smallest = max(sizes, key=sizes.__getitem__), min(sizes, key=sizes.__getitem__)
-    far = max(joints, key=lambda joint: np.linalg.norm(joint.xyz), default=None)
-    away = 0.0 if far is None else float(np.linalg.norm(far.xyz))
-    hint = "metres are expected; a mesh in millimetres has scale 0.001 0.001 0.001"
-    middle = float(np.median(list(sizes.values())))
-    if sizes[largest] > min(_LARGE, _UNLIKE * middle) or middle > _UNLIKE * sizes[smallest]:
-        both = f"link {largest!r} is {sizes[largest]:.3g} m long, {smallest!r} {sizes[smallest]:.3g} m"
-        return (f"{both}: {hint}",)
-    if far is not None and (away > _LARGE or away > _UNLIKE * sizes[largest]):
-        return (f"joint {far.name!r} is {away:.3g} m away from the one before: {hint}",)
-    return ()
-
-
-def _size(parts: Sequence[Capsule]) -> float:
-    """Return the longest side of the box around capsules [m]."""
-    points = np.array([(part.a, part.b) for part in parts])
-    radii = np.array([part.radius for part in parts])[:, np.newaxis, np.newaxis]
-    return float(((points + radii).max(axis=(0, 1)) - (points - radii).min(axis=(0, 1))).max())

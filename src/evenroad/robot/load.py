@@ -21,11 +21,12 @@ from evenroad.robot.cache import cached, keep, key_of, know, known, stamps
 from evenroad.robot.find import find_robot
 from evenroad.robot.free_joints import without_moved
 from evenroad.robot.groups import EVERY, choose_group, chosen_states, group_notes, held_states
-from evenroad.robot.link_bodies import capsules_of, link_body, opened, pieces_of, shapes_of, size_notes
+from evenroad.robot.link_bodies import capsules_of, link_body, opened, pieces_of, shapes_of
 from evenroad.robot.pairs import SelfPairs, pairs_of, self_pairs
 from evenroad.robot.robot import Padding, Robot
 from evenroad.robot.robot_model import RobotModel
 from evenroad.robot.srdf import Srdf, read_srdf, with_moving_base
+from evenroad.robot.units import size_notes
 from evenroad.robot.urdf import Urdf, read_urdf, require_few_links
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.robot.xml_file import outermost
