@@ -11,6 +11,7 @@ import evenroad
 
 PACKAGE = Path(evenroad.__file__).parent
 ROOT = Path(__file__).parents[1]
+KERNEL = ROOT / "src" / "evenroad" / "_native" / "cpp"
 
 FIELD = {
     "ask asks asking hear tell told question questions": "query, or evaluate an edge",
@@ -49,6 +50,9 @@ STILL_THERE = {
 }
 """Word that is out -> identifiers of the package that still have it."""
 
+NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
+"""Comments and texts of C++."""
+
 
 def words_of(identifier):
     """Return the words of a name in snake_case or CamelCase, in small letters."""
@@ -57,9 +61,14 @@ def words_of(identifier):
 
 @cache
 def identifiers():
-    """Return every name in the package's sources, and those of its modules, with a file that has it."""
+    """Return every name in the sources of the package and its kernel, and those of files, with a file that has it."""
     found = {}
-    for path in sorted(PACKAGE.rglob("*.py")):
+    for path in sorted(KERNEL.rglob("*.?pp")):
+        for name in (path.stem, *re.findall(r"[A-Za-z_]\w*", NO_CODE.sub(" ", path.read_text()))):
+            found.setdefault(name, path)
+    for path in sorted(PACKAGE.rglob("*.py*")):
+        if path.suffix not in (".py", ".pyi"):
+            continue
         found.setdefault(path.stem, path)
         with open(path, "rb") as source:
             for token in tokenize.tokenize(source.readline):
@@ -92,6 +101,12 @@ def notes(path):
 def test_docstrings_and_comments_speak_the_words_of_the_field():
     paths = sorted(PACKAGE.rglob("*.py"))
     assert [f"{path.name}: {line.strip()}" for path in paths for line in notes(path) if OUT.search(line)] == []
+
+
+def test_the_words_of_the_kernel_are_read():
+    assert {"TreePlanner", "write_direction", "placed_robot"} <= identifiers().keys()
+    code = 'int far; // place\nf("way"); /* ask\n*/ near'
+    assert NO_CODE.sub(" ", code).split() == ["int", "far;", "f(", ");", "near"]
 
 
 def test_names_are_split_into_words():

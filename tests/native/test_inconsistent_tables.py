@@ -293,7 +293,7 @@ def recorded(tmp_path_factory):
         first = np.stack([START, START + 0.1, GOAL]), 0, 10
         ARM_TREES.improver(box_world(), ends, first, variant=0, is_smoothing=True)
         # Another variant: the sequences of the first may be kept from an earlier test.
-        ARM_TREES.answer(box_world(), START, GOAL, variant=1, most_motions=100, seconds=1.0, smooth="tight")
+        ARM_TREES.answer(box_world(), START, GOAL, variant=1, most_motions=100, seconds=1.0, smooth="full")
         ARM_TREES.connect(box_world(), START, GOAL[np.newaxis], variant=0, most_motions=100, seconds=1.0)
         plan_many(box_world(), [START] * 3, [START, START + 0.1, GOAL], limits={"motions": 50})
         for resolution in (0.1, 0.5):

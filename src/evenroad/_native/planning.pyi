@@ -32,7 +32,7 @@ class Trees:
     goal: int
     sizes: tuple[int, int]
     trees: tuple[tuple[Floats, Ints], tuple[Floats, Ints]]
-    def __init__(self, checks: Checks, ends: Floats, samples: Points, steps: Points) -> None: ...
+    def __init__(self, checks: Checks, terminals: Floats, samples: Points, steps: Points) -> None: ...
     def grow(self, most_motions: int, batches: int) -> Literal["paused", "spent", "not free", "solved"]: ...
 
 class Improver:
@@ -47,7 +47,7 @@ class Improver:
     def __init__(
         self,
         checks: Checks,
-        ends: Floats,
+        terminals: Floats,
         driven_by: tuple[Points, Points, Points, Points],
         first: tuple[Floats, int, int],
         is_smoothing: bool,
@@ -68,11 +68,11 @@ class ManyQueries:
         checkers: Sequence[Checker],
         roomier: Sequence[Checker | None],
         of: Ints,
-        ends: Floats,
+        terminals: Floats,
         drivers: Drivers,
         motions: int,
         seconds: tuple[float, float],
-        smoothing: Literal["none", "quick", "tight", "apart"],
+        smoothing: Literal["none", "quick", "full", "apart"],
     ) -> None: ...
     def go_on(self, threads: int, seconds: float) -> int: ...
     def answer(self, query: int) -> Answer: ...
@@ -84,7 +84,7 @@ def answer(
     drivers: Drivers,
     motions: int,
     search_seconds: float,
-    smoothing: Literal["none", "quick", "tight", "apart"],
+    smoothing: Literal["none", "quick", "full", "apart"],
 ) -> Answer: ...
 def shorten(checks: Checks, path: Floats, pairs: Points, most_shortcuts: int) -> tuple[Floats, int]: ...
 def smooth(

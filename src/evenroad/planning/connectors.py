@@ -44,7 +44,7 @@ SMOOTHING, LONG_SMOOTHING = 500, 2000
 """Numbers of batches of sixteen checks after which no waypoint of an arm's path slides any more; the second of a path
 that is to be as short as can be."""
 
-Smoothing = Literal["none", "quick", "tight", "apart"]
+Smoothing = Literal["none", "quick", "full", "apart"]
 """What compiled code calls the ways to smooth a path."""
 
 
@@ -127,7 +127,7 @@ class ArmTrees:
         """
         inside, by, smoothing = self.inside or world, drivers_of(len(start), variant), smoothing_of(smooth)
         if self.shortest and smoothing == "apart":
-            smoothing = "tight"
+            smoothing = "full"
         found = answer(inside.checker, start, goal, by, most_motions, search_seconds, smoothing)
         # Where a world is new, one with more room takes as long as a short plan.
         if smoothing == "apart" and found.ended == "solved" and found.counts[0] > 2:

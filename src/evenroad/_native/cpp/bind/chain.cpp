@@ -80,7 +80,7 @@ nb::object tip_poses(const Chain& chain, nb::handle q) {
   without_gil([&] {
     std::vector<robot::Axis> axes(chain.joints.size());
     for (std::size_t i = 0; i < given.shape(0); i++) {
-      const robot::Pose tip = chain.place_tip(given.matrix()[i], axes);
+      const robot::Pose tip = chain.tip_pose(given.matrix()[i], axes);
       std::copy(tip.rotation.begin(), tip.rotation.end(), &poses[i * POSE]);
       std::copy(tip.origin.begin(), tip.origin.end(), &poses[i * POSE + 9]);
     }
@@ -97,7 +97,7 @@ nb::object derivatives(const Chain& chain, nb::handle q) {
   without_gil([&] {
     std::vector<robot::Axis> axes(chain.joints.size());
     for (std::size_t i = 0; i < given.shape(0); i++) {
-      const robot::Pose tip = chain.place_tip(given.matrix()[i], axes);
+      const robot::Pose tip = chain.tip_pose(given.matrix()[i], axes);
       chain.write_derivative(tip, axes, std::span(written).subspan(i * size, size));
     }
   });
@@ -155,14 +155,14 @@ nb::tuple reach_all(const Chain& chain, nb::tuple known, std::array<std::size_t,
 nb::object follow(const Chain& chain, nb::handle q, nb::handle towards, nb::handle task, nb::handle poses,
                   nb::handle limits, int steps, double longest) {
   const Array<const double, 1> begin(q, "q"), end(towards, "towards");
-  const Array<const double, 2> places(poses, "poses"), bounds(limits, "limits", Entries::ANY);
+  const Array<const double, 2> tips(poses, "poses"), bounds(limits, "limits", Entries::ANY);
   begin.of_shape({dim(chain)});
   if (end.size() > 0) end.of_shape({dim(chain)});
-  places.of_shape({places.shape(0), POSE});
+  tips.of_shape({tips.shape(0), POSE});
   const robot::PoseTask wanted = task_of(task);
   const robot::Limits within = limits_of(bounds, dim(chain));
   std::vector<double> path = without_gil(
-      [&] { return robot::follow(chain, wanted, begin.span(), end.span(), places.matrix(), within, steps, longest); });
+      [&] { return robot::follow(chain, wanted, begin.span(), end.span(), tips.matrix(), within, steps, longest); });
   const std::size_t done = dim(chain) == 0 ? 0 : path.size() / dim(chain);
   return as_numpy(std::move(path), {done, dim(chain)});
 }

@@ -16,7 +16,7 @@ struct Registers {
   std::uint32_t a = 0, b = 0, c = 0, d = 0;
 };
 
-Registers ask(std::uint32_t leaf) {
+Registers registers_of(std::uint32_t leaf) {
   Registers answer;
   if (__get_cpuid_count(leaf, 0, &answer.a, &answer.b, &answer.c, &answer.d) == 0) {
     return {};
@@ -41,7 +41,7 @@ int count_levels() {
   constexpr std::uint32_t SEVENTH_V3 = 1u << 3 | 1u << 5 | 1u << 8;                           // BMI1, AVX2, BMI2
   constexpr std::uint32_t SEVENTH_V4 = 1u << 16 | 1u << 17 | 1u << 28 | 1u << 30 | 1u << 31;  // F, DQ, CD, BW, VL
   constexpr std::uint32_t LZCNT = 1u << 5;
-  const Registers first = ask(1), seventh = ask(7), extended = ask(0x80000001);
+  const Registers first = registers_of(1), seventh = registers_of(7), extended = registers_of(0x80000001);
   if (!has_all(first.c, FIRST_V3 | XSAVED) || !has_all(seventh.b, SEVENTH_V3) || !has_all(extended.c, LZCNT)) {
     return 1;
   }

@@ -18,7 +18,7 @@ using robot::Keeps;
 
 constexpr int MOST_STEPS = 1000, MOST_PIECES = 1000;
 /// A walk may be so long in each coordinate [rad or m].
-constexpr double LONGEST_WAY = 1e4;
+constexpr double LONGEST_MOTION = 1e4;
 constexpr std::size_t LINEAR = POSE + 1, CIRCLE = 13 + POSE;
 
 /// Return how long a residual is that is made of so many numbers; refuse numbers that make none.
@@ -149,13 +149,13 @@ robot::Walking walking(const Keeps& keeps, const Array<const double, 1>& scale, 
 }
 
 /// Return the states of walks from configurations by ways, (n, dim) each, and how many each has.
-nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle ways, nb::handle scale, nb::tuple numbers) {
-  const Array<const double, 2> begins(from, "from"), moved(ways, "ways");
+nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle directions, nb::handle scale, nb::tuple numbers) {
+  const Array<const double, 2> begins(from, "from"), moved(directions, "directions");
   begins.of_shape({begins.shape(0), keeps.dim()});
   moved.of_shape({begins.shape(0), keeps.dim()});
   const Array<const double, 1> scales(scale, "scale");
   const robot::Walking how = walking(keeps, scales, numbers);
-  for (const double each : moved.span()) require(std::abs(each) < LONGEST_WAY, "ways must be shorter");
+  for (const double each : moved.span()) require(std::abs(each) < LONGEST_MOTION, "directions must be shorter");
   States states;
   without_gil([&] {
     for (std::size_t i = 0; i < begins.shape(0); i++) {
@@ -203,7 +203,7 @@ void add_keeps(nb::module_& robot) {
       .def("residuals", &residuals, "q"_a)
       .def("derivative", &derivative, "q"_a)
       .def("project", &project, "q"_a, "aim"_a, "enough"_a, "steps"_a, "longest"_a)
-      .def("walk", &walk, "begins"_a, "ways"_a, "scale"_a, "how"_a)
+      .def("walk", &walk, "begins"_a, "directions"_a, "scale"_a, "how"_a)
       .def("refine", &refine, "paths"_a, "counts"_a, "pieces"_a, "scale"_a, "how"_a);
 }
 

@@ -44,11 +44,12 @@ nb::object nearest(nb::handle given, std::int64_t columns, std::int64_t rows) {
 nb::object paint(nb::handle cameras, double scale, std::int64_t columns, std::int64_t rows, nb::handle studios,
                  nb::handle corner, nb::handle normal, nb::handle colour, nb::handle closeds, std::int64_t see_through,
                  nb::handle layer) {
-  const FloatRows view(cameras, "camera"), studio(studios, "studio"), colours(colour, "colours"), ends(layer, "layers");
+  const FloatRows view(cameras, "camera"), studio(studios, "studio"), colours(colour, "colours"),
+      given_layers(layer, "layers");
   const Array<const double, 3> corners(corner, "corners"), normals(normal, "normals");
   const Array<const bool, 1> closed(closeds, "closed");
-  const std::size_t count = closed.size(), shown = ends.shape(0);
-  view.of_shape({4, 3}), studio.of_shape({9, 3}), colours.of_shape({count, 3}), ends.of_shape({shown, 3});
+  const std::size_t count = closed.size(), shown = given_layers.shape(0);
+  view.of_shape({4, 3}), studio.of_shape({9, 3}), colours.of_shape({count, 3}), given_layers.of_shape({shown, 3});
   corners.of_shape({count, 3, 3}), normals.of_shape({count, 3, 3});
   require_below(static_cast<std::int64_t>(count), std::size_t{1} << 31, "the number of triangles");
   require_within(std::span<const double>(&scale, 1), 1e-6, 1e9, "scale");
@@ -58,7 +59,7 @@ nb::object paint(nb::handle cameras, double scale, std::int64_t columns, std::in
   std::vector<picture::Layer> layers;
   std::size_t before = 0;
   for (std::size_t i = 0; i < shown; i++) {
-    const std::span<const double> row = ends.matrix()[i];
+    const std::span<const double> row = given_layers.matrix()[i];
     require(row[0] >= static_cast<double>(before) && row[0] <= static_cast<double>(count),
             "layers must end in order, at most at the number of triangles");
     before = static_cast<std::size_t>(row[0]);
@@ -68,16 +69,16 @@ nb::object paint(nb::handle cameras, double scale, std::int64_t columns, std::in
   const picture::Camera camera{
       vector_of(at, 0),     vector_of(at, 1), vector_of(at, 2), vector_of(at, 3), scale, side_of(columns, "columns"),
       side_of(rows, "rows")};
-  const picture::Studio room{of(0, 0),
-                             vector_of(of, 1),
-                             vector_of(of, 2),
-                             vector_of(of, 3),
-                             vector_of(of, 4),
-                             vector_of(of, 5),
-                             {vector_of(of, 6), vector_of(of, 7), vector_of(of, 8)}};
+  const picture::Studio lights{of(0, 0),
+                               vector_of(of, 1),
+                               vector_of(of, 2),
+                               vector_of(of, 3),
+                               vector_of(of, 4),
+                               vector_of(of, 5),
+                               {vector_of(of, 6), vector_of(of, 7), vector_of(of, 8)}};
   const picture::Triangles triangles{rows_of(corners), rows_of(normals), colours.matrix(), closed.span(),
                                      static_cast<std::size_t>(see_through)};
-  return as_numpy(without_gil([&] { return picture::paint(camera, room, triangles, layers); }),
+  return as_numpy(without_gil([&] { return picture::paint(camera, lights, triangles, layers); }),
                   {camera.rows, camera.columns, std::size_t{3}});
 }
 

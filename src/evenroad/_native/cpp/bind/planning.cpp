@@ -35,17 +35,17 @@ const char* in_words(planning::Progress progress) {
 
 /// A planner with the arrays that it reads.
 struct Trees {
-  FloatRows ends;
+  FloatRows terminals;
   TreePlanner planner;
 
-  Trees(NativeChecks& checks, nb::handle given_ends, const Points& samples, const Points& steps)
-      : ends(given_ends, "ends"),
-        planner(ends.of_shape({ends.shape(0), checks.joints.size()}).matrix(),
+  Trees(NativeChecks& checks, nb::handle start_and_goals, const Points& samples, const Points& steps)
+      : terminals(start_and_goals, "terminals"),
+        planner(terminals.of_shape({terminals.shape(0), checks.joints.size()}).matrix(),
                 {samples.of(dim(), true, "samples"), steps.of(dim(), false, "steps")}, checks) {
-    require(ends.shape(0) >= 2, "ends must be a start and one goal or more");
+    require(terminals.shape(0) >= 2, "terminals must be a start and one goal or more");
   }
 
-  std::size_t dim() const { return ends.shape(1); }
+  std::size_t dim() const { return terminals.shape(1); }
 };
 
 nb::object path_of(const Trees& trees) {
@@ -126,17 +126,18 @@ nb::object prove_or_bend(NativeChecks& checks, nb::handle path, double margin, c
 
 /// An improver with the array that it reads.
 struct Improvement {
-  FloatRows ends;
+  FloatRows terminals;
   planning::Improver improver;
 
-  Improvement(NativeChecks& checks, const FloatRows& given_ends, const planning::Sequences& sequences,
+  Improvement(NativeChecks& checks, const FloatRows& start_and_goals, const planning::Sequences& sequences,
               const planning::Guides& guides, planning::First first, bool is_smoothing)
-      : ends(given_ends), improver(ends.matrix(), sequences, guides, std::move(first), is_smoothing, checks) {}
+      : terminals(start_and_goals),
+        improver(terminals.matrix(), sequences, guides, std::move(first), is_smoothing, checks) {}
 };
 
 /// `driven_by` are samples, steps, pairs and directions; `first` is a path, its goal, and the motions that trees
 /// checked.
-void make_improvement(Improvement* improvement, NativeChecks& checks, nb::handle given_ends, nb::tuple driven_by,
+void make_improvement(Improvement* improvement, NativeChecks& checks, nb::handle start_and_goals, nb::tuple driven_by,
                       nb::tuple first, bool is_smoothing) {
   const std::size_t dim = checks.joints.size();
   require(driven_by.size() == 4, "driven_by must be (samples, steps, pairs, directions)");
@@ -144,14 +145,14 @@ void make_improvement(Improvement* improvement, NativeChecks& checks, nb::handle
   const auto by = [&](std::size_t i, std::size_t columns, bool of_unit_cube, const char* name) {
     return value_of<const Points*>(driven_by[i], name)->of(columns, of_unit_cube, name);
   };
-  const FloatRows ends(given_ends, "ends");
-  ends.of_shape({ends.shape(0), dim});
-  require(ends.shape(0) >= 2, "ends must be a start and one goal or more");
+  const FloatRows terminals(start_and_goals, "terminals");
+  terminals.of_shape({terminals.shape(0), dim});
+  require(terminals.shape(0) >= 2, "terminals must be a start and one goal or more");
   const auto goal = value_of<std::int64_t>(first[1], "goal"), motions = value_of<std::int64_t>(first[2], "motions");
   require(goal >= 0 && motions >= 0, "goal and motions must be 0 or more");
   planning::First given{path_from(FloatRows(first[0], "path"), checks), goal, motions};
   new (improvement)
-      Improvement(checks, ends, {by(0, dim, true, "samples"), by(1, dim, false, "steps")},
+      Improvement(checks, terminals, {by(0, dim, true, "samples"), by(1, dim, false, "steps")},
                   {by(2, 2, true, "pairs"), by(3, dim, false, "directions")}, std::move(given), is_smoothing);
 }
 

@@ -37,9 +37,9 @@ struct Drivers {
 Smoothing smoothing_from(std::string_view name) {
   if (name == "none") return Smoothing::NONE;
   if (name == "quick") return Smoothing::QUICK;
-  if (name == "tight") return Smoothing::TIGHT;
+  if (name == "full") return Smoothing::FULL;
   if (name == "apart") return Smoothing::APART;
-  throw InvalidValue("smoothing must be none, quick, tight or apart, got " + std::string(name));
+  throw InvalidValue("smoothing must be none, quick, full or apart, got " + std::string(name));
 }
 
 /// An answer with the number of coordinates of its waypoints.
@@ -58,11 +58,11 @@ Answer answer(std::shared_ptr<Checker> checker, nb::handle start, nb::handle goa
   require_budget(motions, "motions");
   const Smoothing how = smoothing_from(smoothing);
   const planning::Drivers by = drivers.of(size);
-  std::vector<double> ends(from.begin(), from.end());
-  ends.insert(ends.end(), to.begin(), to.end());
+  std::vector<double> terminals(from.begin(), from.end());
+  terminals.insert(terminals.end(), to.begin(), to.end());
   return without_gil([&] {
     const planning::QueryLimits limits{motions, search_seconds, std::numeric_limits<double>::infinity()};
-    return Answer{planning::answer(std::move(checker), {ends.data(), 2, size}, by, limits, how), size};
+    return Answer{planning::answer(std::move(checker), {terminals.data(), 2, size}, by, limits, how), size};
   });
 }
 
@@ -77,11 +77,11 @@ void smooth_answer(Answer& answer, std::shared_ptr<Checker> checker, std::shared
 
 /// Many queries with the arrays that they read.
 struct ManyQueries {
-  FloatRows ends;
+  FloatRows terminals;
   Array<const std::int64_t, 1> of;
   planning::ManyQueries queries;
 
-  std::size_t dim() const { return ends.shape(1); }
+  std::size_t dim() const { return terminals.shape(1); }
 };
 
 /// Return the checks of one or more worlds, of arms of so many joints; there may be none where None may stand.
@@ -94,21 +94,22 @@ std::vector<std::shared_ptr<Checker>> checkers_from(nb::sequence given, std::siz
   return checkers;
 }
 
-void make_many_queries(ManyQueries* made, nb::sequence checkers, nb::sequence roomier, nb::handle of, nb::handle ends,
-                       const Drivers& drivers, std::int64_t motions, nb::tuple seconds, std::string_view smoothing) {
-  const FloatRows rows(ends, "ends");
+void make_many_queries(ManyQueries* made, nb::sequence checkers, nb::sequence roomier, nb::handle of,
+                       nb::handle terminals, const Drivers& drivers, std::int64_t motions, nb::tuple seconds,
+                       std::string_view smoothing) {
+  const FloatRows rows(terminals, "terminals");
   const Array<const std::int64_t, 1> numbers(of, "of");
   rows.of_shape({2 * numbers.size(), rows.shape(1)});
   const auto worlds = checkers_from(checkers, rows.shape(1), false),
-             with_room = checkers_from(roomier, rows.shape(1), true);
-  require(worlds.size() == with_room.size(), "roomier must have one entry for each of the checkers");
+             wider = checkers_from(roomier, rows.shape(1), true);
+  require(worlds.size() == wider.size(), "roomier must have one entry for each of the checkers");
   require_below(numbers.span(), worlds.size(), "of");
   require_budget(motions, "motions");
   require(seconds.size() == 2, "seconds must be those of the search and of all");
   const planning::QueryLimits limits{motions, value_of<double>(seconds[0], "seconds"),
                                      value_of<double>(seconds[1], "seconds")};
   std::vector<planning::QueryWorld> pairs;
-  for (std::size_t i = 0; i < worlds.size(); i++) pairs.push_back({worlds[i], with_room[i]});
+  for (std::size_t i = 0; i < worlds.size(); i++) pairs.push_back({worlds[i], wider[i]});
   planning::ManyQueries queries(std::move(pairs), numbers.span(), rows.matrix(), drivers.of(rows.shape(1)), limits,
                                 smoothing_from(smoothing));
   new (made) ManyQueries{rows, numbers, std::move(queries)};

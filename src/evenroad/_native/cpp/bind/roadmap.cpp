@@ -103,15 +103,15 @@ void require_all_edges(const roadmap::Graph& graph, std::size_t given, const cha
 nb::tuple shortest_path(const roadmap::Graph& graph, nb::tuple costs, nb::tuple states, std::int64_t start,
                         nb::handle goals) {
   require(costs.size() == 2 && states.size() == 2, "costs must be (weights, bounds), states those of (edges, nodes)");
-  const Int64s weights(costs[0], "weights"), bounds(costs[1], "bounds"), ends(goals, "goals");
+  const Int64s weights(costs[0], "weights"), bounds(costs[1], "bounds"), terminals(goals, "goals");
   const Int8s edges(states[0], "edge_states"), nodes(states[1], "node_states");
   require_all_edges(graph, weights.size(), "weights"), require_all_edges(graph, edges.size(), "edge_states");
   bounds.of_shape({graph.nodes()}), nodes.of_shape({graph.nodes()});
   require_below(start, graph.nodes(), "start");
-  require_below(ends.span(), graph.nodes(), "goals");
+  require_below(terminals.span(), graph.nodes(), "goals");
   roadmap::Path path = without_gil([&] {
     return roadmap::shortest_path(graph, {weights.span(), bounds.span()}, {edges.span(), nodes.span()},
-                                  static_cast<std::int32_t>(start), ends.span());
+                                  static_cast<std::int32_t>(start), terminals.span());
   });
   return nb::make_tuple(as_row(std::move(path.nodes)), as_row(std::move(path.edges)));
 }
@@ -172,9 +172,9 @@ nb::object spread_order(nb::tuple set, nb::handle preferences, std::size_t count
   require(std::is_sorted(first.span().begin(), first.span().end()), "first must not fall");
   require_below(first.span(), which.size() + 1, "first");
   const roadmap::Serving share{value_of<double>(serving[0], "least"), value_of<double>(serving[1], "served")};
-  const roadmap::Seen by_ends{first.span(), which.span()};
+  const roadmap::Seen by_terminals{first.span(), which.span()};
   return as_row(
-      without_gil([&] { return roadmap::spread_order(given.set(), preference.span(), count, by_ends, share); }));
+      without_gil([&] { return roadmap::spread_order(given.set(), preference.span(), count, by_terminals, share); }));
 }
 
 }  // namespace

@@ -179,18 +179,18 @@ nb::object valid(const Checker& checker, nb::handle q) {
 
 /// Return the same of motions; where the tolerance is > 0 they must be proved free, too.
 nb::object motion_valid(const Checker& checker, nb::handle a, nb::handle b, double tolerance) {
-  const Doubles starts(a), ends(b);
-  if (!starts.are_rows_of(checker.dim()) || !ends.are_rows_of(checker.dim()) || starts.axes() != ends.axes()) {
+  const Doubles starts(a), stops(b);
+  if (!starts.are_rows_of(checker.dim()) || !stops.are_rows_of(checker.dim()) || starts.axes() != stops.axes()) {
     return nb::none();
   }
   if (starts.axes() == 1) {
     bool free = false;
-    const Matrix<const double> from{starts.data(), 1, checker.dim()}, to{ends.data(), 1, checker.dim()};
+    const Matrix<const double> from{starts.data(), 1, checker.dim()}, to{stops.data(), 1, checker.dim()};
     robot::motions_free(checker, from, to, tolerance, {&free, 1});
     return nb::bool_(free);
   }
   const Matrix<const double> from{starts.data(), starts.shape(0), checker.dim()};
-  const Matrix<const double> to{ends.data(), ends.shape(0), checker.dim()};
+  const Matrix<const double> to{stops.data(), stops.shape(0), checker.dim()};
   if (from.rows != to.rows) return nb::none();
   return flags(from.rows, [&](std::span<bool> free) { robot::motions_free(checker, from, to, tolerance, free); });
 }

@@ -57,11 +57,11 @@ nb::tuple closed_parts(nb::handle vertices, nb::handle triangles) {
 
 /// Return how often closed triangles, (t, 3, 3), wind around a place, (3,); unless they are turned, whether they do so
 /// an odd number of times.
-int winding_at(nb::handle place, nb::handle triangles, bool turned) {
-  const Array<const double, 1> at(place, "place");
+int winding_at(nb::handle point, nb::handle triangles, bool turned) {
+  const Array<const double, 1> at(point, "point");
   const Array<const double, 3> closed(triangles, "triangles");
   at.of_shape({3}), closed.of_shape({closed.shape(0), 3, 3});
-  require_within(at.span(), -FARTHEST, FARTHEST, "place");
+  require_within(at.span(), -FARTHEST, FARTHEST, "point");
   require_within(closed.span(), -FARTHEST, FARTHEST, "triangles");
   return robot::winding_at({at.span()[0], at.span()[1], at.span()[2]}, closed.span(), turned);
 }

@@ -251,19 +251,19 @@ const char* name_of(trajectory::Outcome outcome) {
 /// `most` are the largest velocities, accelerations and decelerations; `steps` the step and the largest number of
 /// steps.
 nb::tuple timed(nb::handle waypoints, nb::handle deviation, nb::tuple most, nb::tuple within, nb::tuple steps) {
-  const FloatRows way(waypoints, "waypoints");
+  const FloatRows path(waypoints, "waypoints");
   const Floats cuts(deviation, "deviation");
   const double step = value_of<double>(PathArrays::column(steps, 0, 2), "step");
   const std::int64_t count = value_of<std::int64_t>(steps[1], "steps");
-  const std::size_t dim = way.shape(1);
-  require_path(way);
-  cuts.of_shape({way.shape(0)});
+  const std::size_t dim = path.shape(1);
+  require_path(path);
+  cuts.of_shape({path.shape(0)});
   const MostArrays limits(most, dim);
   require(step > 0.0 && step <= LONGEST, "step must be > 0 and at most 1e9");
   require_below(count - 1, MOST_TIMES, "steps less one");
   const trajectory::Within kept = within_of(within, dim);
   trajectory::Timed made = without_gil([&] {
-    return trajectory::timed(way.matrix(), cuts.span(), limits.most(), kept, {step, static_cast<std::size_t>(count)});
+    return trajectory::timed(path.matrix(), cuts.span(), limits.most(), kept, {step, static_cast<std::size_t>(count)});
   });
   const auto& [torque, speed, acceleration] = made.further;
   return nb::make_tuple(name_of(made.outcome),

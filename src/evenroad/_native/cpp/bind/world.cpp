@@ -4,7 +4,7 @@
 #include "world/disk.hpp"
 #include "world/lattice_path.hpp"
 #include "world/least_length.hpp"
-#include "world/nearest_place.hpp"
+#include "world/nearest_free.hpp"
 
 namespace evenroad::bind {
 

@@ -30,8 +30,8 @@ EVENROAD_INLINE float largest(Floats16 a) {
   return a[0];
 }
 
-/// Return `place` cut to the range from `least` to `most`.
-EVENROAD_INLINE Floats16 clamp(Floats16 place, Floats16 least, Floats16 most) { return max(min(place, most), least); }
+/// Return `value` cut to the range from `least` to `most`.
+EVENROAD_INLINE Floats16 clamp(Floats16 value, Floats16 least, Floats16 most) { return max(min(value, most), least); }
 
 /// Return numbers `size` >= 0 with the signs of `sign`.
 EVENROAD_INLINE Floats16 with_sign_of(Floats16 size, Floats16 sign) {

@@ -8,8 +8,8 @@ namespace evenroad::picture {
 namespace {
 
 /// Return the first pixel whose centre lies at or beyond a place, at most `count`.
-std::size_t first_from(double place, std::size_t count) {
-  return static_cast<std::size_t>(std::clamp(std::ceil(place - 0.5), 0.0, static_cast<double>(count)));
+std::size_t first_from(double position, std::size_t count) {
+  return static_cast<std::size_t>(std::clamp(std::ceil(position - 0.5), 0.0, static_cast<double>(count)));
 }
 
 /// Return the column of a side at a height; `from` is above `to`, so that both its triangles get the same.

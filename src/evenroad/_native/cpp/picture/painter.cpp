@@ -86,10 +86,10 @@ struct Window {
 
   /// Where the samples of a pixel are.
   std::array<std::size_t, SAMPLES> samples(std::size_t x, std::size_t y) const {
-    std::array<std::size_t, SAMPLES> places{};
+    std::array<std::size_t, SAMPLES> samples_behind{};
     const std::size_t first = FINER * (y - row) * found.columns + FINER * (x - column);
-    for (std::size_t i = 0; i < SAMPLES; i++) places[i] = first + i / FINER * found.columns + i % FINER;
-    return places;
+    for (std::size_t i = 0; i < SAMPLES; i++) samples_behind[i] = first + i / FINER * found.columns + i % FINER;
+    return samples_behind;
   }
 };
 
@@ -142,8 +142,8 @@ Window Painter::nearest(std::size_t first, std::size_t end) const {
       low[1] = std::min(low[1], each.row), high[1] = std::max(high[1], each.row);
     }
   }
-  const auto pixel = [](double place, std::size_t most) {
-    return static_cast<std::size_t>(std::clamp(place / static_cast<double>(FINER), 0.0, static_cast<double>(most)));
+  const auto pixel = [](double position, std::size_t most) {
+    return static_cast<std::size_t>(std::clamp(position / static_cast<double>(FINER), 0.0, static_cast<double>(most)));
   };
   const std::size_t column = pixel(low[0], camera.columns), row = pixel(low[1], camera.rows);
   const std::size_t columns = std::max(pixel(high[0] + FINER, camera.columns), column) - column;
@@ -234,13 +234,13 @@ Vector drawn_over(Vector below, const Painter& painter, const Layer& layer, cons
   const auto samples = ours.samples(column, row);
   const bool before = solid.holds(column, row);
   const std::size_t see_through = painter.triangles.see_through;
-  const auto places = before ? solid.samples(column, row) : samples;
+  const auto samples_behind = before ? solid.samples(column, row) : samples;
   for (std::size_t i = 0; i < SAMPLES; i++) {
     if (ours.found.owner[samples[i]] < 0) continue;
     owner = ours.found.owner[samples[i]];
     // A still body's double lies on the body: what is seen is nearer by half a percent.
-    const bool seen = !before || ours.found.near[samples[i]] >= 1.005F * solid.found.near[places[i]];
-    const bool through = before && solid.found.owner[places[i]] >= static_cast<std::int32_t>(see_through);
+    const bool seen = !before || ours.found.near[samples[i]] >= 1.005F * solid.found.near[samples_behind[i]];
+    const bool through = before && solid.found.owner[samples_behind[i]] >= static_cast<std::int32_t>(see_through);
     share += layer.opacity * (seen ? 1.0 : through ? layer.hidden : 0.0);
   }
   if (share == 0.0) return below;

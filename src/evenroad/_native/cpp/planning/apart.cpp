@@ -18,7 +18,7 @@ Sliding second_time(std::int64_t most_batches) { return {most_batches, 8, 2}; }
 constexpr double LONGER = 0.02;
 
 /// Return whether both ends of a path are free.
-bool are_ends_free(const Path& path, MotionChecks& checks) {
+bool are_terminals_free(const Path& path, MotionChecks& checks) {
   for (std::size_t lane = 0; lane < LANES; lane++) {
     const ConstConfiguration end = path[lane == 0 ? 0 : path.size() - 1];
     for (std::size_t k = 0; k < end.size(); k++) checks.state(k, lane) = end[k];
@@ -43,15 +43,15 @@ bool smooth_apart(Path& path, const Guides& guides, std::int64_t most_batches, M
                   MotionChecks& roomier) {
   const Sliding sliding = first_time(most_batches);
   Path apart = path;
-  if (path.size() < 3 || !are_ends_free(path, roomier) || !smooth(apart, guides, sliding, false, roomier)) {
+  if (path.size() < 3 || !are_terminals_free(path, roomier) || !smooth(apart, guides, sliding, false, roomier)) {
     smooth(path, guides, sliding, true, checks);
     return false;
   }
   path = std::move(apart);
   const double longest = length_of(path.points(), checks.joints) / (1.0 + LONGER);
-  std::vector<double> way(checks.joints.size());
-  const double straight = write_direction(path[0], path[path.size() - 1], checks.joints, way);
-  return straight >= longest || !tighten(path, guides, second_time(most_batches), longest, checks);
+  std::vector<double> direction(checks.joints.size());
+  const double straight = write_direction(path[0], path[path.size() - 1], checks.joints, direction);
+  return straight >= longest || !smooth_further(path, guides, second_time(most_batches), longest, checks);
 }
 
 }  // namespace evenroad::planning

@@ -48,14 +48,14 @@ std::int64_t luby(std::int64_t i) {
 
 }  // namespace
 
-Improver::Improver(Matrix<const double> ends, const Sequences& sequences, const Guides& guides, First first,
+Improver::Improver(Matrix<const double> terminals, const Sequences& sequences, const Guides& guides, First first,
                    bool is_smoothing, MotionChecks& checks)
-    : ends_(ends),
+    : terminals_(terminals),
       sequences_(sequences),
       guides_(guides),
       checks_(checks),
       is_smoothing_(is_smoothing),
-      bound_(ends, checks.joints),
+      bound_(terminals, checks.joints),
       best_(first.path),
       along_trees_(std::move(first.path)),
       goal_(first.goal),
@@ -101,16 +101,16 @@ TreePlanner& Improver::begin_round() {
   const double share = std::fmod(static_cast<double>(rounds_) * GOLDEN, 1.0);
   bound_.longest = is_smoothing_ ? length() * (1.0 + LOOSEST * share * share) : length();
   left_ = round_motions_ * luby(rounds_);
-  TreePlanner& trees = trees_.emplace(ends_, sequences_, checks_, &bound_, static_cast<std::size_t>(rounds_));
+  TreePlanner& trees = trees_.emplace(terminals_, sequences_, checks_, &bound_, static_cast<std::size_t>(rounds_));
   if (is_smoothing_ && rounds_ % ANEW != 0) {
-    const double one = place_of_round(PLASTIC), other = place_of_round(PLASTIC * PLASTIC);
+    const double one = position_of_round(PLASTIC), other = position_of_round(PLASTIC * PLASTIC);
     trees.begin_along(best_, goal_, std::min(one, other), std::max(one, other));
   }
   return trees;
 }
 
 /// Return a place along the best path, even over the rounds.
-double Improver::place_of_round(double step) const {
+double Improver::position_of_round(double step) const {
   return length() * std::fmod(static_cast<double>(rounds_) * step, 1.0);
 }
 

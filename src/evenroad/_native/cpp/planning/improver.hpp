@@ -38,8 +38,8 @@ class Improver {
  public:
   /// Ends, sequences, guides and the joints of the checks must last as long as this.  Without smoothing, paths stay as
   /// trees find them.
-  Improver(Matrix<const double> ends, const Sequences& sequences, const Guides& guides, First first, bool is_smoothing,
-           MotionChecks& checks);
+  Improver(Matrix<const double> terminals, const Sequences& sequences, const Guides& guides, First first,
+           bool is_smoothing, MotionChecks& checks);
 
   /// Go on until the effort is spent, or about so many batches of sixteen were checked in this call.
   ///
@@ -65,12 +65,12 @@ class Improver {
   static constexpr std::int64_t MOST_MOTIONS = 1'000'000;
 
   TreePlanner& begin_round();
-  double place_of_round(double step) const;
+  double position_of_round(double step) const;
   Growth grow(TreePlanner& trees, Effort most, std::int64_t pause);
   void take(const std::vector<double>& points, std::int64_t goal);
   void polish_best();
 
-  Matrix<const double> ends_;
+  Matrix<const double> terminals_;
   Sequences sequences_;
   Guides guides_;
   MotionChecks& checks_;

@@ -62,13 +62,14 @@ inline void bring_inside(Configuration q, const Joints& joints) {
 }
 
 /// Write the short way from `a` to `b` and return its length.
-inline double write_direction(ConstConfiguration a, ConstConfiguration b, const Joints& joints, Configuration way) {
+inline double write_direction(ConstConfiguration a, ConstConfiguration b, const Joints& joints,
+                              Configuration direction) {
   double squared = 0.0;
   for (std::size_t k = 0; k < a.size(); k++) {
     double apart = b[k] - a[k];
     // Half a turn is rounded to no turn, so opposite places keep the sign.
     if (joints.wraps(k)) apart -= joints.period[k] * std::rint(apart / joints.period[k]);
-    way[k] = apart;
+    direction[k] = apart;
     squared += apart * apart;
   }
   return std::sqrt(squared);

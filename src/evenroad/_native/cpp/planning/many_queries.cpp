@@ -11,11 +11,12 @@
 
 namespace evenroad::planning {
 
-ManyQueries::ManyQueries(std::vector<QueryWorld> worlds, std::span<const std::int64_t> of, Matrix<const double> ends,
-                         const Drivers& drivers, QueryLimits limits, Smoothing smoothing)
+ManyQueries::ManyQueries(std::vector<QueryWorld> worlds, std::span<const std::int64_t> of,
+                         Matrix<const double> terminals, const Drivers& drivers, QueryLimits limits,
+                         Smoothing smoothing)
     : worlds_(std::move(worlds)),
       of_(of),
-      ends_(ends),
+      terminals_(terminals),
       drivers_(drivers),
       limits_(limits),
       smoothing_(smoothing),
@@ -43,9 +44,9 @@ std::size_t ManyQueries::go_on(std::size_t threads, double seconds) {
 
 Answer ManyQueries::answered(std::size_t query) const {
   const QueryWorld& world = worlds_[static_cast<std::size_t>(of_[query])];
-  const Matrix<const double> ends{ends_[2 * query].data(), 2, ends_.columns};
+  const Matrix<const double> terminals{terminals_[2 * query].data(), 2, terminals_.columns};
   const TimeLimit time(limits_.seconds);
-  Answer found = answer(world.checker, ends, drivers_, limits_, smoothing_);
+  Answer found = answer(world.checker, terminals, drivers_, limits_, smoothing_);
   if (world.roomier && found.growth == Growth::SOLVED) smooth_apart(found, world.checker, world.roomier, drivers_);
   found.raw = {};
   return found;

@@ -19,8 +19,8 @@ struct QueryWorld {
 
 class ManyQueries {
  public:
-  /// Query i leads from row 2 i of `ends` to the next one in world `of[i]`.  The arrays must last as long as this.
-  ManyQueries(std::vector<QueryWorld> worlds, std::span<const std::int64_t> of, Matrix<const double> ends,
+  /// Query i leads from row 2 i of `terminals` to the next one in world `of[i]`.  The arrays must last as long as this.
+  ManyQueries(std::vector<QueryWorld> worlds, std::span<const std::int64_t> of, Matrix<const double> terminals,
               const Drivers& drivers, QueryLimits limits, Smoothing smoothing);
 
   /// Answer some more, in order, until all are answered or so much time has passed; return how many are.
@@ -33,7 +33,7 @@ class ManyQueries {
 
   std::vector<QueryWorld> worlds_;
   std::span<const std::int64_t> of_;
-  Matrix<const double> ends_;
+  Matrix<const double> terminals_;
   Drivers drivers_;
   QueryLimits limits_;
   Smoothing smoothing_;

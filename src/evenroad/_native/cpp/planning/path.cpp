@@ -7,20 +7,20 @@ Path::Path(std::span<const double> points, const Joints& joints)
     : joints_(&joints), dim_(joints.size()), points_(points.begin(), points.end()), direction_(joints.size()) {}
 
 void Path::measure() {
-  places_.assign(1, 0.0);
+  positions_.assign(1, 0.0);
   for (std::size_t i = 1; i < size(); i++) {
-    places_.push_back(places_.back() + write_direction((*this)[i - 1], (*this)[i], *joints_, direction_));
+    positions_.push_back(positions_.back() + write_direction((*this)[i - 1], (*this)[i], *joints_, direction_));
   }
 }
 
-void Path::write_place(std::size_t i, double along, Configuration q) const {
-  if (along >= places_[i + 1]) {
+void Path::write_position(std::size_t i, double along, Configuration q) const {
+  if (along >= positions_[i + 1]) {
     copy((*this)[i + 1], q);
     return;
   }
   const ConstConfiguration from = (*this)[i];
   write_direction(from, (*this)[i + 1], *joints_, direction_);
-  const double share = (along - places_[i]) / (places_[i + 1] - places_[i]);
+  const double share = (along - positions_[i]) / (positions_[i + 1] - positions_[i]);
   for (std::size_t k = 0; k < dim_; k++) q[k] = from[k] + share * direction_[k];
   bring_inside(q, *joints_);
 }

@@ -21,12 +21,12 @@ class Path {
   const std::vector<double>& points() const { return points_; }
 
   /// How far along the path a waypoint was when `measure` was called.
-  double place(std::size_t i) const { return places_[i]; }
-  double length() const { return places_.back(); }
+  double position(std::size_t i) const { return positions_[i]; }
+  double length() const { return positions_.back(); }
   void measure();
 
   /// Write the configuration so far along the path, on the motion that begins at waypoint i.
-  void write_place(std::size_t i, double along, Configuration q) const;
+  void write_position(std::size_t i, double along, Configuration q) const;
 
   /// Put in a waypoint before another, or at the end.
   void insert(std::size_t before, ConstConfiguration q);
@@ -37,7 +37,7 @@ class Path {
  private:
   const Joints* joints_;
   std::size_t dim_;
-  std::vector<double> points_, places_;
+  std::vector<double> points_, positions_;
   mutable std::vector<double> direction_;
 };
 

@@ -17,26 +17,27 @@ class PathBound {
   /// Paths along trees are shorter.
   double longest = std::numeric_limits<double>::infinity();
 
-  /// `ends` are the start and the goals; they and the joints must last as long as this.
-  PathBound(Matrix<const double> ends, const Joints& joints) : ends_(ends), joints_(joints), way_(joints.size()) {}
+  /// `terminals` are the start and the goals; they and the joints must last as long as this.
+  PathBound(Matrix<const double> terminals, const Joints& joints)
+      : terminals_(terminals), joints_(joints), direction_(joints.size()) {}
 
   /// Return the distance to the start, side 0, or to the nearest goal, side 1.
   double distance(ConstConfiguration q, std::size_t side) const {
-    if (side == 0) return write_direction(ends_[0], q, joints_, way_);
+    if (side == 0) return write_direction(terminals_[0], q, joints_, direction_);
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t row = 1; row < ends_.rows; row++) {
-      least = std::min(least, write_direction(ends_[row], q, joints_, way_));
+    for (std::size_t row = 1; row < terminals_.rows; row++) {
+      least = std::min(least, write_direction(terminals_[row], q, joints_, direction_));
     }
     return least;
   }
 
   /// Return a length that no path falls below.
-  double least() const { return distance(ends_[0], 1); }
+  double least() const { return distance(terminals_[0], 1); }
 
  private:
-  Matrix<const double> ends_;
+  Matrix<const double> terminals_;
   const Joints& joints_;
-  mutable std::vector<double> way_;
+  mutable std::vector<double> direction_;
 };
 
 }  // namespace evenroad::planning

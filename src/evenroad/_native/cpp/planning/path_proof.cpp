@@ -9,7 +9,7 @@ namespace {
 
 /// So many motions of a path are bent; so many places are tried for the waypoint in the middle, about half of them do.
 constexpr int MOST_BENT = 2;
-constexpr std::size_t PLACES = 8;
+constexpr std::size_t BENDS = 8;
 
 bool is_free_with_margin(ConstConfiguration a, ConstConfiguration there, ConstConfiguration b, double margin,
                          MotionChecks& checks) {
@@ -22,11 +22,11 @@ bool is_free_with_margin(ConstConfiguration a, ConstConfiguration there, ConstCo
 /// Write a place by which both ways are proved; return whether there is one.
 bool write_bend(ConstConfiguration a, ConstConfiguration b, double margin, Matrix<const double> directions,
                 MotionChecks& checks, Configuration there) {
-  std::vector<double> way(a.size());
-  for (std::size_t number = 0; number < PLACES; number++) {
-    write_direction(a, b, checks.joints, way);
+  std::vector<double> whole(a.size());
+  for (std::size_t number = 0; number < BENDS; number++) {
+    write_direction(a, b, checks.joints, whole);
     const ConstConfiguration direction = directions[number % directions.rows];
-    for (std::size_t k = 0; k < a.size(); k++) there[k] = a[k] + 0.5 * way[k] + checks.resolution * direction[k];
+    for (std::size_t k = 0; k < a.size(); k++) there[k] = a[k] + 0.5 * whole[k] + checks.resolution * direction[k];
     const bool is_within = enter(there, checks.joints);
     bring_inside(there, checks.joints);
     if (is_within && is_free_with_margin(a, there, b, margin, checks) && checks.is_proved(a, there, PATH_PROOF) &&

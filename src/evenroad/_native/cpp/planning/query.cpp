@@ -30,7 +30,7 @@ void divide(Path& path, std::int64_t motions, const Joints& joints) {
   const double length = path.length();
   std::vector<double> between(joints.size());
   for (std::int64_t i = motions - 1; i > 0; i--) {
-    path.write_place(0, length * static_cast<double>(i) / static_cast<double>(motions), between);
+    path.write_position(0, length * static_cast<double>(i) / static_cast<double>(motions), between);
     path.insert(1, between);
   }
 }
@@ -47,7 +47,7 @@ Growth grown(TreePlanner& trees, QueryLimits limits) {
 
 /// Do what may be left undone; return whether there was time for it.
 template <class Work>
-bool ends_in_time(Work work) {
+bool is_done_in_time(Work work) {
   try {
     work();
     return true;
@@ -83,13 +83,13 @@ void smooth_path_apart(Answer& answer, std::shared_ptr<const robot::Checker> che
 
 }  // namespace
 
-Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double> ends, const Drivers& drivers,
+Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double> terminals, const Drivers& drivers,
               QueryLimits limits, Smoothing smoothing) {
   const Clock clock;
   Answer found;
   if (checker->is_never_free()) return found;
   NativeChecks checks(std::move(checker));
-  TreePlanner trees(ends, drivers.sequences, checks);
+  TreePlanner trees(terminals, drivers.sequences, checks);
   found.growth = grown(trees, limits);
   found.raw = found.path = trees.path();
   found.nodes = trees.tree(0).size() + trees.tree(1).size();
@@ -97,9 +97,9 @@ Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double
   found.search_seconds = clock.seconds();
   if (found.growth != Growth::SOLVED) return found;
   found.raw_length = found.length = length_of(found.raw, checks.joints);
-  const bool is_smoothed = smoothing == Smoothing::QUICK || smoothing == Smoothing::TIGHT;
-  if (!is_smoothed || found.raw.size() <= 2 * ends.columns) return found;
-  found.is_cut = !ends_in_time([&] {
+  const bool is_smoothed = smoothing == Smoothing::QUICK || smoothing == Smoothing::FULL;
+  if (!is_smoothed || found.raw.size() <= 2 * terminals.columns) return found;
+  found.is_cut = !is_done_in_time([&] {
     Path path(found.raw, checks.joints);
     if (smoothing == Smoothing::QUICK) {
       shorten(path, drivers.guides.pairs, MOST_SHORTCUTS, checks);
@@ -119,7 +119,8 @@ void smooth_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
   // One step of a tree is short: it stays as it is.
   if (answer.nodes <= 2) return;
   const Clock clock;
-  answer.is_cut |= !ends_in_time([&] { smooth_path_apart(answer, std::move(checker), std::move(roomier), drivers); });
+  answer.is_cut |=
+      !is_done_in_time([&] { smooth_path_apart(answer, std::move(checker), std::move(roomier), drivers); });
   answer.smoothing_seconds += clock.seconds();
 }
 

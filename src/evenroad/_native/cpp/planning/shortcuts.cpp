@@ -67,11 +67,11 @@ void Shortcuts::shortcut_corners(std::int64_t most_shortcuts, std::int64_t most_
   std::size_t i = 1;
   double before = path_.length();
   while (shortcuts < most_shortcuts && i + 1 < path_.size() && checks_.counts.batches < most_batches) {
-    const double corner = path_.place(i), length = path_.length();
-    double reach = std::min(corner - path_.place(i - 1), path_.place(i + 1) - corner);
+    const double corner = path_.position(i), length = path_.length();
+    double reach = std::min(corner - path_.position(i - 1), path_.position(i + 1) - corner);
     for (int size = 0; size < 3; size++) {
       shortcuts++;
-      join(path_.place(i) - reach, path_.place(i) + reach, CORNER_WORTH_WHILE);
+      join(path_.position(i) - reach, path_.position(i) + reach, CORNER_WORTH_WHILE);
       if (path_.length() < length) break;
       reach *= 0.5;
     }
@@ -86,15 +86,15 @@ void Shortcuts::join(double low, double high, double worth_while) {
   const double near = NEAR * path_.length();
   // The motions that the places are on.
   std::size_t first = 0, last = size - 2;
-  while (first < size - 2 && path_.place(first + 1) <= low + near) first++;
-  while (last > 0 && path_.place(last) >= high - near) last--;
+  while (first < size - 2 && path_.position(first + 1) <= low + near) first++;
+  while (last > 0 && path_.position(last) >= high - near) last--;
   if (first >= last) return;
   // The waypoints that would go.
   std::size_t begin = first + 1, end = last + 1;
-  if (low <= path_.place(first) + near) low = path_.place(first), begin = first;
-  if (high >= path_.place(last + 1) - near) high = path_.place(last + 1), end = last + 2;
-  path_.write_place(first, low, begin_);
-  path_.write_place(last, high, end_);
+  if (low <= path_.position(first) + near) low = path_.position(first), begin = first;
+  if (high >= path_.position(last + 1) - near) high = path_.position(last + 1), end = last + 2;
+  path_.write_position(first, low, begin_);
+  path_.write_position(last, high, end_);
   const double gain = high - low - write_direction(begin_, end_, checks_.joints, direction_);
   if (gain < worth_while * path_.length() || !is_shortcut(begin_, end_)) return;
   path_.erase(begin, end);

@@ -43,21 +43,20 @@ void Slides::slide(std::size_t i, std::size_t number) {
   if (write_direction(a, b, checks_.joints, direction_) > (before + after) * (1.0 - fineness.bend)) return;
   const double most = (before + after) * (1.0 - fineness.worth_while);
   std::uint32_t idle = ALL_LANES;
-  for (std::size_t place = 0; place < CANDIDATES; place++) {
-    const bool is_within =
-        write_candidate(candidates_[place], here, CANDIDATES * number + place, std::min(before, after));
-    write_states(place, a, b);
-    candidates_[place].is_open = is_within && candidates_[place].length <= most;
-    if (candidates_[place].is_open) idle &= ~(STATES_OF_ONE << STATES * place);
+  for (std::size_t one = 0; one < CANDIDATES; one++) {
+    const bool is_within = write_candidate(candidates_[one], here, CANDIDATES * number + one, std::min(before, after));
+    write_states(one, a, b);
+    candidates_[one].is_open = is_within && candidates_[one].length <= most;
+    if (candidates_[one].is_open) idle &= ~(STATES_OF_ONE << STATES * one);
   }
   if (idle == ALL_LANES) return;
   const Touching touching = checks_.touching(idle, Together::THREE);
   checks_.counts.configurations += static_cast<std::int64_t>(LANES);
   // Sixteen states, as of a motion.
   checks_.counts.motions++;
-  for (std::size_t place = 0; place < CANDIDATES; place++) {
-    for (std::size_t lane = STATES * place; lane < STATES * (place + 1); lane++) {
-      if (touching[lane]) candidates_[place].is_open = false;
+  for (std::size_t one = 0; one < CANDIDATES; one++) {
+    for (std::size_t lane = STATES * one; lane < STATES * (one + 1); lane++) {
+      if (touching[lane]) candidates_[one].is_open = false;
     }
   }
   take_best(i);

@@ -53,16 +53,17 @@ struct Middle {
 std::vector<double> copied(ConstConfiguration q) { return {q.begin(), q.end()}; }
 
 /// Return what is left between ends that nearly touch something; nothing where all that leads away from one does.
-std::optional<Middle> between_ends(const Path& path, MotionChecks& checks) {
+std::optional<Middle> between_terminals(const Path& path, MotionChecks& checks) {
   Middle middle{path, {}, {}};
-  std::vector<double> way(checks.joints.size());
+  std::vector<double> direction(checks.joints.size());
   const std::size_t last = path.size() - 1;
   for (std::size_t side = 0; side < 2; side++) {
     const ConstConfiguration end = path[side == 0 ? 0 : last], next = path[side == 0 ? 1 : last - 1];
-    write_direction(end, next, checks.joints, way);
+    write_direction(end, next, checks.joints, direction);
     for (std::size_t lane = 0; lane < HALF; lane++) {
       const double share = static_cast<double>(lane) / static_cast<double>(HALF);
-      for (std::size_t k = 0; k < way.size(); k++) checks.state(k, HALF * side + lane) = end[k] + share * way[k];
+      for (std::size_t k = 0; k < direction.size(); k++)
+        checks.state(k, HALF * side + lane) = end[k] + share * direction[k];
     }
   }
   const Touching touching = checks.touching();
@@ -74,7 +75,7 @@ std::optional<Middle> between_ends(const Path& path, MotionChecks& checks) {
     const std::size_t end = side == 0 ? 0 : middle.path.size() - 1;
     (side == 0 ? middle.start : middle.goal) = copied(middle.path[end]);
     const Configuration first_free = middle.path[end];
-    for (std::size_t k = 0; k < way.size(); k++) first_free[k] = checks.state(k, HALF * side + lane);
+    for (std::size_t k = 0; k < direction.size(); k++) first_free[k] = checks.state(k, HALF * side + lane);
     bring_inside(first_free, checks.joints);
   }
   return middle;
@@ -111,8 +112,8 @@ void divide(Path& path, const MotionChecks& checks) {
   path.measure();
   const double longest = path.length() / static_cast<double>(PARTS);
   for (std::size_t i = path.size() - 1; i-- > 0;) {
-    if (path.place(i + 1) - path.place(i) < longest) continue;
-    path.write_place(i, 0.5 * (path.place(i) + path.place(i + 1)), middle);
+    if (path.position(i + 1) - path.position(i) < longest) continue;
+    path.write_position(i, 0.5 * (path.position(i) + path.position(i + 1)), middle);
     path.insert(i + 1, middle);
   }
   path.measure();
@@ -142,7 +143,7 @@ std::optional<Path> drawn(const Path& path, const Guides& guides, Draw draw, Mot
   for (const double each : CLEARANCES) {
     margin = each;
     checks.keep_away(margin);
-    middle = between_ends(path, checks);
+    middle = between_terminals(path, checks);
     if (middle) break;
   }
   if (middle) draw(middle->path);
@@ -191,7 +192,7 @@ bool smooth(Path& path, const Guides& guides, const Sliding& sliding, bool is_gi
   return shorten_as_given(path, guides, sliding.most_batches, is_given_proved, checks);
 }
 
-bool tighten(Path& path, const Guides& guides, const Sliding& sliding, double longest, MotionChecks& checks) {
+bool smooth_further(Path& path, const Guides& guides, const Sliding& sliding, double longest, MotionChecks& checks) {
   const std::int64_t most = checks.counts.batches + sliding.most_batches;
   const auto slide = [&](Path& middle) { slide_and_shorten(middle, guides, sliding, most, checks); };
   std::optional<Path> shorter = drawn(path, guides, slide, checks, longest);

@@ -40,7 +40,7 @@ bool smooth(Path& path, const Guides& guides, const Sliding& sliding, bool is_gi
 
 /// Draw a path tighter that was drawn tight in a world with more room around obstacles.  It is changed only where it
 /// gets shorter than the longest, and is proved; return whether that is so.
-bool tighten(Path& path, const Guides& guides, const Sliding& sliding, double longest, MotionChecks& checks);
+bool smooth_further(Path& path, const Guides& guides, const Sliding& sliding, double longest, MotionChecks& checks);
 
 /// Draw a path of proved motions tighter, by waypoints that slide ever less far; return whether it became shorter, and
 /// is proved.  The turn says which directions come first.

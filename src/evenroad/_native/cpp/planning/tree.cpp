@@ -34,7 +34,7 @@ Node Tree::add(ConstConfiguration q, Node parent, double apart) {
   parents_.push_back(parent);
   tried_.push_back(0);
   proved_.push_back(0);
-  if (parents_.size() > capacity_) make_room();
+  if (parents_.size() > capacity_) enlarge();
   write_columns(node);
   return node;
 }
@@ -110,7 +110,7 @@ void Tree::write_columns(Node node) {
   cost_column_[number] = static_cast<float>(costs_[number]);
 }
 
-void Tree::make_room() {
+void Tree::enlarge() {
   capacity_ = capacity_ == 0 ? FIRST_CAPACITY : std::max(NEXT_CAPACITY, 2 * capacity_);
   columns_.assign(dim_ * capacity_, FAR), cost_column_.assign(capacity_, FAR);
   for (Node node = 0; node < size(); node++) write_columns(node);

@@ -58,7 +58,7 @@ class Tree {
   template <class Admitted>
   Node nearest_of(ConstConfiguration q, Admitted admitted) const;
   void write_columns(Node node);
-  void make_room();
+  void enlarge();
 
   std::size_t dim_, capacity_ = 0;
   std::vector<double> nodes_, costs_;

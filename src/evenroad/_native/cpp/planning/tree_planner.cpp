@@ -21,17 +21,17 @@ constexpr std::int64_t MOST_IDLE = 1000;
 
 }  // namespace
 
-TreePlanner::TreePlanner(Matrix<const double> ends, const Sequences& sequences, MotionChecks& checks,
+TreePlanner::TreePlanner(Matrix<const double> terminals, const Sequences& sequences, MotionChecks& checks,
                          const PathBound* bound, std::size_t round)
-    : ends_(ends),
+    : terminals_(terminals),
       checks_(checks),
       bound_(bound),
       steps_(checks.joints, sequences, bound, round),
       trees_{Tree(checks.joints), Tree(checks.joints)},
-      here_(ends.columns),
-      there_(ends.columns),
-      direction_(ends.columns),
-      target_(ends.columns) {}
+      here_(terminals.columns),
+      there_(terminals.columns),
+      direction_(terminals.columns),
+      target_(terminals.columns) {}
 
 Growth TreePlanner::grow(std::int64_t most_motions, std::int64_t batches) {
   most_motions_ = most_motions;
@@ -55,12 +55,12 @@ Growth TreePlanner::grow(std::int64_t most_motions, std::int64_t batches) {
 
 /// Plant the start in the first tree and the goals in the second; leave out what is not free.
 void TreePlanner::plant() {
-  for (std::size_t first = 0; first < ends_.rows; first += LANES) {
-    const std::size_t some = std::min(LANES, ends_.rows - first);
+  for (std::size_t first = 0; first < terminals_.rows; first += LANES) {
+    const std::size_t some = std::min(LANES, terminals_.rows - first);
     std::array<bool, LANES> inside{};
     for (std::size_t lane = 0; lane < LANES; lane++) {
       // Lanes to spare repeat the last row.
-      copy(ends_[first + std::min(lane, some - 1)], here_);
+      copy(terminals_[first + std::min(lane, some - 1)], here_);
       inside[lane] = enter(here_, checks_.joints);
       // What is out of bounds may be too large for single precision.
       if (!inside[lane]) bring_inside(here_, checks_.joints);
@@ -91,12 +91,12 @@ void TreePlanner::begin_along(const Path& path, std::int64_t goal, double first,
   };
   Node node = 0;
   const std::size_t last = path.size() - 1;
-  for (std::size_t i = 1; i < last && path.place(i) <= first; i++) {
-    node = add(0, node, i, path.place(i) - path.place(i - 1));
+  for (std::size_t i = 1; i < last && path.position(i) <= first; i++) {
+    node = add(0, node, i, path.position(i) - path.position(i - 1));
   }
   node = root - goals_.begin();
-  for (std::size_t i = last - 1; i > 0 && path.place(i) >= second; i--) {
-    node = add(1, node, i, path.place(i + 1) - path.place(i));
+  for (std::size_t i = last - 1; i > 0 && path.position(i) >= second; i--) {
+    node = add(1, node, i, path.position(i + 1) - path.position(i));
   }
 }
 
@@ -212,11 +212,11 @@ bool TreePlanner::is_branch_proved(std::size_t tree, Node leaf) {
 
 /// Write the way from the start to the goal that was reached, and which one this is.
 void TreePlanner::write_path() {
-  std::vector<Node> way;
-  for (Node node = met_[0]; node != NO_NODE; node = trees_[0].parent(node)) way.push_back(node);
-  std::ranges::reverse(way);
+  std::vector<Node> nodes;
+  for (Node node = met_[0]; node != NO_NODE; node = trees_[0].parent(node)) nodes.push_back(node);
+  std::ranges::reverse(nodes);
   const auto append = [&](ConstConfiguration q) { path_.insert(path_.end(), q.begin(), q.end()); };
-  for (const Node node : way) append(trees_[0][node]);
+  for (const Node node : nodes) append(trees_[0][node]);
   Node node = met_[1];
   for (append(trees_[1][node]); !trees_[1].is_root(node); append(trees_[1][node])) node = trees_[1].parent(node);
   goal_ = goals_[static_cast<std::size_t>(node)];

@@ -25,10 +25,10 @@ enum class Growth : std::uint8_t { PAUSED, SPENT, NOT_FREE, SOLVED };
 /// Two trees, which of them grows next, and where they met.
 class TreePlanner {
  public:
-  /// `ends` are the start and the goals, of which the first are tried straight on.  Ends, sequences and the joints of
-  /// the checks must last as long as this.  With a bound, the path is shorter than that allows; each
-  /// round is driven by other points of the sequences.
-  TreePlanner(Matrix<const double> ends, const Sequences& sequences, MotionChecks& checks,
+  /// `terminals` are the start and the goals, of which the first are tried straight on.  Ends, sequences and the joints
+  /// of the checks must last as long as this.  With a bound, the path is shorter than that allows; each round is driven
+  /// by other points of the sequences.
+  TreePlanner(Matrix<const double> terminals, const Sequences& sequences, MotionChecks& checks,
               const PathBound* bound = nullptr, std::size_t round = 0);
 
   /// Plant the trees, and add the waypoints of a path of proved motions to this goal: to that of the start those up to
@@ -63,7 +63,7 @@ class TreePlanner {
   void write_path();
   bool is_spent() const { return checks_.counts.motions >= most_motions_; }
 
-  Matrix<const double> ends_;
+  Matrix<const double> terminals_;
   MotionChecks& checks_;
   const PathBound* bound_;
   TreeSteps steps_;

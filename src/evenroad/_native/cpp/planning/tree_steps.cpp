@@ -68,9 +68,9 @@ std::span<const Step> TreeSteps::next(Tree& tree, std::size_t side, std::size_t 
 Node TreeSteps::closest(const Tree& tree, std::size_t side) const {
   if (bound_ == nullptr) return tree.nearest(sample_);
   const double least = bound_->distance(sample_, side);
-  const double room = bound_->longest - bound_->distance(sample_, 1 - side) - least;
+  const double left = bound_->longest - bound_->distance(sample_, 1 - side) - least;
   const double share = modulo(static_cast<double>(next_sample_) * GOLDEN, 1.0);
-  return room > 0.0 ? tree.nearest_within(sample_, least + share * room) : NO_NODE;
+  return left > 0.0 ? tree.nearest_within(sample_, least + share * left) : NO_NODE;
 }
 
 /// Return whether bounds on paths, if there are any, allow this step.

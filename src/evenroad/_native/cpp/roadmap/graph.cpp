@@ -8,10 +8,10 @@ Rows::Rows(std::size_t nodes, Matrix<const std::int32_t> edges, std::int32_t num
     : first_(nodes + 1), arcs_(2 * edges.rows) {
   for (std::size_t e = 0; e < edges.rows; e++) first_[edges(e, 0) + 1]++, first_[edges(e, 1) + 1]++;
   for (std::size_t node = 0; node < nodes; node++) first_[node + 1] += first_[node];
-  std::vector<std::size_t> place(first_.begin(), first_.end() - 1);
+  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
   for (std::size_t e = 0; e < edges.rows; e++) {
     const auto number = numbered_from + static_cast<std::int32_t>(e);
-    for (const int side : {0, 1}) arcs_[place[edges(e, side)]++] = {edges(e, 1 - side), number};
+    for (const int side : {0, 1}) arcs_[next[edges(e, side)]++] = {edges(e, 1 - side), number};
   }
 }
 

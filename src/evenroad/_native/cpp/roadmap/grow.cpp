@@ -17,9 +17,9 @@ class Offered {
       if (nodes_.empty() || away_[nodes_.back()] <= away_[node]) return;
       nodes_.pop_back();
     }
-    std::size_t place = nodes_.size();
-    while (place > 0 && away_[nodes_[place - 1]] > away_[node]) place--;
-    nodes_.insert(nodes_.begin() + place, node);
+    std::size_t index = nodes_.size();
+    while (index > 0 && away_[nodes_[index - 1]] > away_[node]) index--;
+    nodes_.insert(nodes_.begin() + index, node);
   }
 
   const std::vector<std::int32_t>& nodes() const { return nodes_; }

@@ -12,14 +12,14 @@ namespace {
 /// Nodes by key, the least on top, each at most once; a key can fall.
 class Heap {
  public:
-  explicit Heap(std::size_t nodes) : place_(nodes, NOWHERE) {}
+  explicit Heap(std::size_t nodes) : index_(nodes, NOWHERE) {}
 
   bool empty() const { return entries_.empty(); }
   std::int64_t least() const { return entries_.front().key; }
 
   /// Put a node in, or move it up to a key that is lower than the one it has.
   void put(std::int32_t node, std::int64_t key) {
-    std::size_t hole = place_[node];
+    std::size_t hole = index_[node];
     if (hole == NOWHERE) hole = entries_.size(), entries_.emplace_back();
     while (hole > 0) {
       const std::size_t above = (hole - 1) / 2;
@@ -32,7 +32,7 @@ class Heap {
 
   std::int32_t take() {
     const std::int32_t top = entries_.front().node;
-    place_[top] = NOWHERE;
+    index_[top] = NOWHERE;
     const Entry last = entries_.back();
     entries_.pop_back();
     if (entries_.empty()) return top;
@@ -56,11 +56,11 @@ class Heap {
 
   void move(Entry entry, std::size_t to) {
     entries_[to] = entry;
-    place_[entry.node] = static_cast<std::uint32_t>(to);
+    index_[entry.node] = static_cast<std::uint32_t>(to);
   }
 
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> place_;
+  std::vector<std::uint32_t> index_;
 };
 
 /// From where a node was reached at the least cost.

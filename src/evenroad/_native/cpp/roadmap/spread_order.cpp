@@ -10,11 +10,11 @@ namespace {
 
 /// For each point the ends that see it.
 std::vector<std::vector<std::size_t>> by_point(const Seen& seen, std::size_t points) {
-  std::vector<std::vector<std::size_t>> ends(points);
-  for (std::size_t end = 0; end < seen.ends(); end++) {
-    for (const std::int64_t point : seen[end]) ends[point].push_back(end);
+  std::vector<std::vector<std::size_t>> terminals(points);
+  for (std::size_t end = 0; end < seen.terminals(); end++) {
+    for (const std::int64_t point : seen[end]) terminals[point].push_back(end);
   }
-  return ends;
+  return terminals;
 }
 
 /// Write the squared distances of all points, by coordinate, from one.
@@ -37,10 +37,10 @@ void squared_distances(OwnMatrix<double>& columns, std::span<const double> perio
 std::vector<std::int64_t> spread_order(const Periodic& set, std::span<const double> preference, std::size_t count,
                                        const Seen& seen, const Serving& serving) {
   const std::size_t n = set.points.rows;
-  const double ends = static_cast<double>(std::max<std::size_t>(seen.ends(), 1));
+  const double terminals = static_cast<double>(std::max<std::size_t>(seen.terminals(), 1));
   const auto seeing = by_point(seen, n);
-  std::vector<double> use(n, serving.least), times(seen.ends(), 1.0);
-  for (const std::int64_t point : seen.which) use[point] += 1.0 / ends;
+  std::vector<double> use(n, serving.least), times(seen.terminals(), 1.0);
+  for (const std::int64_t point : seen.which) use[point] += 1.0 / terminals;
   OwnMatrix<double> columns = transposed(set.points);
   std::vector<double> nearest(n, std::numeric_limits<double>::infinity()), squared(n), value(n);
   std::size_t chosen = 0;
@@ -53,7 +53,7 @@ std::vector<std::int64_t> spread_order(const Periodic& set, std::span<const doub
     for (const std::size_t end : seeing[chosen]) {
       const double lost = std::pow(times[end], -serving.served) - std::pow(times[end] + 1.0, -serving.served);
       times[end] += 1.0;
-      for (const std::int64_t point : seen[end]) use[point] -= lost / ends;
+      for (const std::int64_t point : seen[end]) use[point] -= lost / terminals;
     }
     squared_distances(columns, set.period, chosen, squared);
     for (std::size_t row = 0; row < n; row++) {

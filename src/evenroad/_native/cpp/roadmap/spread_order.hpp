@@ -13,7 +13,7 @@ namespace evenroad::roadmap {
 struct Seen {
   std::span<const std::int64_t> first, which;
 
-  std::size_t ends() const { return first.empty() ? 0 : first.size() - 1; }
+  std::size_t terminals() const { return first.empty() ? 0 : first.size() - 1; }
   std::span<const std::int64_t> operator[](std::size_t end) const {
     return which.subspan(first[end], first[end + 1] - first[end]);
   }

@@ -11,19 +11,19 @@ namespace evenroad::robot {
 namespace {
 
 /// More places are sorted along a curve, in a tenth of the time that halving takes.
-constexpr std::size_t MANY_PLACES = 1 << 14;
+constexpr std::size_t MANY_POINTS = 1 << 14;
 
 /// Bring the lesser ones along an axis before place `middle`, of those from `low` to `high` (C. Hoare, 1961).
-void split(std::vector<Place>& places, std::vector<int>& order, int low, int high, int middle, int axis) {
+void split(std::vector<Point3>& points, std::vector<int>& order, int low, int high, int middle, int axis) {
   while (low < high) {
-    const float a = places[low].at[axis], b = places[(low + high) / 2].at[axis], c = places[high].at[axis];
+    const float a = points[low].at[axis], b = points[(low + high) / 2].at[axis], c = points[high].at[axis];
     const float pivot = std::max(std::min(a, b), std::min(std::max(a, b), c));
     int i = low, k = high;
     while (i <= k) {
-      while (places[i].at[axis] < pivot) i++;
-      while (places[k].at[axis] > pivot) k--;
+      while (points[i].at[axis] < pivot) i++;
+      while (points[k].at[axis] > pivot) k--;
       if (i <= k) {
-        std::swap(places[i], places[k]);
+        std::swap(points[i], points[k]);
         std::swap(order[i++], order[k--]);
       }
     }
@@ -68,12 +68,12 @@ Numbers along_curve(Numbers (&cell)[3]) {
 }
 
 /// Return the order of places along that curve: sorted by three digits of ten bits.
-std::vector<int> order_along_curve(std::span<const Place> places) {
+std::vector<int> order_along_curve(std::span<const Point3> points) {
   float low[3], high[3];
   for (int axis = 0; axis < 3; axis++) {
-    low[axis] = high[axis] = places[0].at[axis];
-    for (const Place& place : places) {
-      low[axis] = std::min(low[axis], place.at[axis]), high[axis] = std::max(high[axis], place.at[axis]);
+    low[axis] = high[axis] = points[0].at[axis];
+    for (const Point3& point : points) {
+      low[axis] = std::min(low[axis], point.at[axis]), high[axis] = std::max(high[axis], point.at[axis]);
     }
   }
   const float widest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
@@ -82,14 +82,14 @@ std::vector<int> order_along_curve(std::span<const Place> places) {
     std::uint32_t key;
     int number;
   };
-  std::vector<Keyed> from(places.size()), to(places.size());
+  std::vector<Keyed> from(points.size()), to(points.size());
   std::vector<std::uint32_t> counts(3 * 1024);
-  for (std::size_t first = 0; first < places.size(); first += LANES) {
-    const std::size_t count = std::min<std::size_t>(LANES, places.size() - first);
+  for (std::size_t first = 0; first < points.size(); first += LANES) {
+    const std::size_t count = std::min<std::size_t>(LANES, points.size() - first);
     Numbers cell[3] = {};
     for (std::size_t i = 0; i < count; i++) {
       for (int axis = 0; axis < 3; axis++) {
-        cell[axis][i] = static_cast<std::uint32_t>((places[first + i].at[axis] - low[axis]) * scale);
+        cell[axis][i] = static_cast<std::uint32_t>((points[first + i].at[axis] - low[axis]) * scale);
       }
     }
     const Numbers keys = along_curve(cell);
@@ -100,9 +100,9 @@ std::vector<int> order_along_curve(std::span<const Place> places) {
     }
   }
   for (int digit = 0; digit < 3; digit++) {
-    std::uint32_t* place = &counts[1024 * digit];
-    std::exclusive_scan(place, place + 1024, place, 0U);
-    for (const Keyed& each : from) to[place[each.key >> 10 * digit & 1023]++] = each;
+    std::uint32_t* next = &counts[1024 * digit];
+    std::exclusive_scan(next, next + 1024, next, 0U);
+    for (const Keyed& each : from) to[next[each.key >> 10 * digit & 1023]++] = each;
     std::swap(from, to);
   }
   std::vector<int> order;
@@ -126,11 +126,11 @@ BoxNode node_over(std::span<const Around> children, float wider) {
 
 }  // namespace
 
-std::vector<int> order_of(std::vector<Place> places) {
-  if (places.size() > MANY_PLACES) return order_along_curve(places);
-  std::vector<int> order(places.size());
+std::vector<int> order_of(std::vector<Point3> points) {
+  if (points.size() > MANY_POINTS) return order_along_curve(points);
+  std::vector<int> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  std::vector<std::pair<int, int>> waiting = {{0, static_cast<int>(places.size())}};
+  std::vector<std::pair<int, int>> waiting = {{0, static_cast<int>(points.size())}};
   while (!waiting.empty()) {
     const auto [first, end] = waiting.back();
     waiting.pop_back();
@@ -141,29 +141,29 @@ std::vector<int> order_of(std::vector<Place> places) {
     int axis = 0;
     float widest = -1;
     for (int k = 0; k < 3; k++) {
-      float low = places[first].at[k], high = low;
-      for (int i = first; i < end; i++) low = std::min(low, places[i].at[k]), high = std::max(high, places[i].at[k]);
+      float low = points[first].at[k], high = low;
+      for (int i = first; i < end; i++) low = std::min(low, points[i].at[k]), high = std::max(high, points[i].at[k]);
       if (high - low > widest) axis = k, widest = high - low;
     }
-    if (widest > 0) split(places, order, first, end - 1, middle, axis);
+    if (widest > 0) split(points, order, first, end - 1, middle, axis);
     waiting.emplace_back(first, middle);
     waiting.emplace_back(middle, end);
   }
   return order;
 }
 
-Around around_places(std::span<const Place> places) {
+Around around_points(std::span<const Point3> points) {
   Around made{};
   for (int axis = 0; axis < 3; axis++) {
     float low = std::numeric_limits<float>::infinity(), high = -low;
-    for (const Place& place : places) low = std::min(low, place.at[axis]), high = std::max(high, place.at[axis]);
+    for (const Point3& point : points) low = std::min(low, point.at[axis]), high = std::max(high, point.at[axis]);
     made.centre[axis] = 0.5F * (low + high), made.half[axis] = 0.5F * (high - low);
   }
   float squared = 0;
-  for (const Place& place : places) {
+  for (const Point3& point : points) {
     float apart = 0;
     for (int axis = 0; axis < 3; axis++) {
-      const float gap = place.at[axis] - made.centre[axis];
+      const float gap = point.at[axis] - made.centre[axis];
       apart += gap * gap;
     }
     squared = std::max(squared, apart);

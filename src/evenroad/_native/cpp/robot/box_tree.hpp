@@ -24,7 +24,7 @@ struct BoxTree {
 /// Where the places to spare of a leaf or node are.
 constexpr float NOWHERE = 1e9F;
 
-struct Place {
+struct Point3 {
   float at[3];
 };
 
@@ -34,10 +34,10 @@ struct Around {
 };
 
 /// Return an order in which sixteen, or 256, ... neighbours are near each other.
-std::vector<int> order_of(std::vector<Place> places);
+std::vector<int> order_of(std::vector<Point3> points);
 
 /// Return the box and ball around sixteen places, or around sixteen boxes, by so much wider.
-Around around_places(std::span<const Place> places);
+Around around_points(std::span<const Point3> points);
 Around around_boxes(std::span<const Around> children, float wider);
 
 /// Return the tree over some leaves, in their order; what each level adds is so much wider.
@@ -68,10 +68,10 @@ class Walk {
  public:
   explicit Walk(const BoxTree& tree) : levels_(tree.levels), level_(static_cast<int>(levels_.size()) - 1) {}
 
-  /// Return the next leaf below nodes that `ask` returns as a mask of those of a node that matter, or -1.
-  template <class Ask>
-  int next(Ask&& ask) {
-    if (fresh_) near_ = ask(levels_[level_][node_]), fresh_ = false;
+  /// Return the next leaf below nodes that `query` returns as a mask of those of a node that matter, or -1.
+  template <class Query>
+  int next(Query&& query) {
+    if (fresh_) near_ = query(levels_[level_][node_]), fresh_ = false;
     while (true) {
       if (near_ == 0) {
         if (level_ == static_cast<int>(levels_.size()) - 1) return -1;
@@ -85,7 +85,7 @@ class Walk {
       waiting_[level_] = {near_, node_};
       level_--;
       node_ = child;
-      near_ = ask(levels_[level_][node_]);
+      near_ = query(levels_[level_][node_]);
     }
   }
 

@@ -25,7 +25,7 @@ void go_on(Pose& pose, const Pose& next, double sine, double cosine, double slid
 
 }  // namespace
 
-Pose Chain::place_tip(std::span<const double> q, std::span<Axis> axes) const {
+Pose Chain::tip_pose(std::span<const double> q, std::span<Axis> axes) const {
   Pose pose;
   for (std::size_t i = 0; i < joints.size(); i++) {
     const ChainJoint& joint = joints[i];

@@ -34,7 +34,7 @@ struct Chain {
   Pose tip;  // in the frame of the last joint
 
   /// Return where the tip is, and write where the axes of all joints are, in the root's frame.
-  Pose place_tip(std::span<const double> q, std::span<Axis> axes) const;
+  Pose tip_pose(std::span<const double> q, std::span<Axis> axes) const;
 
   /// Write how the tip moves and turns with each coordinate, (6, dim), in the root's frame, from where it and the axes
   /// are.

@@ -8,7 +8,7 @@ namespace {
 Contact find_fixed_contact(const Robot& robot, const Scene& scene) {
   const auto [capsule, obstacle] = scene.fixed_contact;
   if (capsule >= 0) return {Contact::With::OBSTACLE, capsule, obstacle};
-  return scene.surfaces.empty() ? Contact{} : fixed_surface_contact(robot, scene, Places(robot));
+  return scene.surfaces.empty() ? Contact{} : fixed_surface_contact(robot, scene, PlacedRobot(robot));
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ Workspace::Workspace(const Checker& checker)
     : checker(checker),
       lengths(&checker.lengths()),
       states(checker.robot().dim(), Doubles16{}),
-      places(checker.robot()),
+      placed(checker.robot()),
       enlarged(checker.lengths()),
       motion(checker.robot().dim()),
       waiting(MOST_WAITING),
@@ -77,18 +77,18 @@ namespace {
 Mask meeting_anything(Workspace& workspace, const Lengths& lengths, Mask settled, Wanted wanted, Contact* found) {
   const Robot& robot = workspace.checker.robot();
   const Scene& scene = workspace.checker.scene();
-  Places& places = workspace.places;
-  Mask mask = meeting_obstacles(robot, lengths, scene, places, settled, wanted, found);
+  PlacedRobot& placed = workspace.placed;
+  Mask mask = meeting_obstacles(robot, lengths, scene, placed, settled, wanted, found);
   if (is_enough(mask, wanted)) return mask;
   if (!scene.surfaces.empty()) {
-    mask |= with_others(meeting_surfaces(robot, lengths, scene, places, mask, wanted, found), wanted);
+    mask |= with_others(meeting_surfaces(robot, lengths, scene, placed, mask, wanted, found), wanted);
     if (is_enough(mask, wanted)) return mask;
   }
-  return meeting_itself(robot, lengths, places, mask, wanted, found);
+  return meeting_itself(robot, lengths, placed, mask, wanted, found);
 }
 
 Mask blocked_lanes(Workspace& workspace, const Lengths& lengths, Mask settled, Wanted wanted, Contact* found) {
-  workspace.places.place(workspace.checker.robot(), lengths, workspace.states);
+  workspace.placed.move_to(workspace.checker.robot(), lengths, workspace.states);
   return meeting_anything(workspace, lengths, settled, wanted, found);
 }
 

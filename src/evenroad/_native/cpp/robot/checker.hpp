@@ -96,10 +96,10 @@ struct Workspace {
   const Checker& checker;
   const Lengths* lengths;         // that decide states
   std::vector<Doubles16> states;  // sixteen configurations: sixteen numbers a coordinate
-  Places places;
+  PlacedRobot placed;
   Lengths enlarged;  // that decide stretches of a motion in a proof
   Motion motion;
-  std::vector<Stretch> waiting;
+  std::vector<Interval> waiting;
   Speeds speeds;
   Counts counts;
   ClockWatch clock{BATCHES_A_LOOK};

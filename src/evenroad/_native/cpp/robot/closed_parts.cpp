@@ -25,23 +25,23 @@ std::uint64_t mixed(std::uint64_t key) {
 /// Numbers of things in a table of twice as many places, or more: the next free one where another is there.
 class Table {
  public:
-  explicit Table(std::size_t most) : places_(std::bit_ceil(2 * most + 2), -1) {}
+  explicit Table(std::size_t most) : slots_(std::bit_ceil(2 * most + 2), -1) {}
 
   /// Return the number of the thing with this key, `fresh` where `is_same` says of none that was put in that it is one.
   template <class IsSame>
   Number find(std::uint64_t key, Number fresh, IsSame&& is_same) {
-    for (std::size_t i = key & (places_.size() - 1);; i = (i + 1) & (places_.size() - 1)) {
-      if (places_[i] < 0) return places_[i] = fresh;
-      if (is_same(places_[i])) return places_[i];
+    for (std::size_t i = key & (slots_.size() - 1);; i = (i + 1) & (slots_.size() - 1)) {
+      if (slots_[i] < 0) return slots_[i] = fresh;
+      if (is_same(slots_[i])) return slots_[i];
     }
   }
 
  private:
-  std::vector<Number> places_;
+  std::vector<Number> slots_;
 };
 
 /// Return for each vertex the first one that is at its place.
-std::vector<Number> first_at_place(std::span<const double> vertices) {
+std::vector<Number> first_at_point(std::span<const double> vertices) {
   const std::size_t count = vertices.size() / 3;
   Table table(count);
   std::vector<Number> first(count);
@@ -114,7 +114,7 @@ std::vector<std::uint8_t> found_again(const std::vector<Corners>& triangles) {
 }
 
 Mesh mesh_of(std::span<const double> vertices, std::span<const std::int64_t> rows) {
-  const std::vector<Number> first = first_at_place(vertices);
+  const std::vector<Number> first = first_at_point(vertices);
   Mesh mesh{{}, {}, std::vector<Number>(rows.size(), -1), {}, Sets(first.size())};
   mesh.triangles.resize(rows.size() / 3);
   for (std::size_t i = 0; i < rows.size(); i++) {
@@ -269,7 +269,7 @@ Shells find_shells(Mesh& mesh, std::size_t corners, ClosedParts& made) {
     if (number < 0) number = static_cast<Number>(shells.all.size()), shells.all.emplace_back();
     shells.of[i] = number;
     if (is_tangled[part] == 0) shells.turned[i] = turned;
-    if (shells.turned[i] != 0) shells.all[number].is_told = false;
+    if (shells.turned[i] != 0) shells.all[number].is_oriented = false;
   }
   return shells;
 }

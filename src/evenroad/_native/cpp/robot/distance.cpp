@@ -56,7 +56,7 @@ Floats16 distance_of(const PlacedCapsule& capsule, std::span<const float> sample
   return sqrt(squared_distance(obstacle, capsule, samples)) - (radius + obstacle.rounding);
 }
 
-void offer_obstacles(const Robot& robot, const Layer& layer, const Places& places, Nearest& nearest) {
+void offer_obstacles(const Robot& robot, const Layer& layer, const PlacedRobot& placed, Nearest& nearest) {
   const std::span<const float> samples = robot.samples;
   for (int b = static_cast<int>(robot.bodies.size()) - 1; b >= robot.fixed_bodies; b--) {
     const Body& body = robot.bodies[b];
@@ -66,7 +66,7 @@ void offer_obstacles(const Robot& robot, const Layer& layer, const Places& place
       for (int i = body.capsules.first; i < body.capsules.end; i++) {
         if ((layer.tested(i, k / LANES) >> (k % LANES) & 1) == 0) continue;
         const Range of = robot.capsules[i].samples;
-        distance = min(distance, distance_of(places.capsules[i], samples.subspan(of.first, of.size()),
+        distance = min(distance, distance_of(placed.capsules[i], samples.subspan(of.first, of.size()),
                                              robot.lengths.capsules[i], obstacle));
       }
       const Contact contact{Contact::With::OBSTACLE, body.capsules.first, obstacle.number};
@@ -76,30 +76,30 @@ void offer_obstacles(const Robot& robot, const Layer& layer, const Places& place
       }
       nearest.bisect(nearest.nearer(distance), distance, [&](float near, Mask lane) {
         near += robot.lengths.shapes[b];
-        const Mask meeting = shape_meeting(robot, places, body, *layer.obstacles, k, near, lane, Wanted::ALL);
+        const Mask meeting = shape_meeting(robot, placed, body, *layer.obstacles, k, near, lane, Wanted::ALL);
         return meeting != 0 ? contact : Contact{};
       });
     }
   }
 }
 
-void offer_surfaces(const Robot& robot, const Scene& scene, const Places& places, Nearest& nearest) {
+void offer_surfaces(const Robot& robot, const Scene& scene, const PlacedRobot& placed, Nearest& nearest) {
   if (scene.surfaces.empty()) return;
   nearest.bisect(ALL_LANES, Floats16{}, [&](float near, Mask lane) {
     Contact found;
-    meeting_surfaces(robot, robot.lengths.enlarged(near), scene, places, ALL_LANES & ~lane, Wanted::FIRST, &found);
+    meeting_surfaces(robot, robot.lengths.enlarged(near), scene, placed, ALL_LANES & ~lane, Wanted::FIRST, &found);
     return found;
   });
 }
 
-void offer_itself(const Robot& robot, const Places& places, Nearest& nearest) {
+void offer_itself(const Robot& robot, const PlacedRobot& placed, Nearest& nearest) {
   const int by_hulls = robot.first_hull_pair();
   for (int p = 0; p < static_cast<int>(robot.body_pairs.size()); p++) {
     const auto& [a, b, pairs] = robot.body_pairs[p];
     Floats16 distance = nearest.least;
     for (int k = pairs.first; k < pairs.end; k++) {
       const CapsulePair& pair = robot.pairs[k];
-      const Floats16 squared = squared_distance(places.capsules[pair.first], places.capsules[pair.second], pair);
+      const Floats16 squared = squared_distance(placed.capsules[pair.first], placed.capsules[pair.second], pair);
       distance = min(distance, sqrt(squared) - robot.lengths.pairs[k].reach);
     }
     const Contact contact{Contact::With::ITSELF, -1, pairs.first};
@@ -107,8 +107,8 @@ void offer_itself(const Robot& robot, const Places& places, Nearest& nearest) {
       nearest.offer(distance, contact);
       continue;
     }
-    const PlacedHulls first{robot.hulls, robot.bodies[a].hulls, places.frames[robot.bodies[a].frame]};
-    const PlacedHulls second{robot.hulls, robot.bodies[b].hulls, places.frames[robot.bodies[b].frame]};
+    const PlacedHulls first{robot.hulls, robot.bodies[a].hulls, placed.frames[robot.bodies[a].frame]};
+    const PlacedHulls second{robot.hulls, robot.bodies[b].hulls, placed.frames[robot.bodies[b].frame]};
     nearest.bisect(nearest.nearer(distance), distance, [&](float near, Mask lane) {
       near += robot.lengths.hull_margins[p - by_hulls];
       return hulls_meeting(first, second, near, lane, Wanted::ALL) != 0 ? contact : Contact{};
@@ -126,12 +126,12 @@ void write_distances(const Checker& checker, Matrix<const double> rows, double m
   for (std::size_t first = 0; first < rows.rows; first += LANES) {
     const std::size_t count = std::min<std::size_t>(LANES, rows.rows - first);
     const Mask outside = take_rows(*workspace, rows, first, count);
-    workspace->places.place(robot, robot.lengths, workspace->states);
+    workspace->placed.move_to(robot, robot.lengths, workspace->states);
     Nearest found{spread(static_cast<float>(most)), {}};
-    offer_obstacles(robot, scene.obstacles, workspace->places, found);
-    if (scene.changed.obstacles != nullptr) offer_obstacles(robot, scene.changed, workspace->places, found);
-    if (to_itself) offer_itself(robot, workspace->places, found);
-    offer_surfaces(robot, scene, workspace->places, found);
+    offer_obstacles(robot, scene.obstacles, workspace->placed, found);
+    if (scene.changed.obstacles != nullptr) offer_obstacles(robot, scene.changed, workspace->placed, found);
+    if (to_itself) offer_itself(robot, workspace->placed, found);
+    offer_surfaces(robot, scene, workspace->placed, found);
     for (std::size_t lane = 0; lane < count; lane++) {
       const float least = found.least[lane];
       metres[first + lane] = (outside >> lane & 1) != 0 ? std::numeric_limits<double>::quiet_NaN()

@@ -23,16 +23,16 @@ struct NearAndSure {
 ///
 /// Outside of the grid it is asked for the nearest place inside: what lies beyond that is farther by at least the third
 /// side of a triangle with an obtuse angle.
-EVENROAD_INLINE NearAndSure ask(const DistanceGrid& grid, Vec3x16 place, float near, float touching) {
+EVENROAD_INLINE NearAndSure query(const DistanceGrid& grid, Vec3x16 point, float near, float touching) {
   const Floats16 zero{};
-  const Vec3x16 from = place - spread(grid.low);
+  const Vec3x16 from = point - spread(grid.low);
   const Vec3x16 inside = {clamp(from.x, zero, spread(grid.size.x)), clamp(from.y, zero, spread(grid.size.y)),
                           clamp(from.z, zero, spread(grid.size.z))};
   const Vec3x16 beyond = from - inside;
   const Floats16 away = bytes_of_cells(grid, inside * spread(grid.one_by_cell)) * grid.step;
   const Floats16 outside = dot(beyond, beyond);
   // Of the largest byte only a lower bound is known.
-  Mask sure = below_zero(max(away + grid.told - touching, away - grid.step * 254.5F));
+  Mask sure = below_zero(max(away + grid.excess - touching, away - grid.step * 254.5F));
   sure &= below_zero(outside - 1e-30F);
   return {below_zero(fma(away, away, outside) - near * near), sure};
 }

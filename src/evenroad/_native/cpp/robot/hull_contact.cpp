@@ -18,7 +18,7 @@ struct RelativePose16 {
   Vec3x16 rows[3], translation;
 
   /// Return a place in the second body's frame as the first sees it.
-  EVENROAD_INLINE Vec3x16 seen(Vec3x16 place) const { return translation + turned(place); }
+  EVENROAD_INLINE Vec3x16 seen(Vec3x16 point) const { return translation + turned(point); }
   EVENROAD_INLINE Vec3x16 turned(Vec3x16 v) const { return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)}; }
   /// Return a direction in the first body's frame as the second sees it.
   EVENROAD_INLINE Vec3x16 turned_back(Vec3x16 v) const { return combine(rows[0], v.x, rows[1], v.y, rows[2], v.z); }
@@ -56,21 +56,21 @@ RelativePose relative_pose(const PlacedFrame& a, const PlacedFrame& b, int lane)
 /// The way from the middle of the second node's box to that of the first, as the first and as the second body sees it,
 /// and the half extents of both boxes together along the axes of the first and of the second.
 struct TwoBoxes {
-  Vec3x16 way, turned, sizes, other_sizes;
+  Vec3x16 between, turned, sizes, other_sizes;
 };
 
 EVENROAD_INLINE TwoBoxes boxes_of(const RelativePose16& pose, const Node& a, const Node& b) {
-  const Vec3x16 way = spread3(a.centre) - pose.seen(spread3(b.centre));
+  const Vec3x16 between = spread3(a.centre) - pose.seen(spread3(b.centre));
   const Vec3x16 half = spread3(a.half), other = spread3(b.half);
   const Vec3x16 x = abs(pose.rows[0]), y = abs(pose.rows[1]), z = abs(pose.rows[2]);
-  return {way, pose.turned_back(way), Vec3x16{dot(x, other), dot(y, other), dot(z, other)} + half,
+  return {between, pose.turned_back(between), Vec3x16{dot(x, other), dot(y, other), dot(z, other)} + half,
           combine(x, half.x, y, half.y, z, half.z) + other};
 }
 
 /// Return the mask of lanes in which no side of the boxes of two nodes separates them.
 Mask boxes_near(const RelativePose16& pose, const Node& a, const Node& b, Floats16 near) {
   const TwoBoxes boxes = boxes_of(pose, a, b);
-  const Vec3x16 gap = abs(boxes.way) - boxes.sizes, other = abs(boxes.turned) - boxes.other_sizes;
+  const Vec3x16 gap = abs(boxes.between) - boxes.sizes, other = abs(boxes.turned) - boxes.other_sizes;
   return below_zero(max(largest(gap), largest(other)) - near);
 }
 
@@ -83,7 +83,7 @@ Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const No
     const Farthest16 on = farthest(pose.turned_back(along), other, b);
     return Farthest16{on.along, pose.turned(on.corner)};
   };
-  return unseparated(boxes.way, boxes.sizes, pose.translation, first, second, near + (a.width + b.width), asked);
+  return unseparated(boxes.between, boxes.sizes, pose.translation, first, second, near + (a.width + b.width), asked);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Contact of convex hulls at sixteen configurations: of two bodies of one robot, or of a body and an obstacle.
 #pragma once
 
-#include "robot/places.hpp"
+#include "robot/placed_robot.hpp"
 
 namespace evenroad::robot {
 
@@ -39,7 +39,7 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
                    KeptOfPairs* kept = nullptr);
 
 /// Lanes in which two trees are apart, and in which they come within a margin.
-struct Told {
+struct Decided {
   Mask apart, near;
 };
 
@@ -57,6 +57,6 @@ Floats16 lost(const PlacedHulls& first, const PlacedHulls& second);
 Mask not_apart_across(Vec3 normal, const PlacedHulls& first, const PlacedHulls& second, Floats16 near, Mask asked);
 
 /// Return what is told of the lanes asked for by what is kept of two roots, of which the second is an obstacle's leaf.
-Told told_by(const Kept& kept, const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked);
+Decided decided_by(const Kept& kept, const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked);
 
 }  // namespace evenroad::robot

@@ -130,17 +130,17 @@ struct Builder {
   }
 };
 
-/// Return how a line along `way` from a place crosses a triangle ahead of the place: 0, or 1 along the triangle's
+/// Return how a line along `direction` from a place crosses a triangle ahead of the place: 0, or 1 along the triangle's
 /// normal and -1 against it; nothing where that cannot be told.
-std::optional<int> crossing(const HullPoint<float>* corners, const double (&place)[3], const double (&way)[3]) {
+std::optional<int> crossing(const HullPoint<float>* corners, const double (&point)[3], const double (&direction)[3]) {
   double p[3][3], sides[3];
   for (int i = 0; i < 3; i++) {
-    p[i][0] = corners[i].x - place[0], p[i][1] = corners[i].y - place[1], p[i][2] = corners[i].z - place[2];
+    p[i][0] = corners[i].x - point[0], p[i][1] = corners[i].y - point[1], p[i][2] = corners[i].z - point[2];
   }
   const auto volume = [](const double* a, const double* b, const double* c) {
     return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
   };
-  for (int i = 0; i < 3; i++) sides[i] = volume(way, p[i], p[(i + 1) % 3]);
+  for (int i = 0; i < 3; i++) sides[i] = volume(direction, p[i], p[(i + 1) % 3]);
   const double least = std::min({sides[0], sides[1], sides[2]}), most = std::max({sides[0], sides[1], sides[2]});
   if (least < -ROUNDED && most > ROUNDED) return 0;
   if (least < ROUNDED && most > -ROUNDED) return std::nullopt;
@@ -150,14 +150,15 @@ std::optional<int> crossing(const HullPoint<float>* corners, const double (&plac
 }
 
 /// Return how often surfaces below a root wind around a place, seen along a way, or nothing where that is not told.
-std::optional<int> windings(const HullTree<float>& tree, int root, const double (&place)[3], const double (&way)[3]) {
+std::optional<int> windings(const HullTree<float>& tree, int root, const double (&point)[3],
+                            const double (&direction)[3]) {
   int waiting[DEEPEST], count = 1, times = 0;
   waiting[0] = root;
   while (count > 0) {
     const HullNode<float>& node = tree.nodes[waiting[--count]];
     if (node.is_leaf()) {
       if (!node.encloses) continue;
-      const auto crossed = crossing(tree.points.data() + node.points.first, place, way);
+      const auto crossed = crossing(tree.points.data() + node.points.first, point, direction);
       if (!crossed) return std::nullopt;
       times += *crossed;
       continue;
@@ -165,8 +166,8 @@ std::optional<int> windings(const HullTree<float>& tree, int root, const double 
     // Whether the half line ahead meets the box.
     double enter = 0, leave = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; k++) {
-      const double from = node.centre[k] - place[k], half = node.half[k] + ROUNDED;
-      const double one = (from - half) / way[k], other = (from + half) / way[k];
+      const double gap = node.centre[k] - point[k], half = node.half[k] + ROUNDED;
+      const double one = (gap - half) / direction[k], other = (gap + half) / direction[k];
       enter = std::max(enter, std::min(one, other)), leave = std::min(leave, std::max(one, other));
     }
     if (enter > leave) continue;
@@ -247,10 +248,10 @@ std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root) {
     int first = -1;
     for (int i = node.points.first; i < node.points.end; i++) {
       const auto [x, y, z] = tree.points[i];
-      const auto [place, added] = numbers.try_emplace({x, y, z}, static_cast<int>(above.size()));
-      if (added) above.push_back(place->second), points.push_back({x, y, z});
-      if (first < 0) first = place->second;
-      above[first_of(place->second)] = first_of(first);
+      const auto [entry, added] = numbers.try_emplace({x, y, z}, static_cast<int>(above.size()));
+      if (added) above.push_back(entry->second), points.push_back({x, y, z});
+      if (first < 0) first = entry->second;
+      above[first_of(entry->second)] = first_of(first);
     }
   }
   for (int corner = 0; corner < static_cast<int>(above.size()); corner++) {
@@ -259,11 +260,11 @@ std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root) {
   return found;
 }
 
-bool encloses(const HullTree<float>& tree, int root, const double (&place)[3]) {
+bool encloses(const HullTree<float>& tree, int root, const double (&point)[3]) {
   // Lines along no usual axis; where one passes through a side of a triangle, the next is taken.
-  constexpr double WAYS[3][3] = {{0.3826, 0.5113, 0.7695}, {-0.6711, 0.4127, 0.6159}, {0.5217, -0.7723, 0.3624}};
-  for (const auto& way : WAYS) {
-    if (const auto times = windings(tree, root, place, way)) return *times != 0;
+  constexpr double DIRECTIONS[3][3] = {{0.3826, 0.5113, 0.7695}, {-0.6711, 0.4127, 0.6159}, {0.5217, -0.7723, 0.3624}};
+  for (const auto& direction : DIRECTIONS) {
+    if (const auto times = windings(tree, root, point, direction)) return *times != 0;
   }
   return true;
 }

@@ -74,18 +74,19 @@ EVENROAD_INLINE Mask unseparated(Vec3x16 between, Vec3x16 sizes, Vec3x16 shift, 
   const Vec3x16 thick = {max(sizes.x, spread(THIN)), max(sizes.y, spread(THIN)), max(sizes.z, spread(THIN))};
   Vec3x16 v = {between.x / thick.x, between.y / thick.y, between.z / thick.z};
   v = v / max(max(abs(v.x), abs(v.y)), max(abs(v.z), spread(LEAST_SQUARE)));
-  Vec3x16 way = {v.x * v.x * v.x / thick.x, v.y * v.y * v.y / thick.y, v.z * v.z * v.z / thick.z}, last = way;
+  Vec3x16 direction = {v.x * v.x * v.x / thick.x, v.y * v.y * v.y / thick.y, v.z * v.z * v.z / thick.z},
+          last = direction;
   Mask meeting = 0;
   for (int step = 0; step < PLANES; step++) {
-    const Vec3x16 along = way * (1.0F / sqrt(max(dot(way, way), spread(LEAST_SQUARE))));
+    const Vec3x16 along = direction * (1.0F / sqrt(max(dot(direction, direction), spread(LEAST_SQUARE))));
     const Farthest16 back = first(-along), on = second(along);
     asked &= ~below_zero(near + (back.along + on.along + dot(along, shift)));
     if (asked == 0) break;
     // On from the way between these corners; then from what of the last two and the way so far is nearest to 0.
     const Vec3x16 corner = back.corner - (shift + on.corner);
-    way = step == 0 ? corner : nearest_of_three(way, last, corner);
+    direction = step == 0 ? corner : nearest_of_three(direction, last, corner);
     last = corner;
-    const Mask touching = asked & below_zero(dot(way, way) - near_squared);
+    const Mask touching = asked & below_zero(dot(direction, direction) - near_squared);
     meeting |= touching;
     asked &= ~touching;
     if (asked == 0) break;

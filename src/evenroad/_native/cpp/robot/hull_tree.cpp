@@ -25,19 +25,19 @@ constexpr int FEW_POINTS = 4;     // so few are looked at one by one, in double 
 
 /// Return the way from the middle of the second node to that of the first, in the first's frame.
 template <class T>
-Vector way_between(const HullNode<T>& a, const HullNode<T>& b, const RelativePose& pose) {
-  Vector way;
+Vector between_middles(const HullNode<T>& a, const HullNode<T>& b, const RelativePose& pose) {
+  Vector direction;
   for (int axis = 0; axis < 3; axis++) {
-    way[axis] = a.centre[axis] - pose.translation[axis];
-    for (int entry = 0; entry < 3; entry++) way[axis] -= pose.rotation[3 * axis + entry] * b.centre[entry];
+    direction[axis] = a.centre[axis] - pose.translation[axis];
+    for (int entry = 0; entry < 3; entry++) direction[axis] -= pose.rotation[3 * axis + entry] * b.centre[entry];
   }
-  return way;
+  return direction;
 }
 
 /// How far a leaf's hull and disc reach along a direction, and the point that is farthest.
 struct Farthest {
   double along;
-  Vector place;
+  Vector point;
 };
 
 /// Return by how much less than another a point found in single precision may reach along a unit direction: six
@@ -50,9 +50,9 @@ double slack_of(const HullNode<T>& leaf) {
 
 /// Return the number of a point that is farthest along a unit direction, but for a slack.
 template <class T>
-int farthest_of_many(const HullTree<T>& tree, const HullNode<T>& leaf, const Vector& way) {
-  const Vec3x16 along =
-      spread(Vec3{static_cast<float>(way[0]), static_cast<float>(way[1]), static_cast<float>(way[2])});
+int farthest_of_many(const HullTree<T>& tree, const HullNode<T>& leaf, const Vector& direction) {
+  const Vec3x16 along = spread(
+      Vec3{static_cast<float>(direction[0]), static_cast<float>(direction[1]), static_cast<float>(direction[2])});
   Floats16 most = dot(tree.blocks[leaf.blocks.first], along);
   Ints16 block{};
   for (int i = leaf.blocks.first + 1; i < leaf.blocks.end; i++) {
@@ -66,17 +66,17 @@ int farthest_of_many(const HullTree<T>& tree, const HullNode<T>& leaf, const Vec
 }
 
 template <class T>
-Farthest farthest(const HullTree<T>& tree, const HullNode<T>& leaf, const Vector& way) {
+Farthest farthest(const HullTree<T>& tree, const HullNode<T>& leaf, const Vector& direction) {
   double most = -std::numeric_limits<double>::infinity();
   int corner = leaf.points.first;
   if (leaf.blocks.size() > 0) {
-    corner = farthest_of_many(tree, leaf, way);
+    corner = farthest_of_many(tree, leaf, direction);
     const auto& [x, y, z] = tree.points[corner];
-    most = x * way[0] + y * way[1] + z * way[2];
+    most = x * direction[0] + y * direction[1] + z * direction[2];
   } else {
     for (int i = leaf.points.first; i < leaf.points.end; i++) {
       const auto& [x, y, z] = tree.points[i];
-      const double along = x * way[0] + y * way[1] + z * way[2];
+      const double along = x * direction[0] + y * direction[1] + z * direction[2];
       corner = along > most ? i : corner, most = std::max(along, most);
     }
   }
@@ -84,40 +84,42 @@ Farthest farthest(const HullTree<T>& tree, const HullNode<T>& leaf, const Vector
   Farthest found{most, {x, y, z}};
   for (int axis = 0; axis < 3; axis++) {
     const double extent = leaf.extents[axis];
-    found.along += extent * std::abs(way[axis]);
-    found.place[axis] += std::copysign(extent, way[axis]);
+    found.along += extent * std::abs(direction[axis]);
+    found.point[axis] += std::copysign(extent, direction[axis]);
   }
   if (leaf.disc > 0) {
-    const double upright = leaf.axis[0] * way[0] + leaf.axis[1] * way[1] + leaf.axis[2] * way[2];
+    const double upright = leaf.axis[0] * direction[0] + leaf.axis[1] * direction[1] + leaf.axis[2] * direction[2];
     Vector aside;
-    for (int axis = 0; axis < 3; axis++) aside[axis] = way[axis] - upright * leaf.axis[axis];
+    for (int axis = 0; axis < 3; axis++) aside[axis] = direction[axis] - upright * leaf.axis[axis];
     const double length = std::sqrt(squared_length(aside)), share = length > 0.0 ? leaf.disc / length : 0.0;
     found.along += leaf.disc * length;
-    for (int axis = 0; axis < 3; axis++) found.place[axis] += share * aside[axis];
+    for (int axis = 0; axis < 3; axis++) found.point[axis] += share * aside[axis];
   }
   return found;
 }
 
 /// Return the direction with which a search begins: of a plane, or about across where the boxes of both are thin.
 template <class T>
-Vector first_way(const HullNode<T>& a, const HullNode<T>& b, const RelativePose& pose, const PlaneNormal& plane) {
+Vector first_direction(const HullNode<T>& a, const HullNode<T>& b, const RelativePose& pose, const PlaneNormal& plane) {
   const double *m = pose.rotation, *normal = plane.at;
-  Vector way{};
+  Vector direction{};
   if (normal[0] != 0 || normal[1] != 0 || normal[2] != 0) {
-    for (int axis = 0; axis < 3; axis++, m += 3) way[axis] = m[0] * normal[0] + m[1] * normal[1] + m[2] * normal[2];
-    return way;
+    for (int axis = 0; axis < 3; axis++, m += 3)
+      direction[axis] = m[0] * normal[0] + m[1] * normal[1] + m[2] * normal[2];
+    return direction;
   }
-  const Vector between = way_between(a, b, pose);
+  const Vector between = between_middles(a, b, pose);
   double most = 0.0;
   for (int axis = 0; axis < 3; axis++, m += 3) {
     double thick = a.half[axis] + THICKER;
     for (int entry = 0; entry < 3; entry++) thick += std::abs(m[entry]) * b.half[entry];
-    way[axis] = between[axis] / thick, most = std::max(most, std::abs(way[axis]));
+    direction[axis] = between[axis] / thick, most = std::max(most, std::abs(direction[axis]));
   }
-  if (most == 0.0) return way;
+  if (most == 0.0) return direction;
   // Cubes of shares of the largest: no number leaves its range.
-  for (int axis = 0; axis < 3; axis++) way[axis] = way[axis] / most * (way[axis] / most) * (way[axis] / most);
-  return way;
+  for (int axis = 0; axis < 3; axis++)
+    direction[axis] = direction[axis] / most * (direction[axis] / most) * (direction[axis] / most);
+  return direction;
 }
 
 enum class Answer : std::uint8_t { APART, NEAR, OPEN };
@@ -133,10 +135,10 @@ struct Search {
   PlaneNormal& plane;
   Vec3& point;
   Simplex simplex;
-  Vector way;
+  Vector direction;
   double length = 0.0;
   int count = 0;  // of points that corners are made of, which are not written before they are known
-  Vector places[MOST_STEPS + 4], others[MOST_STEPS + 4];
+  Vector firsts[MOST_STEPS + 4], others[MOST_STEPS + 4];
 
   Search(const HullTree<T>& tree, const HullNode<T>& a, const HullTree<T>& other, const HullNode<T>& b,
          const RelativePose& pose, PlaneNormal& plane, Vec3& point)
@@ -144,7 +146,7 @@ struct Search {
 
   /// Add a corner: a point of the first less one of the second.
   void add(const Vector& p, const Vector& q) {
-    places[count] = p, others[count] = q;
+    firsts[count] = p, others[count] = q;
     simplex.numbers[simplex.size] = count++;
     Vector& apart = simplex.corners[simplex.size++];
     for (int axis = 0; axis < 3; axis++) {
@@ -156,8 +158,8 @@ struct Search {
 
   /// Take the way from what of the corners is nearest; return whether they are around where the two would touch.
   bool turn() {
-    nearest(simplex, way);
-    length = std::sqrt(squared_length(way));
+    nearest(simplex, direction);
+    length = std::sqrt(squared_length(direction));
     return simplex.size <= 0;
   }
 
@@ -165,7 +167,7 @@ struct Search {
     if (ended == nullptr || size == 0) return;
     ended->size = size;
     for (int i = 0; i < size; i++) {
-      ended->first[i] = places[simplex.numbers[i]], ended->second[i] = others[simplex.numbers[i]];
+      ended->first[i] = firsts[simplex.numbers[i]], ended->second[i] = others[simplex.numbers[i]];
     }
   }
 
@@ -178,7 +180,7 @@ struct Search {
 
   Across look() const {
     const double *m = pose.rotation, *shift = pose.translation;
-    const double x = way[0] / length, y = way[1] / length, z = way[2] / length;
+    const double x = direction[0] / length, y = direction[1] / length, z = direction[2] / length;
     const Vector turned_back = {m[0] * x + m[3] * y + m[6] * z, m[1] * x + m[4] * y + m[7] * z,
                                 m[2] * x + m[5] * y + m[8] * z};
     const Farthest p = farthest(tree, a, {-x, -y, -z}), q = farthest(other, b, turned_back);
@@ -193,18 +195,18 @@ struct Search {
   /// Go on from where another search ended, but first with the plane that is given, if there is one.
   Answer go_on(double apart_by, double near_by, Ended& ended) {
     if (plane.at[0] != 0 || plane.at[1] != 0 || plane.at[2] != 0) {
-      way = first_way(a, b, pose, plane), length = std::sqrt(squared_length(way));
+      direction = first_direction(a, b, pose, plane), length = std::sqrt(squared_length(direction));
       const Across seen = look();
       if (seen.gap > apart_by) return apart(seen);
     }
     for (int i = 0; i < ended.size; i++) add(ended.first[i], ended.second[i]);
-    point = {static_cast<float>(places[0][0]), static_cast<float>(places[0][1]), static_cast<float>(places[0][2])};
+    point = {static_cast<float>(firsts[0][0]), static_cast<float>(firsts[0][1]), static_cast<float>(firsts[0][2])};
     return turn() || length <= near_by ? Answer::NEAR : steps(apart_by, near_by, &ended);
   }
 
   Answer go(double apart_by, double near_by, Ended* ended) {
     simplex.size = count = 0;
-    way = first_way(a, b, pose, plane), length = std::sqrt(squared_length(way));
+    direction = first_direction(a, b, pose, plane), length = std::sqrt(squared_length(direction));
     return length == 0.0 ? Answer::NEAR : steps(apart_by, near_by, ended);
   }
 
@@ -215,7 +217,7 @@ struct Search {
         write(ended, simplex.size);
         return apart(seen);
       }
-      const Vector &p = seen.p.place, &q = seen.q.place;
+      const Vector &p = seen.p.point, &q = seen.q.point;
       point = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
       if (simplex.size > 0 && length - seen.gap < 1e-6 * length + SAME) return Answer::OPEN;
       add(p, q);
@@ -257,15 +259,15 @@ HullContact find_hull_contact(const HullTree<T>& tree, int first, int second, co
   for (int count = 1; count > 0;) {
     const auto [a, b] = waiting[--count];
     const HullNode<T>&p = tree.nodes[a], &q = tree.nodes[b];
-    const Vector way = way_between(p, q, pose);
+    const Vector direction = between_middles(p, q, pose);
     const double near = p.radius + margin, other_near = q.radius + margin;
-    if (squared_length(way) > (near + q.radius) * (near + q.radius)) continue;
+    if (squared_length(direction) > (near + q.radius) * (near + q.radius)) continue;
     // The box of the one and the ball of the other.
     double aside = 0, other_aside = 0;
     for (int axis = 0; axis < 3; axis++) {
       const double* m = pose.rotation + axis;
-      const double turned = m[0] * way[0] + m[3] * way[1] + m[6] * way[2];
-      const double gap = std::max(std::abs(way[axis]) - p.half[axis], 0.0);
+      const double turned = m[0] * direction[0] + m[3] * direction[1] + m[6] * direction[2];
+      const double gap = std::max(std::abs(direction[axis]) - p.half[axis], 0.0);
       const double other_gap = std::max(std::abs(turned) - q.half[axis], 0.0);
       aside += gap * gap, other_aside += other_gap * other_gap;
     }

@@ -80,7 +80,7 @@ void add_around(HullTree<float>& tree, int root, std::span<const double> points,
 std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root);
 
 /// Return whether closed surfaces below a root go around a place in the body's frame, or it is not told that none does.
-bool encloses(const HullTree<float>& tree, int root, const double (&place)[3]);
+bool encloses(const HullTree<float>& tree, int root, const double (&point)[3]);
 
 /// The pose of one body in the frame of another: rotation row by row, translation.
 struct RelativePose {

@@ -110,7 +110,7 @@ class Solver {
   double solve(std::span<double> q, const PoseTask& task, int steps) {
     double before = INF;
     for (int count = 0;; count++) {
-      const Pose tip = chain_.place_tip(q, axes_);
+      const Pose tip = chain_.tip_pose(q, axes_);
       Twist error = error_of(tip, task);
       const double missing = uncovered(error, task);
       if (missing == 0.0 || count == steps) return missing;

@@ -60,7 +60,7 @@ struct Circle {
         origin(&numbers[22]) {}
 
   /// Return the door's angle at a place of the tip, and its distance from the hinge.
-  std::pair<double, double> place(const Point& tip) const {
+  std::pair<double, double> polar(const Point& tip) const {
     const double gap[] = {tip[0] - centre[0], tip[1] - centre[1], tip[2] - centre[2]};
     const double x = dot(gap, out), y = dot(gap, across);
     return {std::atan2(y, x), std::max(std::sqrt(x * x + y * y), 1e-9)};
@@ -91,9 +91,9 @@ KeepState::KeepState(const Keeps& keeps) : keeps_(keeps), axes_(keeps.chains.siz
   moves_.assign(axes_.size(), std::vector<double>(6 * keeps.dim()));
 }
 
-void KeepState::place(std::span<const double> q) {
+void KeepState::move_to(std::span<const double> q) {
   q_ = q;
-  for (std::size_t i = 0; i < axes_.size(); i++) tips_[i] = keeps_.chains[i].place_tip(q, axes_[i]);
+  for (std::size_t i = 0; i < axes_.size(); i++) tips_[i] = keeps_.chains[i].tip_pose(q, axes_[i]);
 }
 
 void KeepState::derive() {
@@ -121,7 +121,7 @@ void KeepState::write_residual(const Keep& keep, std::span<double> to) const {
     case KeepKind::CIRCLE: {
       const Circle circle(keep.numbers);
       const Pose& tip = tips_[keep.first];
-      const auto [angle, far] = circle.place(tip.origin);
+      const auto [angle, far] = circle.polar(tip.origin);
       const Turn9 door = circle.door(angle);
       const double rise[] = {tip.origin[0] - circle.origin[0], tip.origin[1] - circle.origin[1],
                              tip.origin[2] - circle.origin[2]};
@@ -170,7 +170,7 @@ void KeepState::write_column(const Keep& keep, std::size_t joint, std::span<doub
     case KeepKind::CIRCLE: {
       const Circle circle(keep.numbers);
       const Pose& tip = tips_[keep.first];
-      const auto [angle, far] = circle.place(tip.origin);
+      const auto [angle, far] = circle.polar(tip.origin);
       const auto [moved, turned] = twist(keep.first, joint);
       Point radial;
       for (int k = 0; k < 3; k++) radial[k] = std::cos(angle) * circle.out[k] + std::sin(angle) * circle.across[k];

@@ -14,9 +14,9 @@ class KeepState {
   explicit KeepState(const Keeps& keeps);
 
   /// Place the tips at a configuration, (dim,), which is kept alive.
-  void place(std::span<const double> q);
+  void move_to(std::span<const double> q);
 
-  /// Say how the tips move with each joint; after `place`.
+  /// Say how the tips move with each joint; after `move_to`.
   void derive();
 
   void write_residual(const Keep& keep, std::span<double> to) const;

@@ -16,7 +16,7 @@ struct Walking {
 };
 
 /// Append the states of the walk from a configuration, (dim,), by a way, with both ends; return whether it gets there.
-bool walk(const Keeps& keeps, std::span<const double> from, std::span<const double> way, const Walking& how,
+bool walk(const Keeps& keeps, std::span<const double> from, std::span<const double> direction, const Walking& how,
           std::vector<double>& states);
 
 /// Append the states of a path, (n, dim), and so many projected ones, less one, between each and the next; return

@@ -14,7 +14,7 @@ std::size_t Keeps::rows() const {
 void Keeps::write_residuals(Matrix<const double> q, Matrix<double> residuals) const {
   KeepState state(*this);
   for (std::size_t i = 0; i < q.rows; i++) {
-    state.place(q[i]);
+    state.move_to(q[i]);
     std::size_t row = 0;
     for (const Keep& keep : each) {
       state.write_residual(keep, residuals[i].subspan(row, keep.rows));
@@ -25,7 +25,7 @@ void Keeps::write_residuals(Matrix<const double> q, Matrix<double> residuals) co
 
 void Keeps::write_derivative(std::span<const double> q, Matrix<double> derivative) const {
   KeepState state(*this);
-  state.place(q);
+  state.move_to(q);
   state.derive();
   std::vector<double> column;
   for (std::size_t joint = 0; joint < dim(); joint++) {
@@ -42,7 +42,7 @@ void Keeps::write_shares(Matrix<const double> q, Matrix<double> shares) const {
   KeepState state(*this);
   std::vector<double> residual;
   for (std::size_t i = 0; i < q.rows; i++) {
-    state.place(q[i]);
+    state.move_to(q[i]);
     for (std::size_t k = 0; k < each.size(); k++) {
       residual.resize(each[k].rows);
       state.write_residual(each[k], residual);

@@ -57,29 +57,30 @@ Mask not_apart_across(Vec3 normal, const PlacedHulls& first, const PlacedHulls& 
   const Vec3x16 along = {dot(there.rows[0], seen), dot(there.rows[1], seen), dot(there.rows[2], seen)};
   const Vec3x16 back = -combine(here.rows[0], along.x, here.rows[1], along.y, here.rows[2], along.z);
   // How far the first may reach towards the second.
-  const Floats16 room =
+  const Floats16 most_reach =
       dot(along, here.origin - there.origin) - (spread(reach_along(normal, second.tree, b) + a.width + b.width) + near);
   if (std::popcount(asked) > LANES_OF_A_PLANE) {
-    return asked & ~below_zero(reach_along(back, first.tree, a) - room);
+    return asked & ~below_zero(reach_along(back, first.tree, a) - most_reach);
   }
   Mask left = asked;
   for (Mask all = asked; all != 0; all &= all - 1) {
     const int lane = std::countr_zero(all);
-    if (reach_along(Vec3{back.x[lane], back.y[lane], back.z[lane]}, first.tree, a) < room[lane]) left &= ~(1U << lane);
+    if (reach_along(Vec3{back.x[lane], back.y[lane], back.z[lane]}, first.tree, a) < most_reach[lane])
+      left &= ~(1U << lane);
   }
   return left;
 }
 
-Told told_by(const Kept& kept, const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked) {
+Decided decided_by(const Kept& kept, const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked) {
   const Node& b = second.tree.nodes[second.root];
   const Floats16 loss = lost(first, second);
   const Mask left = not_apart_across(kept.normal, first, second, spread(margin) + loss, asked);
   if (!kept.has_point || left == 0) return {asked & ~left, 0};
   const PlacedFrame &here = first.frame, &there = second.frame;
   const Vec3x16 p = spread(kept.point);
-  const Vec3x16 place =
+  const Vec3x16 point =
       Vec3x16{dot(here.rows[0], p), dot(here.rows[1], p), dot(here.rows[2], p)} + (here.origin - there.origin);
-  const Vec3x16 seen = abs(combine(there.rows[0], place.x, there.rows[1], place.y, there.rows[2], place.z));
+  const Vec3x16 seen = abs(combine(there.rows[0], point.x, there.rows[1], point.y, there.rows[2], point.z));
   Vec3x16 gap = seen - spread3(b.extents);
   if (b.disc > 0) gap.x = gap.y = sqrt(fma(seen.x, seen.x, seen.y * seen.y)) - b.disc;
   const Floats16 near = spread(margin + b.width) - loss, zero{};

@@ -36,9 +36,9 @@ struct SeenTriangles {
 
   EVENROAD_INLINE Farthest16 farthest_along(Vec3x16 direction) const {
     Farthest16 most{Floats16{}, {Floats16{}, Floats16{}, Floats16{}}};
-    for (const Vec3x16& way : {first, second}) {
-      const Floats16 here = dot(direction, way);
-      most.corner = where_less(most.along, here, way, most.corner);
+    for (const Vec3x16& corner : {first, second}) {
+      const Floats16 here = dot(direction, corner);
+      most.corner = where_less(most.along, here, corner, most.corner);
       most.along = max(here, most.along);
     }
     return most;
@@ -137,11 +137,11 @@ bool ShapeAt::meets(int hull, const TriangleLeaf& leaf, int lane) {
   }
   const Vec3 first = lane_of(leaf.first, lane), second = lane_of(leaf.second, lane);
   triangle_.points[1] = {first.x, first.y, first.z}, triangle_.points[2] = {second.x, second.y, second.z};
-  const float ways[3][2] = {{first.x, second.x}, {first.y, second.y}, {first.z, second.z}};
+  const float corners[3][2] = {{first.x, second.x}, {first.y, second.y}, {first.z, second.z}};
   HullNode<float>& node = triangle_.nodes[0];
   for (int axis = 0; axis < 3; axis++) {
-    const float low = std::min({ways[axis][0], ways[axis][1], 0.0F});
-    const float high = std::max({ways[axis][0], ways[axis][1], 0.0F});
+    const float low = std::min({corners[axis][0], corners[axis][1], 0.0F});
+    const float high = std::max({corners[axis][0], corners[axis][1], 0.0F});
     node.centre[axis] = 0.5F * (low + high), node.half[axis] = 0.5F * (high - low) + node.width;
   }
   Vec3 point;

@@ -20,13 +20,14 @@ void make_canonical(std::span<double> q, const Bounds& bounds) {
   }
 }
 
-double way_between(std::span<const double> a, std::span<const double> b, const Bounds& bounds, std::span<double> way) {
+double write_direction(std::span<const double> a, std::span<const double> b, const Bounds& bounds,
+                       std::span<double> direction) {
   double squared = 0;
   for (std::size_t k = 0; k < a.size(); k++) {
-    way[k] = b[k] - a[k];
+    direction[k] = b[k] - a[k];
     // As FlatMetric: one half is rounded to zero, so that opposite places keep the sign.
-    if (wraps(bounds, k)) way[k] -= bounds.period[k] * std::rint(way[k] / bounds.period[k]);
-    squared += way[k] * way[k];
+    if (wraps(bounds, k)) direction[k] -= bounds.period[k] * std::rint(direction[k] / bounds.period[k]);
+    squared += direction[k] * direction[k];
   }
   return std::sqrt(squared);
 }
@@ -36,11 +37,11 @@ void Motion::span(std::span<const double> a, std::span<const double> b, const Bo
   if (exchanged) std::swap(a, b);
   std::copy(a.begin(), a.end(), start.begin());
   std::copy(b.begin(), b.end(), end.begin());
-  segments = static_cast<int>(std::ceil(way_between(start, end, bounds, way) / resolution));
+  segments = static_cast<int>(std::ceil(write_direction(start, end, bounds, direction) / resolution));
 }
 
 void Motion::write_states(std::span<Doubles16> states) const {
-  for (std::size_t k = 0; k < states.size(); k++) states[k] = start[k] + share * way[k];
+  for (std::size_t k = 0; k < states.size(); k++) states[k] = start[k] + share * direction[k];
 }
 
 }  // namespace evenroad::robot

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "robot/places.hpp"
+#include "robot/placed_robot.hpp"
 
 namespace evenroad::robot {
 
@@ -37,16 +37,17 @@ bool enter(std::span<const double> q, const Bounds& bounds, std::span<double> in
 void make_canonical(std::span<double> q, const Bounds& bounds);
 
 /// Write the short way from `a` to `b` and return its length.
-double way_between(std::span<const double> a, std::span<const double> b, const Bounds& bounds, std::span<double> way);
+double write_direction(std::span<const double> a, std::span<const double> b, const Bounds& bounds,
+                       std::span<double> direction);
 
 /// A motion between two configurations as `enter` writes them.
 struct Motion {
-  std::vector<double> start, end, way;  // its ends in dictionary order, and the short way between them
-  bool exchanged = false;               // whether it was given in the other order
-  int segments = 0;                     // of at most the resolution
-  Doubles16 share{};                    // where its sixteen states at hand are
+  std::vector<double> start, end, direction;  // its ends in dictionary order, and the short way between them
+  bool exchanged = false;                     // whether it was given in the other order
+  int segments = 0;                           // of at most the resolution
+  Doubles16 share{};                          // where its sixteen states at hand are
 
-  explicit Motion(std::size_t dim) : start(dim), end(dim), way(dim) {}
+  explicit Motion(std::size_t dim) : start(dim), end(dim), direction(dim) {}
 
   /// States are rounded: without a fixed order a motion and its reverse could be judged differently.
   void span(std::span<const double> a, std::span<const double> b, const Bounds& bounds, double resolution);
@@ -56,7 +57,7 @@ struct Motion {
 };
 
 /// A stretch of a motion that is still to be proved: its middle, and how often it was halved.
-struct Stretch {
+struct Interval {
   double centre;
   int level;
 };

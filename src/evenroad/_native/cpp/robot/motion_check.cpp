@@ -15,8 +15,8 @@ bool are_free(Workspace& workspace, int first, int last, bool sixteen_do) {
   Motion& motion = workspace.motion;
   const int count = last - first + 1;
   if (count <= 0) return true;
-  const int rest = std::max(count - LANES, 0), stretches = (rest + LANES - 1) / LANES;
-  const int level = std::bit_width(static_cast<unsigned>(std::max(stretches - 1, 0)));
+  const int rest = std::max(count - LANES, 0), intervals = (rest + LANES - 1) / LANES;
+  const int level = std::bit_width(static_cast<unsigned>(std::max(intervals - 1, 0)));
   const double segments = std::max(motion.segments, 1);
   double numbers[LANES];
   if (rest > 0) {
@@ -36,19 +36,19 @@ bool are_free(Workspace& workspace, int first, int last, bool sixteen_do) {
   workspace.counts.configurations += std::min(count, LANES);
   if (blocked(workspace, Wanted::FIRST) != 0) return false;
   if (rest == 0 || sixteen_do) return true;
-  for (int place = 0; place < 1 << level; place++) {
-    int stretch = 0;
-    for (int bit = 0; bit < level; bit++) stretch |= (place >> bit & 1) << (level - 1 - bit);
-    if (stretch >= stretches) continue;
+  for (int number = 0; number < 1 << level; number++) {
+    int interval = 0;
+    for (int bit = 0; bit < level; bit++) interval |= (number >> bit & 1) << (level - 1 - bit);
+    if (interval >= intervals) continue;
     // The r-th of these has number r + 1 + gap, where gap counts the spread ones passed since the first.
     std::int64_t gap = 0;
     for (int lane = 0; lane < LANES; lane++) {
-      const std::int64_t rank = std::min(stretch * LANES + lane, rest - 1);
+      const std::int64_t rank = std::min(interval * LANES + lane, rest - 1);
       while ((gap + 1) * (count - 1) / (LANES - 1) - (gap + 1) <= rank) gap++;
       numbers[lane] = static_cast<double>(first + rank + 1 + gap);
     }
     motion.share = load<Doubles16>(numbers) / segments;
-    workspace.counts.configurations += std::min(LANES, rest - stretch * LANES);
+    workspace.counts.configurations += std::min(LANES, rest - interval * LANES);
     motion.write_states(workspace.states);
     if (blocked(workspace, Wanted::FIRST) != 0) return false;
   }

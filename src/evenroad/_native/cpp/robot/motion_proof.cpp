@@ -10,7 +10,7 @@ namespace evenroad::robot {
 namespace {
 
 /// A stretch is halved no more often, whatever the tolerance: its half is then less than 1e-13 of the motion.
-constexpr int DEEPEST_STRETCH = 40;
+constexpr int DEEPEST_INTERVAL = 40;
 
 /// Where stretches move something by more than that, capsules alone decide [m]: shapes are rarely free where they are
 /// not, and two halves cost less than to ask these.
@@ -75,9 +75,9 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
   Motion& motion = workspace.motion;
   motion.span(a, b, robot.bounds, workspace.checker.resolution());
   workspace.counts.motions++;
-  workspace.speeds.take_anywhere(robot, motion.way);
+  workspace.speeds.take_anywhere(robot, motion.direction);
   double fastest = 0;
-  std::vector<Stretch>& waiting = workspace.waiting;
+  std::vector<Interval>& waiting = workspace.waiting;
   int count = LANES, enlarged_for = -1;
   // The first stretch is the last to be pushed and the first to be looked at.
   for (int lane = 0; lane < LANES; lane++) waiting[lane] = {1.0 - (lane + 0.5) / LANES, 0};
@@ -90,27 +90,27 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
     }
     for (int lane = taken; lane < LANES; lane++) motion.share[lane] = motion.share[taken - 1];
     motion.write_states(workspace.states);
-    workspace.places.place(robot, workspace.enlarged, workspace.states);
+    workspace.placed.move_to(robot, workspace.enlarged, workspace.states);
     workspace.counts.configurations += taken;
     if (level != enlarged_for) {
       half = 0.5 / static_cast<double>(std::int64_t{LANES} << level);
       if (batch == 0) {
         // These stretches are the whole motion.
-        for (std::size_t k = 0; k < motion.way.size(); k++) {
-          workspace.speeds.ways[k] = spread(static_cast<float>(motion.way[k]));
+        for (std::size_t k = 0; k < motion.direction.size(); k++) {
+          workspace.speeds.directions[k] = spread(static_cast<float>(motion.direction[k]));
         }
-        workspace.speeds.take_here(robot, workspace.places, motion.way, half);
+        workspace.speeds.take_here(robot, workspace.placed, motion.direction, half);
         fastest = workspace.speeds.fastest();
       }
       enlarge(workspace, half);
       workspace.enlarged.shapes_decide = half * fastest < std::max(COARSE, 2.0 * limits.tolerance);
       enlarged_for = level;
-      workspace.places.place_boxes(robot, workspace.enlarged);
+      workspace.placed.write_boxes(robot, workspace.enlarged);
     }
     const Mask near = blocked_where_placed(workspace, workspace.enlarged, Wanted::ALL) & ((1U << taken) - 1);
     count -= taken;
     const bool is_halvable =
-        half * fastest >= limits.tolerance && level < DEEPEST_STRETCH && count + 2 * LANES <= MOST_WAITING;
+        half * fastest >= limits.tolerance && level < DEEPEST_INTERVAL && count + 2 * LANES <= MOST_WAITING;
     if (near != 0 && !is_halvable) return false;
     for (int lane = taken - 1; lane >= 0; lane--) {
       if ((near >> lane & 1) == 0) continue;
@@ -124,15 +124,15 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
 Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const double> b, double tolerance) {
   const Robot& robot = workspace.checker.robot();
   const std::size_t count = std::min<std::size_t>(a.rows, LANES), dim = a.columns;
-  OwnMatrix<double> starts(count, dim), ways(count, dim);
+  OwnMatrix<double> starts(count, dim), directions(count, dim);
   std::vector<double> end(dim), longest(dim);
   Mask proved = 0;
   Speeds& speeds = workspace.speeds;
   double whole = 0;
   for (std::size_t row = 0; row < count; row++) {
     if (enter(a[row], robot.bounds, starts[row]) && enter(b[row], robot.bounds, end)) proved |= 1U << row;
-    way_between(starts[row], end, robot.bounds, ways[row]);
-    for (std::size_t k = 0; k < dim; k++) longest[k] = std::max(longest[k], std::abs(ways(row, k)));
+    write_direction(starts[row], end, robot.bounds, directions[row]);
+    for (std::size_t k = 0; k < dim; k++) longest[k] = std::max(longest[k], std::abs(directions(row, k)));
     // Of long motions nearly always the first is long.
     if (row > 0 && row + 1 < count) continue;
     speeds.take_anywhere(robot, longest);
@@ -150,19 +150,19 @@ Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const d
         // Lanes to spare repeat the last piece.
         const auto [row, centre] = pieces[first + std::min(lane, some - 1)];
         for (std::size_t k = 0; k < dim; k++) {
-          workspace.states[k][static_cast<int>(lane)] = starts(row, k) + centre * ways(row, k);
-          if (level == 0) speeds.ways[k][static_cast<int>(lane)] = static_cast<float>(ways(row, k));
+          workspace.states[k][static_cast<int>(lane)] = starts(row, k) + centre * directions(row, k);
+          if (level == 0) speeds.directions[k][static_cast<int>(lane)] = static_cast<float>(directions(row, k));
         }
       }
-      workspace.places.place(robot, workspace.enlarged, workspace.states);
+      workspace.placed.move_to(robot, workspace.enlarged, workspace.states);
       if (first == 0) {
         if (level == 0) {
-          speeds.take_here(robot, workspace.places, longest, half);
+          speeds.take_here(robot, workspace.placed, longest, half);
           whole = speeds.fastest();
         }
         enlarge(workspace, half);
         workspace.enlarged.shapes_decide = half * whole < std::max(COARSE, 2.0 * tolerance);
-        workspace.places.place_boxes(robot, workspace.enlarged);
+        workspace.placed.write_boxes(robot, workspace.enlarged);
       }
       const Mask near = blocked_where_placed(workspace, workspace.enlarged, Wanted::ALL);
       for (std::size_t lane = 0; lane < some; lane++) {

@@ -76,7 +76,7 @@ MovingStates::MovingStates(const MovingLinks& links)
       motions_(links.links.size()),
       loads_(links.links.size()) {}
 
-void MovingStates::place(std::span<const States> q) {
+void MovingStates::move_to(std::span<const States> q) {
   for (std::size_t i = 0; i < links_.links.size(); i++) {
     const ChainJoint& joint = links_.links[i].joint;
     const States value = q[static_cast<std::size_t>(joint.coordinate)] * joint.multiplier + joint.offset;
@@ -162,7 +162,7 @@ void write_torques(const MovingLinks& links, Matrix<const double> q, Matrix<cons
   MovingStates states(links);
   for (std::size_t first = 0; first < q.rows; first += STATES) {
     read_rows(q, first, here), read_rows(velocity, first, rates), read_rows(acceleration, first, pushes);
-    states.place(here);
+    states.move_to(here);
     states.move(rates, pushes, pulled);
     states.write_torques(needed);
     for (std::size_t lane = 0; lane < std::min(STATES, q.rows - first); lane++) {

@@ -44,7 +44,7 @@ class MovingStates {
   explicit MovingStates(const MovingLinks& links);
 
   /// Take configurations, (dim,).
-  void place(std::span<const States> q);
+  void move_to(std::span<const States> q);
 
   /// Take velocities, none for links that stand still, and accelerations, (dim,); the root is accelerated by `pulled`.
   void move(std::span<const States> velocity, std::span<const States> acceleration, const Point& pulled);

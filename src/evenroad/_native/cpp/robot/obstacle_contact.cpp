@@ -68,9 +68,9 @@ Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, f
   return below_zero(squared_distance(obstacle, capsule, samples) - reach * reach);
 }
 
-Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacle& obstacle, float near,
-                    Mask asked, Wanted wanted) {
-  const PlacedFrame& frame = places.frames[body.frame];
+Mask inside_meeting(const Robot& robot, const PlacedRobot& placed, const Body& body, const Obstacle& obstacle,
+                    float near, Mask asked, Wanted wanted) {
+  const PlacedFrame& frame = placed.frames[body.frame];
   const Vec3x16 origin = frame.origin - spread(obstacle.centre);
   Mask meeting = 0;
   for (int i = body.inside.first; i < body.inside.end; i++) {
@@ -84,10 +84,10 @@ Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, 
   return meeting;
 }
 
-Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body, Vec3x16 place, Mask asked) {
+Mask shape_enclosing(const Robot& robot, const PlacedRobot& placed, const Body& body, Vec3x16 point, Mask asked) {
   if (!body.encloses) return 0;
-  const PlacedFrame& frame = places.frames[body.frame];
-  const Vec3x16 from = place - frame.origin;
+  const PlacedFrame& frame = placed.frames[body.frame];
+  const Vec3x16 from = point - frame.origin;
   const Vec3x16 here = combine(frame.rows[0], from.x, frame.rows[1], from.y, frame.rows[2], from.z);
   Mask inside = 0;
   for (; asked != 0; asked &= asked - 1) {
@@ -97,26 +97,26 @@ Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body,
   return inside;
 }
 
-Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacles& obstacles, int number,
-                   float near, Mask asked, Wanted wanted, KeptOfPairs* kept) {
+Mask shape_meeting(const Robot& robot, const PlacedRobot& placed, const Body& body, const Obstacles& obstacles,
+                   int number, float near, Mask asked, Wanted wanted, KeptOfPairs* kept) {
   const Obstacle& obstacle = obstacles.rows[number];
-  const PlacedFrame there = placed(obstacle);
-  const Mask meeting = hulls_meeting({robot.shapes, body.shape, places.frames[body.frame]},
+  const PlacedFrame there = frame_of(obstacle);
+  const Mask meeting = hulls_meeting({robot.shapes, body.shape, placed.frames[body.frame]},
                                      {obstacles.hulls, number, there}, near, asked, wanted, kept);
   if (meeting != 0 && wanted == Wanted::FIRST) return meeting;
   // Only what is smaller than the body can be inside.
   const HullNode<float>& root = robot.shapes.nodes[body.shape];
   if (std::max({obstacle.half.x, obstacle.half.y, obstacle.half.z}) > root.radius) return meeting;
-  return meeting | shape_enclosing(robot, places, body, there.origin, asked & ~meeting);
+  return meeting | shape_enclosing(robot, placed, body, there.origin, asked & ~meeting);
 }
 
 namespace {
 
 /// Return the same for the obstacles of one layer.
-Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& layer, Places& places, Mask blocked,
+Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& layer, PlacedRobot& placed, Mask blocked,
                    Wanted wanted, Contact* found) {
   const Obstacles& all = *layer.obstacles;
-  if (all.tree != nullptr) return meeting_in_tree(robot, lengths, layer, places, blocked, wanted, found);
+  if (all.tree != nullptr) return meeting_in_tree(robot, lengths, layer, placed, blocked, wanted, found);
   const int blocks = static_cast<int>(all.blocks.size());
   const std::span<const float> samples = robot.samples;
   Open waiting[MOST_OPEN];
@@ -127,7 +127,7 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
       const Mask asked = lanes & ~(blocked | touching);
       if (asked == 0) continue;
       const Mask meeting =
-          shape_meeting(robot, places, robot.bodies[b], all, obstacle, lengths.shapes[b], asked, wanted, &places.kept);
+          shape_meeting(robot, placed, robot.bodies[b], all, obstacle, lengths.shapes[b], asked, wanted, &placed.kept);
       if (found != nullptr && (blocked | touching) == 0 && meeting != 0) {
         *found = {Contact::With::OBSTACLE, capsule, layer.obstacles->rows[obstacle].number};
       }
@@ -144,7 +144,7 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
       const Block& block = all.blocks[number];
       Mask near_body = ALL_LANES;
       if (many) {
-        PlacedBody& body = places.bodies[b];
+        PlacedBody& body = placed.bodies[b];
         const Mask asked = near_obstacles(block, number == 0 ? make_around(body, 0) : body.around);
         near_body = Boxes(body, 0).near(block, asked, blocked);
         if (near_body == 0) continue;
@@ -154,7 +154,7 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
       int first[LANES];
       for (int i = capsules.end - 1; i >= capsules.first; i--) {
         const float radius = lengths.capsules[i];
-        PlacedCapsule& capsule = places.capsules[i];
+        PlacedCapsule& capsule = placed.capsules[i];
         Mask near = layer.tested(i, number) & near_body;
         // Of several blocks the first makes what the others look at, also where it has nothing for this capsule.
         if (many ? std::popcount(near) > 2 : blocks > 1 || std::popcount(near) > FEW_OBSTACLES) {
@@ -183,16 +183,16 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
         const int k = std::countr_zero(opened), obstacle = number * LANES + k;
         Mask asked = open[k] & ~blocked;
         if (asked == 0) continue;
-        const Told told = told_by(places.kept.of(robot.bodies[b].shape, obstacle),
-                                  {robot.shapes, robot.bodies[b].shape, places.frames[robot.bodies[b].frame]},
-                                  {layer.obstacles->hulls, obstacle, placed(layer.obstacles->rows[obstacle])},
-                                  lengths.shapes[b], asked);
-        asked &= ~told.apart;
+        const Decided decided = decided_by(
+            placed.kept.of(robot.bodies[b].shape, obstacle),
+            {robot.shapes, robot.bodies[b].shape, placed.frames[robot.bodies[b].frame]},
+            {layer.obstacles->hulls, obstacle, frame_of(layer.obstacles->rows[obstacle])}, lengths.shapes[b], asked);
+        asked &= ~decided.apart;
         if (asked == 0) continue;
-        const Mask open = asked & ~with_others(told.near, wanted);
-        Mask surely = told.near;
+        const Mask open = asked & ~with_others(decided.near, wanted);
+        Mask surely = decided.near;
         if (open != 0 && !is_enough(surely, wanted)) {
-          surely |= inside_meeting(robot, places, robot.bodies[b], layer.obstacles->rows[obstacle], lengths.shapes[b],
+          surely |= inside_meeting(robot, placed, robot.bodies[b], layer.obstacles->rows[obstacle], lengths.shapes[b],
                                    open, wanted);
         }
         if (found != nullptr && blocked == 0 && surely != 0) {
@@ -216,11 +216,11 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
 
 }  // namespace
 
-Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
-                       Wanted wanted, Contact* found) {
-  const Mask mask = meeting_layer(robot, lengths, scene.obstacles, places, blocked, wanted, found);
+Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, PlacedRobot& placed,
+                       Mask blocked, Wanted wanted, Contact* found) {
+  const Mask mask = meeting_layer(robot, lengths, scene.obstacles, placed, blocked, wanted, found);
   if (scene.changed.obstacles == nullptr || is_enough(mask, wanted)) return mask;
-  return meeting_layer(robot, lengths, scene.changed, places, mask, wanted, found);
+  return meeting_layer(robot, lengths, scene.changed, placed, mask, wanted, found);
 }
 
 }  // namespace evenroad::robot

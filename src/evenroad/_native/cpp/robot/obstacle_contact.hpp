@@ -23,21 +23,21 @@ struct Contact {
 /// Return the mask of lanes in which a body meets an obstacle: a capsule of it, and its true shape where that is known.
 /// Lanes that are `blocked` are not looked at; they are returned, too.  `found`, where it is given, is the first
 /// contact.
-Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, Places& places, Mask blocked,
-                       Wanted wanted, Contact* found = nullptr);
+Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, PlacedRobot& placed,
+                       Mask blocked, Wanted wanted, Contact* found = nullptr);
 
 /// Return the mask of lanes in which a sphere along a capsule reaches into an obstacle.
 Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, float radius, const Obstacle& obstacle);
 
 /// Return the mask of lanes in which a ball inside of a body's true shape comes within `near` of an obstacle.
-Mask inside_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacle& obstacle, float near,
-                    Mask asked, Wanted wanted);
+Mask inside_meeting(const Robot& robot, const PlacedRobot& placed, const Body& body, const Obstacle& obstacle,
+                    float near, Mask asked, Wanted wanted);
 
 /// Return the mask of those lanes asked for in which the true shape of a body comes within `near` of an obstacle.
-Mask shape_meeting(const Robot& robot, const Places& places, const Body& body, const Obstacles& obstacles, int number,
-                   float near, Mask asked, Wanted wanted, KeptOfPairs* kept = nullptr);
+Mask shape_meeting(const Robot& robot, const PlacedRobot& placed, const Body& body, const Obstacles& obstacles,
+                   int number, float near, Mask asked, Wanted wanted, KeptOfPairs* kept = nullptr);
 
 /// Return the mask of those lanes asked for in which a surface of a body's true shape goes around a place of the scene.
-Mask shape_enclosing(const Robot& robot, const Places& places, const Body& body, Vec3x16 place, Mask asked);
+Mask shape_enclosing(const Robot& robot, const PlacedRobot& placed, const Body& body, Vec3x16 point, Mask asked);
 
 }  // namespace evenroad::robot

@@ -32,8 +32,8 @@ EVENROAD_INLINE Floats16 squared_distance(Form form, const Obstacle& obstacle, V
   centre = centre - spread(obstacle.centre);
   if (form != Form::ALIGNED) centre = turned_into(obstacle, centre), half = turned_into(obstacle, half);
   Floats16 least = spread(std::numeric_limits<float>::max());
-  for (const float place : along) {
-    least = min(squared_distance(form, obstacle, plus(centre, half, spread(place))), least);
+  for (const float share : along) {
+    least = min(squared_distance(form, obstacle, plus(centre, half, spread(share))), least);
   }
   return least;
 }

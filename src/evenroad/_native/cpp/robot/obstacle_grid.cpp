@@ -16,17 +16,17 @@ constexpr int PARTS = 8;
 
 /// Distances of the middles of cells, row by row along z; what is beyond a row is not read.
 struct Middles {
-  const GridPlace& place;
+  const GridLayout& layout;
   std::size_t row;
   std::vector<float> away;
 
-  explicit Middles(const GridPlace& place, float most)
-      : place(place),
-        row(static_cast<std::size_t>(place.cells[2]) + LANES),
-        away(row * static_cast<std::size_t>(place.cells[0]) * place.cells[1], most) {}
+  explicit Middles(const GridLayout& layout, float most)
+      : layout(layout),
+        row(static_cast<std::size_t>(layout.cells[2]) + LANES),
+        away(row * static_cast<std::size_t>(layout.cells[0]) * layout.cells[1], most) {}
 
-  float* at(int x, int y) { return &away[row * (static_cast<std::size_t>(x) * place.cells[1] + y)]; }
-  double middle(int axis, int cell) const { return place.low[axis] + (cell + 0.5) * place.cell; }
+  float* at(int x, int y) { return &away[row * (static_cast<std::size_t>(x) * layout.cells[1] + y)]; }
+  double middle(int axis, int cell) const { return layout.low[axis] + (cell + 0.5) * layout.cell; }
 };
 
 /// Bring in the distances of an obstacle from the cells whose middles are within `most` of the box around it; it is cut
@@ -34,12 +34,12 @@ struct Middles {
 void bring_in(const Obstacle& obstacle, const std::array<double, 6>& box, double most, Middles& all) {
   int first[3], last[3];
   for (int axis = 0; axis < 3; axis++) {
-    const auto cells = [&](double at) { return (at - all.place.low[axis]) / all.place.cell - 0.5; };
+    const auto cells = [&](double at) { return (at - all.layout.low[axis]) / all.layout.cell - 0.5; };
     first[axis] = std::max(static_cast<int>(std::ceil(cells(box[axis] - most) - 1)), 0);
-    last[axis] = std::min(static_cast<int>(std::floor(cells(box[3 + axis] + most) + 1)), all.place.cells[axis] - 1);
+    last[axis] = std::min(static_cast<int>(std::floor(cells(box[3 + axis] + most) + 1)), all.layout.cells[axis] - 1);
   }
   Floats16 steps;
-  for (int lane = 0; lane < LANES; lane++) steps[lane] = static_cast<float>(lane * all.place.cell);
+  for (int lane = 0; lane < LANES; lane++) steps[lane] = static_cast<float>(lane * all.layout.cell);
   for (int x = first[0]; x <= last[0]; x++) {
     for (int y = first[1]; y <= last[1]; y++) {
       float* row = all.at(x, y);
@@ -56,28 +56,28 @@ void bring_in(const Obstacle& obstacle, const std::array<double, 6>& box, double
 
 }  // namespace
 
-ObstacleGrid make_obstacle_grid(const Obstacles& obstacles, const GridPlace& place,
+ObstacleGrid make_obstacle_grid(const Obstacles& obstacles, const GridLayout& layout,
                                 std::span<const std::array<double, 6>> boxes, float exact) {
-  std::vector<std::uint8_t> marked(place.count());
-  mark_boxes(place, boxes, marked);
-  const std::vector<std::uint8_t> apart = distances_to(place, marked);
-  const float most = std::min(exact, static_cast<float>(4.0 * place.cell));
-  Middles all(place, most);
+  std::vector<std::uint8_t> marked(layout.count());
+  mark_boxes(layout, boxes, marked);
+  const std::vector<std::uint8_t> apart = distances_to(layout, marked);
+  const float most = std::min(exact, static_cast<float>(4.0 * layout.cell));
+  Middles all(layout, most);
   for (std::size_t k = 0; k < boxes.size(); k++) bring_in(obstacles.rows[k], boxes[k], most, all);
-  const DistanceGrid frame = make_grid(place, 0, {});
+  const DistanceGrid frame = make_grid(layout, 0, {});
   ObstacleGrid grid;
-  std::copy_n(place.cells, 3, grid.cells);
+  std::copy_n(layout.cells, 3, grid.cells);
   grid.low = frame.low, grid.size = frame.size, grid.one_by_cell = frame.one_by_cell;
-  grid.cell = static_cast<float>(place.cell), grid.step = static_cast<float>(place.cell / PARTS);
+  grid.cell = static_cast<float>(layout.cell), grid.step = static_cast<float>(layout.cell / PARTS);
   // Bytes are rounded to the nearest, and what is asked is wider by half a step.
   grid.exact = most - grid.step;
-  grid.distances.reserve(place.count());
+  grid.distances.reserve(layout.count());
   const float one_by_step = 1.0F / grid.step;
-  for (int x = 0; x < place.cells[0]; x++) {
-    for (int y = 0; y < place.cells[1]; y++) {
+  for (int x = 0; x < layout.cells[0]; x++) {
+    for (int y = 0; y < layout.cells[1]; y++) {
       const float* row = all.at(x, y);
-      const std::uint8_t* there = &apart[(static_cast<std::size_t>(x) * place.cells[1] + y) * place.cells[2]];
-      for (int z = 0; z < place.cells[2]; z++) {
+      const std::uint8_t* there = &apart[(static_cast<std::size_t>(x) * layout.cells[1] + y) * layout.cells[2]];
+      for (int z = 0; z < layout.cells[2]; z++) {
         float away = std::max(row[z], 0.0F);
         // A ball of half a cell about the middle is within the cell, and all of that is so far at least.
         if (row[z] >= most && there[z] > 0) {

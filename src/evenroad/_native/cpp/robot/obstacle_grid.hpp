@@ -10,13 +10,13 @@
 namespace evenroad::robot {
 
 /// Return the grid over obstacles within a box that are known to `exact` [m]; nothing of the robot leaves the box.
-ObstacleGrid make_obstacle_grid(const Obstacles& obstacles, const GridPlace& place,
+ObstacleGrid make_obstacle_grid(const Obstacles& obstacles, const GridLayout& layout,
                                 std::span<const std::array<double, 6>> boxes, float exact);
 
 /// Return the masks of lanes in which an obstacle may be within `near` of a place, and is within `touching` for sure.
-EVENROAD_INLINE NearAndSure ask(const ObstacleGrid& grid, Vec3x16 place, float near, float touching) {
+EVENROAD_INLINE NearAndSure query(const ObstacleGrid& grid, Vec3x16 point, float near, float touching) {
   const Floats16 zero{};
-  const Vec3x16 from = place - spread(grid.low);
+  const Vec3x16 from = point - spread(grid.low);
   const Vec3x16 inside = {clamp(from.x, zero, spread(grid.size.x)), clamp(from.y, zero, spread(grid.size.y)),
                           clamp(from.z, zero, spread(grid.size.z))};
   const Vec3x16 beyond = from - inside, cells = inside * spread(grid.one_by_cell);

@@ -34,9 +34,9 @@ class Done {
   /// Return the lanes of an obstacle that are done, none of a new one.
   Mask& of(int part, int obstacle) {
     const std::int64_t key = (static_cast<std::int64_t>(part) << 32) + obstacle;
-    const std::size_t place = static_cast<std::size_t>(obstacle) % keys_.size();
-    if (keys_[place] != key) keys_[place] = key, lanes_[place] = 0;
-    return lanes_[place];
+    const std::size_t slot = static_cast<std::size_t>(obstacle) % keys_.size();
+    if (keys_[slot] != key) keys_[slot] = key, lanes_[slot] = 0;
+    return lanes_[slot];
   }
 
  private:
@@ -77,7 +77,7 @@ struct Check {
   const Robot& robot;
   const Lengths& lengths;
   const Layer& layer;
-  Places& places;
+  PlacedRobot& placed;
   Wanted wanted;
   Contact* found;
   Mask blocked;
@@ -90,13 +90,13 @@ struct Check {
     const float near = of.radius + WIDER;
     // Where a true shape decides, or what is met is to be named, a grid of distances does not tell.
     const float touching = of.shaped || found != nullptr || !layer.all[of.capsule] ? 0 : of.radius - DEEPER;
-    if (of.samples.size() > 2 && (ask(grid, centre, of.half + near, 0).near & ~blocked) == 0) return {};
-    NearAndSure told;
+    if (of.samples.size() > 2 && (query(grid, centre, of.half + near, 0).near & ~blocked) == 0) return {};
+    NearAndSure all;
     for (const float share : of.samples) {
-      const auto [may, does] = ask(grid, plus(centre, along, spread(share)), near, touching);
-      told.near |= may, told.sure |= does;
+      const auto [may, does] = query(grid, plus(centre, along, spread(share)), near, touching);
+      all.near |= may, all.sure |= does;
     }
-    return told;
+    return all;
   }
 
   /// Return in which lanes a body's true shape touches an obstacle, of those in which a capsule of it does.
@@ -107,19 +107,19 @@ struct Check {
     asked &= ~(done | blocked);
     if (asked == 0) return 0;
     done |= asked;
-    const Told told =
-        told_by(places.kept.of(body.shape, obstacle), {robot.shapes, body.shape, places.frames[body.frame]},
-                {layer.obstacles->hulls, obstacle, placed(there)}, lengths.shapes[b], asked);
-    Mask surely = told.near;
-    asked &= ~told.apart;
-    const Mask open = asked & ~with_others(told.near, wanted);
+    const Decided decided =
+        decided_by(placed.kept.of(body.shape, obstacle), {robot.shapes, body.shape, placed.frames[body.frame]},
+                   {layer.obstacles->hulls, obstacle, frame_of(there)}, lengths.shapes[b], asked);
+    Mask surely = decided.near;
+    asked &= ~decided.apart;
+    const Mask open = asked & ~with_others(decided.near, wanted);
     if (open != 0 && !is_enough(surely, wanted)) {
-      surely |= inside_meeting(robot, places, body, there, lengths.shapes[b], open, wanted);
+      surely |= inside_meeting(robot, placed, body, there, lengths.shapes[b], open, wanted);
     }
     asked &= ~with_others(surely, wanted);
     if (asked == 0 || is_enough(blocked | surely, wanted)) return surely;
-    return surely | shape_meeting(robot, places, body, *layer.obstacles, obstacle, lengths.shapes[b], asked, wanted,
-                                  &places.kept);
+    return surely | shape_meeting(robot, placed, body, *layer.obstacles, obstacle, lengths.shapes[b], asked, wanted,
+                                  &placed.kept);
   }
 
   /// Test the obstacles of a block that may be near a capsule; return whether that is enough.
@@ -178,14 +178,14 @@ struct Check {
 }  // namespace
 
 void sort_neighbours(std::vector<std::pair<Exact, int>>& obstacles) {
-  std::vector<Place> places;
-  places.reserve(obstacles.size());
+  std::vector<Point3> centres;
+  centres.reserve(obstacles.size());
   for (const auto& [each, _] : obstacles) {
-    places.push_back(
+    centres.push_back(
         {{static_cast<float>(each.centre[0]), static_cast<float>(each.centre[1]), static_cast<float>(each.centre[2])}});
   }
   std::vector<std::pair<Exact, int>> sorted;
-  for (const int k : order_of(std::move(places))) sorted.push_back(obstacles[k]);
+  for (const int k : order_of(std::move(centres))) sorted.push_back(obstacles[k]);
   obstacles = std::move(sorted);
 }
 
@@ -205,9 +205,10 @@ std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacle
       low[axis] = std::min(low[axis], box[axis]), high[axis] = std::max(high[axis], box[3 + axis]);
     }
   }
-  const GridPlace place = place_grid(low, high, std::min(CELLS_EACH * static_cast<double>(boxes.size()), MOST_CELLS));
+  const GridLayout layout =
+      grid_layout(low, high, std::min(CELLS_EACH * static_cast<double>(boxes.size()), MOST_CELLS));
   auto tree = std::make_unique<ObstacleTree>();
-  tree->grid = make_obstacle_grid(obstacles, place, boxes, static_cast<float>(widest + place.cell));
+  tree->grid = make_obstacle_grid(obstacles, layout, boxes, static_cast<float>(widest + layout.cell));
   std::vector<Around> leaves;
   leaves.reserve(obstacles.blocks.size());
   for (const Block& block : obstacles.blocks) leaves.push_back(around_block(block));
@@ -215,22 +216,22 @@ std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacle
   return tree;
 }
 
-Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Layer& layer, Places& places, Mask blocked,
+Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Layer& layer, PlacedRobot& placed, Mask blocked,
                      Wanted wanted, Contact* found) {
-  Check check{robot, lengths, layer, places, wanted, found, blocked, {}, {}};
+  Check check{robot, lengths, layer, placed, wanted, found, blocked, {}, {}};
   // From the outermost bodies inwards: those meet obstacles most often.
   for (int b = static_cast<int>(robot.bodies.size()) - 1; b >= robot.fixed_bodies; b--) {
     const Range capsules = robot.bodies[b].capsules;
     if (capsules.size() > FEW) {
       const auto [x, y, z] = lengths.bodies[b].half;
       const float near = std::sqrt(x * x + y * y + z * z) + WIDER;
-      if ((ask(layer.obstacles->tree->grid, places.bodies[b].centre, near, 0).near & ~check.blocked) == 0) continue;
+      if ((query(layer.obstacles->tree->grid, placed.bodies[b].centre, near, 0).near & ~check.blocked) == 0) continue;
     }
     const bool shaped = lengths.shapes_decide && robot.bodies[b].shape >= 0;
     for (int i = capsules.end - 1; i >= capsules.first; i--) {
       const Capsule& capsule = robot.capsules[i];
       const auto samples = std::span(robot.samples).subspan(capsule.samples.first, capsule.samples.size());
-      const Part of{b, i, places.capsules[i], samples, capsule.half_length, lengths.capsules[i], shaped};
+      const Part of{b, i, placed.capsules[i], samples, capsule.half_length, lengths.capsules[i], shaped};
       const auto [near, sure] = check.near_lanes(of);
       check.blocked |= with_others(sure, wanted);
       if (is_enough(check.blocked, wanted) || check.meet(of, near)) return check.blocked;

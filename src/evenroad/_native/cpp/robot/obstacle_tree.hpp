@@ -19,7 +19,7 @@ void sort_neighbours(std::vector<std::pair<Exact, int>>& obstacles);
 std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacles, double reach, double widest);
 
 /// Return the same as `meeting_obstacles`.
-Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Layer& layer, Places& places, Mask blocked,
+Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Layer& layer, PlacedRobot& placed, Mask blocked,
                      Wanted wanted, Contact* found);
 
 }  // namespace evenroad::robot

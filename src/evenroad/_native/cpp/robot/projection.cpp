@@ -31,7 +31,7 @@ Projection::Projection(const Keeps& keeps, const Projecting& how)
 bool Projection::move(std::span<double> q, int steps) {
   clock_.look();
   for (int count = 0;; count++) {
-    state_.place(q);
+    state_.move_to(q);
     for (std::size_t row = 0, k = 0; k < keeps_.each.size(); row += keeps_.each[k++].rows) {
       state_.write_residual(keeps_.each[k], std::span(error_).subspan(row, keeps_.each[k].rows));
     }
@@ -51,8 +51,8 @@ bool Projection::move(std::span<double> q, int steps) {
   }
 }
 
-void Projection::bend(std::span<const double> q, std::span<double> way) {
-  state_.place(q);
+void Projection::bend(std::span<const double> q, std::span<double> direction) {
+  state_.move_to(q);
   state_.derive();
   std::vector<double> column;
   for (std::size_t row = 0, k = 0; k < keeps_.each.size(); row += keeps_.each[k++].rows) {
@@ -60,9 +60,9 @@ void Projection::bend(std::span<const double> q, std::span<double> way) {
     const std::span<double> error = std::span(error_).subspan(row, keep.rows);
     state_.write_residual(keep, error);
     column.resize(keep.rows);
-    for (std::size_t joint = 0; joint < way.size(); joint++) {
+    for (std::size_t joint = 0; joint < direction.size(); joint++) {
       state_.write_column(keep, joint, column);
-      for (std::size_t i = 0; i < keep.rows; i++) error[i] += column[i] * way[joint];
+      for (std::size_t i = 0; i < keep.rows; i++) error[i] += column[i] * direction[joint];
     }
   }
   if (measure()) return;
@@ -70,7 +70,7 @@ void Projection::bend(std::span<const double> q, std::span<double> way) {
   double squared = 0.0;
   for (const double each : error_) squared += each * each;
   solve(1e-6 * squared + 1e-12);
-  for (std::size_t k = 0; k < way.size(); k++) way[k] -= step_[k];
+  for (std::size_t k = 0; k < direction.size(); k++) direction[k] -= step_[k];
 }
 
 bool Projection::measure() {

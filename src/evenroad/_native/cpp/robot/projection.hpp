@@ -19,7 +19,7 @@ class Projection {
   bool move(std::span<double> q, int steps);
 
   /// Take off a short way, (dim,), from a configuration what leaves the constraints, as far as a first derivative says.
-  void bend(std::span<const double> q, std::span<double> way);
+  void bend(std::span<const double> q, std::span<double> direction);
 
  private:
   /// Keep of all residuals what is to be taken off; return whether all are short enough.

@@ -109,9 +109,9 @@ Vec3 half_extents(const Shapes& shapes, Range capsules, const double* centre, do
   for (int i = capsules.first; i < capsules.end; i++) {
     const Range samples = shapes.samples(i);
     for (int sample = samples.first; sample < samples.end; sample++) {
-      const double place = shapes.given.capsules.samples[sample];
+      const double share = shapes.given.capsules.samples[sample];
       for (int axis = 0; axis < 3; axis++) {
-        const double apart = std::abs(shapes.centre(i)[axis] + place * shapes.half(i)[axis] - centre[axis]);
+        const double apart = std::abs(shapes.centre(i)[axis] + share * shapes.half(i)[axis] - centre[axis]);
         half[axis] = std::max(half[axis], apart + shapes.covering(i));
       }
     }
@@ -126,7 +126,7 @@ void add_capsules(Robot& robot, const GivenRobot& given) {
   require(from.first_sample.size() == count + 1 && from.centre.size() == 3 * count && from.half.size() == 3 * count &&
               from.radius.size() == count && from.covering.size() == count && from.padding.size() == count,
           "arrays of capsules must be equally long");
-  for (double place : from.samples) robot.samples.push_back(static_cast<float>(place));
+  for (double share : from.samples) robot.samples.push_back(static_cast<float>(share));
   for (std::size_t i = 0; i < count; i++) {
     require(from.first_sample[i] >= 0 && from.first_sample[i] < from.first_sample[i + 1] &&
                 from.first_sample[i + 1] <= static_cast<std::int64_t>(from.samples.size()),

@@ -18,7 +18,7 @@ namespace {
 constexpr double STANDS = 2e-6;  // a base may reach so deep into what it stands on [m]
 /// Return whether the true shape of a body that does not move touches an obstacle, which is a little smaller then: a
 /// base that stands on a table does not.
-bool base_touches(const Robot& robot, const Places& places, const Body& body, Exact o, double margin) {
+bool base_touches(const Robot& robot, const PlacedRobot& placed, const Body& body, Exact o, double margin) {
   double extents[3];
   write_extents(o, extents);
   const double less = STANDS + 2.0 * OBSTACLE_PADDING *
@@ -31,7 +31,7 @@ bool base_touches(const Robot& robot, const Places& places, const Body& body, Ex
   }
   Obstacles alone;
   add(alone, o, 0);
-  return shape_meeting(robot, places, body, alone, 0, static_cast<float>(margin), 1, Wanted::FIRST) != 0;
+  return shape_meeting(robot, placed, body, alone, 0, static_cast<float>(margin), 1, Wanted::FIRST) != 0;
 }
 
 /// Obstacles that the robot can reach, with their rows among those given.
@@ -80,7 +80,7 @@ Layer layer_of(Reached reached, const GivenObstacles& given, double reach, doubl
 
 /// Find a capsule that does not move and an obstacle that it touches.
 void find_fixed_contact(const Robot& robot, const Reached& reached, const GivenObstacles& given, Scene& scene) {
-  std::optional<Places> places;
+  std::optional<PlacedRobot> placed;
   for (const FixedSphere& sphere : robot.fixed_spheres) {
     const Body& body = robot.bodies[robot.capsules[sphere.capsule].body];
     for (const auto& [obstacle, k] : reached) {
@@ -88,9 +88,9 @@ void find_fixed_contact(const Robot& robot, const Reached& reached, const GivenO
       const double near = sphere.radius + obstacle.rounding;
       if (!given.tested(sphere.capsule, k) || squared_distance(obstacle, sphere.centre) >= near * near) continue;
       if (body.shape >= 0) {
-        if (!places) places.emplace(robot);
+        if (!placed) placed.emplace(robot);
         const int b = robot.capsules[sphere.capsule].body;
-        if (!base_touches(robot, *places, body, obstacle, robot.lengths.shapes[b] - robot.padding)) continue;
+        if (!base_touches(robot, *placed, body, obstacle, robot.lengths.shapes[b] - robot.padding)) continue;
       }
       scene.fixed_contact = {sphere.capsule, given.number(k)};
       return;
@@ -106,7 +106,7 @@ int row_of(const Layer& layer, std::int64_t number) {
 
 }  // namespace
 
-PlacedFrame placed(const Obstacle& obstacle) {
+PlacedFrame frame_of(const Obstacle& obstacle) {
   const float* r = obstacle.rotation;
   return {{spread(Vec3{r[0], r[1], r[2]}), spread(Vec3{r[3], r[4], r[5]}), spread(Vec3{r[6], r[7], r[8]})},
           spread(obstacle.centre)};

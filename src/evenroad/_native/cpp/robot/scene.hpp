@@ -26,7 +26,7 @@ struct Obstacle {
 };
 
 /// Return where an obstacle's frame is: the same in all lanes.
-PlacedFrame placed(const Obstacle& obstacle);
+PlacedFrame frame_of(const Obstacle& obstacle);
 
 /// Boxes around sixteen obstacles.
 struct Block {

@@ -34,13 +34,13 @@ Mask capsules_touching(const PlacedCapsule& a, const PlacedCapsule& b, const Cap
   return below_zero(squared_distance(a, b, pair) - reach * reach);
 }
 
-Mask meeting_itself(const Robot& robot, const Lengths& lengths, Places& places, Mask blocked, Wanted wanted,
+Mask meeting_itself(const Robot& robot, const Lengths& lengths, PlacedRobot& placed, Mask blocked, Wanted wanted,
                     Contact* found) {
   const int by_hulls = robot.first_hull_pair();
   for (int p = 0; p < static_cast<int>(robot.body_pairs.size()); p++) {
     const auto& [a, b, pairs] = robot.body_pairs[p];
-    const Vec3x16& other = places.bodies[b].centre;
-    if ((within(places.bodies[a].centre, other, lengths.body_pairs[p]) & ~blocked) == 0) continue;
+    const Vec3x16& other = placed.bodies[b].centre;
+    if ((within(placed.bodies[a].centre, other, lengths.body_pairs[p]) & ~blocked) == 0) continue;
     const int row = robot.bodies[b].capsules.size();
     Mask undecided = 0;
     int first_undecided = -1;
@@ -49,12 +49,12 @@ Mask meeting_itself(const Robot& robot, const Lengths& lengths, Places& places, 
       if (row > FEW && robot.capsules[i].is_ball) {
         // A ball that is far from the ball around the whole body is far from its capsules.
         const float near = lengths.capsules[i] + lengths.bodies[b].radius;
-        if ((within(places.capsules[i].centre, other, near) & ~blocked) == 0) continue;
+        if ((within(placed.capsules[i].centre, other, near) & ~blocked) == 0) continue;
       }
       for (int k = first; k < first + row; k++) {
         const CapsulePair& pair = robot.pairs[k];
         const auto [near, reach] = lengths.pairs[k];
-        const PlacedCapsule &one = places.capsules[pair.first], &two = places.capsules[pair.second];
+        const PlacedCapsule &one = placed.capsules[pair.first], &two = placed.capsules[pair.second];
         Mask touching = within(one.centre, two.centre, near);
         if ((touching & ~blocked) == 0) continue;
         // Of two balls that was all.
@@ -72,9 +72,9 @@ Mask meeting_itself(const Robot& robot, const Lengths& lengths, Places& places, 
     undecided &= ~blocked;
     if (undecided == 0) continue;
     const float margin = lengths.hull_margins[p - by_hulls];
-    const Mask meeting = hulls_meeting({robot.hulls, robot.bodies[a].hulls, places.frames[robot.bodies[a].frame]},
-                                       {robot.hulls, robot.bodies[b].hulls, places.frames[robot.bodies[b].frame]},
-                                       margin, undecided, wanted, &places.kept_of_itself);
+    const Mask meeting = hulls_meeting({robot.hulls, robot.bodies[a].hulls, placed.frames[robot.bodies[a].frame]},
+                                       {robot.hulls, robot.bodies[b].hulls, placed.frames[robot.bodies[b].frame]},
+                                       margin, undecided, wanted, &placed.kept_of_itself);
     if (found != nullptr && blocked == 0 && meeting != 0) *found = {Contact::With::ITSELF, -1, first_undecided};
     blocked |= with_others(meeting, wanted);
     if (is_enough(blocked, wanted)) return blocked;

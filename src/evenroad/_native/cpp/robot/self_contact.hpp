@@ -6,7 +6,7 @@
 namespace evenroad::robot {
 
 /// Return `blocked` and the mask of lanes in which two bodies of a pair touch; `found`: where given, the first contact.
-Mask meeting_itself(const Robot& robot, const Lengths& lengths, Places& places, Mask blocked, Wanted wanted,
+Mask meeting_itself(const Robot& robot, const Lengths& lengths, PlacedRobot& placed, Mask blocked, Wanted wanted,
                     Contact* found = nullptr);
 
 /// Return the squared distances of the segments of two capsules.

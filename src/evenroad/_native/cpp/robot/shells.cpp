@@ -47,7 +47,7 @@ bool cross(const double* one, const double* other) {
 
 /// The triangles of a shell that come into a box, sorted into cells.
 struct Sorted {
-  GridPlace grid;
+  GridLayout grid;
   std::vector<int> begin, triangles;  // of a cell, from its begin to that of the next one
 
   /// Call with each cell that a triangle's box is in.
@@ -69,7 +69,7 @@ struct Sorted {
   }
 
   Sorted(const Shell& shell, const double (&low)[3], const double (&high)[3])
-      : grid(place_grid(low, high, std::min(CELLS_OF_SHELL, static_cast<double>(shell.triangles.size())))) {
+      : grid(grid_layout(low, high, std::min(CELLS_OF_SHELL, static_cast<double>(shell.triangles.size())))) {
     begin.resize(grid.count() + 1);
     const auto each = [&](auto&& call) {
       for (std::size_t i = 0; i < shell.triangles.size(); i += 9) {
@@ -119,9 +119,9 @@ std::optional<int> solid_around(std::span<const Shell> shells, std::span<const i
   for (const int other : larger) {
     if (cross(shell, shells[other])) return std::nullopt;
     if (!is_box_within(shell, shells[other])) continue;
-    const double place[3] = {shell.triangles[0], shell.triangles[1], shell.triangles[2]};
+    const double point[3] = {shell.triangles[0], shell.triangles[1], shell.triangles[2]};
     // They come from the largest to the smallest.
-    if (winding_at(place, shells[other].triangles, true) != 0) found = other;
+    if (winding_at(point, shells[other].triangles, true) != 0) found = other;
   }
   return found;
 }
@@ -130,7 +130,7 @@ std::optional<int> solid_around(std::span<const Shell> shells, std::span<const i
 
 void Shell::measure(const double (&triangle)[9]) {
   if (count++ == 0) {
-    for (double* place : {from, low, high}) std::copy_n(triangle, 3, place);
+    for (double* corner : {from, low, high}) std::copy_n(triangle, 3, corner);
   }
   for (int i = 0; i < 9; i++) {
     low[i % 3] = std::min(low[i % 3], triangle[i]), high[i % 3] = std::max(high[i % 3], triangle[i]);
@@ -139,10 +139,11 @@ void Shell::measure(const double (&triangle)[9]) {
 }
 
 bool may_have_hollows(std::span<const Shell> shells) {
-  const auto told = [&](bool inward) {
-    return std::ranges::all_of(shells, [&](const Shell& each) { return each.is_told && is_inward(each) == inward; });
+  const auto all_face = [&](bool inward) {
+    return std::ranges::all_of(shells,
+                               [&](const Shell& each) { return each.is_oriented && is_inward(each) == inward; });
   };
-  return shells.size() > 1 && !told(false) && !told(true);
+  return shells.size() > 1 && !all_face(false) && !all_face(true);
 }
 
 std::vector<std::uint8_t> shells_to_turn(std::span<const Shell> shells) {
@@ -156,8 +157,8 @@ std::vector<std::uint8_t> shells_to_turn(std::span<const Shell> shells) {
       const std::optional<int> solid = solid_around(shells, std::span(order).first(k), order[k]);
       if (!solid || *solid < 0 || is_hollow[*solid] != 0) continue;
       const Shell& other = shells[*solid];
-      const bool told = here.is_told && other.is_told;
-      is_hollow[order[k]] = !told || is_inward(here) != is_inward(other) ? 1 : 0;
+      const bool oriented = here.is_oriented && other.is_oriented;
+      is_hollow[order[k]] = !oriented || is_inward(here) != is_inward(other) ? 1 : 0;
     }
   }
   for (std::size_t i = 0; i < shells.size(); i++) turned[i] = is_inward(shells[i]) != (is_hollow[i] != 0) ? 1 : 0;

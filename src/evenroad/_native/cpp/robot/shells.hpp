@@ -10,7 +10,7 @@ namespace evenroad::robot {
 /// A closed surface, consistently oriented.
 struct Shell {
   std::vector<double> triangles;  // nine numbers each; kept where there may be hollows
-  bool is_told = true;            // whether the file says to which side it faces
+  bool is_oriented = true;        // whether the file says to which side it faces
   int count = 0;                  // of its triangles
   double volume = 0;              // six times that of what it winds around; negative where it faces inwards
   double from[3], low[3], high[3];

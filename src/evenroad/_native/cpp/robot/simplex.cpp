@@ -20,37 +20,37 @@ bool is_inside(const Simplex& s) {
 }
 
 /// What of a simplex is nearest to the origin, and which corners that is between, as bits.
-struct NearestPlace {
-  Vector place;
+struct NearestPoint {
+  Vector point;
   int between;
   double squared;
 };
 
-NearestPlace nearest_of_two(const Simplex& s, int i, int j) {
+NearestPoint nearest_of_two(const Simplex& s, int i, int j) {
   const Vector &a = s.corners[i], &b = s.corners[j];
   const Vector edge = b - a;
   const double along = -dot(a, edge), whole = squared_length(edge);
   if (!(along > 0.0)) return {a, 1 << i, squared_length(a)};
   if (along >= whole) return {b, 1 << j, squared_length(b)};
-  const Vector place = a + edge * (along / whole);
-  return {place, 1 << i | 1 << j, squared_length(place)};
+  const Vector point = a + edge * (along / whole);
+  return {point, 1 << i | 1 << j, squared_length(point)};
 }
 
 /// Return the same of a triangle; an edge is left out where the origin is on the inner side of it.
-NearestPlace nearest_of_three(const Simplex& s, int i, int j, int k) {
+NearestPoint nearest_of_three(const Simplex& s, int i, int j, int k) {
   const Vector &a = s.corners[i], &b = s.corners[j], &c = s.corners[k];
   const Vector normal = cross(b - a, c - a);
   const double size = squared_length(normal);
   // The origin's weights, times the size.
   const double of_a = dot(cross(b, c), normal), of_b = dot(cross(c, a), normal), of_c = dot(cross(a, b), normal);
   if (of_a > 0.0 && of_b > 0.0 && of_c > 0.0 && size > 0.0) {
-    const Vector place = normal * (dot(a, normal) / size);
-    return {place, 1 << i | 1 << j | 1 << k, squared_length(place)};
+    const Vector point = normal * (dot(a, normal) / size);
+    return {point, 1 << i | 1 << j | 1 << k, squared_length(point)};
   }
-  NearestPlace found{{}, 0, std::numeric_limits<double>::infinity()};
+  NearestPoint found{{}, 0, std::numeric_limits<double>::infinity()};
   const auto look = [&](bool beyond, int first, int second) {
     if (!beyond) return;
-    const NearestPlace here = nearest_of_two(s, first, second);
+    const NearestPoint here = nearest_of_two(s, first, second);
     if (here.squared < found.squared) found = here;
   };
   look(!(of_c > 0.0), i, j), look(!(of_b > 0.0), i, k), look(!(of_a > 0.0), j, k);
@@ -64,14 +64,14 @@ void nearest(Simplex& s, Vector& v) {
     s.size = 0;
     return;
   }
-  NearestPlace found{s.corners[0], 1, 0.0};
+  NearestPoint found{s.corners[0], 1, 0.0};
   if (s.size == 2) found = nearest_of_two(s, 0, 1);
   if (s.size == 3) found = nearest_of_three(s, 0, 1, 2);
   if (s.size == 4) {
     // The side without the last corner is farther than it.
     found = nearest_of_three(s, 0, 1, 3);
     for (const auto& [i, j] : {std::pair{0, 2}, std::pair{1, 2}}) {
-      const NearestPlace here = nearest_of_three(s, i, j, 3);
+      const NearestPoint here = nearest_of_three(s, i, j, 3);
       if (here.squared < found.squared) found = here;
     }
   }
@@ -81,7 +81,7 @@ void nearest(Simplex& s, Vector& v) {
     s.numbers[count] = s.numbers[i];
     s.corners[count++] = s.corners[i];
   }
-  s.size = count, v = found.place;
+  s.size = count, v = found.point;
 }
 
 }  // namespace evenroad::robot

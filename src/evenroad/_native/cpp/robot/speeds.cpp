@@ -18,11 +18,11 @@ namespace {
 constexpr double LOST = 2e-5;
 
 /// Write sums over the coordinates of arms times what the coordinate moves, and times its weight if there are weights.
-void write_sums(const OwnMatrix<double>& arms, std::span<const double> way, std::span<double> sums,
+void write_sums(const OwnMatrix<double>& arms, std::span<const double> direction, std::span<double> sums,
                 std::span<const double> weights = {}) {
   std::fill(sums.begin(), sums.end(), 0.0);
-  for (std::size_t k = 0; k < way.size(); k++) {
-    const double size = std::abs(way[k]) * (weights.empty() ? 1.0 : weights[k]);
+  for (std::size_t k = 0; k < direction.size(); k++) {
+    const double size = std::abs(direction[k]) * (weights.empty() ? 1.0 : weights[k]);
     const auto row = arms[k];
     for (std::size_t i = 0; i < sums.size(); i++) sums[i] += row[i] * size;
   }
@@ -32,12 +32,12 @@ void write_sums(const OwnMatrix<double>& arms, std::span<const double> way, std:
 double largest_root(Floats16 squares) { return std::sqrt(static_cast<double>(largest(squares))); }
 
 /// Write by what to multiply what each coordinate moves, to have its part of the acceleration; return all turns.
-double write_weights(const Robot& robot, std::span<const double> way, std::span<double> weights) {
+double write_weights(const Robot& robot, std::span<const double> direction, std::span<double> weights) {
   std::fill(weights.begin(), weights.end(), -1.0);
   double turns = 0.0;
   bool one_each = true;
   for (const Frame& frame : robot.frames) {
-    const double turn = frame.slides ? 0.0 : std::abs(frame.multiplier * way[frame.coordinate]);
+    const double turn = frame.slides ? 0.0 : std::abs(frame.multiplier * direction[frame.coordinate]);
     double& weight = weights[frame.coordinate];
     one_each &= weight < 0.0;
     weight = 2.0 * turns + turn;
@@ -51,7 +51,7 @@ double write_weights(const Robot& robot, std::span<const double> way, std::span<
 }  // namespace
 
 Speeds::Speeds(const Robot& robot)
-    : ways(robot.dim()),
+    : directions(robot.dim()),
       capsules(robot.arms.columns),
       pairs(robot.pair_arms.columns),
       shapes(robot.bodies.size()),
@@ -60,13 +60,13 @@ Speeds::Speeds(const Robot& robot)
       shape_accelerations_(robot.bodies.size()),
       weights_(robot.dim()) {}
 
-void Speeds::take_anywhere(const Robot& robot, std::span<const double> way) {
-  write_sums(robot.arms, way, capsules);
-  write_sums(robot.pair_arms, way, pairs);
-  write_sums(robot.shape_arms, way, shapes);
+void Speeds::take_anywhere(const Robot& robot, std::span<const double> direction) {
+  write_sums(robot.arms, direction, capsules);
+  write_sums(robot.pair_arms, direction, pairs);
+  write_sums(robot.shape_arms, direction, shapes);
 }
 
-void Speeds::take_here(const Robot& robot, const Places& places, std::span<const double> longest, double half) {
+void Speeds::take_here(const Robot& robot, const PlacedRobot& placed, std::span<const double> longest, double half) {
   const Floats16 still{};
   velocities_[0].along = velocities_[0].turning = {still, still, still};
   double slides = 0.0;
@@ -74,12 +74,12 @@ void Speeds::take_here(const Robot& robot, const Places& places, std::span<const
     const Frame& frame = robot.frames[i];
     const Velocity& below = velocities_[frame.parent];
     Velocity& here = velocities_[i + 1];
-    const PlacedFrame& at = places.frames[i + 1];
+    const PlacedFrame& at = placed.frames[i + 1];
     const Vec3x16 axis{at.rows[0].z, at.rows[1].z, at.rows[2].z};
-    here.along = below.along + cross(below.turning, at.origin - places.frames[frame.parent].origin);
+    here.along = below.along + cross(below.turning, at.origin - placed.frames[frame.parent].origin);
     here.turning = below.turning;
     Vec3x16& moved = frame.slides ? here.along : here.turning;
-    moved = plus(moved, axis, spread(static_cast<float>(frame.multiplier)) * ways[frame.coordinate]);
+    moved = plus(moved, axis, spread(static_cast<float>(frame.multiplier)) * directions[frame.coordinate]);
     if (frame.slides) slides += std::abs(frame.multiplier * longest[frame.coordinate]);
   }
   const double turns = write_weights(robot, longest, weights_);
@@ -89,8 +89,8 @@ void Speeds::take_here(const Robot& robot, const Places& places, std::span<const
   for (int i = robot.fixed_capsules(); i < static_cast<int>(capsules.size()); i++) {
     const int frame = robot.bodies[robot.capsules[i].body].frame;
     const auto& [along, turning] = velocities_[frame];
-    const PlacedCapsule& capsule = places.capsules[i];
-    const Vec3x16 middle = along + cross(turning, capsule.centre - places.frames[frame].origin);
+    const PlacedCapsule& capsule = placed.capsules[i];
+    const Vec3x16 middle = along + cross(turning, capsule.centre - placed.frames[frame].origin);
     Floats16 square = dot(middle, middle);
     if (!robot.capsules[i].is_ball) {
       // Between its ends a segment is no faster than at one of them.
@@ -105,7 +105,7 @@ void Speeds::take_here(const Robot& robot, const Places& places, std::span<const
     // Its middle moves, and what is around that turns about it.
     const HullNode<float>& root = robot.shapes.nodes[body.shape];
     const auto& [along, turning] = velocities_[body.frame];
-    const PlacedFrame& frame = places.frames[body.frame];
+    const PlacedFrame& frame = placed.frames[body.frame];
     const Vec3x16 from = spread3(root.centre);
     const Vec3x16 middle =
         along + cross(turning, {dot(frame.rows[0], from), dot(frame.rows[1], from), dot(frame.rows[2], from)});

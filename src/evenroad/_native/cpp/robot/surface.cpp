@@ -48,9 +48,9 @@ void widen_by_inside(const GivenSurface& given, double (&low)[3], double (&high)
   }
   for (int axis = 0; axis < 3; axis++) {
     const auto is_inside_beyond = [&](double end, double reach) {
-      double place[3] = {0, 0, 0};
-      place[axis] = 0.5 * (end + reach);
-      return winding_at(place, given.solid, given.turned) != 0;
+      double point[3] = {0, 0, 0};
+      point[axis] = 0.5 * (end + reach);
+      return winding_at(point, given.solid, given.turned) != 0;
     };
     // Beyond the box around what is solid nothing is inside.
     const bool below = least[axis] < low[axis] && -given.reach < low[axis];
@@ -77,16 +77,16 @@ void add_grid(Surface& surface, const GivenSurface& given) {
     }
   }
   if (!given.solid.empty()) widen_by_inside(given, low, high);
-  const GridPlace place = place_grid(low, high, CELLS);
-  std::vector<std::uint8_t> marked(place.count());
-  (given.triangles ? mark_triangles : mark_points)(place, given.corners, marked);
+  const GridLayout layout = grid_layout(low, high, CELLS);
+  std::vector<std::uint8_t> marked(layout.count());
+  (given.triangles ? mark_triangles : mark_points)(layout, given.corners, marked);
   if (!given.solid.empty()) {
-    surface.windings = count_windings(place, given.solid, given.turned);
+    surface.windings = count_windings(layout, given.solid, given.turned);
     for (std::size_t i = 0; i < marked.size(); i++) marked[i] |= surface.windings[i] != 0;
   }
   surface.turned = given.turned;
-  const double told = place.cell * (1.0 / STEPS + 2.0 * std::sqrt(3.0)) * (1.0 + 1e-5);
-  surface.grid = make_grid(place, told, distances_to(place, marked));
+  const double excess = layout.cell * (1.0 / STEPS + 2.0 * std::sqrt(3.0)) * (1.0 + 1e-5);
+  surface.grid = make_grid(layout, excess, distances_to(layout, marked));
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ Surface make_surface(const GivenSurface& given) {
   Surface surface;
   surface.radius = static_cast<float>(given.radius);
   add_grid(surface, given);
-  std::vector<Place> middles(count);
+  std::vector<Point3> middles(count);
   double largest = 0;
   for (std::size_t i = 0; i < count; i++) {
     const double* corners = given.corners.data() + 3 * each * i;
@@ -124,7 +124,7 @@ Surface make_surface(const GivenSurface& given) {
   const Floats16 nowhere = spread(NOWHERE), zero{};
   const Vec3x16 far = {nowhere, nowhere, nowhere}, none = {zero, zero, zero};
   std::vector<Around> around;
-  std::vector<Place> corners;
+  std::vector<Point3> corners;
   const std::size_t blocks = (count + LANES - 1) / LANES;
   around.reserve(blocks);
   if (given.triangles)
@@ -160,7 +160,7 @@ Surface make_surface(const GivenSurface& given) {
     } else {
       surface.points.push_back(points);
     }
-    around.push_back(around_places(corners));
+    around.push_back(around_points(corners));
   }
   // Nodes are full: their places to spare are far away, and so are the leaves below.
   const std::size_t leaves = (around.size() + LANES - 1) / LANES * LANES;

@@ -44,7 +44,7 @@ Surface make_surface_around(std::span<const std::shared_ptr<const Surface>> surf
       low[axis] = std::min(low[axis], begin), high[axis] = std::max(high[axis], begin + wide);
     }
   }
-  const GridPlace grid = place_grid(low, high, CELLS_AROUND);
+  const GridLayout grid = grid_layout(low, high, CELLS_AROUND);
   std::vector<double> middles[3];
   for (int axis = 0; axis < 3; axis++) {
     for (int i = 0; i < grid.cells[axis]; i++) middles[axis].push_back(grid.low[axis] + (i + 0.5) * grid.cell);
@@ -55,13 +55,13 @@ Surface make_surface_around(std::span<const std::shared_ptr<const Surface>> surf
     made.radius = std::max(made.radius, each->radius);
     const DistanceGrid& own = each->grid;
     const Along x = along(own, 0, middles[0]), y = along(own, 1, middles[1]), z = along(own, 2, middles[2]);
-    std::size_t place = 0;
+    std::size_t number = 0;
     for (int i = 0; i < grid.cells[0]; i++) {
       for (int j = 0; j < grid.cells[1]; j++) {
         const std::size_t row = (static_cast<std::size_t>(x.cells[i]) * own.cells[1] + y.cells[j]) * own.cells[2];
-        for (int k = 0; k < grid.cells[2]; k++, place++) {
+        for (int k = 0; k < grid.cells[2]; k++, number++) {
           const float away = static_cast<float>(own.distances[row + z.cells[k]]) * own.step;
-          squared[place] = std::min(squared[place], away * away + x.outside[i] + y.outside[j] + z.outside[k]);
+          squared[number] = std::min(squared[number], away * away + x.outside[i] + y.outside[j] + z.outside[k]);
         }
       }
     }

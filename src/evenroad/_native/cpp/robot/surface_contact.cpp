@@ -22,22 +22,22 @@ struct Asked {
 };
 
 /// What is asked of a grid: lanes in which a capsule is near, or also those in which it touches for sure.
-enum class Wish : std::uint8_t { NEAR, SURE };
+enum class Sought : std::uint8_t { NEAR, SURE };
 
 /// Ask a grid about a long capsule as a whole first, then about the spheres that cover it, until all open lanes are
 /// known.
-NearAndSure ask(const Surface& surface, const Asked& of, Wish wish, Mask open) {
+NearAndSure query(const Surface& surface, const Asked& of, Sought sought, Mask open) {
   const float wide = of.covering + surface.radius, reach = wide - of.slack;
   const Vec3x16 centre = of.capsule.centre, along = of.capsule.half;
   if (static_cast<int>(of.samples.size()) > FEW_SPHERES) {
-    open &= ask(surface.grid, centre, of.half + reach, reach).near;
+    open &= query(surface.grid, centre, of.half + reach, reach).near;
     if (open == 0) return {};
   }
   NearAndSure all;
   for (const float share : of.samples) {
-    const NearAndSure here = ask(surface.grid, plus(centre, along, spread(share)), wide, reach);
+    const NearAndSure here = query(surface.grid, plus(centre, along, spread(share)), wide, reach);
     all.near |= here.near, all.sure |= here.sure;
-    if ((open & ~(wish == Wish::NEAR ? all.near : all.sure)) == 0) break;
+    if ((open & ~(sought == Sought::NEAR ? all.near : all.sure)) == 0) break;
   }
   return all;
 }
@@ -75,13 +75,13 @@ bool touches(const Surface& surface, const CapsuleAt& capsule) {
 
 /// Return whether the true shape of a body touches what of a surface is near a capsule, or has it inside.
 bool shape_touches(const ShapeNear& of, const Surface& surface, const CapsuleAt& capsule, int lane) {
-  ShapeAt shape(of.robot.shapes, of.body.shape, of.places.frames[of.body.frame], lane, surface.radius, of.near);
+  ShapeAt shape(of.robot.shapes, of.body.shape, of.placed.frames[of.body.frame], lane, surface.radius, of.near);
   const bool is_mesh = !surface.triangles.empty();
   // A point is a triangle without size, and hangs together with no other one.
   TriangleLeaf points{};
   Walk walk(surface.tree);
-  const auto ask = [&](const BoxNode& node) { return near_nodes(node, capsule) & shape.near(node); };
-  for (int leaf = 0; (leaf = walk.next(ask)) >= 0;) {
+  const auto query = [&](const BoxNode& node) { return near_nodes(node, capsule) & shape.near(node); };
+  for (int leaf = 0; (leaf = walk.next(query)) >= 0;) {
     if (!is_mesh) points.corner = surface.points[leaf].points;
     const TriangleLeaf& all = is_mesh ? surface.triangles[leaf] : points;
     const Mask near = is_mesh ? near_triangles(all, capsule) : near_points(all.corner, capsule);
@@ -113,16 +113,16 @@ Mask touching_lanes(const Surface& surface, const Asked& of, float one_by_square
 
 /// Return in which lanes the grid tells that a ball inside of a true shape touches for sure.
 Mask inside_touching(const ShapeNear& of, const Surface& surface, Mask asked) {
-  const PlacedFrame& frame = of.places.frames[of.body.frame];
+  const PlacedFrame& frame = of.placed.frames[of.body.frame];
   Mask touching = 0;
   for (int i = of.body.inside.first; i < of.body.inside.end && (asked & ~touching) != 0; i++) {
     const auto& [centre, radius] = of.robot.inside[i];
     const float reach = radius + of.near + surface.radius;
     // Of smaller ones no cell tells.
-    if (reach <= surface.grid.told) continue;
+    if (reach <= surface.grid.excess) continue;
     const Vec3x16 p = spread(centre);
     const Vec3x16 here = frame.origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
-    touching |= asked & ask(surface.grid, here, 0, reach).sure;
+    touching |= asked & query(surface.grid, here, 0, reach).sure;
   }
   return touching;
 }
@@ -133,7 +133,7 @@ Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Ma
   Mask meeting = inside_touching(of, surface, asked);
   if (is_enough(meeting, wanted)) return meeting;
   const Capsule& capsule = of.robot.capsules[of.capsule];
-  const PlacedCapsule& there = of.places.capsules[of.capsule];
+  const PlacedCapsule& there = of.placed.capsules[of.capsule];
   for (Mask left = asked & ~meeting; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     const CapsuleAt at{lane_of(there.centre, lane), lane_of(there.half, lane), capsule.one_by_squared, reach};
@@ -142,19 +142,19 @@ Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Ma
     if (is_enough(meeting, wanted)) return meeting;
   }
   if (surface.windings.empty()) return meeting;
-  const PlacedFrame& frame = of.places.frames[of.body.frame];
+  const PlacedFrame& frame = of.placed.frames[of.body.frame];
   for (const Vec3& point : of.body.points) {
     const Vec3x16 p = spread(point);
-    const Vec3x16 place = frame.origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
+    const Vec3x16 at = frame.origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
     for (Mask left = asked & ~meeting; left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
-      if (is_inside(surface, lane_of(place, lane))) meeting |= 1U << lane;
+      if (is_inside(surface, lane_of(at, lane))) meeting |= 1U << lane;
     }
   }
   return meeting;
 }
 
-Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& scene, const Places& places,
+Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& scene, const PlacedRobot& placed,
                       Mask blocked, Wanted wanted, Contact* found) {
   const std::span<const float> samples = robot.samples;
   const bool many = scene.surfaces.size() > 1;
@@ -165,11 +165,11 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
     const Capsule& capsule = robot.capsules[i];
     const Body& body = robot.bodies[capsule.body];
     const bool shaped = lengths.shapes_decide && body.shape >= 0;
-    const Asked of{places.capsules[i], samples.subspan(capsule.samples.first, capsule.samples.size()),
+    const Asked of{placed.capsules[i], samples.subspan(capsule.samples.first, capsule.samples.size()),
                    capsule.half_length, lengths.capsules[i], capsule.slack};
     Mask open = ~(blocked | meeting) & ALL_LANES;
     if (scene.around != nullptr && scene.surfaces_tested[i] > 1) {
-      open &= ask(*scene.around, of, Wish::NEAR, open).near;
+      open &= query(*scene.around, of, Sought::NEAR, open).near;
       if (open == 0) continue;
     }
     for (const SurfaceObstacle& each : scene.surfaces) {
@@ -177,14 +177,14 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
       const Surface& surface = *each.surface;
       const float reach = of.covering - of.slack + surface.radius;
       if (many && (beside(surface.grid, of.capsule.centre, of.half + reach) & open) == 0) continue;
-      const NearAndSure told = ask(surface, of, Wish::SURE, open & ~meeting);
-      Mask here = told.sure & ~blocked;
+      const NearAndSure bounds = query(surface, of, Sought::SURE, open & ~meeting);
+      Mask here = bounds.sure & ~blocked;
       if ((meeting | here) == 0 || wanted != Wanted::FIRST || shaped) {
-        const Mask near = told.near & open & ~(blocked | meeting | told.sure);
+        const Mask near = bounds.near & open & ~(blocked | meeting | bounds.sure);
         here |= touching_lanes(surface, of, capsule.one_by_squared, near, shaped ? Wanted::ALL : wanted);
       }
       if (shaped)
-        here = shape_touching({robot, places, body, i, lengths.shapes[capsule.body]}, surface, reach, here, wanted);
+        here = shape_touching({robot, placed, body, i, lengths.shapes[capsule.body]}, surface, reach, here, wanted);
       if (found != nullptr && (meeting & ~blocked) == 0 && here != 0) *found = {Contact::With::SURFACE, i, each.number};
       meeting |= here;
       if (meeting != 0 && wanted == Wanted::FIRST) return meeting;
@@ -194,18 +194,18 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
   return meeting;
 }
 
-Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Places& places) {
+Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const PlacedRobot& placed) {
   for (const SurfaceObstacle& each : scene.surfaces) {
     const Surface& surface = *each.surface;
     for (int i = robot.fixed_capsules() - 1; i >= 0; i--) {
       if (!each.tested[i]) continue;
       const Capsule& capsule = robot.capsules[i];
-      const Vec3 centre = lane_of(places.capsules[i].centre, 0);
+      const Vec3 centre = lane_of(placed.capsules[i].centre, 0);
       // As it is: what does not move is placed without rounding, and may stand on what it touches nearly.
       const auto radius = static_cast<float>(robot.lengths.capsules[i] - robot.padding - capsule.slack);
-      const CapsuleAt at{centre, lane_of(places.capsules[i].half, 0), capsule.one_by_squared, radius + surface.radius};
+      const CapsuleAt at{centre, lane_of(placed.capsules[i].half, 0), capsule.one_by_squared, radius + surface.radius};
       const Body& body = robot.bodies[capsule.body];
-      const ShapeNear shape{robot, places, body, i,
+      const ShapeNear shape{robot, placed, body, i,
                             static_cast<float>(robot.lengths.shapes[capsule.body] - robot.padding)};
       if ((touches(surface, at) || (!surface.windings.empty() && is_inside(surface, centre))) &&
           (body.shape < 0 || shape_touching(shape, surface, at.reach, 1, Wanted::FIRST) != 0)) {

@@ -10,11 +10,11 @@ namespace evenroad::robot {
 
 /// Return the mask of lanes, of those that are not blocked, in which a capsule that moves touches a surface or is
 /// inside of a closed one.
-Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& scene, const Places& places,
+Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& scene, const PlacedRobot& placed,
                       Mask blocked, Wanted wanted, Contact* found = nullptr);
 
 /// Return a capsule that does not move, and the surface that it touches.
-Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Places& places);
+Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const PlacedRobot& placed);
 
 /// Return which triangles of a leaf touch a capsule.
 Mask near_triangles(const TriangleLeaf& leaf, const CapsuleAt& capsule);
@@ -22,7 +22,7 @@ Mask near_triangles(const TriangleLeaf& leaf, const CapsuleAt& capsule);
 /// What of a body comes near a surface in some lanes, as its capsule there has told.
 struct ShapeNear {
   const Robot& robot;
-  const Places& places;
+  const PlacedRobot& placed;
   const Body& body;
   int capsule;
   float near;  // shapes nearer than this touch [m]
@@ -33,6 +33,6 @@ struct ShapeNear {
 Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Mask asked, Wanted wanted);
 
 /// Return whether a place that touches no triangle is inside of a closed mesh.
-bool is_inside(const Surface& mesh, Vec3 place);
+bool is_inside(const Surface& mesh, Vec3 point);
 
 }  // namespace evenroad::robot

@@ -55,7 +55,7 @@ std::pair<int, int> cells_of(double least, double most, int count) {
           std::min(static_cast<int>(std::floor(std::clamp(most, -1.0, end) + SURE)), count - 1)};
 }
 
-void mark_triangle(const GridPlace& grid, const Polygon& triangle, std::vector<std::uint8_t>& marked) {
+void mark_triangle(const GridLayout& grid, const Polygon& triangle, std::vector<std::uint8_t>& marked) {
   int first[3], last[3], longest = 0;
   for (int axis = 0; axis < 3; axis++) {
     double least, most;
@@ -122,8 +122,8 @@ void spread_along(std::span<const std::int32_t> squared, std::span<std::int32_t>
 
 }  // namespace
 
-GridPlace place_grid(const double (&low)[3], const double (&high)[3], double count) {
-  GridPlace grid{};
+GridLayout grid_layout(const double (&low)[3], const double (&high)[3], double count) {
+  GridLayout grid{};
   double product = 1;
   for (int axis = 0; axis < 3; axis++) product *= std::max(high[axis] - low[axis], LEAST_CELL);
   grid.cell = std::max(std::pow(product / count, 1.0 / 3.0), LEAST_CELL);
@@ -135,7 +135,7 @@ GridPlace place_grid(const double (&low)[3], const double (&high)[3], double cou
   return grid;
 }
 
-void mark_points(const GridPlace& grid, std::span<const double> points, std::vector<std::uint8_t>& marked) {
+void mark_points(const GridLayout& grid, std::span<const double> points, std::vector<std::uint8_t>& marked) {
   const double one_by_cell = 1.0 / grid.cell;
   for (std::size_t i = 0; i < points.size(); i += 3) {
     std::size_t number = 0;
@@ -147,7 +147,7 @@ void mark_points(const GridPlace& grid, std::span<const double> points, std::vec
   }
 }
 
-void mark_triangles(const GridPlace& grid, std::span<const double> triangles, std::vector<std::uint8_t>& marked) {
+void mark_triangles(const GridLayout& grid, std::span<const double> triangles, std::vector<std::uint8_t>& marked) {
   for (std::size_t i = 0; i < triangles.size(); i += 9) {
     Polygon triangle;
     triangle.count = 3;
@@ -158,7 +158,7 @@ void mark_triangles(const GridPlace& grid, std::span<const double> triangles, st
   }
 }
 
-void mark_boxes(const GridPlace& grid, std::span<const std::array<double, 6>> boxes,
+void mark_boxes(const GridLayout& grid, std::span<const std::array<double, 6>> boxes,
                 std::vector<std::uint8_t>& marked) {
   for (const std::array<double, 6>& box : boxes) {
     std::pair<int, int> cells[3];
@@ -176,12 +176,12 @@ void mark_boxes(const GridPlace& grid, std::span<const std::array<double, 6>> bo
   }
 }
 
-std::vector<std::int8_t> count_windings(const GridPlace& grid, std::span<const double> triangles, bool turned) {
+std::vector<std::int8_t> count_windings(const GridLayout& grid, std::span<const double> triangles, bool turned) {
   const auto [nx, ny, nz] = grid.cells;
   // Where lines along x through the middles of cells cross.
   std::vector<std::int32_t> crossings(static_cast<std::size_t>(ny) * nz * (nx + 1));
-  const auto cells = [&](double place, int axis) {
-    return std::min(std::max((place - grid.low[axis]) / grid.cell - 0.5, -1.0), 1e9);
+  const auto cells = [&](double at, int axis) {
+    return std::min(std::max((at - grid.low[axis]) / grid.cell - 0.5, -1.0), 1e9);
   };
   for (std::size_t i = 0; i < triangles.size(); i += 9) {
     const double *a = triangles.data() + i, *b = a + 3, *c = a + 6;
@@ -196,8 +196,9 @@ std::vector<std::int8_t> count_windings(const GridPlace& grid, std::span<const d
         const double p = grid.low[1] + (y + 0.5) * grid.cell, q = grid.low[2] + (z + 0.5) * grid.cell;
         const double u = area_beside(b, c, p, q), v = area_beside(c, a, p, q), w = area_beside(a, b, p, q);
         if ((u > 0.0) != (v > 0.0) || (v > 0.0) != (w > 0.0)) continue;
-        const double place = (u * a[0] + v * b[0] + w * c[0]) / (u + v + w);
-        const double behind = std::min(std::max((place - grid.low[0]) / grid.cell - 0.5, 0.0), static_cast<double>(nx));
+        const double crossed = (u * a[0] + v * b[0] + w * c[0]) / (u + v + w);
+        const double behind =
+            std::min(std::max((crossed - grid.low[0]) / grid.cell - 0.5, 0.0), static_cast<double>(nx));
         const std::size_t line = (static_cast<std::size_t>(y) * nz + z) * (nx + 1);
         crossings[line + static_cast<std::size_t>(std::ceil(behind))] += u > 0.0 || !turned ? 1 : -1;
       }
@@ -216,16 +217,16 @@ std::vector<std::int8_t> count_windings(const GridPlace& grid, std::span<const d
   return windings;
 }
 
-int winding_at(const double (&place)[3], std::span<const double> triangles, bool turned) {
+int winding_at(const double (&point)[3], std::span<const double> triangles, bool turned) {
   const double half = 0.5 * LEAST_CELL;
-  const GridPlace around{{place[0] - half, place[1] - half, place[2] - half}, LEAST_CELL, {1, 1, 1}};
+  const GridLayout around{{point[0] - half, point[1] - half, point[2] - half}, LEAST_CELL, {1, 1, 1}};
   return count_windings(around, triangles, turned)[0];
 }
 
 /// Between cells d apart along an axis there are d - 1: so distances, axis by axis, from cells that are marked or next
 /// to one (after P. Felzenszwalb and D. Huttenlocher, Distance Transforms of Sampled Functions, 2012, but each line is
 /// searched up to the farthest that is told apart, many lines at once).
-std::vector<std::uint8_t> distances_to(const GridPlace& grid, std::span<const std::uint8_t> marked) {
+std::vector<std::uint8_t> distances_to(const GridLayout& grid, std::span<const std::uint8_t> marked) {
   const auto [nx, ny, nz] = grid.cells;
   std::vector<std::int32_t> squared(grid.count(), FARTHEST * FARTHEST), least(grid.count());
   const auto line = [&](int x, int y) { return (static_cast<std::size_t>(x) * ny + y) * nz; };
@@ -265,19 +266,19 @@ std::vector<std::uint8_t> distances_to(const GridPlace& grid, std::span<const st
   return distances;
 }
 
-DistanceGrid make_grid(const GridPlace& place, double told, std::vector<std::uint8_t> distances) {
+DistanceGrid make_grid(const GridLayout& layout, double excess, std::vector<std::uint8_t> distances) {
   // A place on the upper side is in the last cell, not beyond it.
-  const double within = place.cell * (1.0 - 1e-5);
+  const double within = layout.cell * (1.0 - 1e-5);
   const auto single = [](double x, double y, double z) {
     return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
   };
   DistanceGrid grid;
-  std::copy_n(place.cells, 3, grid.cells);
-  grid.low = single(place.low[0], place.low[1], place.low[2]);
-  grid.size = single(place.cells[0] * within, place.cells[1] * within, place.cells[2] * within);
-  grid.one_by_cell = static_cast<float>(1.0 / place.cell);
-  grid.step = static_cast<float>(place.cell / STEPS * (1.0 - 1e-6));
-  grid.told = static_cast<float>(told);
+  std::copy_n(layout.cells, 3, grid.cells);
+  grid.low = single(layout.low[0], layout.low[1], layout.low[2]);
+  grid.size = single(layout.cells[0] * within, layout.cells[1] * within, layout.cells[2] * within);
+  grid.one_by_cell = static_cast<float>(1.0 / layout.cell);
+  grid.step = static_cast<float>(layout.cell / STEPS * (1.0 - 1e-6));
+  grid.excess = static_cast<float>(excess);
   grid.distances = std::move(distances);
   return grid;
 }

@@ -11,7 +11,7 @@
 namespace evenroad::robot {
 
 /// Where a grid's cells are.
-struct GridPlace {
+struct GridLayout {
   double low[3];  // corner
   double cell;    // side
   int cells[3];   // along each axis
@@ -20,28 +20,29 @@ struct GridPlace {
 };
 
 /// Return a grid of about so many cells around a box, half a cell beyond it or more; no cell is smaller than 4 mm.
-GridPlace place_grid(const double (&low)[3], const double (&high)[3], double count);
+GridLayout grid_layout(const double (&low)[3], const double (&high)[3], double count);
 
 /// Mark the cells that points are in.
-void mark_points(const GridPlace& grid, std::span<const double> points, std::vector<std::uint8_t>& marked);
+void mark_points(const GridLayout& grid, std::span<const double> points, std::vector<std::uint8_t>& marked);
 
 /// Mark the cells that triangles, nine numbers each, are in.
-void mark_triangles(const GridPlace& grid, std::span<const double> triangles, std::vector<std::uint8_t>& marked);
+void mark_triangles(const GridLayout& grid, std::span<const double> triangles, std::vector<std::uint8_t>& marked);
 
 /// Mark the cells that boxes along the axes, lower and upper corner, are in.
-void mark_boxes(const GridPlace& grid, std::span<const std::array<double, 6>> boxes, std::vector<std::uint8_t>& marked);
+void mark_boxes(const GridLayout& grid, std::span<const std::array<double, 6>> boxes,
+                std::vector<std::uint8_t>& marked);
 
 /// Return how often closed triangles wind around the middle of each cell.
 ///
 /// `turned` says whether their sides tell inside from outside; where they do not, it is 1 where a line from outside
 /// crosses an odd number of them.
-std::vector<std::int8_t> count_windings(const GridPlace& grid, std::span<const double> triangles, bool turned);
+std::vector<std::int8_t> count_windings(const GridLayout& grid, std::span<const double> triangles, bool turned);
 
 /// Return the same of one place.
-int winding_at(const double (&place)[3], std::span<const double> triangles, bool turned);
+int winding_at(const double (&point)[3], std::span<const double> triangles, bool turned);
 
 /// Return how far all of each cell is from those that are marked, in parts of a cell, rounded down; 255 or more.
-std::vector<std::uint8_t> distances_to(const GridPlace& grid, std::span<const std::uint8_t> marked);
+std::vector<std::uint8_t> distances_to(const GridLayout& grid, std::span<const std::uint8_t> marked);
 
 /// A byte of distances counts the STEPS-th part of a cell.
 constexpr int STEPS = 4;
@@ -51,9 +52,9 @@ struct DistanceGrid {
   int cells[3] = {0, 0, 0};
   Vec3 low, size;  // lower corner, and extents
   float one_by_cell = 0, step = 0;
-  float told = 0;  // by how much a distance is larger at most than a byte says
+  float excess = 0;  // by how much a distance is larger at most than a byte says
   std::vector<std::uint8_t> distances;
 };
-DistanceGrid make_grid(const GridPlace& place, double told, std::vector<std::uint8_t> distances);
+DistanceGrid make_grid(const GridLayout& layout, double excess, std::vector<std::uint8_t> distances);
 
 }  // namespace evenroad::robot

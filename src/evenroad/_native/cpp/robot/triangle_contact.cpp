@@ -16,15 +16,16 @@ constexpr float UNSURE = 2e-6F;
 EVENROAD_INLINE Floats16 part(Floats16 share) { return clamp(share, Floats16{}, spread(1)); }
 
 /// Return which sides are within `reach` of a segment, see `capsules_touching`.
-EVENROAD_INLINE Mask near_side(Vec3x16 start, Vec3x16 way, Vec3x16 along, const CapsuleAt& capsule) {
+EVENROAD_INLINE Mask near_side(Vec3x16 start, Vec3x16 direction, Vec3x16 along, const CapsuleAt& capsule) {
   const float one_by_squared = capsule.one_by_squared;
-  const Floats16 ef = dot(way, along), er = dot(start, along), fr = dot(way, start), ff = dot(way, way);
-  const Vec3x16 across = minus(way, along, ef * one_by_squared), aside = minus(start, along, er * one_by_squared);
+  const Floats16 ef = dot(direction, along), er = dot(start, along), fr = dot(direction, start),
+                 ff = dot(direction, direction);
+  const Vec3x16 across = minus(direction, along, ef * one_by_squared), aside = minus(start, along, er * one_by_squared);
   Floats16 share = part(-dot(across, aside) / max(dot(across, across), spread(LEAST_SQUARE)));
-  Floats16 place = cut(fma(ef, share, er) * one_by_squared);
-  share = part(fma(ef, place, -fr) / max(ff, spread(LEAST_SQUARE)));
-  place = cut(fma(ef, share, er) * one_by_squared);
-  const Vec3x16 apart = minus(plus(start, way, share), along, place);
+  Floats16 other = cut(fma(ef, share, er) * one_by_squared);
+  share = part(fma(ef, other, -fr) / max(ff, spread(LEAST_SQUARE)));
+  other = cut(fma(ef, share, er) * one_by_squared);
+  const Vec3x16 apart = minus(plus(start, direction, share), along, other);
   return below_zero(dot(apart, apart) - capsule.reach * capsule.reach);
 }
 
@@ -74,9 +75,9 @@ Mask near_triangles(const TriangleLeaf& leaf, const CapsuleAt& capsule) {
 // How often the mesh winds around a place is known for the middle of its cell, and changes where the way there crosses
 // a triangle of a closed part.  Outside of the grid nothing is inside.  Where a crossing is too near to a side to tell,
 // it counts as inside.
-bool is_inside(const Surface& mesh, Vec3 place) {
+bool is_inside(const Surface& mesh, Vec3 point) {
   const DistanceGrid& grid = mesh.grid;
-  const float u = place.x - grid.low.x, v = place.y - grid.low.y, w = place.z - grid.low.z;
+  const float u = point.x - grid.low.x, v = point.y - grid.low.y, w = point.z - grid.low.z;
   if (std::min({u, v, w}) < 0 || u > grid.size.x || v > grid.size.y || w > grid.size.z) return false;
   const int i = static_cast<int>(u * grid.one_by_cell), j = static_cast<int>(v * grid.one_by_cell);
   const int k = static_cast<int>(w * grid.one_by_cell);
@@ -84,17 +85,16 @@ bool is_inside(const Surface& mesh, Vec3 place) {
   if (grid.distances[number] != 0) return false;
   int winding = mesh.windings[number];
   const float cell = 1.0F / grid.one_by_cell;
-  const auto half_way = [cell](float low, int number, float from) {
+  const auto half_to = [cell](float low, int number, float from) {
     return 0.5F * (low + (static_cast<float>(number) + 0.5F) * cell - from);
   };
-  const Vec3 half = {half_way(grid.low.x, i, place.x), half_way(grid.low.y, j, place.y),
-                     half_way(grid.low.z, k, place.z)};
+  const Vec3 half = {half_to(grid.low.x, i, point.x), half_to(grid.low.y, j, point.y), half_to(grid.low.z, k, point.z)};
   const float squared = half.x * half.x + half.y * half.y + half.z * half.z;
-  const CapsuleAt way{
-      {place.x + half.x, place.y + half.y, place.z + half.z}, half, 1.0F / std::max(squared, LEAST_SQUARE), UNSURE};
+  const CapsuleAt segment{
+      {point.x + half.x, point.y + half.y, point.z + half.z}, half, 1.0F / std::max(squared, LEAST_SQUARE), UNSURE};
   Walk walk(mesh.tree);
-  for (int leaf = 0; (leaf = walk.next([&](const BoxNode& node) { return near_nodes(node, way); })) >= 0;) {
-    const std::optional<int> crossed = crossings(mesh.triangles[leaf], mesh.closed[leaf], place, half);
+  for (int leaf = 0; (leaf = walk.next([&](const BoxNode& node) { return near_nodes(node, segment); })) >= 0;) {
+    const std::optional<int> crossed = crossings(mesh.triangles[leaf], mesh.closed[leaf], point, half);
     if (!crossed) return true;
     winding -= *crossed;
   }

@@ -44,15 +44,15 @@ double half_angle(std::span<const double> before, std::span<const double> after)
 }
 
 /// Return whether a place is within a distance of the straight way from one place to another.
-bool is_between(std::span<const double> place, std::span<const double> from, std::span<const double> to, double off) {
+bool is_between(std::span<const double> point, std::span<const double> from, std::span<const double> to, double off) {
   double along = 0.0, squared = 0.0, away = 0.0;
-  for (std::size_t k = 0; k < place.size(); k++) {
-    along += (place[k] - from[k]) * (to[k] - from[k]);
+  for (std::size_t k = 0; k < point.size(); k++) {
+    along += (point[k] - from[k]) * (to[k] - from[k]);
     squared += (to[k] - from[k]) * (to[k] - from[k]);
   }
   const double share = squared > 0.0 ? std::clamp(along / squared, 0.0, 1.0) : 0.0;
-  for (std::size_t k = 0; k < place.size(); k++) {
-    const double gap = place[k] - from[k] - share * (to[k] - from[k]);
+  for (std::size_t k = 0; k < point.size(); k++) {
+    const double gap = point[k] - from[k] - share * (to[k] - from[k]);
     away += gap * gap;
   }
   return away <= off * off;

@@ -49,7 +49,7 @@ class TorqueSides {
   }
 
   void write(const EightRows& rows, std::size_t first, Used& used) {
-    states_.place(rows.q);
+    states_.move_to(rows.q);
     // A squared speed of 1 gives velocities that are directions, and accelerations that are bends.
     states_.move({}, rows.velocity, {});
     copy(used.slope, first);
@@ -86,7 +86,7 @@ class TipSides {
   }
 
   void write(const EightRows& rows, std::size_t first, std::size_t column, Used& used) {
-    states_.place(rows.q);
+    states_.move_to(rows.q);
     states_.move({}, rows.velocity, {});
     const Vectors pushed = states_.acceleration(limits_.link, limits_.point);
     const States length = sqrt(squared(pushed)), inverse = 1.0 / max(length, all<States>(NO_LENGTH));
@@ -147,13 +147,13 @@ FurtherShares further_shares(const FurtherLimits& limits, Matrix<const double> q
   for (std::size_t first = 0; first < q.rows; first += STATES) {
     rows.read(q, velocity, acceleration, first);
     if (arm) {
-      arm->place(rows.q);
+      arm->move_to(rows.q);
       arm->move(rows.velocity, rows.acceleration, limits.torque->upwards());
       arm->write_torques(needed);
       for (std::size_t k = 0; k < needed.size(); k++) torque = max(torque, abs(needed[k]) / limits.torque->efforts[k]);
     }
     if (tip) {
-      tip->place(rows.q);
+      tip->move_to(rows.q);
       tip->move({}, rows.velocity, {});
       speed = max(speed, squared(tip->acceleration(limits.tip->link, limits.tip->point)));
       tip->move(rows.velocity, rows.acceleration, {});

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "common/lanes.hpp"
-#include "trajectory/places.hpp"
+#include "trajectory/along_path.hpp"
 #include "trajectory/time_law.hpp"
 
 namespace evenroad::trajectory {
@@ -41,9 +41,9 @@ void StatesAt::write(std::span<const double> t, Matrix<double> positions, Matrix
       const auto after = std::ranges::upper_bound(law.times.begin() + 1, law.times.end() - 1, now);
       i = static_cast<std::size_t>(after - law.times.begin()) - 1;
     }
-    const Place place(law, i, now - law.times[i]);
-    const Turn turn(path, pieces_[i], place.length);
-    const double speed = is_inside ? place.speed : 0.0, push = is_inside ? law.accelerations[i] : 0.0;
+    const Progress progress(law, i, now - law.times[i]);
+    const Turn turn(path, pieces_[i], progress.length);
+    const double speed = is_inside ? progress.speed : 0.0, push = is_inside ? law.accelerations[i] : 0.0;
     for (std::size_t k = 0; k < path.dim(); k++) {
       const double direction = turn.direction(path, k);
       positions(row, k) = turn.position(path, k);
@@ -69,20 +69,20 @@ Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const Most& m
       // Along a line nothing is largest but at an end.
       if (i == 0 || pieces[i] != pieces[i - 1]) along = along_line(path, pieces[i], most);
       for (const double share : {0.0, NEARLY_ONE}) {
-        const Place place(law, i, (law.times[i + 1] - law.times[i]) * share);
-        shares.velocity = std::max(shares.velocity, along.velocity * place.speed);
+        const Progress progress(law, i, (law.times[i + 1] - law.times[i]) * share);
+        shares.velocity = std::max(shares.velocity, along.velocity * progress.speed);
       }
       shares.acceleration = std::max(shares.acceleration, along.of_push(law.accelerations[i]));
       continue;
     }
     for (std::size_t sample = 0; sample < samples; sample++) {
       const double share = NEARLY_ONE * static_cast<double>(sample) / static_cast<double>(samples - 1);
-      const Place place(law, i, (law.times[i + 1] - law.times[i]) * share);
-      const Turn turn(path, pieces[i], place.length);
+      const Progress progress(law, i, (law.times[i + 1] - law.times[i]) * share);
+      const Turn turn(path, pieces[i], progress.length);
       for (std::size_t k = 0; k < path.dim(); k++) {
         const double direction = turn.direction(path, k);
-        const double push = direction * law.accelerations[i] + turn.curve(path, k) * (place.speed * place.speed);
-        shares.velocity = std::max(shares.velocity, std::abs(direction * place.speed) / most.velocity[k]);
+        const double push = direction * law.accelerations[i] + turn.curve(path, k) * (progress.speed * progress.speed);
+        shares.velocity = std::max(shares.velocity, std::abs(direction * progress.speed) / most.velocity[k]);
         shares.acceleration = std::max(shares.acceleration, most.share(k, push, direction, direction));
       }
     }

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "trajectory/places.hpp"
+#include "trajectory/along_path.hpp"
 
 namespace evenroad::trajectory {
 
@@ -85,7 +85,8 @@ struct Speeds {
 PathStates states_of(const RoundedPath& path, const Grid& grid) {
   PathStates states(grid.pieces.size() + path.pieces(), path.dim());
   for (std::size_t i = 0; i < grid.lengths.size(); i++) {
-    const bool begins = i < grid.pieces.size(), ends = i > 0 && (!begins || grid.pieces[i] != grid.pieces[i - 1]);
+    const bool is_first = i < grid.pieces.size(),
+               is_last = i > 0 && (!is_first || grid.pieces[i] != grid.pieces[i - 1]);
     const auto write = [&](std::size_t row, std::size_t piece) {
       const Turn turn(path, piece, grid.lengths[i]);
       for (std::size_t k = 0; k < path.dim(); k++) {
@@ -94,8 +95,8 @@ PathStates states_of(const RoundedPath& path, const Grid& grid) {
         states.bends(row, k) = turn.curve(path, k);
       }
     };
-    if (ends) write(i + grid.pieces[i - 1], grid.pieces[i - 1]);
-    if (begins) write(i + grid.pieces[i], grid.pieces[i]);
+    if (is_last) write(i + grid.pieces[i - 1], grid.pieces[i - 1]);
+    if (is_first) write(i + grid.pieces[i], grid.pieces[i]);
   }
   return states;
 }

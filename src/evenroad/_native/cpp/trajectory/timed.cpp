@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "trajectory/along_path.hpp"
 #include "trajectory/blends.hpp"
-#include "trajectory/places.hpp"
 
 namespace evenroad::trajectory {
 
@@ -114,7 +114,7 @@ std::vector<double> lengths_at(const TimeLaw& law, std::span<const double> times
   std::size_t i = 0;
   for (const double t : times) {
     while (i + 1 < law.intervals() && law.times[i + 1] <= t) i++;
-    lengths.push_back(Place(law, i, t - law.times[i]).length);
+    lengths.push_back(Progress(law, i, t - law.times[i]).length);
   }
   return lengths;
 }

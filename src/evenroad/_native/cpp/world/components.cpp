@@ -129,7 +129,7 @@ void Components::unite_neighbours(std::vector<std::int32_t>& parent) const {
   const std::int64_t cells = rows * columns;
   Pieces here, there;
   ClockWatch clock(CELLS_A_LOOK);
-  const auto place = [&](std::int32_t gate, std::int16_t piece) {
+  const auto number_of = [&](std::int32_t gate, std::int16_t piece) {
     return piece < 0 ? -1 : cells + first_[gate] + piece;
   };
   for (std::int64_t row = 1; row < rows - 1; row++) {
@@ -148,8 +148,8 @@ void Components::unite_neighbours(std::vector<std::int32_t>& parent) const {
         if (next_gate >= 0) pieces_of(opened_[next_gate], there);
         for (int k = 0; k < PARTS; k++) {
           // The parts on both sides of the line between the two cells.
-          const std::int64_t a = gate < 0 ? cell : place(gate, down ? here[PARTS - 1][k] : here[k][PARTS - 1]);
-          const std::int64_t b = next_gate < 0 ? next : place(next_gate, down ? there[0][k] : there[k][0]);
+          const std::int64_t a = gate < 0 ? cell : number_of(gate, down ? here[PARTS - 1][k] : here[k][PARTS - 1]);
+          const std::int64_t b = next_gate < 0 ? next : number_of(next_gate, down ? there[0][k] : there[k][0]);
           unite(a, b, parent);
         }
       }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "world/coarse_way.hpp"
+#include "world/coarse_path.hpp"
 #include "world/node_memory.hpp"
 
 namespace evenroad::world {

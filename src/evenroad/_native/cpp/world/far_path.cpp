@@ -39,26 +39,26 @@ class Follower {
       : disk_(disk), start_(start), goals_(goals), most_(most), corridor_(disk) {}
 
   /// Return the path along a way; without points where it leads through a gap that is too narrow.
-  LatticePath follow(const CoarseWay& way) {
-    const Point goal = goals_[way.goal];
+  LatticePath follow(const CoarsePath& coarse) {
+    const Point goal = goals_[coarse.goal];
     found_.points = {start_};
     Cell last = cell_of(disk_, start_);
-    for (std::size_t begin = 0; begin <= way.portals.size();) {
-      const std::size_t end = end_of_leg(way, begin);
-      const bool is_last = end == way.portals.size();
+    for (std::size_t begin = 0; begin <= coarse.portals.size();) {
+      const std::size_t end = end_of_leg(coarse, begin);
+      const bool is_last = end == coarse.portals.size();
       corridor_.clear();
       corridor_.add(last);
-      for (std::size_t i = begin; i < std::min(end + 1, way.portals.size()); i++) {
-        const Cell at = way.portals[i];
+      for (std::size_t i = begin; i < std::min(end + 1, coarse.portals.size()); i++) {
+        const Cell at = coarse.portals[i];
         corridor_.add(at), corridor_.add({at.row + 1, at.column}), corridor_.add({at.row, at.column + 1});
       }
       if (is_last) corridor_.add(cell_of(disk_, goal));
-      if (!reach(is_last ? goal : centre(way.portals[end]))) return none();
-      last = way.portals[std::min(end, way.portals.size() - 1)];
+      if (!reach(is_last ? goal : centre(coarse.portals[end]))) return none();
+      last = coarse.portals[std::min(end, coarse.portals.size() - 1)];
       begin = end + 1;
     }
     LatticePath found = none();
-    found.goal = static_cast<std::int64_t>(way.goal), found.points = std::move(found_.points);
+    found.goal = static_cast<std::int64_t>(coarse.goal), found.points = std::move(found_.points);
     return found;
   }
 
@@ -72,10 +72,10 @@ class Follower {
   }
 
   /// Return the portal at which a leg ends, one that surely is free; the number of portals at the goal.
-  std::size_t end_of_leg(const CoarseWay& way, std::size_t begin) const {
+  std::size_t end_of_leg(const CoarsePath& coarse, std::size_t begin) const {
     std::size_t end = begin + LEG - 1;
-    while (end < way.portals.size() && disk_.cell(way.portals[end].row, way.portals[end].column) < FREE) end++;
-    return end + LEG / 2 < way.portals.size() ? end : way.portals.size();
+    while (end < coarse.portals.size() && disk_.cell(coarse.portals[end].row, coarse.portals[end].column) < FREE) end++;
+    return end + LEG / 2 < coarse.portals.size() ? end : coarse.portals.size();
   }
 
   /// Go on to a place in the corridor; say whether there is a path.
@@ -98,9 +98,9 @@ class Follower {
   LatticePath found_;
 };
 
-std::vector<Cell> cells_of(const Disk& disk, std::span<const Point> places) {
+std::vector<Cell> cells_of(const Disk& disk, std::span<const Point> points) {
   std::vector<Cell> cells;
-  for (const Point place : places) cells.push_back(cell_of(disk, place));
+  for (const Point point : points) cells.push_back(cell_of(disk, point));
   return cells;
 }
 
@@ -108,9 +108,9 @@ LatticePath find_far(const Disk& disk, Point start, std::span<const Point> goals
   Follower follower(disk, start, goals, most);
   const Cell from = cell_of(disk, start);
   const std::vector<Cell> to = cells_of(disk, goals);
-  const std::optional<CoarseWay> any = find_coarse_way(disk, Open::NOT_BLOCKED, from, to);
+  const std::optional<CoarsePath> any = find_coarse_path(disk, Open::NOT_BLOCKED, from, to);
   if (!any) return {{}, -1, 0, 0, true};
-  const std::optional<CoarseWay> sure = find_coarse_way(disk, Open::SURELY_FREE, from, to);
+  const std::optional<CoarsePath> sure = find_coarse_path(disk, Open::SURELY_FREE, from, to);
   if (!sure || any->length < SHORTER * sure->length) {
     if (LatticePath found = follower.follow(*any); found.goal >= 0) return found;
   }
@@ -122,7 +122,7 @@ LatticePath find_far(const Disk& disk, Point start, std::span<const Point> goals
 bool may_reach(const Disk& disk, Point start, std::span<const Point> goals) {
   const auto is_inside = [&](Point at) { return disk.is_inside(disk.frame().to_padded(at)); };
   if (!has_coarse_level(disk) || !is_inside(start) || !std::all_of(goals.begin(), goals.end(), is_inside)) return true;
-  return find_coarse_way(disk, Open::NOT_BLOCKED, cell_of(disk, start), cells_of(disk, goals)).has_value();
+  return find_coarse_path(disk, Open::NOT_BLOCKED, cell_of(disk, start), cells_of(disk, goals)).has_value();
 }
 
 LatticePath find_path(const Disk& disk, Point start, std::span<const Point> goals, std::int64_t most) {

@@ -38,7 +38,7 @@ class Owners {
     for (std::int64_t row = std::max<std::int64_t>(top_ + 1, 0); row < bottom; row++) {
       for (std::int64_t column = std::max<std::int64_t>(left_ + 1, 0); column < right; column++) {
         const std::uint8_t state = disk.cell(row, column);
-        states_[place(row, column)] = state;
+        states_[index(row, column)] = state;
         has_undecided_ |= state == UNDECIDED;
       }
     }
@@ -50,7 +50,7 @@ class Owners {
   bool has_undecided() const { return has_undecided_; }
 
   bool is_gate(std::int64_t row, std::int64_t column) const {
-    const std::int64_t cell = place(row, column);
+    const std::int64_t cell = index(row, column);
     if (states_[cell] != UNDECIDED) return false;
     bool is_gate = owner_[cell] == 0 || depth_[cell] >= DEEP;
     for (const std::int64_t step : around_) {
@@ -66,7 +66,7 @@ class Owners {
     std::int32_t parent;
   };
 
-  std::int64_t place(std::int64_t row, std::int64_t column) const { return (row - top_) * side_ + column - left_; }
+  std::int64_t index(std::int64_t row, std::int64_t column) const { return (row - top_) * side_ + column - left_; }
 
   std::int32_t root(std::int32_t run) {
     while (runs_[run].parent != run) run = runs_[run].parent = runs_[runs_[run].parent].parent;

@@ -35,7 +35,7 @@ class NodeMemory {
 
   NodeMemory(std::int64_t rows, std::int64_t columns) : wide_((columns >> SHIFT) + 1) {
     const auto blocks = static_cast<std::size_t>(wide_ * ((rows >> SHIFT) + 1));
-    for (Blocks& each : kept_.blocks) each.of_place.resize(std::max(each.of_place.size(), blocks));
+    for (Blocks& each : kept_.blocks) each.by_index.resize(std::max(each.by_index.size(), blocks));
     if (++kept_.search != 0) return;
     // Numbers of searches repeat: nothing of old ones may be left.
     for (Blocks& each : kept_.blocks) each.spare.clear();
@@ -47,8 +47,8 @@ class NodeMemory {
 
   ~NodeMemory() {
     for (Blocks& each : kept_.blocks) {
-      for (auto& [place, block] : each.taken) {
-        each.of_place[place] = nullptr;
+      for (auto& [index, block] : each.taken) {
+        each.by_index[index] = nullptr;
         if (each.spare.size() < MOST_KEPT) each.spare.push_back(std::move(block));
       }
       each.taken.clear();
@@ -57,7 +57,7 @@ class NodeMemory {
 
   /// Return what is known of a node, or null where it was not reached.
   NodeState* find(Node at) const {
-    NodeState* const block = kept_.blocks[kind(at)].of_place[place(at)];
+    NodeState* const block = kept_.blocks[kind(at)].by_index[index(at)];
     if (block == nullptr) return nullptr;
     NodeState& state = block[inside(at)];
     return state.search == kept_.search ? &state : nullptr;
@@ -66,8 +66,8 @@ class NodeMemory {
   /// Note that a node was reached at a cost, by a step.
   void reach(Node at, std::int32_t cost, std::uint8_t step) {
     Blocks& blocks = kept_.blocks[kind(at)];
-    NodeState*& block = blocks.of_place[place(at)];
-    if (block == nullptr) block = take(blocks, place(at), kind(at) == 0 ? SIDE * SIDE : 3 * SIDE * SIDE);
+    NodeState*& block = blocks.by_index[index(at)];
+    if (block == nullptr) block = take(blocks, index(at), kind(at) == 0 ? SIDE * SIDE : 3 * SIDE * SIDE);
     block[inside(at)] = {cost, kept_.search, step, false};
   }
 
@@ -86,7 +86,7 @@ class NodeMemory {
 
   struct Blocks {
     /// The block of each place, null where none is taken.
-    std::vector<NodeState*> of_place;
+    std::vector<NodeState*> by_index;
     std::vector<std::pair<std::size_t, Block>> taken;
     std::vector<Block> spare;
   };
@@ -104,7 +104,7 @@ class NodeMemory {
 
   static int kind(Node at) { return (at.row & at.column & 1) != 0 ? 0 : 1; }
 
-  std::size_t place(Node at) const {
+  std::size_t index(Node at) const {
     return static_cast<std::size_t>((at.row >> SHIFT) * wide_ + (at.column >> SHIFT));
   }
 
@@ -114,7 +114,7 @@ class NodeMemory {
     return kind(at) == 0 ? cell : ((row & 1) << 1 | (column & 1)) << 2 * HALF | cell;
   }
 
-  static NodeState* take(Blocks& blocks, std::size_t place, std::size_t nodes) {
+  static NodeState* take(Blocks& blocks, std::size_t index, std::size_t nodes) {
     Block block;
     if (blocks.spare.empty()) {
       block.reset(static_cast<NodeState*>(std::calloc(nodes, sizeof(NodeState))));
@@ -123,7 +123,7 @@ class NodeMemory {
       block = std::move(blocks.spare.back());
       blocks.spare.pop_back();
     }
-    blocks.taken.emplace_back(place, std::move(block));
+    blocks.taken.emplace_back(index, std::move(block));
     return blocks.taken.back().second.get();
   }
 

@@ -16,7 +16,7 @@ struct PlacedFrame {
 };
 
 /// Return places of segments `centre + s half` cut to the segments, s from -1 to 1.
-EVENROAD_INLINE Floats16 cut(Floats16 place) { return clamp(place, spread(-1), spread(1)); }
+EVENROAD_INLINE Floats16 cut(Floats16 share) { return clamp(share, spread(-1), spread(1)); }
 
 struct PlacedBody {
   Vec3x16 centre, half;  // half extents of the box around its capsules, along the root's axes
@@ -46,7 +46,7 @@ class KeptOfPairs {
  public:
   /// Return the same of the end of a search between two leaves.
   Ended& end_of(int first, int second) {
-    KeptEnd& kept = ends_[static_cast<std::size_t>(37 * first + second) % ends_.size()];
+    KeptEnd& kept = searches_[static_cast<std::size_t>(37 * first + second) % searches_.size()];
     if (kept.first != first || kept.second != second) kept.first = first, kept.second = second, kept.ended.size = 0;
     return kept.ended;
   }
@@ -60,23 +60,23 @@ class KeptOfPairs {
 
  private:
   std::array<Kept, 512> kept_;
-  std::array<KeptEnd, 64> ends_;
+  std::array<KeptEnd, 64> searches_;
 };
 
-struct Places {
+struct PlacedRobot {
   std::vector<PlacedFrame> frames;  // the root's first
   std::vector<PlacedBody> bodies;
   std::vector<PlacedCapsule> capsules;
   KeptOfPairs kept, kept_of_itself;  // of true shapes and obstacles, of hulls of the robot: no answer depends on them
 
   /// Room for a robot's places, with those that no joint moves.
-  explicit Places(const Robot& robot);
+  explicit PlacedRobot(const Robot& robot);
 
   /// Write what moves for sixteen configurations: sixteen numbers a coordinate.
-  void place(const Robot& robot, const Lengths& lengths, std::span<const Doubles16> states);
+  void move_to(const Robot& robot, const Lengths& lengths, std::span<const Doubles16> states);
 
   /// Write the boxes around bodies again, for other lengths.
-  void place_boxes(const Robot& robot, const Lengths& lengths);
+  void write_boxes(const Robot& robot, const Lengths& lengths);
 };
 
 /// Bodies of so few capsules need no box around all of them.

@@ -13,7 +13,7 @@ namespace evenroad::world {
 
 /// The cells in the middles of the portals of a way, each on the side that it comes from; about how long it is, in
 /// pixels; and to which goal it leads.
-struct CoarseWay {
+struct CoarsePath {
   std::vector<Cell> portals;
   double length = 0.0;
   std::size_t goal = 0;
@@ -23,6 +23,6 @@ struct CoarseWay {
 bool has_coarse_level(const Disk& disk);
 
 /// Return about the shortest way over open cells from a cell to one of others, or nothing where there is none.
-std::optional<CoarseWay> find_coarse_way(const Disk& disk, Open open, Cell start, std::span<const Cell> goals);
+std::optional<CoarsePath> find_coarse_path(const Disk& disk, Open open, Cell start, std::span<const Cell> goals);
 
 }  // namespace evenroad::world

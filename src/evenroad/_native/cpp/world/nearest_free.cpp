@@ -1,4 +1,4 @@
-#include "world/nearest_place.hpp"
+#include "world/nearest_free.hpp"
 
 #include <algorithm>
 #include <cmath>

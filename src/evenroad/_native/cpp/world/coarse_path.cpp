@@ -1,5 +1,5 @@
 // A* over the portals; the tiles are made when the search comes to them.
-#include "world/coarse_way.hpp"
+#include "world/coarse_path.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +12,12 @@ namespace evenroad::world {
 namespace {
 
 /// A* over the portals: each is a run of the bottom or right border of a tile.
-class WaySearch {
+class CoarseSearch {
  public:
-  WaySearch(const Disk& disk, Open open, std::span<const Cell> goals)
+  CoarseSearch(const Disk& disk, Open open, std::span<const Cell> goals)
       : tiles_(disk, open), goals_(goals), first_(2 * tiles_.count(), -1) {}
 
-  std::optional<CoarseWay> run(Cell start) {
+  std::optional<CoarsePath> run(Cell start) {
     const std::int64_t tile = tiles_.tile_of(start);
     for (const Cell goal : goals_) goal_parts_.push_back(tiles_.part_at(goal));
     const std::int16_t part = tiles_.part_at(start);
@@ -34,7 +34,7 @@ class WaySearch {
       portal.is_closed = true;
       const double cost = portal.cost;
       const Cell at = portal.middle;
-      const auto [near, border, run] = portal.place;
+      const auto [near, border, run] = portal.at;
       const std::int64_t far = tiles_.beyond(near, border);
       leave(near, tiles_.divided(near).runs[border][run].part, next.node, at, cost);
       leave(far, tiles_.divided(far).runs[border - BOTTOM][run].part, next.node, at, cost);
@@ -43,13 +43,13 @@ class WaySearch {
   }
 
  private:
-  struct Place {
+  struct OnBorder {
     std::int64_t tile;
     int border;
     std::size_t run;
   };
   struct Portal {
-    Place place;
+    OnBorder at;
     Cell middle;
     double cost;
     std::int32_t before;
@@ -111,13 +111,13 @@ class WaySearch {
     return first;
   }
 
-  CoarseWay traced(const Waiting& last) const {
-    CoarseWay way{{}, last.key, static_cast<std::size_t>(-1 - last.node)};
+  CoarsePath traced(const Waiting& last) const {
+    CoarsePath path{{}, last.key, static_cast<std::size_t>(-1 - last.node)};
     for (std::int32_t node = last.before; node >= 0; node = portals_[node].before) {
-      way.portals.push_back(portals_[node].middle);
+      path.portals.push_back(portals_[node].middle);
     }
-    std::reverse(way.portals.begin(), way.portals.end());
-    return way;
+    std::reverse(path.portals.begin(), path.portals.end());
+    return path;
   }
 
   CoarseTiles tiles_;
@@ -136,8 +136,8 @@ bool has_coarse_level(const Disk& disk) {
          2.0 * disk.radius() <= static_cast<double>(std::min(disk.rows(), disk.columns()));
 }
 
-std::optional<CoarseWay> find_coarse_way(const Disk& disk, Open open, Cell start, std::span<const Cell> goals) {
-  return WaySearch(disk, open, goals).run(start);
+std::optional<CoarsePath> find_coarse_path(const Disk& disk, Open open, Cell start, std::span<const Cell> goals) {
+  return CoarseSearch(disk, open, goals).run(start);
 }
 
 }  // namespace evenroad::world

@@ -47,10 +47,10 @@ inline std::vector<std::size_t> pieces_of(const RoundedPath& path, const TimeLaw
 }
 
 /// Where one is in an interval, some time after its beginning.
-struct Place {
+struct Progress {
   double length, speed;
 
-  Place(const TimeLaw& law, std::size_t i, double after) {
+  Progress(const TimeLaw& law, std::size_t i, double after) {
     const double push = law.accelerations[i];
     const double s = law.lengths[i] + after * (law.speeds[i] + 0.5 * push * after);
     length = std::min(std::max(s, law.lengths[i]), law.lengths[i + 1]);

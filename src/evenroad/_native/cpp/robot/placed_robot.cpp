@@ -1,5 +1,5 @@
 // Forward kinematics of sixteen configurations: angles are reduced in double precision, all else is single.
-#include "robot/places.hpp"
+#include "robot/placed_robot.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -56,7 +56,7 @@ EVENROAD_INLINE Vec3x16 turned(const PlacedFrame& frame, Vec3 point) {
   return {dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
 }
 
-void place_frames(const Robot& robot, std::span<const Doubles16> states, std::vector<PlacedFrame>& frames) {
+void write_frames(const Robot& robot, std::span<const Doubles16> states, std::vector<PlacedFrame>& frames) {
   for (std::size_t i = 0; i < robot.frames.size(); i++) {
     const Frame& frame = robot.frames[i];
     const PlacedFrame& below = frames[frame.parent];
@@ -86,36 +86,36 @@ EVENROAD_INLINE Vec3x16 box_around(const PlacedFrame& frame, Vec3 extents) {
   return {dot(abs(frame.rows[0]), half), dot(abs(frame.rows[1]), half), dot(abs(frame.rows[2]), half)};
 }
 
-void place_bodies(const Robot& robot, const Lengths& lengths, Range bodies, Places& places) {
+void write_bodies(const Robot& robot, const Lengths& lengths, Range bodies, PlacedRobot& placed) {
   for (int b = bodies.first; b < bodies.end; b++) {
     const Body& body = robot.bodies[b];
-    const PlacedFrame frame = places.frames[body.frame];
-    PlacedBody& here = places.bodies[b];
+    const PlacedFrame frame = placed.frames[body.frame];
+    PlacedBody& here = placed.bodies[b];
     here.centre = frame.origin + turned(frame, body.centre);
     if (body.capsules.size() > FEW) here.half = box_around(frame, lengths.bodies[b].half);
     for (int i = body.capsules.first; i < body.capsules.end; i++) {
       const Capsule& capsule = robot.capsules[i];
-      places.capsules[i].centre = frame.origin + turned(frame, capsule.centre);
-      if (!capsule.is_ball) places.capsules[i].half = turned(frame, capsule.half);
+      placed.capsules[i].centre = frame.origin + turned(frame, capsule.centre);
+      if (!capsule.is_ball) placed.capsules[i].half = turned(frame, capsule.half);
     }
   }
 }
 
 }  // namespace
 
-Places::Places(const Robot& robot)
+PlacedRobot::PlacedRobot(const Robot& robot)
     : frames(robot.frames.size() + 1), bodies(robot.bodies.size()), capsules(robot.capsules.size()) {
   const Floats16 one = spread(1.0F), zero{};
   frames[0] = {{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}, {zero, zero, zero}};
-  place_bodies(robot, robot.lengths, {0, robot.fixed_bodies}, *this);
+  write_bodies(robot, robot.lengths, {0, robot.fixed_bodies}, *this);
 }
 
-void Places::place(const Robot& robot, const Lengths& lengths, std::span<const Doubles16> states) {
-  place_frames(robot, states, frames);
-  place_bodies(robot, lengths, {robot.fixed_bodies, static_cast<int>(robot.bodies.size())}, *this);
+void PlacedRobot::move_to(const Robot& robot, const Lengths& lengths, std::span<const Doubles16> states) {
+  write_frames(robot, states, frames);
+  write_bodies(robot, lengths, {robot.fixed_bodies, static_cast<int>(robot.bodies.size())}, *this);
 }
 
-void Places::place_boxes(const Robot& robot, const Lengths& lengths) {
+void PlacedRobot::write_boxes(const Robot& robot, const Lengths& lengths) {
   for (std::size_t b = robot.fixed_bodies; b < robot.bodies.size(); b++) {
     const Body& body = robot.bodies[b];
     if (body.capsules.size() > FEW) bodies[b].half = box_around(frames[body.frame], lengths.bodies[b].half);
