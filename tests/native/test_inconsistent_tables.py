@@ -63,8 +63,10 @@ class Callable:
 
 
 def callables():
-    """All that the stubs declare."""
+    """All that the stubs declare, but the time limit: it would end all calls after it."""
     for stub in sorted(Path(_native.__file__).parent.glob("[!_]*.pyi")):
+        if stub.stem == "time_limit":
+            continue
         for node in ast.parse(stub.read_text()).body:
             if isinstance(node, ast.FunctionDef):
                 yield Callable(f"{stub.stem}.{node.name}", "", tuple(each.annotation for each in node.args.args))
@@ -293,8 +295,8 @@ def recorded(tmp_path_factory):
         first = np.stack([START, START + 0.1, GOAL]), 0, 10
         ARM_TREES.improver(box_world(), ends, first, variant=0, is_smoothing=True)
         # Another variant: the sequences of the first may be kept from an earlier test.
-        ARM_TREES.answer(box_world(), START, GOAL, variant=1, most_motions=100, seconds=1.0, smooth="full")
-        ARM_TREES.connect(box_world(), START, GOAL[np.newaxis], variant=0, most_motions=100, seconds=1.0)
+        ARM_TREES.answer(box_world(), START, GOAL, variant=1, most_motions=100, search_seconds=1.0, smooth=True)
+        ARM_TREES.connect(box_world(), START, GOAL[np.newaxis], variant=0, most_motions=100)
         plan_many(box_world(), [START] * 3, [START, START + 0.1, GOAL], limits={"motions": 50})
         for resolution in (0.1, 0.5):
             GridMap(rng.random((20, 30)) < 0.1, resolution=resolution).world(0.4).valid(np.zeros((1, 2)))
