@@ -20,6 +20,7 @@ ROOT = Path(evenroad.__file__).parent
 BASE = {
     *("errors", "_arrays", "_call", "_checks", "_files", "_fingerprint", "_lazy"),
     *("_native", "_npz", "_rng", "_seal", "_shared", "_terminal", "_threads", "_time_limit", "_understood", "_yaml"),
+    "_yaml_values",
 }
 MAY_IMPORT = {
     "points": BASE,

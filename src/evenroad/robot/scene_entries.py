@@ -164,7 +164,7 @@ def _pose(entry: dict[str, Any], where: str) -> Pose:
             return Pose.from_quaternion(xyz, xyzw=quaternion)
         except InvalidValue as error:
             raise InvalidValue(f"{where}: {error}") from None
-    return Pose.from_rpy(xyz, numbers(entry.get("rpy", [0, 0, 0]), 3, f"rpy of {where}"))
+    return Pose.from_rpy(xyz, numbers(entry["rpy"], 3, f"rpy of {where}")) if "rpy" in entry else Pose(xyz)
 
 
 def _file(entry: dict[str, Any], path: Path, where: str) -> Path:
