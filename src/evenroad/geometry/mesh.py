@@ -19,6 +19,8 @@ from evenroad.errors import InvalidValue
 
 _AS_LARGE = 1e-4
 """Largest share of its hull's volume by which a convex mesh differs from the hull."""
+_MOST_HEIGHTS = 1_000_000
+"""Largest number of heights of a map: its triangles then take 1 GB and some seconds."""
 _FLAT = 5e-7
 """Half of the thickness that a flat mesh gets for its hull [m]."""
 
@@ -211,7 +213,7 @@ def height_map(
     Parameters
     ----------
     heights : array_like, shape (x, y), both >= 2
-        z over ``low + spacing * (i, j)`` [m]; there is no surface around NaN.
+        z over ``low + spacing * (i, j)`` [m], at most 1 000 000; there is no surface around NaN.
     spacing : float
         Distance of neighbours, > 0 [m].
     low : sequence of 2 floats
@@ -227,6 +229,11 @@ def height_map(
     if z.ndim != 2 or min(z.shape) < 2 or np.isinf(z).any():
         raise InvalidValue(f"heights must be an (x, y) array of 2 or more along both, none inf, got {z.shape}")
     x, y = (first + step * np.arange(count) for first, count in zip(as_row("low", low, 2), z.shape, strict=True))
+    if z.size > _MOST_HEIGHTS:
+        raise InvalidValue(
+            f"heights must be at most {_MOST_HEIGHTS}, got {z.shape[0]} x {z.shape[1]}: give those within the robot's"
+            " reach, or every second, heights[::2, ::2] with twice the spacing"
+        )
     number = np.arange(z.size).reshape(z.shape)
     a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])

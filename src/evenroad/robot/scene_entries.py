@@ -139,7 +139,9 @@ def region_of(entry: object, more: dict[str, Any], where: str, path: Path) -> tu
     region = mapping_of(entry, where)
     require_known(f"shape of {where}:", str(region.get("shape")), PRIMITIVES)
     (grow,) = numbers(more.get("grow", 0.0), 1, f"grow of {where}")
-    return obstacle_of("region", region, path, where).body, require_positive(f"grow of {where}", grow, or_zero=True)
+    return obstacle_of("region", region, path, where, POSE).body, require_positive(
+        f"grow of {where}", grow, or_zero=True
+    )
 
 
 def _heights(entry: dict[str, Any], path: Path, where: str) -> TriangleMesh:

@@ -195,7 +195,10 @@ def _in_full(value: object, where: str) -> dict[str, Any]:
     given, dimensions = entry.pop(kinds[0]), PRIMITIVES[kinds[0]].dimensions
     if not isinstance(given, Mapping) and len(dimensions) == 1:
         given = {dimensions[0][0]: given}
-    return {"shape": kinds[0], **mapping_of(given, f"{kinds[0]} of {where}"), **entry}
+    inside = mapping_of(given, f"{kinds[0]} of {where}")
+    if twice := sorted(inside.keys() & entry.keys()):
+        raise InvalidValue(f"{where} must say {twice[0]} once, beside its {kinds[0]} or in it")
+    return {"shape": kinds[0], **inside, **entry}
 
 
 def _part(cloud: str, entry: dict[str, Any], path: Path) -> tuple[str, str, dict[str, Any]]:
@@ -204,6 +207,8 @@ def _part(cloud: str, entry: dict[str, Any], path: Path) -> tuple[str, str, dict
     require_keys(entry, ("link",), ("near_ends", "within", "grow"), where)
     if not isinstance(entry["link"], str) or ("near_ends" in entry) == ("within" in entry):
         raise InvalidValue(f"{where} must have a link and one of near_ends and within, got {shown(entry)}")
+    if "near_ends" in entry and "grow" in entry:
+        raise InvalidValue(f"{where} must have grow with within alone: near_ends is a distance itself")
     return entry["link"], cloud, entry
 
 
