@@ -91,7 +91,11 @@ OUT = re.compile(
 
 
 def notes(path):
-    """Yield each line of a module's docstrings and comments."""
+    """Yield each line of the docstrings and comments of a module, or of a file of the kernel."""
+    if path.suffix != ".py":
+        comments = (each for each in NO_CODE.findall(path.read_text()) if not each.startswith('"'))
+        yield from (line for each in comments for line in each.splitlines())
+        return
     with open(path, "rb") as source:
         for token in tokenize.tokenize(source.readline):
             if token.type == tokenize.COMMENT or (token.type == tokenize.STRING and token.string.startswith('"""')):
@@ -99,7 +103,7 @@ def notes(path):
 
 
 def test_docstrings_and_comments_speak_the_words_of_the_field():
-    paths = sorted(PACKAGE.rglob("*.py"))
+    paths = [*sorted(PACKAGE.rglob("*.py")), *sorted(KERNEL.rglob("*.?pp"))]
     assert [f"{path.name}: {line.strip()}" for path in paths for line in notes(path) if OUT.search(line)] == []
 
 

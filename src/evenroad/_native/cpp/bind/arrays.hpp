@@ -159,7 +159,7 @@ inline nb::object as_bools(std::vector<std::uint8_t>&& values, std::initializer_
   return as_numpy(std::move(values), shape).attr("view")("bool");
 }
 
-/// Give numbers as one row, or as rows of so many.
+/// Give numbers as one row, or as rows of that many.
 template <class T>
 nb::object as_row(std::vector<T>&& values) {
   const std::size_t count = values.size();

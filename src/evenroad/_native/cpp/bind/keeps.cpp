@@ -21,7 +21,7 @@ constexpr int MOST_STEPS = 1000, MOST_PIECES = 1000;
 constexpr double LONGEST_MOTION = 1e4;
 constexpr std::size_t LINEAR = POSE + 1, CIRCLE = 13 + POSE;
 
-/// Return how long a residual is that is made of so many numbers; refuse numbers that make none.
+/// Return how long a residual is that is made of that many numbers; refuse numbers that make none.
 std::size_t rows_of(KeepKind kind, std::size_t count, std::size_t dim) {
   switch (kind) {
     case KeepKind::LINEAR:
@@ -60,7 +60,7 @@ void make_keeps(Keeps* self, nb::list chains, nb::list constraints, nb::handle l
     const auto parts = value_of<nb::tuple>(given, "constraint");
     require(parts.size() == 5, "a constraint must be its kind, two tips, a limit and numbers");
     const auto kind = value_of<std::int64_t>(parts[0], "kind");
-    require_below(kind, 5, "kind");
+    require_below(kind, static_cast<std::size_t>(KeepKind::JOINTS) + 1, "kind");
     robot::Keep keep{static_cast<KeepKind>(kind),
                      value_of<std::size_t>(parts[1], "first tip"),
                      value_of<std::size_t>(parts[2], "second tip"),
@@ -167,7 +167,7 @@ nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle directions, nb::h
   return states.handed_out(keeps.dim());
 }
 
-/// Return the states of paths with so many pieces for one of each motion, and how many each path has.
+/// Return the states of paths with that many pieces for one of each motion, and how many each path has.
 nb::tuple refine(const Keeps& keeps, nb::handle paths, nb::handle counts, int pieces, nb::handle scale,
                  nb::tuple numbers) {
   const Array<const double, 2> given(paths, "paths");

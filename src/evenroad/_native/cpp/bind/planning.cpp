@@ -7,7 +7,7 @@
 
 #include "planning/apart.hpp"
 #include "planning/improver.hpp"
-#include "planning/native_checks.hpp"
+#include "planning/motion_checks.hpp"
 #include "planning/path_proof.hpp"
 #include "planning/smoother.hpp"
 #include "planning/tree.hpp"
@@ -17,7 +17,7 @@ namespace evenroad::bind {
 
 namespace {
 
-using planning::NativeChecks;
+using planning::MotionChecks;
 using planning::Path;
 using planning::TreePlanner;
 
@@ -38,7 +38,7 @@ struct Trees {
   FloatRows terminals;
   TreePlanner planner;
 
-  Trees(NativeChecks& checks, nb::handle start_and_goals, const Points& samples, const Points& steps)
+  Trees(MotionChecks& checks, nb::handle start_and_goals, const Points& samples, const Points& steps)
       : terminals(start_and_goals, "terminals"),
         planner(terminals.of_shape({terminals.shape(0), checks.joints.size()}).matrix(),
                 {samples.of(dim(), true, "samples"), steps.of(dim(), false, "steps")}, checks) {
@@ -54,7 +54,7 @@ nb::object path_of(const Trees& trees) {
   return as_numpy(std::move(points), {size, trees.dim()});
 }
 
-nb::tuple counts_of(const planning::Counts& counts) {
+nb::tuple counts_of(const robot::Counts& counts) {
   return nb::make_tuple(counts.motions, counts.configurations, counts.batches);
 }
 
@@ -68,12 +68,12 @@ nb::tuple tree_of(const planning::Tree& tree, std::size_t dim) {
 }
 
 /// Return a path whose waypoints are in the ranges of the joints.
-Path path_from(const FloatRows& points, const NativeChecks& checks) {
+Path path_from(const FloatRows& points, const MotionChecks& checks) {
   require(points.shape(0) >= 2, "path must have 2 waypoints or more");
   points.of_shape({points.shape(0), checks.joints.size()});
   Path path{points.span(), checks.joints};
   for (std::size_t i = 0; i < path.size(); i++) {
-    require(planning::enter(path[i], checks.joints), "path must be within the limits of the joints");
+    require(robot::enter(path[i], checks.joints), "path must be within the limits of the joints");
   }
   return path;
 }
@@ -84,7 +84,7 @@ nb::object points_of(const Path& path) {
   return as_numpy(std::move(points), {size, path.points().size() / size});
 }
 
-nb::tuple shorten(NativeChecks& checks, nb::handle path, const Points& pairs, std::int64_t most_shortcuts) {
+nb::tuple shorten(MotionChecks& checks, nb::handle path, const Points& pairs, std::int64_t most_shortcuts) {
   const FloatRows points(path, "path");
   const Matrix<const double> shares = pairs.of(2, true, "pairs");
   Path shorter = path_from(points, checks);
@@ -92,7 +92,7 @@ nb::tuple shorten(NativeChecks& checks, nb::handle path, const Points& pairs, st
   return nb::make_tuple(points_of(shorter), checks.counts.motions);
 }
 
-nb::tuple smooth(NativeChecks& checks, nb::handle path, const Points& pairs, const Points& directions,
+nb::tuple smooth(MotionChecks& checks, nb::handle path, const Points& pairs, const Points& directions,
                  std::int64_t most_batches, bool proved) {
   const FloatRows points(path, "path");
   const planning::Guides by{pairs.of(2, true, "pairs"), directions.of(checks.joints.size(), false, "directions")};
@@ -103,7 +103,7 @@ nb::tuple smooth(NativeChecks& checks, nb::handle path, const Points& pairs, con
   return nb::make_tuple(found, checks.counts.motions);
 }
 
-nb::tuple smooth_apart(NativeChecks& checks, NativeChecks& roomier, nb::handle path, const Points& pairs,
+nb::tuple smooth_apart(MotionChecks& checks, MotionChecks& roomier, nb::handle path, const Points& pairs,
                        const Points& directions, std::int64_t most_batches) {
   const FloatRows points(path, "path");
   const std::size_t dim = checks.joints.size();
@@ -115,7 +115,7 @@ nb::tuple smooth_apart(NativeChecks& checks, NativeChecks& roomier, nb::handle p
   return nb::make_tuple(points_of(apart), checks.counts.motions + roomier.counts.motions);
 }
 
-nb::object prove_or_bend(NativeChecks& checks, nb::handle path, double margin, const Points& directions) {
+nb::object prove_or_bend(MotionChecks& checks, nb::handle path, double margin, const Points& directions) {
   const FloatRows points(path, "path");
   const Matrix<const double> sphere = directions.of(checks.joints.size(), false, "directions");
   require(margin >= 0.0 && margin <= 1.0, "margin must be from 0 to 1");
@@ -129,7 +129,7 @@ struct Improvement {
   FloatRows terminals;
   planning::Improver improver;
 
-  Improvement(NativeChecks& checks, const FloatRows& start_and_goals, const planning::Sequences& sequences,
+  Improvement(MotionChecks& checks, const FloatRows& start_and_goals, const planning::Sequences& sequences,
               const planning::Guides& guides, planning::First first, bool is_smoothing)
       : terminals(start_and_goals),
         improver(terminals.matrix(), sequences, guides, std::move(first), is_smoothing, checks) {}
@@ -137,7 +137,7 @@ struct Improvement {
 
 /// `driven_by` are samples, steps, pairs and directions; `first` is a path, its goal, and the motions that trees
 /// checked.
-void make_improvement(Improvement* improvement, NativeChecks& checks, nb::handle start_and_goals, nb::tuple driven_by,
+void make_improvement(Improvement* improvement, MotionChecks& checks, nb::handle start_and_goals, nb::tuple driven_by,
                       nb::tuple first, bool is_smoothing) {
   const std::size_t dim = checks.joints.size();
   require(driven_by.size() == 4, "driven_by must be (samples, steps, pairs, directions)");
@@ -182,10 +182,14 @@ struct LoneTree {
   std::size_t dim;
 
   explicit LoneTree(nb::handle given) : LoneTree(Floats(given, "period", Entries::ANY).span()) {}
-  explicit LoneTree(std::span<const double> period) : tree({period, period, period}), dim(period.size()) {
+  explicit LoneTree(std::span<const double> period) : tree(joints_of(period)), dim(period.size()) {
     require(dim >= 1, "period must have one entry or more");
   }
 
+  static robot::Joints joints_of(std::span<const double> period) {
+    const std::vector<double> each(period.begin(), period.end());
+    return {each, each, each};
+  }
   std::span<const double> configuration(nb::handle q) const { return Floats(q, "q").of_shape({dim}).span(); }
   planning::Node known(planning::Node node) const {
     require(0 <= node && node < tree.size(), "the tree has no such node");
@@ -213,13 +217,13 @@ void add_tree(nb::module_& part) {
 
 void add_planning(nb::module_& module) {
   nb::module_ part = module.def_submodule("planning", "Trees and smoothing of arms.");
-  nb::class_<NativeChecks>(part, "Checks")
+  nb::class_<MotionChecks>(part, "Checks")
       .def("__init__",
-           [](NativeChecks* checks, std::shared_ptr<robot::Checker> of) { new (checks) NativeChecks(std::move(of)); })
-      .def_prop_ro("counts", [](const NativeChecks& checks) { return counts_of(checks.counts); });
+           [](MotionChecks* checks, std::shared_ptr<robot::Checker> of) { new (checks) MotionChecks(std::move(of)); })
+      .def_prop_ro("counts", [](const MotionChecks& checks) { return counts_of(checks.counts); });
   nb::class_<Points>(part, "Points").def(nb::init<nb::handle>());
   nb::class_<Trees>(part, "Trees")
-      .def(nb::init<NativeChecks&, nb::handle, const Points&, const Points&>(), nb::keep_alive<1, 2>(),
+      .def(nb::init<MotionChecks&, nb::handle, const Points&, const Points&>(), nb::keep_alive<1, 2>(),
            nb::keep_alive<1, 4>(), nb::keep_alive<1, 5>())
       .def("grow",
            [](Trees& trees, std::int64_t most_motions, std::int64_t batches) {

@@ -27,7 +27,7 @@ struct Drivers {
     of(samples.rows.shape(1));
   }
 
-  /// Return them for arms of so many joints.
+  /// Return them for arms of that many joints.
   planning::Drivers of(std::size_t dim) const {
     return {{samples.of(dim, true, "samples"), steps.of(dim, false, "steps")},
             {pairs.of(2, true, "pairs"), directions.of(dim, false, "directions")}};
@@ -84,7 +84,7 @@ struct ManyQueries {
   std::size_t dim() const { return terminals.shape(1); }
 };
 
-/// Return the checks of one or more worlds, of arms of so many joints; there may be none where None may stand.
+/// Return the checks of one or more worlds, of arms of that many joints; there may be none where None may stand.
 std::vector<std::shared_ptr<Checker>> checkers_from(nb::sequence given, std::size_t joints, bool may_be_none) {
   std::vector<std::shared_ptr<Checker>> checkers;
   for (const nb::handle each : given) {

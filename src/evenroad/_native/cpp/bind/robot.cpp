@@ -142,7 +142,7 @@ void make_checker(Checker* self, std::shared_ptr<Robot> of, std::shared_ptr<Scen
                   double clearance, bool touches_itself) {
   require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");
   double longest = 0.0;
-  for (std::size_t k = 0; k < of->bounds.low.size(); k++) longest += of->bounds.high[k] - of->bounds.low[k];
+  for (std::size_t k = 0; k < of->joints.size(); k++) longest += of->joints.range(k);
   require(resolution > 0 && longest / resolution < MOST_STATES,
           "resolution must be > 0, and motions have fewer states");
   require(scene->obstacles.tested.rows == of->capsules.size(), "the scene must be one of this robot");
@@ -197,7 +197,8 @@ nb::object motion_valid(const Checker& checker, nb::handle a, nb::handle b, doub
 
 nb::tuple in_words(const robot::Contact& contact) {
   constexpr const char* WITH[] = {"nothing", "obstacle", "surface", "itself"};
-  return nb::make_tuple(WITH[static_cast<int>(contact.with)], contact.capsule, contact.other);
+  static_assert(std::size(WITH) == static_cast<std::size_t>(robot::Contact::With::ITSELF) + 1);
+  return nb::make_tuple(WITH[static_cast<std::size_t>(contact.with)], contact.capsule, contact.other);
 }
 
 /// Return the least distances of configurations, (n, dim), and of what they are, (n, 3): the kind, a capsule, and the
@@ -220,8 +221,8 @@ nb::tuple find_contact(const Checker& checker, nb::handle q) {
   const Floats given(q, "q");
   given.of_shape({checker.dim()});
   std::vector<double> inside(checker.dim());
-  require(robot::enter(given.span(), checker.robot().bounds, inside), "q must be within the limits of the joints");
-  return in_words(robot::find_contact(checker, given.span()));
+  require(robot::enter(given.span(), checker.robot().joints, inside), "q must be within the limits of the joints");
+  return in_words(robot::find_contact(checker, inside));
 }
 
 }  // namespace

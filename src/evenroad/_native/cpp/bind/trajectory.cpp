@@ -245,7 +245,7 @@ const char* name_of(trajectory::Outcome outcome) {
 
 /// Return what became of a whole trajectory, its states at its steps, how far each is along the path, the lengths at
 /// corners, the number of stops, duration, deviation, the largest shares of velocity and acceleration, those of torque
-/// and of a tip's speed and acceleration, whether it is slower than asked for at the start, and how far each corner is
+/// and of a tip's speed and acceleration, whether it is slower than wanted at the start, and how far each corner is
 /// rounded.
 ///
 /// `most` are the largest velocities, accelerations and decelerations; `steps` the step and the largest number of

@@ -5,7 +5,6 @@
 
 namespace evenroad {
 
-constexpr int LANES = 16;
 constexpr std::uint32_t ALL_LANES = (1U << LANES) - 1;
 /// What a squared length is taken for at least where one divides by it.
 constexpr float LEAST_SQUARE = 1e-30F;

@@ -12,6 +12,9 @@
 
 namespace evenroad {
 
+/// So many configurations, points or nodes are treated together.
+constexpr int LANES = 16;
+
 template <class T, int N>
 struct LanesOf {
   typedef T type __attribute__((vector_size(N * sizeof(T))));

@@ -23,7 +23,7 @@ inline void look_at_clock() {
   if (end_of_time != SteadyClock::time_point::max() && SteadyClock::now() >= end_of_time) throw TimeIsOver();
 }
 
-/// Looks at the clock once in so many calls.
+/// Looks at the clock once in a number of calls.
 class ClockWatch {
  public:
   explicit ClockWatch(int every) : every_(every) {}
@@ -38,7 +38,7 @@ class ClockWatch {
   int every_, calls_ = 0;
 };
 
-/// Return when so many seconds from now are over; any number that is too large, or none, is never over.
+/// Return when that many seconds from now are over; any number that is too large, or none, is never over.
 inline SteadyClock::time_point end_after(double seconds) {
   if (!(seconds < 1e9)) return SteadyClock::time_point::max();
   return SteadyClock::now() +

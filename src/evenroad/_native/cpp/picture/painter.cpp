@@ -209,7 +209,7 @@ Vector Painter::background(std::size_t column, std::size_t row) const {
   return (0.72 + 0.28 * shadow.light_at(point)) * (tiles + fade * (studio.horizon - tiles));
 }
 
-/// Return the colour of a pixel: the mean of its samples, each triangle asked once.
+/// Return the colour of a pixel: the mean of its samples, each triangle looked at once.
 Vector solid_pixel(const Painter& painter, const Window& solid, std::size_t column, std::size_t row) {
   if (!solid.holds(column, row)) return painter.background(column, row);
   std::array<std::int32_t, SAMPLES> owner{};

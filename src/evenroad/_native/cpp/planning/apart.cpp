@@ -28,7 +28,7 @@ bool are_terminals_free(const Path& path, MotionChecks& checks) {
 
 }  // namespace
 
-double length_of(const std::vector<double>& points, const Joints& joints) {
+double length_of(const std::vector<double>& points, const robot::Joints& joints) {
   const std::size_t dim = joints.size(), motions = points.size() / dim - 1;
   const std::vector<double> scale(dim, 1.0);
   double length = 0.0;

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "planning/joints.hpp"
 #include "planning/motion_checks.hpp"
 #include "planning/path.hpp"
 #include "planning/smoother.hpp"
@@ -12,7 +11,7 @@
 namespace evenroad::planning {
 
 /// Return the length of a path as the space of the joints measures it.
-double length_of(const std::vector<double>& points, const Joints& joints);
+double length_of(const std::vector<double>& points, const robot::Joints& joints);
 
 /// Draw a path tight, all motions of which are proved: first in a world with more room around obstacles, and from there
 /// on in its own.  This second path is kept where it is shorter by so much that keeping away costs more than 2 %.

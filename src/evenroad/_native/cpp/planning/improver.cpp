@@ -22,18 +22,18 @@ constexpr double LOOSEST = 3.0;
 constexpr std::int64_t ANEW = 3;
 constexpr double PLASTIC = 0.7548776662466927;
 
-/// The trees of a round may check so many motions at least, or so many times those of the first path, times 1, 1, 2, 1,
-/// 1, 2, 4 ...
+/// The trees of a round may check this many motions at least, or this multiple of those of the first path, times 1, 1,
+/// 2, 1, 1, 2, 4 ...
 constexpr std::int64_t LEAST_MOTIONS = 400, TIMES_FIRST = 2;
 
-/// After so many rounds without a better path the best is polished, so often while that gains anything.
+/// After this many rounds without a better path the best is polished, repeatedly while that gains anything.
 constexpr std::int64_t WAIT = 3;
 constexpr std::size_t MOST_POLISHED = 4;
 
 /// A path that exceeds the best by less than this share is polished, too.
 constexpr double PROMISING = 0.01;
 
-/// After so many batches of sixteen checks no waypoint slides any more before a path is polished.
+/// Batches of sixteen checks after which no waypoint slides any more before a path is polished.
 constexpr std::int64_t SMOOTHING = 2000;
 
 /// A path is as short as can be when it exceeds the straight distance by less than this share.

@@ -27,7 +27,7 @@ struct Effort {
 enum class Progress : std::uint8_t { PAUSED, SPENT, SHORTEST };
 
 /// The path that is to become shorter: its motions are proved, it ends at the goal with this number, and trees found it
-/// after so many motions.
+/// after a number of motions.
 struct First {
   Path path;
   std::int64_t goal, motions;
@@ -41,7 +41,7 @@ class Improver {
   Improver(Matrix<const double> terminals, const Sequences& sequences, const Guides& guides, First first,
            bool is_smoothing, MotionChecks& checks);
 
-  /// Go on until the effort is spent, or about so many batches of sixteen were checked in this call.
+  /// Go on until the effort is spent, or about that many batches of sixteen were checked in this call.
   ///
   /// However often it pauses, what it finds is the same.
   Progress improve(Effort most, std::int64_t batches);

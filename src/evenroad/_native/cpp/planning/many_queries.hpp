@@ -1,4 +1,4 @@
-// Many queries of arms, answered by several threads: each as if it were asked alone, whatever the number of threads.
+// Many queries of arms, answered by several threads: each as if it were alone, whatever the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace evenroad::planning {
 
-/// Where queries are asked: the checks of a world, and of one with more room where paths keep away from obstacles.
+/// The world of queries: the checks of a world, and of one with more room where paths keep away from obstacles.
 struct QueryWorld {
   std::shared_ptr<const robot::Checker> checker, roomier;
 };

@@ -1,9 +1,11 @@
 // Lengths are those of the short way from waypoint to waypoint.
 #include "planning/path.hpp"
 
+#include <algorithm>
+
 namespace evenroad::planning {
 
-Path::Path(std::span<const double> points, const Joints& joints)
+Path::Path(std::span<const double> points, const robot::Joints& joints)
     : joints_(&joints), dim_(joints.size()), points_(points.begin(), points.end()), direction_(joints.size()) {}
 
 void Path::measure() {
@@ -15,7 +17,7 @@ void Path::measure() {
 
 void Path::write_position(std::size_t i, double along, Configuration q) const {
   if (along >= positions_[i + 1]) {
-    copy((*this)[i + 1], q);
+    std::ranges::copy((*this)[i + 1], q.begin());
     return;
   }
   const ConstConfiguration from = (*this)[i];

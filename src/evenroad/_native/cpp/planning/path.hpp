@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "planning/joints.hpp"
+#include "robot/joints.hpp"
 
 namespace evenroad::planning {
 
@@ -13,7 +13,7 @@ namespace evenroad::planning {
 class Path {
  public:
   /// `points` are the waypoints, one after the other; `joints` must last as long as this.
-  Path(std::span<const double> points, const Joints& joints);
+  Path(std::span<const double> points, const robot::Joints& joints);
 
   std::size_t size() const { return points_.size() / dim_; }
   Configuration operator[](std::size_t i) { return {&points_[i * dim_], dim_}; }
@@ -35,7 +35,7 @@ class Path {
   void erase(std::size_t first, std::size_t last);
 
  private:
-  const Joints* joints_;
+  const robot::Joints* joints_;
   std::size_t dim_;
   std::vector<double> points_, positions_;
   mutable std::vector<double> direction_;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/matrix.hpp"
-#include "planning/joints.hpp"
+#include "robot/joints.hpp"
 
 namespace evenroad::planning {
 
@@ -18,7 +18,7 @@ class PathBound {
   double longest = std::numeric_limits<double>::infinity();
 
   /// `terminals` are the start and the goals; they and the joints must last as long as this.
-  PathBound(Matrix<const double> terminals, const Joints& joints)
+  PathBound(Matrix<const double> terminals, const robot::Joints& joints)
       : terminals_(terminals), joints_(joints), direction_(joints.size()) {}
 
   /// Return the distance to the start, side 0, or to the nearest goal, side 1.
@@ -36,7 +36,7 @@ class PathBound {
 
  private:
   Matrix<const double> terminals_;
-  const Joints& joints_;
+  const robot::Joints& joints_;
   mutable std::vector<double> direction_;
 };
 

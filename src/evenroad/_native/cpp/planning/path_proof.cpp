@@ -7,7 +7,8 @@ namespace evenroad::planning {
 
 namespace {
 
-/// So many motions of a path are bent; so many places are tried for the waypoint in the middle, about half of them do.
+/// Number of motions of a path that are bent, and of points tried for the waypoint in the middle: about half of them
+/// do.
 constexpr int MOST_BENT = 2;
 constexpr std::size_t BENDS = 8;
 

@@ -1,9 +1,9 @@
-// What a query asks of compiled code is done in one go: Python reads it before, and goes on where there is no path.
+// Compiled code answers a query in one call: Python reads it before, and goes on where there is no path.
 #include "planning/query.hpp"
 
 #include "common/time_limit.hpp"
 #include "planning/apart.hpp"
-#include "planning/native_checks.hpp"
+#include "planning/motion_checks.hpp"
 #include "planning/path_proof.hpp"
 
 namespace evenroad::planning {
@@ -13,7 +13,7 @@ namespace {
 /// Batches of sixteen checks after which trees pause: the clock alone ends them.
 constexpr std::int64_t NO_PAUSE = std::int64_t{1} << 60;
 
-/// After so many batches no waypoint slides any more.
+/// Batches after which no waypoint slides any more.
 constexpr std::int64_t SLIDING = 500;
 
 class Clock {
@@ -24,8 +24,8 @@ class Clock {
   SteadyClock::time_point began_ = SteadyClock::now();
 };
 
-/// Divide a straight path into so many equal motions.
-void divide(Path& path, std::int64_t motions, const Joints& joints) {
+/// Divide a straight path into a number of equal motions.
+void divide(Path& path, std::int64_t motions, const robot::Joints& joints) {
   path.measure();
   const double length = path.length();
   std::vector<double> between(joints.size());
@@ -59,14 +59,14 @@ bool is_done_in_time(Work work) {
 /// Write the path of an answer, smoothed in both worlds.
 void smooth_path_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
                        std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
-  NativeChecks checks(std::move(checker));
+  MotionChecks checks(std::move(checker));
   Path path(answer.raw, checks.joints);
   const bool is_straight = path.size() == 2;
   bool is_new = !is_straight;
   if (roomier->is_never_free()) {
     smooth(path, drivers.guides, {SLIDING}, true, checks);
   } else {
-    NativeChecks wider(std::move(roomier));
+    MotionChecks wider(std::move(roomier));
     if (!is_straight || !is_proved(path, 0, 2, wider)) {
       if (is_straight) divide(path, answer.nodes - 1, checks.joints);
       // A straight path is as short as can be: it stays unless another keeps away.
@@ -88,7 +88,7 @@ Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double
   const Clock clock;
   Answer found;
   if (checker->is_never_free()) return found;
-  NativeChecks checks(std::move(checker));
+  MotionChecks checks(std::move(checker));
   TreePlanner trees(terminals, drivers.sequences, checks);
   found.growth = grown(trees, limits);
   found.raw = found.path = trees.path();

@@ -32,8 +32,8 @@ class Shortcuts {
   /// Join two places, shares of the path's length.
   void join_shares(std::span<const double> pair);
 
-  /// Cut corners, one after the other and again while that gains anything, until so many were tried, or so many batches
-  /// checked in all.  Of each the shorter side is cut off, or half of it, or a quarter.
+  /// Cut corners, one after the other and again while that gains anything, until that number was tried, or that many
+  /// batches checked in all.  Of each the shorter side is cut off, or half of it, or a quarter.
   void shortcut_corners(std::int64_t most_shortcuts, std::int64_t most_batches = NO_LIMIT);
 
  private:

@@ -50,7 +50,7 @@ void Slides::slide(std::size_t i, std::size_t number) {
     if (candidates_[one].is_open) idle &= ~(STATES_OF_ONE << STATES * one);
   }
   if (idle == ALL_LANES) return;
-  const Touching touching = checks_.touching(idle, Together::THREE);
+  const Touching touching = checks_.touching(idle, Wanted::TRIPLES);
   checks_.counts.configurations += static_cast<std::int64_t>(LANES);
   // Sixteen states, as of a motion.
   checks_.counts.motions++;
@@ -119,7 +119,7 @@ void Slides::take_best(std::size_t i) {
     best->is_open = false;
     if (checks_.is_free(path_[i - 1], best->q, Known::BOTH_ENDPOINTS) &&
         checks_.is_free(best->q, path_[i + 1], Known::BOTH_ENDPOINTS)) {
-      copy(best->q, path_[i]);
+      std::ranges::copy(best->q, path_[i].begin());
       return;
     }
   }

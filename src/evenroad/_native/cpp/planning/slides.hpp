@@ -26,8 +26,8 @@ class Slides {
   /// `directions` have length 1 and are used in turn; they must last as long as this.
   Slides(Path& path, MotionChecks& checks, Matrix<const double> directions);
 
-  /// Move a waypoint, not an end, to the best of some places around it by which the way is shorter, and free at its
-  /// states.  The number of the slide says which directions and sizes are tried.
+  /// Move a waypoint, not an end, to the best of some candidates around it by which the path is shorter, and free at
+  /// its states.  The number of the slide says which directions and sizes are tried.
   void slide(std::size_t i, std::size_t number);
 
  private:

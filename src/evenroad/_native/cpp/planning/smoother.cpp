@@ -13,7 +13,7 @@ namespace evenroad::planning {
 
 namespace {
 
-/// In each round so many pairs of places are joined.
+/// Number of pairs of points that are joined in each round.
 constexpr std::size_t PAIRS = 2;
 
 /// Rounds that make the path shorter by less than this share gain little; they end after the most in any case.
@@ -26,12 +26,12 @@ constexpr std::size_t PASSED_BY = 3;
 /// So many pairs are joined where what was drawn tight is not proved.
 constexpr std::size_t SPARE_PAIRS = 20;
 
-/// The proof of a motion takes about so many batches, which slides leave to it.
+/// Batches that the proof of a motion takes, about; slides leave them to it.
 constexpr std::int64_t OF_PROOF = 6;
 
 /// Of a path that is polished: waypoints slide until they move by less than this share of what is tried at first; they
 /// move less far where a turn makes the path shorter by less than this share; and its motions are divided that are
-/// longer than one of so many parts of it.
+/// longer than one of this many parts of it.
 constexpr double LEAST_SIZE = 0.02, FINE_GAIN = 2e-4;
 constexpr std::size_t PARTS = 8;
 
@@ -81,7 +81,8 @@ std::optional<Middle> between_terminals(const Path& path, MotionChecks& checks) 
   return middle;
 }
 
-/// Let waypoints slide, and join places of the path, while that gains anything; not beyond so many batches in all.
+/// Let waypoints slide, and join points of the path, while that gains anything; not beyond that number of batches in
+/// all.
 void slide_and_shorten(Path& path, const Guides& guides, const Sliding& sliding, std::int64_t most_batches,
                        MotionChecks& checks) {
   Shortcuts shortcuts(path, checks, Demand::FREE);

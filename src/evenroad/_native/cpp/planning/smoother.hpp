@@ -21,8 +21,8 @@ struct Guides {
   Matrix<const double> pairs, directions;
 };
 
-/// How long waypoints slide: after about so many batches of sixteen checks none does any more; so many slides are a
-/// round, after which places are joined; and rounds end when so many in a row gain little.
+/// How long waypoints slide: after about `most_batches` of sixteen checks none does any more; `a_round` slides are a
+/// round, after which points are joined; and rounds end when `in_a_row` of them gain little.
 struct Sliding {
   std::int64_t most_batches;
   std::size_t a_round = 12;

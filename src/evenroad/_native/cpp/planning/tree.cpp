@@ -23,7 +23,7 @@ constexpr double NO_PERIOD = 1e30;
 
 }  // namespace
 
-Tree::Tree(const Joints& joints) : dim_(joints.size()), periods_(joints.size()) {
+Tree::Tree(const robot::Joints& joints) : dim_(joints.size()), periods_(joints.size()) {
   for (std::size_t k = 0; k < dim_; k++) periods_[k] = static_cast<float>(std::min(joints.period[k], NO_PERIOD));
 }
 

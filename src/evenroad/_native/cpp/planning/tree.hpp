@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "planning/joints.hpp"
+#include "robot/joints.hpp"
 
 namespace evenroad::planning {
 
@@ -19,7 +19,7 @@ inline constexpr Node NO_NODE = -1;
 /// Nodes are numbered as they were added, so parents come before their children.
 class Tree {
  public:
-  explicit Tree(const Joints& joints);
+  explicit Tree(const robot::Joints& joints);
 
   Node size() const { return static_cast<Node>(parents_.size()); }
   bool empty() const { return parents_.empty(); }

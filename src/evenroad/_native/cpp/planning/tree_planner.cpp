@@ -56,11 +56,11 @@ Growth TreePlanner::grow(std::int64_t most_motions, std::int64_t batches) {
 /// Plant the start in the first tree and the goals in the second; leave out what is not free.
 void TreePlanner::plant() {
   for (std::size_t first = 0; first < terminals_.rows; first += LANES) {
-    const std::size_t some = std::min(LANES, terminals_.rows - first);
+    const std::size_t some = std::min<std::size_t>(LANES, terminals_.rows - first);
     std::array<bool, LANES> inside{};
     for (std::size_t lane = 0; lane < LANES; lane++) {
       // Lanes to spare repeat the last row.
-      copy(terminals_[first + std::min(lane, some - 1)], here_);
+      std::ranges::copy(terminals_[first + std::min(lane, some - 1)], here_.begin());
       inside[lane] = enter(here_, checks_.joints);
       // What is out of bounds may be too large for single precision.
       if (!inside[lane]) bring_inside(here_, checks_.joints);
@@ -165,7 +165,7 @@ bool TreePlanner::join(std::size_t tree, Node found, Node other) {
 /// Return the node from which the last step led to the other, or NO_NODE, also once the budget is spent.
 Node TreePlanner::reach(std::size_t tree, Node found, Node other) {
   Tree& own = trees_[tree];
-  copy(own[found], here_), copy(trees_[1 - tree][other], there_);
+  std::ranges::copy(own[found], here_.begin()), std::ranges::copy(trees_[1 - tree][other], there_.begin());
   const double length = write_direction(here_, there_, checks_.joints, direction_);
   const auto steps = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(length / steps_.longest())));
   for (std::int64_t step = 1; step <= std::min(steps, MOST_STEPS); step++) {

@@ -35,7 +35,7 @@ class TreePlanner {
   /// the first place along the path, to that of the goals those from the second on.  Call it before `grow`.
   void begin_along(const Path& path, std::int64_t goal, double first, double second);
 
-  /// Grow until the trees meet, so many motions are spent, or about so many batches of sixteen were checked in this
+  /// Grow until the trees meet, that many motions are spent, or about that many batches of sixteen were checked in this
   /// call; the next call goes on.
   Growth grow(std::int64_t most_motions, std::int64_t batches);
 
@@ -46,7 +46,7 @@ class TreePlanner {
   std::int64_t goal() const { return goal_; }
 
   const Tree& tree(std::size_t number) const { return trees_[number]; }
-  const Counts& counts() const { return checks_.counts; }
+  const robot::Counts& counts() const { return checks_.counts; }
 
  private:
   void plant();

@@ -17,13 +17,13 @@ constexpr std::int64_t EXTENSIONS = 3;
 /// Steps are this share of the root of the mean squared range of the joints, and no longer than the second [rad].
 constexpr double STEP_SHARE = 1.0 / 5.8, LONGEST_STEP = 1.5;
 
-/// Steps around a node are within so many steps, but for the largest [rad].
+/// Steps around a node are within this many steps, but for the largest [rad].
 constexpr double BALL_SHARE = 1.5, LARGEST_BALL = 2.0;
 
 /// So many steps of the sequence are rounds apart.
 constexpr std::size_t APART = 1279;
 
-double longest_step(const Joints& joints) {
+double longest_step(const robot::Joints& joints) {
   double squares = 0.0;
   for (std::size_t k = 0; k < joints.size(); k++) {
     squares += joints.range(k) * joints.range(k) / static_cast<double>(joints.size());
@@ -33,7 +33,7 @@ double longest_step(const Joints& joints) {
 
 }  // namespace
 
-TreeSteps::TreeSteps(const Joints& joints, const Sequences& sequences, const PathBound* bound, std::size_t round)
+TreeSteps::TreeSteps(const robot::Joints& joints, const Sequences& sequences, const PathBound* bound, std::size_t round)
     : joints_(joints),
       sequences_(sequences),
       bound_(bound),
@@ -69,7 +69,7 @@ Node TreeSteps::closest(const Tree& tree, std::size_t side) const {
   if (bound_ == nullptr) return tree.nearest(sample_);
   const double least = bound_->distance(sample_, side);
   const double left = bound_->longest - bound_->distance(sample_, 1 - side) - least;
-  const double share = modulo(static_cast<double>(next_sample_) * GOLDEN, 1.0);
+  const double share = std::fmod(static_cast<double>(next_sample_) * GOLDEN, 1.0);
   return left > 0.0 ? tree.nearest_within(sample_, least + share * left) : NO_NODE;
 }
 
@@ -85,7 +85,7 @@ void TreeSteps::write_sample() {
   next_sample_++;
   for (std::size_t k = 0; k < joints_.size(); k++) {
     double share = sequences_.samples(number, k);
-    if (shift > 0) share = modulo(share + static_cast<double>(shift * (k + 1)) * GOLDEN, 1.0);
+    if (shift > 0) share = std::fmod(share + static_cast<double>(shift * (k + 1)) * GOLDEN, 1.0);
     sample_[k] = std::min(joints_.low[k] + share * joints_.range(k), joints_.high[k]);
   }
 }
@@ -122,13 +122,13 @@ std::span<const Step> TreeSteps::ball_steps(Tree& tree, std::size_t side, Node c
     }
   }
   if (idle == ALL_LANES) return {};
-  const Touching touching = checks.touching(idle, Together::TWO);
+  const Touching touching = checks.touching(idle, Wanted::PAIRS);
   checks.counts.configurations += static_cast<std::int64_t>(2 * most);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < most; i++) {
     if (!is_kept[i]) continue;
     if (touching[2 * i] || touching[2 * i + 1]) {
-      // A motion that was asked for, and is blocked.
+      // A motion that was queried, and is blocked.
       checks.counts.motions++;
     } else {
       std::swap(offered_[kept++], offered_[i]);

@@ -14,6 +14,9 @@
 
 namespace evenroad::planning {
 
+/// Multiples of the golden ratio, without their integers, fill 0 to 1 evenly.
+inline constexpr double GOLDEN = 0.6180339887498949;
+
 /// So many steps around nodes are offered at once: the middle and the end of each are a batch of sixteen.
 inline constexpr std::size_t STEPS_AT_ONCE = LANES / 2;
 
@@ -35,12 +38,12 @@ struct Sequences {
 class TreeSteps {
  public:
   /// With bounds on paths, steps stay where these allow.  Each round takes other points of the sequences.
-  TreeSteps(const Joints& joints, const Sequences& sequences, const PathBound* bound, std::size_t round);
+  TreeSteps(const robot::Joints& joints, const Sequences& sequences, const PathBound* bound, std::size_t round);
 
   /// No step of a tree is longer.
   double longest() const { return longest_; }
 
-  /// Return where a tree, 0 that of the start, may go next: one extension, or of at most so many steps those free in
+  /// Return where a tree, 0 that of the start, may go next: one extension, or of at most `most` steps those free in
   /// the middle and at the end.
   std::span<const Step> next(Tree& tree, std::size_t side, std::size_t most, MotionChecks& checks);
 
@@ -51,7 +54,7 @@ class TreeSteps {
   std::span<const Step> extension(const Tree& tree, Node closest);
   std::span<const Step> ball_steps(Tree& tree, std::size_t side, Node closest, std::size_t most, MotionChecks& checks);
 
-  const Joints& joints_;
+  const robot::Joints& joints_;
   Sequences sequences_;
   const PathBound* bound_;
   double longest_;

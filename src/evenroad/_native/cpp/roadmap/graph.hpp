@@ -43,7 +43,7 @@ class Graph {
         numbers_(edges.rows),
         fixed_(std::make_shared<const Rows>(nodes, edges, 0)) {}
 
-  /// Return this graph with so many nodes, and links instead of those that it has; O(nodes).
+  /// Return this graph with that many nodes, and links instead of those that it has; O(nodes).
   Graph with_links(std::size_t nodes, Matrix<const std::int32_t> links, std::int32_t numbered_from) const;
 
   std::size_t nodes() const { return nodes_; }

@@ -7,7 +7,7 @@ namespace evenroad::roadmap {
 
 namespace {
 
-/// The nodes that a tree may take, nearest first, at most so many.
+/// The nodes that a tree may take, nearest first, at most `most` of them.
 class Offered {
  public:
   Offered(std::span<const double> away, std::size_t most) : away_(away), most_(most) {}

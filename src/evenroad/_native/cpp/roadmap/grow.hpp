@@ -1,4 +1,4 @@
-// How trees of a roadmap grow while the world is asked about edges: two that meet, and a marching one.
+// How trees of a roadmap grow while the world evaluates edges: two that meet, and a marching one.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct Growth {
   std::vector<std::int32_t> takers, edges;
 };
 
-/// Take into the trees what the edges that were asked about lead to, where they are free; offer at most so many nodes
+/// Take into the trees what evaluated edges lead to, where they are free; offer at most that many nodes
 /// of each tree, nearest first, none when one of the two can grow no more.
 Growth grow(Matrix<const std::int32_t> edges, const States& states, const TwoTrees& trees,
             std::span<const std::int32_t> asked, std::size_t most);

@@ -114,7 +114,7 @@ Mask blocked(Workspace& workspace, Wanted wanted, Mask settled) {
 
 /// Write sixteen configurations, and return the mask of those that are out of bounds.
 Mask take_rows(Workspace& workspace, Matrix<const double> rows, std::size_t first, std::size_t count) {
-  const Bounds& bounds = workspace.checker.robot().bounds;
+  const Joints& joints = workspace.checker.robot().joints;
   const double* row[LANES];
   // Lanes to spare repeat the last row.
   for (std::size_t lane = 0; lane < LANES; lane++) row[lane] = rows[first + std::min(lane, count - 1)].data();
@@ -122,12 +122,12 @@ Mask take_rows(Workspace& workspace, Matrix<const double> rows, std::size_t firs
   for (std::size_t k = 0; k < rows.columns; k++) {
     Doubles16 value{};
     for (int lane = 0; lane < LANES; lane++) value[lane] = row[lane][k];
-    if (wraps(bounds, k)) {
-      for (int lane = 0; lane < LANES; lane++) value[lane] = into_range(value[lane], bounds, k);
+    if (joints.wraps(k)) {
+      for (int lane = 0; lane < LANES; lane++) value[lane] = wrapped(value[lane], joints, k);
     }
     // What is out of bounds may be too large for single precision.
-    const double low = bounds.low[k] - BOUNDS_SLACK, high = bounds.high[k] + BOUNDS_SLACK;
-    workspace.states[k] = ((value >= low) & (value <= high)) ? value : Doubles16{} + bounds.low[k];
+    const double low = joints.low[k] - JOINT_SLACK, high = joints.high[k] + JOINT_SLACK;
+    workspace.states[k] = ((value >= low) & (value <= high)) ? value : Doubles16{} + joints.low[k];
     outside |= below_zero(__builtin_convertvector(min(value - low, high - value), Floats16));
   }
   return outside;

@@ -1,13 +1,13 @@
 // A robot in a scene, and the memory in which one thread checks its configurations and motions.
 //
-// How planners sit on this (trees, smoothing, roadmaps): `planning/native_checks.hpp` says it in their words.  What is
+// How planners sit on this (trees, smoothing, roadmaps): `planning/motion_checks.hpp` says it in their words.  What is
 // here of one thread's checks:
 //
 //   const Borrowed workspace = checker.borrow();    memory, given back at the end of the scope
 //   workspace->set(lane, q), ->set_all(q)           write configurations, within bounds, into the sixteen lanes
 //   blocked(*workspace, Wanted::ALL)                which of the sixteen touch something, as bits
 //   motion_free, motion_proved, is_shortcut         one motion, see motion_check.hpp
-//   enter, make_canonical, way_between              bounds and the short way, see motion.hpp
+//   enter, bring_inside, write_direction            limits and the short way, see joints.hpp
 //   workspace->counts                               how many motions, configurations and batches were checked
 //   workspace->judge_by(&checker.wider(margin))     larger bodies until judge_by(nullptr)
 //
@@ -26,7 +26,7 @@
 
 namespace evenroad::robot {
 
-/// What was checked.
+/// What was checked: motions, configurations, and batches of sixteen.
 struct Counts {
   std::int64_t motions = 0, configurations = 0, batches = 0;
 };

@@ -21,7 +21,7 @@ struct NearAndSure {
 
 /// Return the masks of lanes in which a surface may be within `near` of a place, and is within `touching` for sure.
 ///
-/// Outside of the grid it is asked for the nearest place inside: what lies beyond that is farther by at least the third
+/// Outside of the grid the nearest point inside is looked up: what lies beyond that is farther by at least the third
 /// side of a triangle with an obtuse angle.
 EVENROAD_INLINE NearAndSure query(const DistanceGrid& grid, Vec3x16 point, float near, float touching) {
   const Floats16 zero{};

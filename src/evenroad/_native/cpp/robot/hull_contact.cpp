@@ -1,6 +1,6 @@
 // Boxes and planes in single precision rule out nearly all pairs of hulls, for all lanes at once and by more than
 // rounding can be; of what is left `leaves_near` decides, lane by lane in double precision.  Where few lanes are left
-// of hulls of many corners, it is asked at once.
+// of hulls of many corners, it is searched at once.
 #include "robot/hull_contact.hpp"
 
 #include <bit>
@@ -74,7 +74,7 @@ Mask boxes_near(const RelativePose16& pose, const Node& a, const Node& b, Floats
   return below_zero(max(largest(gap), largest(other)) - near);
 }
 
-/// Return the mask of those lanes asked for in which none of some planes separates two leaves.
+/// Return the mask of those queried lanes in which none of some planes separates two leaves.
 Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const Node& a, const HullTree<float>& other,
                const Node& b, Floats16 near, Mask asked) {
   const TwoBoxes boxes = boxes_of(pose, a, b);
@@ -99,7 +99,7 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
     Mask lanes;
   } waiting[DEEPEST];
   waiting[0] = {first.root, second.root, asked};
-  // Of lanes that double precision is asked about, made when they are.
+  // Of lanes that double precision decides, made when it does.
   RelativePose poses[LANES];
   Mask placed = 0;
   const auto leaves_meet = [&](int a, int b, int lane, PlaneNormal& plane) {

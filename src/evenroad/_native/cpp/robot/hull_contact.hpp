@@ -10,10 +10,10 @@ using Mask = std::uint32_t;
 /// Farther than anything [m].
 constexpr float FAR = 1e30F;
 
-/// Which lanes are asked for together: where one of them is blocked, the others need no answer, and are blocked, too.
+/// Which lanes are wanted together: where one of them is blocked, the others need no answer, and are blocked, too.
 enum class Wanted : std::uint8_t { ALL, PAIRS, TRIPLES, FIRST };
 
-/// Return blocked lanes and those that are asked for with them, but of the first alone that is wanted.
+/// Return blocked lanes and those that are wanted with them, but of the first alone that is wanted.
 inline Mask with_others(Mask blocked, Wanted wanted) {
   if (wanted == Wanted::PAIRS) {
     const Mask pairs = (blocked | blocked >> 1) & 0x5555;
@@ -31,7 +31,7 @@ struct PlacedHulls {
   const PlacedFrame& frame;
 };
 
-/// Return the mask of those lanes asked for in which hulls of two trees come within a margin.
+/// Return the mask of those queried lanes in which hulls of two trees come within a margin.
 ///
 /// What decided is kept, if there is where, and tried first.  It counts where it decides by more than all roundings:
 /// the search would find that, too, so no answer depends on what is kept.
@@ -52,11 +52,11 @@ float reach_of(const HullNode<float>& root);
 /// Return by how much single precision may have distances of two bodies wrong: of the lengths that they come of.
 Floats16 lost(const PlacedHulls& first, const PlacedHulls& second);
 
-/// Return the mask of those lanes asked for in which a plane, if one is known, does not separate the hulls of two nodes
+/// Return the mask of those queried lanes in which a plane, if one is known, does not separate the hulls of two nodes
 /// by more than `near`; its normal is in the frame of the second.
 Mask not_apart_across(Vec3 normal, const PlacedHulls& first, const PlacedHulls& second, Floats16 near, Mask asked);
 
-/// Return what is told of the lanes asked for by what is kept of two roots, of which the second is an obstacle's leaf.
+/// Return what is decided about the queried lanes by what is kept of two roots; the second is an obstacle's leaf.
 Decided decided_by(const Kept& kept, const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked);
 
 }  // namespace evenroad::robot

@@ -131,7 +131,7 @@ struct Builder {
 };
 
 /// Return how a line along `direction` from a place crosses a triangle ahead of the place: 0, or 1 along the triangle's
-/// normal and -1 against it; nothing where that cannot be told.
+/// normal and -1 against it; nothing where that is uncertain.
 std::optional<int> crossing(const HullPoint<float>* corners, const double (&point)[3], const double (&direction)[3]) {
   double p[3][3], sides[3];
   for (int i = 0; i < 3; i++) {
@@ -149,7 +149,8 @@ std::optional<int> crossing(const HullPoint<float>* corners, const double (&poin
   return (ahead > 0) == (least > 0) ? (least > 0 ? 1 : -1) : 0;
 }
 
-/// Return how often surfaces below a root wind around a place, seen along a way, or nothing where that is not told.
+/// Return how often surfaces below a root wind around a point, seen along a direction, or nothing where that is
+/// uncertain.
 std::optional<int> windings(const HullTree<float>& tree, int root, const double (&point)[3],
                             const double (&direction)[3]) {
   int waiting[DEEPEST], count = 1, times = 0;

@@ -5,8 +5,8 @@
 
 namespace evenroad::robot {
 
-constexpr int PLANES = 3;  // so many are tried for each two hulls before they are left to double precision
-/// Planes for all lanes at once cost as much as a search in one lane for each so many corners, and so many more.
+constexpr int PLANES = 3;  // tried for each two hulls before they are left to double precision
+/// Planes of all lanes pay where the first times the open lanes is at least the second plus the corners of both hulls.
 constexpr int CORNERS_OF_A_LANE = 12, CORNERS_OF_PLANES = 32;
 /// Half extents of boxes [m], and squares of sines in triangles, are taken for at least that: so all stays finite.
 constexpr float THIN = 1e-4F, FLAT = 1e-7F;
@@ -61,7 +61,7 @@ EVENROAD_INLINE Vec3x16 nearest_of_three(Vec3x16 a, Vec3x16 b, Vec3x16 c) {
   return where_less(Floats16{}, inside, a + plus(f * t, e, s), nearest);
 }
 
-/// Return the mask of those lanes asked for in which none of some planes separates two hulls by more than `near`.
+/// Return the mask of those queried lanes in which none of some planes separates two hulls by more than `near`.
 ///
 /// The way between the middles of boxes around them is that from the second to the first, `sizes` the half extents of
 /// both together.  `first` returns what of the first is farthest along directions, `second` the same of the second,

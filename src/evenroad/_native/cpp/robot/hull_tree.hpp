@@ -79,7 +79,8 @@ void add_around(HullTree<float>& tree, int root, std::span<const double> points,
 /// Return a point of every leaf below a root, but one alone of those that share corners.
 std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root);
 
-/// Return whether closed surfaces below a root go around a place in the body's frame, or it is not told that none does.
+/// Return whether closed surfaces below a root go around a point in the body's frame, or it is uncertain whether one
+/// does.
 bool encloses(const HullTree<float>& tree, int root, const double (&point)[3]);
 
 /// The pose of one body in the frame of another: rotation row by row, translation.

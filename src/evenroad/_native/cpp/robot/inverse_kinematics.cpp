@@ -13,7 +13,7 @@ namespace {
 
 constexpr double EXACT = 1e-10;  // an error is none that is no larger [m, rad]
 constexpr double LONGEST = 0.8;  // no joint moves by more in a step [rad or m]
-constexpr int LOOK = 8;          // after so many steps the error must have halved
+constexpr int LOOK = 8;          // steps after which the error must have halved
 constexpr double DAMPING = 0.03;
 constexpr int SOLVED_A_LOOK = 4;  // configurations between two looks at the clock
 constexpr double INF = std::numeric_limits<double>::infinity();

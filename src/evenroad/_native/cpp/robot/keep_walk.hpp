@@ -19,8 +19,8 @@ struct Walking {
 bool walk(const Keeps& keeps, std::span<const double> from, std::span<const double> direction, const Walking& how,
           std::vector<double>& states);
 
-/// Append the states of a path, (n, dim), and so many projected ones, less one, between each and the next; return
-/// whether all are near each other.
+/// Append the states of a path, (n, dim), and that number of projected ones, less one, between each and the next;
+/// return whether all are near each other.
 bool refine(const Keeps& keeps, Matrix<const double> path, int pieces, const Walking& how, std::vector<double>& states);
 
 }  // namespace evenroad::robot

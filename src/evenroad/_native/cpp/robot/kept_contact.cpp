@@ -8,7 +8,7 @@ namespace evenroad::robot {
 
 namespace {
 
-/// A plane is tested for all lanes at once where more of them are asked for.
+/// A plane is tested for all lanes at once where more of them than this are queried.
 constexpr int LANES_OF_A_PLANE = 5;
 
 using Node = HullNode<float>;

@@ -18,7 +18,7 @@ class ShapeAt {
   /// Return which boxes of a node come near the box around the body.
   Mask near(const BoxNode& node) const;
 
-  /// Return whether one of those triangles of a leaf that are asked for touches a hull.
+  /// Return whether one of the queried triangles of a leaf touches a hull.
   bool meets(const TriangleLeaf& leaf, Mask asked);
 
   /// Return whether closed surfaces of the body go around a corner of those triangles.

@@ -11,7 +11,7 @@ namespace evenroad::robot {
 struct Beginnings {
   std::span<const double> start;
   Matrix<const double> known, tips;  // (n, dim), and where these have the tip, (n, 12)
-  std::size_t first, last, every;    // of the nearest known ones: from number `first` to below `last`, every so many
+  std::size_t first, last, every;    // of the nearest known ones: from number `first` to below `last`, one in `every`
 };
 
 /// What one posture is: all configurations that differ by whole turns, or by less than `apart` in every coordinate.

@@ -1,44 +1,11 @@
-// Configurations and motions as checks take them: within bounds, wrapped, endpoints in a fixed order.
+// A motion as checks take it: its endpoints within the limits of the joints, in a fixed order.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <vector>
 
 #include "robot/placed_robot.hpp"
 
 namespace evenroad::robot {
-
-/// By how much a configuration may be out of bounds; as in evenroad.space.joints.
-constexpr double BOUNDS_SLACK = 1e-5;
-
-inline bool wraps(const Bounds& bounds, std::size_t k) {
-  return bounds.period[k] != std::numeric_limits<double>::infinity();
-}
-
-/// Return a coordinate, that of one that wraps in its range, [low, high).
-inline double into_range(double value, const Bounds& bounds, std::size_t k) {
-  const double low = bounds.low[k], high = bounds.high[k];
-  if (!wraps(bounds, k) || (low <= value && value < high)) return value;
-  double rest = std::fmod(value - low, bounds.period[k]);
-  if (rest < 0) rest += bounds.period[k];
-  value = low + rest;
-  return value >= high ? low : value;
-}
-
-inline bool is_within(double value, const Bounds& bounds, std::size_t k) {
-  return bounds.low[k] - BOUNDS_SLACK <= value && value <= bounds.high[k] + BOUNDS_SLACK;
-}
-
-/// Write `q` with its wrapping coordinates in their ranges, and return whether the others are within theirs.
-bool enter(std::span<const double> q, const Bounds& bounds, std::span<double> into);
-
-/// Bring `q` into bounds: wrapping coordinates into their ranges, the others cut.
-void make_canonical(std::span<double> q, const Bounds& bounds);
-
-/// Write the short way from `a` to `b` and return its length.
-double write_direction(std::span<const double> a, std::span<const double> b, const Bounds& bounds,
-                       std::span<double> direction);
 
 /// A motion between two configurations as `enter` writes them.
 struct Motion {
@@ -50,7 +17,7 @@ struct Motion {
   explicit Motion(std::size_t dim) : start(dim), end(dim), direction(dim) {}
 
   /// States are rounded: without a fixed order a motion and its reverse could be judged differently.
-  void span(std::span<const double> a, std::span<const double> b, const Bounds& bounds, double resolution);
+  void span(std::span<const double> a, std::span<const double> b, const Joints& joints, double resolution);
 
   /// Write the configurations at the sixteen shares.
   void write_states(std::span<Doubles16> states) const;

@@ -57,7 +57,7 @@ bool are_free(Workspace& workspace, int first, int last, bool sixteen_do) {
 
 /// Make a motion the workspace's.
 void take(Workspace& workspace, std::span<const double> a, std::span<const double> b) {
-  workspace.motion.span(a, b, workspace.checker.robot().bounds, workspace.checker.resolution());
+  workspace.motion.span(a, b, workspace.checker.robot().joints, workspace.checker.resolution());
   workspace.counts.motions++;
 }
 
@@ -89,7 +89,7 @@ void motions_free(const Checker& checker, Matrix<const double> a, Matrix<const d
   // A motion that needs more batches is not proved: some ten milliseconds; usual ones need a few.
   const ProofLimits limits{tolerance, 1 << 11};
   const Borrowed workspace = checker.borrow();
-  const Bounds& bounds = checker.robot().bounds;
+  const Joints& joints = checker.robot().joints;
   std::vector<double> start(a.columns), end(a.columns);
   Mask proved = 0;
   for (std::size_t row = 0; row < a.rows; row++) {
@@ -102,7 +102,7 @@ void motions_free(const Checker& checker, Matrix<const double> a, Matrix<const d
     }
     free[row] = (proved >> lane & 1) != 0;
     if (free[row]) continue;
-    free[row] = enter(a[row], bounds, start) && enter(b[row], bounds, end) &&
+    free[row] = enter(a[row], joints, start) && enter(b[row], joints, end) &&
                 motion_free(*workspace, start, end, Known::NO_ENDPOINT) &&
                 (tolerance <= 0 || motion_proved(*workspace, start, end, limits));
   }

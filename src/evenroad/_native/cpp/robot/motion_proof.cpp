@@ -73,7 +73,7 @@ struct Piece {
 bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits) {
   const Robot& robot = workspace.checker.robot();
   Motion& motion = workspace.motion;
-  motion.span(a, b, robot.bounds, workspace.checker.resolution());
+  motion.span(a, b, robot.joints, workspace.checker.resolution());
   workspace.counts.motions++;
   workspace.speeds.take_anywhere(robot, motion.direction);
   double fastest = 0;
@@ -130,8 +130,8 @@ Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const d
   Speeds& speeds = workspace.speeds;
   double whole = 0;
   for (std::size_t row = 0; row < count; row++) {
-    if (enter(a[row], robot.bounds, starts[row]) && enter(b[row], robot.bounds, end)) proved |= 1U << row;
-    write_direction(starts[row], end, robot.bounds, directions[row]);
+    if (enter(a[row], robot.joints, starts[row]) && enter(b[row], robot.joints, end)) proved |= 1U << row;
+    write_direction(starts[row], end, robot.joints, directions[row]);
     for (std::size_t k = 0; k < dim; k++) longest[k] = std::max(longest[k], std::abs(directions(row, k)));
     // Of long motions nearly always the first is long.
     if (row > 0 && row + 1 < count) continue;

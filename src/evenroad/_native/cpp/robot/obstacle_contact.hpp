@@ -33,11 +33,11 @@ Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, f
 Mask inside_meeting(const Robot& robot, const PlacedRobot& placed, const Body& body, const Obstacle& obstacle,
                     float near, Mask asked, Wanted wanted);
 
-/// Return the mask of those lanes asked for in which the true shape of a body comes within `near` of an obstacle.
+/// Return the mask of those queried lanes in which the true shape of a body comes within `near` of an obstacle.
 Mask shape_meeting(const Robot& robot, const PlacedRobot& placed, const Body& body, const Obstacles& obstacles,
                    int number, float near, Mask asked, Wanted wanted, KeptOfPairs* kept = nullptr);
 
-/// Return the mask of those lanes asked for in which a surface of a body's true shape goes around a place of the scene.
+/// Return the mask of those queried lanes in which a surface of a body's true shape goes around a point.
 Mask shape_enclosing(const Robot& robot, const PlacedRobot& placed, const Body& body, Vec3x16 point, Mask asked);
 
 }  // namespace evenroad::robot

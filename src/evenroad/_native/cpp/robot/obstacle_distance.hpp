@@ -41,7 +41,7 @@ EVENROAD_INLINE Floats16 squared_distance(Form form, const Obstacle& obstacle, V
 }  // namespace detail
 
 /// Return the squared distances of points along a capsule's segment, from -1 to 1, from an obstacle without the
-/// rounding of its edges: of the nearest one.  The form is asked for once, not at each point.
+/// rounding of its edges: of the nearest one.  The form is looked at once, not at each point.
 EVENROAD_INLINE Floats16 squared_distance(const Obstacle& obstacle, const PlacedCapsule& capsule,
                                           std::span<const float> along) {
   const Vec3x16 &centre = capsule.centre, &half = capsule.half;

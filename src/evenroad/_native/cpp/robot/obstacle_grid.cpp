@@ -69,7 +69,7 @@ ObstacleGrid make_obstacle_grid(const Obstacles& obstacles, const GridLayout& la
   std::copy_n(layout.cells, 3, grid.cells);
   grid.low = frame.low, grid.size = frame.size, grid.one_by_cell = frame.one_by_cell;
   grid.cell = static_cast<float>(layout.cell), grid.step = static_cast<float>(layout.cell / PARTS);
-  // Bytes are rounded to the nearest, and what is asked is wider by half a step.
+  // Bytes are rounded to the nearest, and queries are wider by half a step.
   grid.exact = most - grid.step;
   grid.distances.reserve(layout.count());
   const float one_by_step = 1.0F / grid.step;

@@ -1,5 +1,5 @@
-// Of each capsule the grid is asked at sixteen configurations; where something is near, lane by lane, the tree names
-// obstacles, and each of these is tested once for all lanes.
+// Each capsule is looked up in the grid at sixteen configurations; where something is near, lane by lane, the tree
+// names obstacles, and each of these is tested once for all lanes.
 #include "robot/obstacle_tree.hpp"
 
 #include <algorithm>
@@ -72,7 +72,7 @@ struct Part {
   bool shaped;         // whether the body's true shape decides
 };
 
-/// One check: what was asked for, and what is known so far.
+/// One check: what it is of, and what is known so far.
 struct Check {
   const Robot& robot;
   const Lengths& lengths;

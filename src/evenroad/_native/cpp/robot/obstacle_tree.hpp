@@ -1,6 +1,6 @@
 // Contact of sixteen configurations with many obstacles: a grid and a tree find the few that are near.
 //
-// Which obstacles are tested differs from the check of few, and how a lane is decided does not: verdicts are the same.
+// Which obstacles are tested differs from the check of few, and how a lane is decided does not: results are the same.
 #pragma once
 
 #include "robot/exact_obstacle.hpp"
@@ -8,7 +8,7 @@
 
 namespace evenroad::robot {
 
-/// From so many obstacles on a tree is faster than all blocks in a row.
+/// Number of obstacles from which on a tree is faster than all blocks in a row.
 constexpr int MANY_OBSTACLES = 320;
 
 /// Bring obstacles, with what belongs to them, into an order in which sixteen neighbours are near each other.

@@ -15,7 +15,7 @@ class Projection {
  public:
   Projection(const Keeps& keeps, const Projecting& how);
 
-  /// Move a configuration, (dim,), by at most so many steps until all residuals are short enough; return whether.
+  /// Move a configuration, (dim,), by at most that many steps until all residuals are short enough; return whether.
   bool move(std::span<double> q, int steps);
 
   /// Take off a short way, (dim,), from a configuration what leaves the constraints, as far as a first derivative says.

@@ -283,7 +283,7 @@ Robot make_robot(const GivenRobot& given) {
     const auto part = given.bounds.subspan(i * dim, dim);
     return std::vector<double>(part.begin(), part.end());
   };
-  robot.bounds = {row(0), row(1), row(2)};
+  robot.joints = {row(0), row(1), row(2)};
   robot.padding = given.padding, robot.reach = given.reach;
   robot.frames = make_frames(given, dim);
   add_capsules(robot, given);

@@ -12,6 +12,7 @@
 #include "common/float16.hpp"
 #include "common/matrix.hpp"
 #include "robot/hull_tree.hpp"
+#include "robot/joints.hpp"
 
 namespace evenroad::robot {
 
@@ -83,11 +84,6 @@ struct Lengths {
   Lengths enlarged(float margin) const;
 };
 
-/// Low, high and period of each coordinate; the period is infinite where it does not wrap.
-struct Bounds {
-  std::vector<double> low, high, period;
-};
-
 /// A sphere over a capsule that does not move, as it is.
 struct FixedSphere {
   int capsule;
@@ -95,7 +91,7 @@ struct FixedSphere {
 };
 
 struct Robot {
-  Bounds bounds;
+  Joints joints;
   std::vector<Frame> frames;  // parents first; without the root's
   std::vector<Capsule> capsules;
   std::vector<float> samples;  // along segments, from -1 to 1
@@ -111,10 +107,10 @@ struct Robot {
   std::vector<FixedSphere> fixed_spheres;
   int fixed_bodies = 0;
   int hull_pairs = 0;
-  double padding = 0;  // by which radii are larger, so that rounding makes no verdict optimistic
+  double padding = 0;  // by which radii are larger, so that rounding frees nothing that touches
   double reach = 0;    // no point is ever farther from the root's origin
 
-  int dim() const { return static_cast<int>(bounds.low.size()); }
+  int dim() const { return static_cast<int>(joints.size()); }
   int fixed_capsules() const { return fixed_bodies == 0 ? 0 : bodies[fixed_bodies - 1].capsules.end; }
   int first_hull_pair() const { return static_cast<int>(body_pairs.size()) - hull_pairs; }
 };

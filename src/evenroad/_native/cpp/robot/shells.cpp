@@ -13,7 +13,7 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr double CELLS_OF_SHELL = 100'000;  // about so many are triangles of a shell sorted into
+constexpr double CELLS_OF_SHELL = 100'000;  // of a grid that triangles of a shell are sorted into, about
 
 /// Return six times the volume of a tetrahedron, with its sign.
 double volume_of(const double* a, const double* b, const double* c, const double* d) {

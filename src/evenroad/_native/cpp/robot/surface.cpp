@@ -32,7 +32,7 @@ void put(TriangleLeaf& leaf, int lane, const double* t) {
 
 constexpr std::size_t AHEAD = 2 * LANES;
 
-constexpr double CELLS = 400'000;  // about so many of a surface's grid
+constexpr double CELLS = 400'000;  // of a surface's grid, about
 
 /// Widen a box around all triangles that can be reached to the reach, along each direction in which all is inside.
 ///

@@ -42,7 +42,7 @@ struct GivenSurface {
   double radius;
   std::span<const double> solid;  // (m, 3, 3): triangles of closed surfaces, however far
   bool turned;                    // whether the sides of these tell inside from outside
-  double reach;                   // no place is asked for that is farther from the origin along an axis
+  double reach;                   // no queried point is farther from the origin along an axis
   std::span<const bool> first;    // of a mesh: which triangles are the first of a part, or pieces of one
   std::span<const bool> closed;   // of a mesh: which triangles are some of the solid ones, or pieces of one
 };

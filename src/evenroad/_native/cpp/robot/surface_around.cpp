@@ -9,7 +9,7 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr double CELLS_AROUND = 100'000;  // about so many of a grid around surfaces
+constexpr double CELLS_AROUND = 100'000;  // of a grid around surfaces, about
 constexpr double LESS = 1.0 - 1e-5;       // what distances are multiplied by, for what single precision loses
 constexpr float NEVER = 1e9F;             // far more than any distance: the grid never says that something touches
 

@@ -11,7 +11,7 @@ namespace evenroad::robot {
 
 namespace {
 
-/// Of capsules that at most so many spheres cover the grid is not asked as a whole: it would cost as much.
+/// A capsule that at most this many spheres cover is not looked up in the grid as a whole: it would cost as much.
 constexpr int FEW_SPHERES = 2;
 
 /// A capsule in sixteen lanes: how long it is, and how far its surface and that of its spheres are from its segment.
@@ -21,10 +21,10 @@ struct Asked {
   float half, covering, slack;  // spheres are larger than the capsule by the slack
 };
 
-/// What is asked of a grid: lanes in which a capsule is near, or also those in which it touches for sure.
+/// What is sought in a grid: lanes in which a capsule is near, or also those in which it touches for sure.
 enum class Sought : std::uint8_t { NEAR, SURE };
 
-/// Ask a grid about a long capsule as a whole first, then about the spheres that cover it, until all open lanes are
+/// Look up a long capsule in a grid as a whole first, then the spheres that cover it, until all open lanes are
 /// known.
 NearAndSure query(const Surface& surface, const Asked& of, Sought sought, Mask open) {
   const float wide = of.covering + surface.radius, reach = wide - of.slack;

@@ -19,7 +19,7 @@ Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Plac
 /// Return which triangles of a leaf touch a capsule.
 Mask near_triangles(const TriangleLeaf& leaf, const CapsuleAt& capsule);
 
-/// What of a body comes near a surface in some lanes, as its capsule there has told.
+/// What of a body comes near a surface in some lanes, as its capsule there does.
 struct ShapeNear {
   const Robot& robot;
   const PlacedRobot& placed;
@@ -28,7 +28,7 @@ struct ShapeNear {
   float near;  // shapes nearer than this touch [m]
 };
 
-/// Return the mask of those lanes asked for in which the true shape of a body touches a surface, where its capsule
+/// Return the mask of those queried lanes in which the true shape of a body touches a surface, where its capsule
 /// does; of the first alone that is wanted.
 Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Mask asked, Wanted wanted);
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double LEAST_CELL = 4e-3;  // [m]
 constexpr double SURE = 1e-7;        // what is so near to a cell, in sides of one, is in it, too: more than rounding
 constexpr int MOST_WINDINGS = 100;
-constexpr int FARTHEST = 64;  // distances beyond so many cells are not told apart
+constexpr int FARTHEST = 64;  // distances beyond this many cells count as one
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
 /// A convex polygon: a triangle that is cut off four times at most.
@@ -225,7 +225,7 @@ int winding_at(const double (&point)[3], std::span<const double> triangles, bool
 
 /// Between cells d apart along an axis there are d - 1: so distances, axis by axis, from cells that are marked or next
 /// to one (after P. Felzenszwalb and D. Huttenlocher, Distance Transforms of Sampled Functions, 2012, but each line is
-/// searched up to the farthest that is told apart, many lines at once).
+/// searched up to the farthest that counts, many lines at once).
 std::vector<std::uint8_t> distances_to(const GridLayout& grid, std::span<const std::uint8_t> marked) {
   const auto [nx, ny, nz] = grid.cells;
   std::vector<std::int32_t> squared(grid.count(), FARTHEST * FARTHEST), least(grid.count());

@@ -19,7 +19,7 @@ struct GridLayout {
   std::size_t count() const { return static_cast<std::size_t>(cells[0]) * cells[1] * cells[2]; }
 };
 
-/// Return a grid of about so many cells around a box, half a cell beyond it or more; no cell is smaller than 4 mm.
+/// Return a grid of about `count` cells around a box, half a cell beyond it or more; no cell is smaller than 4 mm.
 GridLayout grid_layout(const double (&low)[3], const double (&high)[3], double count);
 
 /// Mark the cells that points are in.

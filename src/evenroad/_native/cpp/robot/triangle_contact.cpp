@@ -37,7 +37,7 @@ EVENROAD_INLINE Mask outside(const TriangleLeaf& leaf, Vec3x16 third, Vec3x16 he
 }
 
 /// Return how many of some triangles of a leaf a segment crosses along their normals, less those against them, or
-/// nothing where that cannot be told; `half` is half of the segment.
+/// nothing where that is uncertain; `half` is half of the segment.
 std::optional<int> crossings(const TriangleLeaf& leaf, Mask some, Vec3 begin, Vec3 half) {
   const Vec3x16 corner = leaf.corner - spread(begin), third = leaf.second - leaf.first, along = spread(half);
   const Floats16 before = -dot(leaf.normal, corner), slope = dot(leaf.normal, along);

@@ -16,8 +16,6 @@ constexpr double NEARLY_ONE = 1.0 - 1e-9;
 /// So many intervals are looked at before one searches.
 constexpr int FEW = 4;
 
-constexpr std::size_t LANES = 16;
-
 using Doubles16 = Lanes<double, 16>;
 
 }  // namespace
@@ -96,7 +94,7 @@ void write_distances(Matrix<const double> waypoints, Matrix<const double> points
   // Sixteen points at once, one after the other in each coordinate.
   std::vector<Doubles16> some(dim);
   for (std::size_t first = 0; first < points.rows; first += LANES) {
-    const std::size_t count = std::min(LANES, points.rows - first);
+    const std::size_t count = std::min<std::size_t>(LANES, points.rows - first);
     for (std::size_t lane = 0; lane < LANES; lane++) {
       for (std::size_t k = 0; k < dim; k++) some[k][lane] = points(first + std::min(lane, count - 1), k);
     }

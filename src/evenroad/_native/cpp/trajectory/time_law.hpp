@@ -102,7 +102,7 @@ struct SharesAlong {
   }
 };
 
-/// Return the largest shares at so many times, from 2 on, in each interval.
+/// Return the largest shares at a number of times, from 2 on, in each interval.
 Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const Most& most, std::size_t samples);
 
 /// Write how far each point is from straight motions between waypoints.

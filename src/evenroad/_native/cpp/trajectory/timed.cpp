@@ -29,7 +29,7 @@ constexpr double PROBABLY = 2.0;
 /// Number of times in a step at which further limits are looked at.
 constexpr std::size_t PER_STEP = 4;
 
-/// Shares by which a speed may be less than asked for, and a bound more than is allowed.
+/// Shares by which a speed may be less than wanted, and a bound more than is allowed.
 constexpr double NO_SLOWER = 1e-9, NO_MORE = 1e-12;
 
 /// Number of parts of an interval at whose ends is looked what an arc uses.

@@ -22,7 +22,7 @@ enum class Outcome : std::uint8_t {
   MADE,
   TOO_LONG,    // it takes too many steps
   TOO_HEAVY,   // torques cannot hold the robot still
-  TOO_FAST,    // at start or goal it is asked to be faster than the limits let it be
+  TOO_FAST,    // at start or goal it is to be faster than the limits let it be
   NOT_WITHIN,  // no share of the limits was found with which all are kept
 };
 
@@ -41,7 +41,7 @@ struct Timed {
   Shares highest;
   /// Largest shares of further limits, at some times in each step.
   FurtherShares further;
-  /// Whether it is slower than asked for at start and goal.
+  /// Whether it is slower than wanted at start and goal.
   bool is_slower_at_start = false, is_slower_at_goal = false;
   /// Within which its corners are rounded.
   std::vector<double> deviations{};

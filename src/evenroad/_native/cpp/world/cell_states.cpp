@@ -3,7 +3,7 @@
 // 0)), the distance from the obstacles grown by one cell all round: where that is at least the radius, the cell is
 // free.
 //
-// Obstacles that are farther than all of this asks for count as just so far: what is known of a square of cells depends
+// Obstacles that are farther than all of this matters count as just so far: what is known of a square of cells depends
 // on what lies near it.
 #include "world/cell_states.hpp"
 

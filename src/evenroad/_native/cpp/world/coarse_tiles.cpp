@@ -145,7 +145,7 @@ CoarseTile& CoarseTiles::opened(std::int64_t number) {
   return *tile;
 }
 
-/// Write the occupied cells of 64 columns of a row, with so many to both sides.
+/// Write the occupied cells of 64 columns of a row, with a number to both sides.
 void CoarseTiles::grow_row(std::int64_t row, std::int64_t left,
                            std::array<std::uint64_t, MOST_REACH + 3>& grown) const {
   const Occupancy& occupancy = disk_.occupancy();

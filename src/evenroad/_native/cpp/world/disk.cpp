@@ -65,7 +65,7 @@ bool Disk::is_motion_free(Point from, Point to) const {
 // Follow the segment (from.x <= to.x), whose ends are free, cell by cell; parameter t runs from 0 to 1.  Every piece of
 // the segment from one t to the next lies in the closed cell that is looked at, and the pieces leave no gap.  Where the
 // segment comes nearest to a square that it does not meet, either the segment ends, which was tested as a point, or the
-// square has a corner.  So corners are all that an undecided cell asks about.
+// square has a corner.  So corners are all that an undecided cell depends on.
 bool Disk::is_segment_free(Point from, Point to) const {
   const Point by{to.x - from.x, to.y - from.y};
   const double squared_length = by.x * by.x + by.y * by.y;

@@ -36,7 +36,7 @@ struct Frame {
   }
 };
 
-/// What is known of one disk on one map, of each part from when it is first asked for; what it says never changes.
+/// What is known of one disk on one map, of each part from when it is first needed; what it says never changes.
 class Disk {
  public:
   /// Take the occupied cells of a map; the radius is in pixels.

@@ -12,7 +12,7 @@ namespace {
 
 /// Number of cells around a near contact of two components that belong to the gate.
 constexpr std::int64_t AROUND = 3;
-/// An undecided cell so many steps from surely free ones is no strip along a wall.
+/// An undecided cell this many steps from surely free ones is no strip along a wall.
 constexpr std::int32_t DEEP = 3;
 /// Number of cells around a square, in which free cells that hang together are one component.
 constexpr std::int64_t NEAR = 24;

@@ -10,7 +10,7 @@ namespace evenroad::world {
 /// Return a length that no path between two map points falls below, in map units.
 ///
 /// It is that of the shortest way of a point through all cells that are not BLOCKED, in any direction, up to rounding;
-/// after so many intervals of cells' sides it is what is known by then.  Infinite where no cells join the points.
+/// after that many intervals of cells' sides it is what is known by then.  Infinite where no cells join the points.
 double least_length(const Disk& disk, Point start, Point goal, std::int64_t most);
 
 }  // namespace evenroad::world

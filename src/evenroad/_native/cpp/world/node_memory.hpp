@@ -72,7 +72,7 @@ class NodeMemory {
   }
 
  private:
-  /// Nodes whose numbers of column and row agree but for so many bits are one block.  Centres of cells, whose numbers
+  /// Nodes whose numbers of column and row agree but for the last bits are one block.  Centres of cells, whose numbers
   /// are odd, have blocks of their own: away from gates there are no others.
   static constexpr int SHIFT = 7, HALF = SHIFT - 1;
   static constexpr std::size_t SIDE = std::size_t{1} << HALF;

@@ -1,4 +1,4 @@
-// A table of bytes over a grid, in square tiles that are made when they are first asked for: a query pays for the part
+// A table of bytes over a grid, in square tiles that are made when they are first needed: a query pays for the part
 // of the map that it looks at.
 #pragma once
 
