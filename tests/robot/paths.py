@@ -45,8 +45,8 @@ def searched(world, count, least):
     """Paths of three waypoints or more that trees find, at least so many."""
     limits = {"most_motions": 5_000, "seconds": 30}
     found = [connect(world, a, [b], **limits).path for a, b in queries(world, count)]
-    # Where the start sees the goal there is one motion: long ones are divided.
-    found = [resample(path, world.space, 1.4)[0] if len(path) == 2 else path for path in found]
+    # Where the start sees the goal there is one motion: long ones are divided, and joints that turn on are wrapped.
+    found = [world.space.wrapped(resample(path, world.space, 1.4)[0]) if len(path) == 2 else path for path in found]
     found = [path for path in found if len(path) > 2]
     assert len(found) >= least
     return found
