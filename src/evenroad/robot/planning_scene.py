@@ -187,7 +187,8 @@ def _objects(entries: list[Mapping[str, Any]], frames: dict[str, Pose], path: Pa
             # Without the robot nobody knows which link its planning frame is: one frame for all may be that.
             unplaced.add(_frame_id(each))
             if len(unplaced) > 1 or _has_own_frames(frames):
-                raise UnknownName.among(f"frame of {where}:", _frame_id(each), [one for one in known if one])
+                unknown = UnknownName.among(f"frame of {where}:", _frame_id(each), [one for one in known if one])
+                raise UnknownName(f"{unknown}; a link's place is said by fixed_frame_transforms")
             frame = IDENTITY
         made = _object(each, where)
         made.pose = frame @ made.pose
