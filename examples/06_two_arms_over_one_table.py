@@ -4,8 +4,8 @@ import math
 
 import evenroad as er
 from evenroad.geometry import Pose
+from evenroad.poses.inverse_kinematics import reach
 from evenroad.robot import ArmWorld, Obstacle, Scene, with_group
-from evenroad.robot.inverse_kinematics import reach
 
 # The second arm stands 0.9 m to the left of the first, and looks at it; its names begin with "left_".
 ARM = er.load_robot("ur5")

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 import evenroad as er
-from evenroad.robot.inverse_kinematics import reach
+from evenroad.poses.inverse_kinematics import reach
 
 HINGE, RADIUS, HEIGHT = np.array([0.7, 0.35, 0.0]), 0.45, 0.45
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 import evenroad as er
+from evenroad.poses.inverse_kinematics import reach
 from evenroad.robot import with_group
-from evenroad.robot.inverse_kinematics import reach
 
 ARM = er.load_robot("ur5")
 ACROSS = er.Pose((0.0, 0.9, 0.0), rpy=(0.0, 0.0, math.pi))

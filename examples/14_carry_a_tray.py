@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 import evenroad as er
-from evenroad.robot.inverse_kinematics import reach
+from evenroad.poses.inverse_kinematics import reach
 
 UR5 = er.load_robot("ur5")
 TRAY = er.Box((0.3, 0.3, 0.08), xyz=(0.0, 0.0, 0.06), name="tray")

@@ -9,9 +9,9 @@ import numpy as np
 
 from evenroad.planning import FMT, PRM, GrowingPRM, Problem
 from evenroad.planning.connectors import connector_of
+from evenroad.planning.query import as_start_and_goals
 from evenroad.planning.trees import default_planner
 from evenroad.roadmap import Budget
-from evenroad.roadmap.query import as_start_and_goals
 
 
 def solve(planner, world, start, goal, *, rng=0, smooth=True, budget=None):

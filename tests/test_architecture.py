@@ -22,26 +22,28 @@ BASE = {
     *("_native", "_npz", "_rng", "_seal", "_shared", "_terminal", "_threads", "_time_limit", "_understood", "_yaml"),
     "_yaml_values",
 }
+VALUES = ["points", "space", "geometry", "world"]
+OF_ARMS = ["robots", "loading", "scenes", "collision", "poses", "infeasibility"]
+"""Each may import those before it."""
 MAY_IMPORT = {
     "points": BASE,
     "space": BASE,
     "spaces": BASE | {"space"},
     "geometry": BASE,
     "world": BASE | {"space", "geometry"},
+    **{part: BASE | {*VALUES, *OF_ARMS[:i]} for i, part in enumerate(OF_ARMS)},
+    "robot": BASE | {"geometry", *OF_ARMS},
+    "constraints": BASE | {*VALUES, *OF_ARMS},
     "roadmap": BASE | {"points", "space", "world"},
+    "planning": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap"},
+    "trajectory": BASE | {"space", "world", *OF_ARMS, "constraints"},
+    "task": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory"},
     "qmc": BASE | {"points"},
-    "constraints": BASE | {"points", "space", "geometry", "world", "robot"},
-    "planning": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "constraints"},
-    "io": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
+    "io": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning"},
     "testing": BASE | {"space", "world"},
-    "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "planning", "constraints"},
-    "robot": BASE | {"points", "space", "geometry", "world"},
-    "trajectory": BASE | {"space", "world", "robot", "constraints"},
-    "task": BASE | {"space", "geometry", "world", "robot", "roadmap", "planning", "trajectory", "constraints"},
-    "adapters": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "planning", "trajectory"},
-    "cli": BASE
-    | {"points", "space", "world", "geometry", "robot", "roadmap"}
-    | {"planning", "io", "viz", "trajectory", "task", "constraints"},
+    "viz": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning"},
+    "adapters": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
+    "cli": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory", "task", "io", "viz"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""
@@ -51,19 +53,22 @@ TYPES = "for type checkers"
 
 
 UPWARD = {
+    ("collision.arm_world", "ArmWorld.apart"): {"infeasibility.proof"},
+    ("planning.result", "PlanResult.save"): {"io"},
+    ("planning.result", "PlanResult.load"): {"io"},
+    ("planning.result", "PlanResult.plot"): {"viz.result"},
+    ("planning.result", "PlanResult.trajectory"): {"trajectory.arm"},
     ("points.pointset", "PointSet.save"): {"points.npz"},
     ("roadmap.roadmap", "Roadmap.save"): {"roadmap.npz"},
-    ("roadmap.result", "PlanResult.save"): {"io"},
-    ("roadmap.result", "PlanResult.load"): {"io"},
-    ("roadmap.result", "PlanResult.plot"): {"viz.result"},
-    ("roadmap.result", "PlanResult.trajectory"): {"trajectory.arm"},
-    ("robot.robot", "Robot.configuration"): {"robot.states"},
-    ("robot.robot", "Robot.fk"): {"robot.robot_queries"},
-    ("robot.robot", "Robot.ik"): {"robot.robot_queries"},
-    ("robot.robot", "Robot.random"): {"robot.robot_queries"},
-    ("robot.robot", "Robot.with_padding"): {"robot.robot_queries"},
-    ("robot.robot", TYPES): {"robot.pose_goal", "robot.scene"},
-    ("robot.scene", "Scene.__init__"): {"robot.scene_file"},
+    ("roadmap.roadmap", "Roadmap.within"): {"planning.world_roadmap"},
+    ("roadmap.roadmap", TYPES): {"planning.world_roadmap"},
+    ("robots.robot", "Robot.configuration"): {"scenes.states"},
+    ("robots.robot", "Robot.fk"): {"poses.robot_queries"},
+    ("robots.robot", "Robot.ik"): {"poses.robot_queries"},
+    ("robots.robot", "Robot.random"): {"poses.robot_queries"},
+    ("robots.robot", "Robot.with_padding"): {"poses.robot_queries"},
+    ("robots.robot", TYPES): {"poses.pose_goal", "scenes.scene"},
+    ("scenes.scene", "Scene.__init__"): {"scenes.scene_file"},
     ("task.task", "Task.plan"): {"task.solve"},
     ("trajectory.trajectory", "Trajectory.save"): {"trajectory.files"},
     ("world.gridmap.grid", "CellGrid.plot"): {"viz.result"},

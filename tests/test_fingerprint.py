@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from evenroad._fingerprint import Fingerprinted, fingerprint_of
+from evenroad.collision.certified import CertifiedWorld
 from evenroad.errors import NotAvailable
 from evenroad.robot import ArmWorld, load_robot, load_scene
-from evenroad.robot.certified import CertifiedWorld
 from evenroad.space import SE2, SE3, BoxSpace, Circle, JointSpace, Rectangle
 from evenroad.world import FunctionWorld, GridMap
 from tests.counting import Counting

@@ -9,7 +9,7 @@ import pytest
 import evenroad as er
 from evenroad.adapters.simulated import drive, maniskill, plan_to_pose, robosuite, start_of
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.robot.kinematics import link_poses
+from evenroad.robots.kinematics import link_poses
 
 BASE = er.Pose((-0.6, 0.1, 0.9), rpy=(0.0, 0.0, 0.7))
 HOME = np.array([0.0, -2.0, 1.9, -1.5, -1.57, 0.0])

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.constraints.kept_world import kept_world
+from evenroad.collision.certified import CertifiedWorld
+from evenroad.constraints.constrained_world import kept_world
 from evenroad.geometry import Mesh, PointCloud, TriangleMesh
 from evenroad.planning import GrowingPRM
 from evenroad.planning.connectors import ARM_TREES
@@ -18,10 +19,9 @@ from evenroad.points.measures import MEASURES
 from evenroad.roadmap import Budget, KNearest
 from evenroad.roadmap.build import roadmap_of_points
 from evenroad.robot import Obstacle, link_poses
-from evenroad.robot.certified import CertifiedWorld
 from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
 from evenroad.world.gridmap.load import load_maze
-from tests.robot.kernel_arms import TABLE, box_scene, ur5
+from tests.robots.kernel_arms import TABLE, box_scene, ur5
 from tests.threads import together
 
 QUERIES = 8

@@ -10,9 +10,9 @@ import evenroad as er
 from evenroad._time_limit import BudgetSpent, Deadline, look_at_clock, off_the_clock, within
 from evenroad.constraints import KeepUpright
 from evenroad.planning.growing import GrowingPRM
+from evenroad.planning.result import Status
 from evenroad.planning.trees import GridSearch
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.result import Status
 from evenroad.task import MoveTo, Task
 
 SECONDS = 0.04

@@ -5,16 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.robot.kernel_arms import box_scene, random_scene, random_tree, ur5
-from tests.robot.mesh_arms import FORK, LONG, write_fork_arm
-from tests.robot.oracle import clearance, obstacle_distance
+from tests.robots.kernel_arms import box_scene, random_scene, random_tree, ur5
+from tests.robots.mesh_arms import FORK, LONG, write_fork_arm
+from tests.robots.oracle import clearance, obstacle_distance
 
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.collision.coal_world import CoalWorld, original_shapes
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry import Mesh, Pose, TriangleMesh
 from evenroad.robot import link_poses, load_robot
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
-from evenroad.robot.scene import Obstacle, Scene
+from evenroad.scenes.scene import Obstacle, Scene
 from evenroad.testing import WorldContract
 from tests_peers.engines.klampt_world import KlamptWorld
 from tests_peers.engines.pinocchio_world import PinocchioWorld

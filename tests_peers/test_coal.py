@@ -6,9 +6,9 @@ import coal
 import numpy as np
 import pytest
 
+from evenroad.collision.coal_world import tree_of
 from evenroad.geometry.mesh import merged
 from evenroad.geometry.rotation import rotation_from_quaternion, rotations_from_quaternions
-from evenroad.robot.reference.coal_world import tree_of
 from evenroad.space import SE3
 from evenroad_studies.problems import source_named
 from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld, surface_of

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from tests.robot.kernel_arms import random_rotation, ur5
+from tests.robots.kernel_arms import random_rotation, ur5
 
-from evenroad.robot.reference.coal_world import capsule_shapes
-from evenroad.robot.scene import Obstacle
+from evenroad.collision.coal_world import capsule_shapes
+from evenroad.scenes.scene import Obstacle
 from tests_peers.engines.surface import link_surfaces, shape_surface
 
 TURN = random_rotation(np.random.default_rng(4))

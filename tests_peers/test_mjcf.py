@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 import trimesh
 from scipy.spatial import cKDTree
-from tests.robot.kernel_arms import edge
+from tests.robots.kernel_arms import edge
 
 from evenroad.errors import BrokenFile
 from evenroad.geometry import Box, Pose
 from evenroad.geometry.shapes import Capsule, Mesh
+from evenroad.loading.mjcf import read_mjcf
+from evenroad.loading.urdf_xml import RobotFile
 from evenroad.planning import plan
 from evenroad.robot import ArmWorld, Obstacle, Scene, joint_values, link_poses, load_model, load_robot
-from evenroad.robot.mjcf import read_mjcf
-from evenroad.robot.urdf_xml import RobotFile
 
 mujoco = pytest.importorskip("mujoco")
 

@@ -12,7 +12,7 @@ import pytest
 
 from evenroad.planning.plan import plan as find_path
 from evenroad.planning.read_request import arm_request
-from evenroad.robot.kinematics import link_poses
+from evenroad.robots.kinematics import link_poses
 from evenroad.space.path import configuration_at
 from tests_peers.chromium import opened
 

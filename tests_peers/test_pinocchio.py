@@ -7,17 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from studies.benchmarks.robots import robots_in
-from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm
-from tests.robot.mesh_arms import write_fork_arm
-from tests.robot.urdf_texts import LIMIT, SPHERE, joint, link, urdf, write
+from tests.robots.kernel_arms import random_scene, random_tree, seven_joint_arm
+from tests.robots.mesh_arms import write_fork_arm
+from tests.robots.urdf_texts import LIMIT, SPHERE, joint, link, urdf, write
 
+from evenroad.collision.coal_world import CoalWorld, original_shapes
 from evenroad.errors import EvenroadError
+from evenroad.loading.groups import choose_group
+from evenroad.loading.load import find_robot
+from evenroad.loading.urdf import read_urdf
 from evenroad.robot import Robot, Scene, link_poses, load_robot
-from evenroad.robot.groups import choose_group
-from evenroad.robot.kinematics import joint_values
-from evenroad.robot.load import find_robot
-from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
-from evenroad.robot.urdf import read_urdf
+from evenroad.robots.kinematics import joint_values
 from evenroad.trajectory import load_dynamics
 from tests_peers.engines.pinocchio_world import PinocchioWorld, placements
 

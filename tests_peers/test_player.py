@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.robot.kinematics import link_poses
+from evenroad.robots.kinematics import link_poses
 from evenroad.viz.player import save_page
 from tests_peers.chromium import opened
 

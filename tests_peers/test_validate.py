@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
-from tests.robot.mesh_arms import write_fork_arm, write_plate_arm
+from tests.robots.mesh_arms import write_fork_arm, write_plate_arm
 
 from evenroad.cli import main
+from evenroad.collision.coal_world import CoalWorld, original_shapes
+from evenroad.collision.validate import has_meshes, unseen_pairs, validate
 from evenroad.errors import BrokenFile
+from evenroad.loading.load import load_model
 from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
-from evenroad.robot.load import load_model
-from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
-from evenroad.robot.reference.validate import has_meshes, unseen_pairs, validate
 from evenroad.space.path import resample
 
 pytest.importorskip("coal")

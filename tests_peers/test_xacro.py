@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 import pytest
 
 from evenroad.errors import BrokenFile, UnknownName
+from evenroad.loading.xacro.expand import expanded
 from evenroad.robot import load_model, load_robot
-from evenroad.robot.xacro.expand import expanded
 
 xacro = pytest.importorskip("xacro")
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import yaml
 
-from evenroad.robot.find import example_robots
+from evenroad.loading.find import example_robots
 
 ROOT = Path(__file__).parents[1]
 DATA = ROOT / "src" / "evenroad" / "robot" / "data"

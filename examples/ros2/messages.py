@@ -16,7 +16,7 @@ import numpy.typing as npt
 import evenroad as er
 from evenroad.errors import InvalidValue
 from evenroad.robot import HeldObject, Robot, Scene, with_group
-from evenroad.robot.moveit_scene import read_planning_scene
+from evenroad.scenes.moveit_scene import read_planning_scene
 from evenroad.world import MapFrame
 
 Make = Callable[..., Any]

@@ -26,7 +26,9 @@ def names_on_use(package: str, file: str) -> tuple[list[str], Callable[[str], An
         home, there = homes[name]
         if home == package:
             return importlib.import_module(f"{package}.{there}")
-        value = getattr(importlib.import_module(home), there)
+        module = importlib.import_module(home)
+        # A name may be a module of its own.
+        value = getattr(module, there) if hasattr(module, there) else importlib.import_module(f"{home}.{there}")
         setattr(sys.modules[package], name, value)
         return value
 

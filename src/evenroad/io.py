@@ -21,9 +21,8 @@ from evenroad._checks import as_file, require_known
 from evenroad._files import atomic_write, read_json_file
 from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.planning.result import PlanResult, Status, make_result
 from evenroad.points import Origin
-from evenroad.roadmap import PlanResult, Status
-from evenroad.roadmap.result import make_result
 
 
 def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:

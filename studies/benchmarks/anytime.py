@@ -25,12 +25,12 @@ import numpy as np
 from studies.benchmarks.arm_problems import REPORTING, TUNING, Pool, Problem, Vector, arm_named, problems
 from studies.benchmarks.rows import parser_of
 
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.collision.certified import CertifiedWorld
 from evenroad.planning.arm_trees import connect
+from evenroad.planning.attempt import NO_LIMIT
 from evenroad.planning.connectors import ArmTrees
 from evenroad.points.reversed_halton import shifted_cube_points
-from evenroad.roadmap.attempt import NO_LIMIT
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.certified import CertifiedWorld
 from evenroad.space.path import path_length
 
 TREES = ArmTrees(shortest=True)

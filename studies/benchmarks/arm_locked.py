@@ -2,7 +2,7 @@
 
     python -m studies.benchmarks.arm_locked  # cages that trees do not solve, of the problems of arm_planner
 
-What a plan itself proves in a tenth of a second (`evenroad.robot.separated`), with finer cells and more joints.
+What a plan itself proves in a tenth of a second (`evenroad.infeasibility.proof`), with finer cells and more joints.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ import numpy as np
 from studies.benchmarks.arm_problems import REPORTING, Pool, Problem, arm_named, problems
 from studies.benchmarks.rows import parser_of
 
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.separated import THOROUGH, outer_bodies, shown_by
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.infeasibility.proof import THOROUGH, outer_bodies, shown_by
 
 TRIES = (
     (3, (0.35, 0.35, np.inf), 20_000_000),

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 from studies.benchmarks.rows import parser_of
-from tests.robot.kernel_arms import as_balls, random_scene, random_tree, seven_joint_arm, ur5
-from tests.robot.oracle import clearance
+from tests.robots.kernel_arms import as_balls, random_scene, random_tree, seven_joint_arm, ur5
+from tests.robots.oracle import clearance
 
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.robot import Robot
-from evenroad.robot.scene import Scene
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Scene
 
 BAND = 1e-5
 BLOCK = 10_000

@@ -22,8 +22,8 @@ from pathlib import Path
 
 from studies.benchmarks.rows import given_or_table, parser_of, row_per_robot
 
+from evenroad.loading.groups import chains
 from evenroad.robot import load_robot
-from evenroad.robot.groups import chains
 
 PAGE = Path(__file__).parents[2] / "docs" / "start" / "arm.md"
 ARM = 4

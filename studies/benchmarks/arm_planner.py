@@ -24,11 +24,11 @@ import numpy.typing as npt
 from studies.benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm_named, problems
 from studies.benchmarks.rows import parser_of
 
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.planning.arm_trees import connect, shorten
+from evenroad.planning.connector import Connection
 from evenroad.planning.connectors import ARM_TREES
-from evenroad.roadmap.connector import Connection
-from evenroad.roadmap.shortcut import shortcut
-from evenroad.robot.arm_world import ArmWorld
+from evenroad.planning.shortcut import shortcut
 from evenroad.space.path import path_length
 
 Path = npt.NDArray[np.float64]

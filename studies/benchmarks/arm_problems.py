@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kinematics import link_poses
-from evenroad.robot.robot import Robot
-from evenroad.robot.scene import Obstacle, Scene
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.robots.kinematics import link_poses
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Obstacle, Scene
 from evenroad_studies.arms.cells import cell_of
 from evenroad_studies.arms.robots import arm_named as arm_named
 

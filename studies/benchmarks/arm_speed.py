@@ -15,14 +15,14 @@ from functools import partial
 
 import numpy as np
 import numpy.typing as npt
-from tests.robot.kernel_arms import as_balls
+from tests.robots.kernel_arms import as_balls
 
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.collision.certified import CertifiedWorld
+from evenroad.loading.load import load_robot
 from evenroad.robot import Robot, in_scene, with_group
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.certified import CertifiedWorld
-from evenroad.robot.load import load_robot
-from evenroad.robot.scene import Obstacle, Scene
-from evenroad.robot.scene_file import load_scene
+from evenroad.scenes.scene import Obstacle, Scene
+from evenroad.scenes.scene_file import load_scene
 from evenroad.world import World
 
 REPEATS = 11

@@ -2,7 +2,7 @@
 
     python -m studies.benchmarks.arm_walks  # 10 000 places that are joined to their starts by construction
 
-Random arms (`tests.robot.kernel_arms`) with joints that turn, turn on, slide and follow others, whole and with a ball
+Random arms (`tests.robots.kernel_arms`) with joints that turn, turn on, slide and follow others, whole and with a ball
 for each body, among obstacles that lock some of them.
 """
 
@@ -12,12 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 from studies.benchmarks.rows import parser_of
-from tests.robot.kernel_arms import random_scene, random_tree, walk
+from tests.robots.kernel_arms import random_scene, random_tree, walk
 
 from evenroad._arrays import Floats
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.locked import piece_of
-from evenroad.robot.separated import QUICK, apart, outer_bodies
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.infeasibility.prefix_cells import piece_of
+from evenroad.infeasibility.proof import QUICK, apart, outer_bodies
 
 TRIES = (
     *QUICK,

@@ -18,16 +18,16 @@ import numpy as np
 import numpy.typing as npt
 import trimesh
 from studies.benchmarks.arm_speed import ur5_world
-from tests.robot.kernel_arms import edge
-from tests.robot.surface_oracle import all_clearance
+from tests.robots.kernel_arms import edge
+from tests.robots.surface_oracle import all_clearance
 
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.collision.native_surfaces import make_surface
 from evenroad.geometry import Mesh, PointCloud, TriangleMesh
 from evenroad.geometry.mesh import merged
+from evenroad.loading.load import load_robot
 from evenroad.planning import plan
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kernel.native_surfaces import make_surface
-from evenroad.robot.load import load_robot
-from evenroad.robot.scene import Obstacle, Scene
+from evenroad.scenes.scene import Obstacle, Scene
 
 Floats = npt.NDArray[np.float64]
 RADIUS = 0.005

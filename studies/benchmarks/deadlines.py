@@ -35,7 +35,7 @@ import evenroad as er
 from evenroad.constraints import KeepUpright
 from evenroad.planning.growing import GrowingPRM
 from evenroad.planning.trees import GridSearch
-from evenroad.robot.kinematics import link_poses
+from evenroad.robots.kinematics import link_poses
 from evenroad_studies.arms.robots import arm_named
 
 LEAST, MOST = 1e-3, 1.0

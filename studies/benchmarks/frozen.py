@@ -27,11 +27,11 @@ from studies.benchmarks.clouds import points_on, triangles_of
 from studies.benchmarks.rows import parser_of
 
 from evenroad import draw
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.geometry import Mesh, PointCloud
-from evenroad.planning import FMT, PRM, GrowingPRM, plan
-from evenroad.roadmap import Budget, KNearest, PlanResult, build_roadmap
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.scene import Obstacle, Scene
+from evenroad.planning import FMT, PRM, GrowingPRM, PlanResult, plan
+from evenroad.roadmap import Budget, KNearest, build_roadmap
+from evenroad.scenes.scene import Obstacle, Scene
 from evenroad.world import World
 from evenroad.world.gridmap.load import load_maze
 from evenroad_studies.bench.execute import run_task

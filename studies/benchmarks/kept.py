@@ -25,9 +25,9 @@ import numpy as np
 from studies.benchmarks.rows import parser_of
 
 import evenroad as er
-from evenroad.constraints.kept_world import KeptWorld, keeps_of, kept_world
+from evenroad.constraints.constrained_world import KeptWorld, keeps_of, kept_world
+from evenroad.poses.inverse_kinematics import reach
 from evenroad.robot import with_group
-from evenroad.robot.inverse_kinematics import reach
 
 TUNING, REPORTING = 1_000, 2_000
 """First seeds: constants were chosen on the one, figures come from the other."""

@@ -29,7 +29,7 @@ from studies.benchmarks.kept import FORWARD, TUNING, Kept, given_options, proble
 from studies.benchmarks.roboplan_arm import GROUP, MOST_NODES, STEP, scene_of
 
 import evenroad as er
-from evenroad.constraints.kept_world import KeptWorld, keeps_of, kept_world
+from evenroad.constraints.constrained_world import KeptWorld, keeps_of, kept_world
 
 SECONDS, BUSY = 2.0, 4.0
 """Processor time that a plan gets, and how much longer that may take by the clock, which alone RoboPlan reads."""

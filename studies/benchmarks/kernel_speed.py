@@ -37,7 +37,7 @@ class Measured:
     def __init__(self, kind: str) -> None:
         import numpy as np
         from studies.benchmarks import arm_speed, frozen
-        from tests.robot.kernel_arms import as_balls
+        from tests.robots.kernel_arms import as_balls
 
         wide = arm_speed.ur5_world("box-reach")
         seven = arm_speed.load_robot("arm7")
@@ -57,7 +57,7 @@ class Measured:
     @cached_property
     def proved(self) -> tuple[Any, Any, Any]:
         """The world that proves, and the ends of motions that it proves."""
-        from evenroad.robot.certified import CertifiedWorld
+        from evenroad.collision.certified import CertifiedWorld
 
         proving = CertifiedWorld(self.world)
         free = self.world.motion_valid(self.a, self.b)

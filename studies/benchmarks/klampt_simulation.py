@@ -26,7 +26,7 @@ from evenroad._files import atomic_write
 from evenroad.planning import plan
 from evenroad.planning.read_request import arm_request
 from evenroad.robot import Scene
-from evenroad.robot.kinematics import joint_values
+from evenroad.robots.kinematics import joint_values
 from evenroad.trajectory import Trajectory, limits_of, make_trajectory
 from evenroad.viz.arm import ArmScene
 

@@ -19,7 +19,7 @@ from studies.benchmarks.robot_truth import at_contact, path_states
 from studies.benchmarks.rows import row_per_robot
 
 from evenroad.robot import ArmWorld, Robot, Scene, joint_values, load_model
-from evenroad.robot.pairs import rigid_links
+from evenroad.robots.pairs import rigid_links
 
 COUNT = 800
 DEEP = 1e-6

@@ -23,7 +23,7 @@ from studies.benchmarks.rows import given_or_table, parser_of, row_per_robot
 
 from evenroad.geometry import rotation_from_rpy
 from evenroad.robot import ArmWorld, Robot, Scene, load_model
-from evenroad.robot.scene import Obstacle
+from evenroad.scenes.scene import Obstacle
 
 SCENES = 3
 DEEP, CLEAR = 6e-6, 5e-4

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from studies.benchmarks.rows import parser_of, write_rows
-from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm, ur5
+from tests.robots.kernel_arms import random_scene, random_tree, seven_joint_arm, ur5
 from tests.studies.free_paths import (
     PLANNERS,
     disk_world,
@@ -29,8 +29,8 @@ from tests.studies.free_paths import (
     solid_world,
 )
 
+from evenroad.collision.certified import CertifiedWorld
 from evenroad.robot import ArmWorld
-from evenroad.robot.certified import CertifiedWorld
 
 QUERIES = 4
 """Of each world."""

@@ -28,13 +28,13 @@ from studies.benchmarks.rows import parser_of
 import evenroad as er
 from evenroad._native import planning
 from evenroad.planning import arm_trees, read_request
+from evenroad.planning.connector import Smooth
 from evenroad.planning.connectors import ARM_TREES
 from evenroad.planning.drivers import native_points
 from evenroad.planning.plan import Options, budget_of, finished, solve
 from evenroad.planning.request import Reading
 from evenroad.points.reversed_halton import ball_points, cube_points
-from evenroad.roadmap.connector import Smooth
-from evenroad.robot.obstacle import Obstacle
+from evenroad.scenes.obstacle import Obstacle
 from evenroad_studies.arms.robots import ARMS, arm_named
 
 BOXES = 25

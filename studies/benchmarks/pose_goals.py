@@ -19,10 +19,15 @@ from pathlib import Path
 import numpy as np
 from studies.benchmarks.rows import parser_of, write_rows
 
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.geometry import Pose
-from evenroad.robot import ArmWorld, PoseGoal, Scene, closed_form, link_poses, load_robot
-from evenroad.robot.chain import TURN, default_tip
-from evenroad.robot.inverse_kinematics import reach
+from evenroad.loading.load import load_robot
+from evenroad.poses import closed_form
+from evenroad.poses.chain import TURN, default_tip
+from evenroad.poses.inverse_kinematics import reach
+from evenroad.poses.pose_goal import PoseGoal
+from evenroad.robots.kinematics import link_poses
+from evenroad.scenes.scene import Scene
 from evenroad_studies.statistics.rates import wilson
 
 COLUMNS = ("robot", "joints", "solver", "poses", "solved", "low_percent", "high_percent", "own", "error",

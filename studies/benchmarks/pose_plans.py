@@ -28,8 +28,8 @@ from evenroad import CartesianLine, PoseGoal
 from evenroad.constraints import KeepUpright
 from evenroad.geometry import Pose
 from evenroad.planning import plan
+from evenroad.poses.inverse_kinematics import reach
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, link_poses, load_robot
-from evenroad.robot.inverse_kinematics import reach
 from evenroad_studies.statistics.rates import wilson
 
 TIPS = {"ur5": "tool0", "arm7": "flange"}

@@ -23,9 +23,9 @@ from scipy.spatial.transform import Rotation
 from studies.benchmarks.arm_problems import Problem, Vector
 
 import evenroad as er
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kinematics import link_poses
-from evenroad.robot.robot import Robot
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.robots.kinematics import link_poses
+from evenroad.robots.robot import Robot
 
 GROUP = "arm"
 STEP = 0.02

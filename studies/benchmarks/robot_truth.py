@@ -23,7 +23,7 @@ from studies.benchmarks.rows import row_per_robot
 from evenroad.geometry.mesh import TriangleMesh, closed_parts
 from evenroad.planning.arm_trees import connect, shorten
 from evenroad.robot import ArmWorld, Scene, load_model
-from evenroad.robot.pairs import CONTAINED
+from evenroad.robots.pairs import CONTAINED
 from evenroad.space.path import resample
 
 COUNT = 2000

@@ -19,10 +19,10 @@ import numpy.typing as npt
 from studies.benchmarks.arm_speed import random_boxes
 from studies.benchmarks.sizes import alone, draw_costs, held, shown, sizes_parser, write_table
 
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.geometry import Mesh, PointCloud, TriangleMesh
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.load import load_robot
-from evenroad.robot.scene import Scene
+from evenroad.loading.load import load_robot
+from evenroad.scenes.scene import Scene
 
 Floats = npt.NDArray[np.float64]
 SIZES = {

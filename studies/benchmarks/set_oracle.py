@@ -15,10 +15,10 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as parquet
 from studies.benchmarks.rows import parser_of
-from tests.robot.oracle import clearance
+from tests.robots.oracle import clearance
 
 import evenroad as er
-from evenroad.robot.scene_file import scene_of
+from evenroad.scenes.scene_file import scene_of
 
 STEP = 0.02
 OF_EACH = 4

@@ -2,7 +2,7 @@
 
     python -m studies.benchmarks.solid_truth [--count 100000]
 
-The first rows are the scenes of ``tests/robot/solid_bodies.py``, in a place each: a ball on an arm that reaches
+The first rows are the scenes of ``tests/collision/solid_bodies.py``, in a place each: a ball on an arm that reaches
 everywhere within a metre.  Those after them are drawn: closed meshes of boxes and of convex hulls, alone and several in
 one mesh, of any size, at any distance of the reach and turned at random, with hulls also by coal's signed distances;
 and a UR5 whose gripper hangs behind a gap.  A row says how many states there were, how many of them are inside, how
@@ -19,13 +19,14 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import ConvexHull
 from studies.benchmarks.rows import parser_of
-from tests.robot.solid_bodies import LONG, RADIUS, SOLIDS, Solid, at, ball_arm, distance, places_of
-from tests.robot.surface_scenes import half_turned
+from tests.collision.solid_bodies import LONG, RADIUS, SOLIDS, Solid, at, ball_arm, distance, places_of
+from tests.robots.surface_scenes import half_turned
 
 import evenroad as er
 from evenroad.geometry import Mesh, Pose, rotation_from_rpy
 from evenroad.geometry.mesh import convex_hull, merged
-from evenroad.robot import find, link_poses
+from evenroad.loading import find
+from evenroad.robots.kinematics import link_poses
 
 BAND = 2e-5
 """What is clear by this must be free [m]."""

@@ -19,9 +19,9 @@ from studies.benchmarks.arm_problems import Problem
 from studies.benchmarks.rows import parser_of
 
 import evenroad as er
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.robot import Robot
-from evenroad.robot.scene import Obstacle
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Obstacle
 
 TUNING, REPORTING = range(1_000, 1_100), range(2_000, 2_100)
 """Seeds, one a scene: constants were chosen on the one, figures come from the other."""

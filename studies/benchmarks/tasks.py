@@ -20,17 +20,17 @@ import numpy as np
 from studies.benchmarks.rows import parser_of
 
 import evenroad as er
-from evenroad.constraints.kept_world import KeptWorld
+from evenroad.collision.coal_world import CoalWorld, original_shapes, tests_of
+from evenroad.constraints.constrained_world import KeptWorld
 from evenroad.geometry.curve import spline
 from evenroad.geometry.pose import IDENTITY
 from evenroad.geometry.shapes import Mesh
+from evenroad.poses.cartesian_path import Follower
+from evenroad.poses.chain import chain_of, default_tip
+from evenroad.poses.inverse_kinematics import reach
+from evenroad.poses.posture_layers import follow
 from evenroad.robot import Robot
-from evenroad.robot.cartesian_path import Follower
-from evenroad.robot.chain import chain_of, default_tip
-from evenroad.robot.inverse_kinematics import reach
-from evenroad.robot.kinematics import link_poses
-from evenroad.robot.posture_layers import follow
-from evenroad.robot.reference.coal_world import CoalWorld, original_shapes, tests_of
+from evenroad.robots.kinematics import link_poses
 from evenroad.task import Attach, Detach, MoveTo, Task
 from evenroad.task.contact import core_of
 from evenroad.task.steps import DEPTH

@@ -23,13 +23,13 @@ import numpy as np
 import numpy.typing as npt
 from studies.benchmarks.arm_problems import REPORTING, Pool, arm_named, problems
 
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import NotAvailable
+from evenroad.loading.masses import Mass
 from evenroad.planning import plan
 from evenroad.planning.arm_trees import shorten
 from evenroad.planning.read_request import arm_request
 from evenroad.robot import Scene
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.masses import Mass
 from evenroad.trajectory import Dynamics, InMotion, Limits, TipLimits, arm_trajectory, limits_of
 from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.make import DEVIATION

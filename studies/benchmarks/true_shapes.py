@@ -29,7 +29,7 @@ from studies.benchmarks.rows import given_or_table, parser_of, write_rows
 import evenroad as er
 from evenroad.planning.arm_trees import grown_trees
 from evenroad.robot import ArmWorld, Robot, Scene, load_robot
-from evenroad.robot.scene import Obstacle
+from evenroad.scenes.scene import Obstacle
 from evenroad.space.path import resample
 
 REACH = 1.5

@@ -26,12 +26,12 @@ from studies.benchmarks.arm_problems import Problem, Region, scene_of, within
 from studies.benchmarks.rows import parser_of
 
 import evenroad as er
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.planning.arm_trees import connect
 from evenroad.points.reversed_halton import shifted_cube_points
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kinematics import link_poses
-from evenroad.robot.robot import Robot
-from evenroad.robot.scene import Obstacle
+from evenroad.robots.kinematics import link_poses
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Obstacle
 
 TUNING, REPORTING = range(1_000, 1_200), range(2_000, 2_200)
 

@@ -28,9 +28,9 @@ from studies.benchmarks.rows import parser_of
 
 import evenroad as er
 from evenroad.adapters.ompl import ompl_path, path_of, solve, space_information
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.certified import CertifiedWorld
-from evenroad.robot.robot import Robot
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.collision.certified import CertifiedWorld
+from evenroad.robots.robot import Robot
 
 SECONDS = 2.0
 APART = 1e-3

@@ -7,7 +7,7 @@ from tests.command_line import in_an_empty_folder as in_an_empty_folder
 from tests.command_line import made as made
 from tests.command_line import refuse as refuse
 from tests.command_line import run as run
-from tests.robot.urdf_texts import two_joints
+from tests.robots.urdf_texts import two_joints
 
 
 @pytest.fixture

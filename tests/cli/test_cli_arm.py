@@ -8,9 +8,9 @@ import trimesh
 from PIL import Image
 
 import evenroad as er
+from evenroad.collision.certified import CertifiedWorld
 from evenroad.robot import ArmWorld, in_scene, load_robot, load_scene
-from evenroad.robot.certified import CertifiedWorld
-from tests.robot.urdf_texts import SPHERE, joint, link, two_joints, urdf
+from tests.robots.urdf_texts import SPHERE, joint, link, two_joints, urdf
 
 JOINTS = load_robot("ur5").group
 

@@ -4,9 +4,9 @@ import sys
 
 import pytest
 
-from evenroad.robot import load_robot
-from evenroad.robot.reference import coal_world
-from tests.robot.mesh_arms import write_fork_arm
+from evenroad.collision import coal_world
+from evenroad.loading.load import load_robot
+from tests.robots.mesh_arms import write_fork_arm
 
 ENDS = ("--start", "home", "--goal", "away", "-n", 128)
 

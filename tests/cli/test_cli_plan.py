@@ -82,7 +82,12 @@ def test_a_plan_of_an_arm_loads_what_it_needs_alone(tmp_path):
     unneeded = {
         *("scipy", "email", "asyncio", "zipfile", "tempfile", "PIL.JpegImagePlugin"),
         *("evenroad.constraints.keep", "evenroad.world.gridmap.gridmap", "evenroad.planning.growing"),
-        *("evenroad.robot.separated", "evenroad.robot.mjcf", "evenroad.points.measures.l2", "evenroad.trajectory"),
+        *(
+            "evenroad.infeasibility.proof",
+            "evenroad.loading.mjcf",
+            "evenroad.points.measures.l2",
+            "evenroad.trajectory",
+        ),
     }
     code = f"import sys; from evenroad.cli import main; main(sys.argv[1:]); print({unneeded!r} & set(sys.modules))"
     words = "plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside"

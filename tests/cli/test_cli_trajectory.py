@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from evenroad.collision.validate import MeshCheck
 from evenroad.planning.read_request import arm_request
 from evenroad.robot import link_poses
-from evenroad.robot.reference.validate import MeshCheck
 from evenroad.trajectory import limits_of, load_trajectory
 
 REACH = ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.robot.kinematics import link_poses
+from evenroad.robots.kinematics import link_poses
 
 ON_UR5 = ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--no-picture")
 INSIDE = "tool0: 0.65 0 0.2 0 1.570796326795 0"

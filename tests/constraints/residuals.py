@@ -13,7 +13,7 @@ from evenroad.constraints import (
     KeepTogether,
     KeepUpright,
 )
-from tests.robot import oracle
+from tests.robots import oracle
 
 TURNED = 0.1 / math.sqrt(2.0)
 """Metres that an entry of a rotation counts."""

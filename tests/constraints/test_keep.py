@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.constraints.kept_world import kept_world
+from evenroad.constraints.constrained_world import kept_world
 from evenroad.errors import EvenroadError
+from evenroad.poses.inverse_kinematics import reach
 from evenroad.robot import with_group
-from evenroad.robot.inverse_kinematics import reach
 from tests.constraints.residuals import residuals
-from tests.robot import oracle
+from tests.robots import oracle
 
 ROBOTS = {"ur5": er.load_robot("ur5"), "arm7": er.load_robot("arm7")}
 BENT = {"ur5": [0.3, -1.2, 1.4, -0.8, 0.9, 0.2], "arm7": [0.3, 0.6, 0.1, 1.2, 0.3, 0.7, -0.4]}

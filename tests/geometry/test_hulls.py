@@ -11,7 +11,7 @@ from evenroad.geometry.fit import farthest
 from evenroad.geometry.hulls import Hull, halves, piece_of, products
 from evenroad.geometry.mesh import convex_hull
 from tests.refused import refused
-from tests.robot.mesh_arms import fork
+from tests.robots.mesh_arms import fork
 
 TURNED = Pose((0.1, -0.2, 0.3), (0.0, -1.0, 0.0, 0.6, 0.0, -0.8, 0.8, 0.0, 0.6))
 

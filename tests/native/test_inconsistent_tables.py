@@ -23,11 +23,11 @@ from evenroad.geometry.shapes import Mesh, PointCloud
 from evenroad.planning import plan_many
 from evenroad.planning.connectors import ARM_TREES
 from evenroad.robot import ArmWorld, load_robot
-from evenroad.robot.scene import Scene
+from evenroad.scenes.scene import Scene
 from evenroad.world.gridmap.gridmap import GridMap
-from tests.robot.kernel_arms import random_scene
-from tests.robot.mesh_arms import write_fork_arm
-from tests.robot.paths import GOAL, START, box_world
+from tests.robots.kernel_arms import random_scene
+from tests.robots.mesh_arms import write_fork_arm
+from tests.robots.paths import GOAL, START, box_world
 
 ROUNDS = int(os.environ.get("EVENROAD_FUZZ", "12"))
 """How often each function is tried with each seed."""
@@ -282,7 +282,7 @@ def recorded(tmp_path_factory):
             patch.setattr(_native.planning, name, recording(f"planning.{name}", calls))
         patch.setattr("evenroad.planning.drivers.Drivers", recording("planning.Drivers", calls))
         patch.setattr("evenroad.world.gridmap.gridmap.Disk", recording("world.Disk", calls))
-        patch.setattr("evenroad.robot.arm_world.Checker", recording("robot.Checker", calls))
+        patch.setattr("evenroad.collision.arm_world.Checker", recording("robot.Checker", calls))
         patch.setattr("evenroad.planning.connectors.answer", recording("planning.answer", calls))
         patch.setattr("evenroad.planning.many.ManyQueries", recording("planning.ManyQueries", calls))
         robot = load_robot(write_fork_arm(tmp_path_factory.mktemp("fork")))

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.planning import Status
 from evenroad.points import PointSet, draw
 from evenroad.points.measures import dispersion_bounds, star_discrepancy
-from evenroad.roadmap import Certificate, Complete, KNearest, Radius, Reach, Rule, Status, certify_roadmap
+from evenroad.roadmap import Certificate, Complete, KNearest, Radius, Reach, Rule, certify_roadmap
 from evenroad.roadmap.build import roadmap_of_points
 from evenroad.roadmap.certify import certify
 from evenroad.roadmap.neighbours import nearest

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 
 from evenroad.points import draw
 from evenroad.roadmap.neighbours import nearest, within
-from tests.roadmap.clouds import clouds, nearest_by_sorting
-from tests.roadmap.spaces import Great, Torus
+from tests.planning.clouds import clouds, nearest_by_sorting
+from tests.planning.spaces import Great, Torus
 
 
 @settings(max_examples=200, deadline=None)

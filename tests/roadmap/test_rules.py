@@ -7,8 +7,8 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import draw
 from evenroad.roadmap import Complete, KNearest, Radius, default_rule, rule_named
 from evenroad.space import BoxSpace, Rectangle
+from tests.planning.clouds import clouds, nearest_by_sorting
 from tests.refused import refused
-from tests.roadmap.clouds import clouds, nearest_by_sorting
 
 SQUARE = Rectangle((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
 WIDE = Rectangle((0.0, 0.0), (640.0, 0.0), (0.0, 480.0))

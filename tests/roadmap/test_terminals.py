@@ -10,19 +10,19 @@ import evenroad as er
 from evenroad.errors import EvenroadError
 from evenroad.geometry.shapes import Capsule
 from evenroad.planning import Problem
+from evenroad.planning.connector import Connection
 from evenroad.planning.connectors import PlainTrees
 from evenroad.planning.request import Request
+from evenroad.planning.result import NO_POINTS, PlanResult, Status, led
+from evenroad.planning.terminals import NEAR, SAME
 from evenroad.planning.tip_motion import TipMotion
 from evenroad.planning.trees import solve_by
 from evenroad.roadmap import Budget
-from evenroad.roadmap.connector import Connection
-from evenroad.roadmap.result import NO_POINTS, PlanResult, Status, led
-from evenroad.roadmap.terminals import NEAR, SAME
 from evenroad.robot import ArmWorld, CartesianLine, Joint, Robot, Scene
 from evenroad.space import SE3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
 from tests.refused import refused
-from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, ur5
+from tests.robots.kernel_arms import STRAIGHT, TABLE, Z, ur5
 
 PLANE = BoxSpace((0.0, 0.0), (1.0, 1.0))
 A, B, C = np.array([[0.1, 0.2], [0.8, 0.9], [0.5, 0.5]])

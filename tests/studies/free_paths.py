@@ -6,20 +6,20 @@ from itertools import pairwise
 import numpy as np
 
 import evenroad as er
+from evenroad.collision.certified import CertifiedWorld
 from evenroad.points import draw
 from evenroad.points.samplers import make_sampler
 from evenroad.roadmap import Budget
 from evenroad.roadmap.build import roadmap_of_points
 from evenroad.robot import ArmWorld
-from evenroad.robot.certified import CertifiedWorld
 from evenroad.space import SE2, SE3, BoxSpace
 from evenroad.space.path import subdivide
 from evenroad.world import FunctionWorld, GridMap
 from evenroad.world.gridmap import DiskWorld
 from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld
 from tests.plan_on import find_path, fmt_on, plan_growing, plan_on
-from tests.robot.kernel_arms import random_rotation
-from tests.robot.oracle import clearance
+from tests.robots.kernel_arms import random_rotation
+from tests.robots.oracle import clearance
 from tests.studies.worlds.solids_oracle import gap
 from tests.world.gridmap_oracle import distance_to_obstacles
 

@@ -5,9 +5,9 @@ The large version is ``python -m studies.benchmarks.paths_oracle``.
 
 import pytest
 
+from evenroad.collision.certified import CertifiedWorld
 from evenroad.robot import ArmWorld
-from evenroad.robot.certified import CertifiedWorld
-from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm, ur5
+from tests.robots.kernel_arms import random_scene, random_tree, seven_joint_arm, ur5
 from tests.studies.free_paths import PLANNERS, disk_world, nearest, planners_of, queries, solid_world
 
 LOOSE = random_scene(1000, count=10, spread=1.0, clear=0.35)

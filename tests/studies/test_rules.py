@@ -9,8 +9,8 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import draw
 from evenroad.roadmap import KNearest, Radius
 from evenroad_studies.rules import KEarlier, RadiusStar, prm_star_gamma, rule_named
+from tests.planning.clouds import clouds
 from tests.refused import refused
-from tests.roadmap.clouds import clouds
 
 
 def _as_set(edges):

@@ -5,7 +5,7 @@ import evenroad as er
 from evenroad.geometry.distance import point_distance
 from evenroad.geometry.shapes import Capsule, Cylinder, Mesh, PointCloud, Sphere
 from evenroad.robot import Obstacle
-from evenroad.robot.kinematics import link_poses
+from evenroad.robots.kinematics import link_poses
 from evenroad.task.contact import core_of, depth_in, distance_of
 from evenroad.viz.surfaces import surface_of
 

@@ -10,7 +10,7 @@ from evenroad.cli import main
 from evenroad.errors import EvenroadError
 from evenroad.task import Attach, Detach, MoveAlong, MoveCircular, MoveLinear, MoveTo, Task, load_task
 from evenroad.trajectory import load_trajectory
-from tests.robot import oracle
+from tests.robots import oracle
 
 HOME = [0.0, -2.0, 1.9, -1.5, -math.pi / 2, 0.0]
 TURNED = {"rpy": (math.pi / 2, 0.0, math.pi / 2)}

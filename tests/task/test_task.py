@@ -14,8 +14,8 @@ from evenroad.robot import HeldObject
 from evenroad.task import Attach, Detach, MoveTo, Task, Wait
 from evenroad.task.stage import touches
 from evenroad.trajectory.urscript import movej_script
-from tests.robot import oracle
-from tests.robot.shape_oracle import shape_clearance
+from tests.robots import oracle
+from tests.robots.shape_oracle import shape_clearance
 
 HOME = [0.0, -2.0, 1.9, -1.5, -math.pi / 2, 0.0]
 CAN = er.Box((0.06, 0.06, 0.16), xyz=(0.70, 0.1, 0.29), name="can")

@@ -9,7 +9,7 @@ import evenroad as er
 from evenroad.robot import Joint, Robot
 from evenroad.task import Attach, Detach, MoveLinear, MoveTo, Task
 from evenroad.trajectory import Limits
-from tests.robot.kernel_arms import STRAIGHT, Z
+from tests.robots.kernel_arms import STRAIGHT, Z
 
 LIMITS = Limits((1.0, 1.0, 1.0), (2.0, 2.0, 2.0))
 

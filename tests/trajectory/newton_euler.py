@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from evenroad.robot.kinematics import joint_values, poses_at
+from evenroad.robots.kinematics import joint_values, poses_at
 
 
 def torques_by_newton(dynamics, q, velocity, acceleration):

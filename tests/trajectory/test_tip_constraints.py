@@ -5,8 +5,8 @@ import evenroad as er
 from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.planning.read_request import arm_request
-from evenroad.robot.cartesian_line import CartesianLine
-from evenroad.robot.scene import Scene
+from evenroad.poses.cartesian_line import CartesianLine
+from evenroad.scenes.scene import Scene
 from evenroad.trajectory import arm_trajectory
 from evenroad.trajectory.tip_constraints import constrained_world
 

@@ -3,7 +3,7 @@ import pytest
 
 import evenroad as er
 from evenroad.geometry.shapes import PointCloud
-from evenroad.robot.kinematics import capsule_endpoints
+from evenroad.robots.kinematics import capsule_endpoints
 from evenroad.viz import arm
 from evenroad.viz.surfaces import surface_of
 

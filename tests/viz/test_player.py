@@ -8,9 +8,9 @@ import pytest
 
 import evenroad as er
 from evenroad.errors import NotAvailable, UnknownName
+from evenroad.loading.urdf_xml import RobotFile
 from evenroad.robot import find_robot
-from evenroad.robot.kinematics import joint_values
-from evenroad.robot.urdf_xml import RobotFile
+from evenroad.robots.kinematics import joint_values
 from evenroad.viz.bodies import robot_parts
 from evenroad.viz.player import page_of, save_page
 

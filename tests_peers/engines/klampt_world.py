@@ -12,13 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_extra
+from evenroad.collision.coal_world import EngineWorld
 from evenroad.errors import BrokenFile
 from evenroad.geometry import TriangleMesh
 from evenroad.geometry.mesh import merged
-from evenroad.robot.kinematics import joint_values
-from evenroad.robot.reference.coal_world import EngineWorld
-from evenroad.robot.robot import Robot
-from evenroad.robot.scene import Scene
+from evenroad.robots.kinematics import joint_values
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Scene
 from tests_peers.engines.surface import link_surfaces, shape_surface
 from tests_peers.engines.urdf_text import as_urdf
 

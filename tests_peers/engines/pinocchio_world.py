@@ -10,17 +10,17 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_extra
-from evenroad.geometry.shapes import Shape
-from evenroad.robot.kinematics import joint_values
-from evenroad.robot.reference.coal_world import (
+from evenroad.collision.coal_world import (
     EngineWorld,
     coal_shape,
     require_coal,
     tests_of,
     with_contacts,
 )
-from evenroad.robot.robot import Robot
-from evenroad.robot.scene import Scene
+from evenroad.geometry.shapes import Shape
+from evenroad.robots.kinematics import joint_values
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Scene
 from tests_peers.engines.urdf_text import as_urdf
 
 
@@ -30,7 +30,7 @@ class PinocchioWorld(EngineWorld):
 
     Pinocchio reads the tree of joints from a URDF that we write for it and places the links by its own kinematics, so
     that its verdicts check ours from end to end.  Shapes are those of
-    :class:`evenroad.robot.reference.coal_world.CoalWorld`, tested by the same coal.  Parameters and errors are those
+    :class:`evenroad.collision.coal_world.CoalWorld`, tested by the same coal.  Parameters and errors are those
     of :class:`EngineWorld`.
     """
 
@@ -52,7 +52,7 @@ class PinocchioWorld(EngineWorld):
     def link_poses(self, q: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Return pinocchio's frames of all links in that of the root, (n, links, 4, 4), for (n, dim).
 
-        What :func:`evenroad.robot.kinematics.link_poses` returns, by other people's code.
+        What :func:`evenroad.robots.kinematics.link_poses` returns, by other people's code.
         """
         coordinates = _coordinates(self._model, self.robot, q)
         return placements(self._pinocchio, self._model, self.robot.links, coordinates)

@@ -9,7 +9,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from evenroad.geometry.rotation import rotation_from_rpy
-from evenroad.robot.robot import Robot
+from evenroad.robots.robot import Robot
 
 
 def as_urdf(robot: Robot, meshes: Mapping[str, str] | None = None) -> str:

@@ -17,8 +17,8 @@ from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import as_batch, require_count, require_extra, require_known
 from evenroad.errors import Exhausted, InvalidValue
 from evenroad.points import PointSet
-from evenroad.robot.kinematics import joint_values
-from evenroad.robot.robot import Robot
+from evenroad.robots.kinematics import joint_values
+from evenroad.robots.robot import Robot
 from evenroad.space import JointSpace
 from evenroad.space.path import continued
 from evenroad.trajectory import Trajectory

@@ -15,11 +15,12 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_known
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
 from evenroad.planning.plan import plan
-from evenroad.roadmap import PlanResult
-from evenroad.robot import ArmWorld, PoseGoal
+from evenroad.planning.result import PlanResult
+from evenroad.poses.pose_goal import PoseGoal
 
 
 @dataclass(frozen=True, eq=False)

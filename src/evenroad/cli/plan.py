@@ -16,7 +16,7 @@ from evenroad.cli.sampler import SamplerOptions, speaks_of_points
 from evenroad.errors import InvalidValue
 
 if TYPE_CHECKING:
-    from evenroad.robot import RobotModel
+    from evenroad.loading.description import RobotModel
 
 OF_ROBOTS: dict[str, tuple[str, ...]] = {
     "the robot's files": ("srdf", "group", "bodies", "use_visuals", "package", "xacro", "padding")
@@ -166,7 +166,7 @@ class RobotOptions:
 
     def read_robot(self, source: str) -> RobotModel:
         """Return a robot and how it was made."""
-        from evenroad.robot.load import padded_model
+        from evenroad.loading.load import padded_model
 
         return padded_model(source, **self.options())
 

@@ -25,13 +25,16 @@ from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
 from evenroad.cli.trajectory import limits_of_tip, require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
+from evenroad.loading.find import find_robot
 from evenroad.planning.plan import Options, finished
 from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Goal, Reading, Request
-from evenroad.roadmap import PlanResult, load_roadmap
-from evenroad.robot import find_robot, find_scene, held_values, load_scene
-from evenroad.robot.constraint import Constraint, part_of
-from evenroad.robot.pose_goal import as_axis, as_numbers, pose_goal_of
+from evenroad.planning.result import PlanResult
+from evenroad.poses.constraint import Constraint, part_of
+from evenroad.poses.pose_goal import as_axis, as_numbers, pose_goal_of
+from evenroad.roadmap import load_roadmap
+from evenroad.robots.kinematics import held_values
+from evenroad.scenes.scene_file import find_scene, load_scene
 
 
 def plan_arm(plan: PlanArm) -> int:
@@ -166,7 +169,7 @@ def _keeps(constraints: Constraint | None) -> bool:
     """Return whether some of the constraints hold along the whole path."""
     if constraints is None:
         return False
-    from evenroad.constraints.driven_world import DifferentialDrive
-    from evenroad.constraints.kept_world import keeps_of
+    from evenroad.constraints.constrained_world import keeps_of
+    from evenroad.constraints.differential_drive import DifferentialDrive
 
     return bool(keeps_of(constraints)) or part_of(constraints, DifferentialDrive) is not None

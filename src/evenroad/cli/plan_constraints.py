@@ -10,9 +10,9 @@ from evenroad.cli.plan import PlanArm
 from evenroad.constraints.text import constraints_of
 from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import InvalidValue
-from evenroad.robot.cartesian_line import CartesianLine
-from evenroad.robot.constraint import Constraint
-from evenroad.robot.pose_goal import as_numbers
+from evenroad.poses.cartesian_line import CartesianLine
+from evenroad.poses.constraint import Constraint
+from evenroad.poses.pose_goal import as_numbers
 
 
 def given_constraints(plan: PlanArm) -> Constraint | None:

@@ -38,7 +38,7 @@ def plan_disk(plan: PlanDisk) -> int:
     goals = [_position("goal", goal) for goal in plan.goal]
     if plan.world.suffix in (".yaml", ".yml"):
         # Imported late: plans on images do not need robots.
-        from evenroad.robot.scene_file import is_scene
+        from evenroad.scenes.scene_file import is_scene
 
         if is_scene(plan.world):
             raise InvalidValue(f"{plan.world} is a scene, no map: give the arm that moves in it with --robot")

@@ -15,8 +15,8 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import plan_of
 from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Reading, Request
-from evenroad.roadmap import PlanResult
-from evenroad.robot.constraint import Constraint, with_tip
+from evenroad.planning.result import PlanResult
+from evenroad.poses.constraint import Constraint, with_tip
 from evenroad.space.path import continued
 from evenroad.trajectory.files import trajectory_of
 from evenroad.trajectory.trajectory import Trajectory

@@ -16,10 +16,11 @@ from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
 from evenroad.planning.plan import Options, solve
 from evenroad.planning.prm import PRM
+from evenroad.planning.problem import Planner
 from evenroad.planning.request import Request
+from evenroad.planning.result import PlanResult
 from evenroad.planning.trees import RRTConnect, default_planner
-from evenroad.roadmap import Budget, PlanResult
-from evenroad.roadmap.problem import Planner
+from evenroad.roadmap import Budget
 from evenroad.world import NamesNearest
 
 DEFAULT_N = 512

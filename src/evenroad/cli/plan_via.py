@@ -12,18 +12,17 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.cli.plan import PlanArm
-from evenroad.constraints.kept_world import keeps_of
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.constraints.constrained_world import keeps_of
 from evenroad.errors import EvenroadError, InvalidValue
 from evenroad.planning.plan import Options
 from evenroad.planning.read_request import request_in
 from evenroad.planning.request import Goal, Reading, Request
-from evenroad.roadmap import PlanResult
-from evenroad.roadmap.result import make_result
-from evenroad.roadmap.terminals import SAME
-from evenroad.robot import ArmWorld
-from evenroad.robot.cartesian_line import CartesianLine
-from evenroad.robot.constraint import Constraint, part_of
-from evenroad.robot.pose_goal import pose_goal_of
+from evenroad.planning.result import PlanResult, make_result
+from evenroad.planning.terminals import SAME
+from evenroad.poses.cartesian_line import CartesianLine
+from evenroad.poses.constraint import Constraint, part_of
+from evenroad.poses.pose_goal import pose_goal_of
 from evenroad.task import MoveTo, Task
 from evenroad.task.contact import depth_in
 from evenroad.task.solve import plan_task

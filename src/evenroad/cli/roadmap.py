@@ -11,9 +11,12 @@ from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
+from evenroad.loading.find import find_robot
 from evenroad.roadmap import KNearest, build_roadmap
-from evenroad.robot import ArmWorld, Scene, find_robot, find_scene, load_scene
+from evenroad.scenes.scene import Scene
+from evenroad.scenes.scene_file import find_scene, load_scene
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,11 +18,17 @@ from evenroad._rng import generator
 from evenroad._terminal import print_table
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import Undecided
-from evenroad.robot import ArmWorld, Joint, RobotModel, Scene, held_values, in_scene, load_scene
-from evenroad.robot import Robot as Arm
-from evenroad.robot.groups import EVERY
-from evenroad.robot.srdf import srdf_text
+from evenroad.loading.description import RobotModel
+from evenroad.loading.groups import EVERY
+from evenroad.loading.srdf import srdf_text
+from evenroad.robots.joint import Joint
+from evenroad.robots.kinematics import held_values
+from evenroad.robots.robot import Robot as Arm
+from evenroad.scenes.robot_in_scene import in_scene
+from evenroad.scenes.scene import Scene
+from evenroad.scenes.scene_file import load_scene
 
 _CONFIGURATIONS = 4096
 _MOTIONS = 256

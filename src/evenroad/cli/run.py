@@ -11,9 +11,11 @@ from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.collision.coerce import as_scene
 from evenroad.errors import BrokenFile, InvalidValue
-from evenroad.robot import ArmWorld, Scene, in_scene
-from evenroad.robot.given import as_scene
+from evenroad.scenes.robot_in_scene import in_scene
+from evenroad.scenes.scene import Scene
 
 if TYPE_CHECKING:
     from evenroad.task import TaskResult

@@ -13,11 +13,11 @@ from evenroad._seal import has_digest
 from evenroad.cli.plan_file import PlanFile, changed_since, constraints_in, plan_file_of, request_of
 from evenroad.cli.run import run_task_of
 from evenroad.cli.trajectory import require_meshes_free
-from evenroad.constraints.driven_world import DifferentialDrive
+from evenroad.constraints.differential_drive import DifferentialDrive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Reading, Request
-from evenroad.robot.constraint import Constraint, part_of
+from evenroad.poses.constraint import Constraint, part_of
 from evenroad.trajectory import Trajectory, arm_trajectory, controller_joints, limits_of, proved_in
 from evenroad.trajectory.files import trajectory_of
 from evenroad.trajectory.make import DEVIATION

@@ -18,10 +18,10 @@ from evenroad.cli.plan import PlanArm
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.planning.read_request import mesh_check
 from evenroad.planning.request import Request
-from evenroad.roadmap import PlanResult
-from evenroad.robot import Robot
-from evenroad.robot.constraint import Constraint, part_of, with_tip
-from evenroad.robot.pose_goal import as_numbers
+from evenroad.planning.result import PlanResult
+from evenroad.poses.constraint import Constraint, part_of, with_tip
+from evenroad.poses.pose_goal import as_numbers
+from evenroad.robots.robot import Robot
 
 if TYPE_CHECKING:
     from evenroad.trajectory import Limits, Trajectory
@@ -83,15 +83,15 @@ def _remove_earlier(plan: PlanArm) -> None:
 
 
 def _drives(constraints: Constraint) -> bool:
-    from evenroad.constraints.driven_world import DifferentialDrive
+    from evenroad.constraints.differential_drive import DifferentialDrive
 
     return part_of(constraints, DifferentialDrive) is not None
 
 
 def _limits(plan: PlanArm, request: Request) -> Limits:
     """Return the limits that the command says."""
-    from evenroad.robot import find_robot
-    from evenroad.robot.chain import default_tip
+    from evenroad.loading.find import find_robot
+    from evenroad.poses.chain import default_tip
     from evenroad.trajectory import TipLimits, limits_of, load_dynamics
 
     robot, limits = request.world.robot, limits_of(request.world.robot, plan.limits)

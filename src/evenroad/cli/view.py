@@ -16,15 +16,17 @@ from evenroad._files import require_writable_folder
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
 from evenroad.cli.plan_file import PlanFile, read_plan
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.planning import PRM
+from evenroad.loading.find import find_robot
+from evenroad.loading.urdf_xml import RobotFile
 from evenroad.planning.plan import Options, solve
+from evenroad.planning.prm import PRM
 from evenroad.planning.read_request import arm_request
 from evenroad.planning.request import Reading, Request
-from evenroad.roadmap import Budget, PlanResult
-from evenroad.robot import ArmWorld, find_robot
-from evenroad.robot.goals import Goals
-from evenroad.robot.urdf_xml import RobotFile
+from evenroad.planning.result import PlanResult
+from evenroad.poses.goals import Goals
+from evenroad.roadmap import Budget
 from evenroad.trajectory.corners import drivable
 
 SECONDS = 0.5

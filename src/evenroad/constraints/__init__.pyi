@@ -1,4 +1,4 @@
-from evenroad.constraints.driven_world import DifferentialDrive as DifferentialDrive
+from evenroad.constraints.differential_drive import DifferentialDrive as DifferentialDrive
 from evenroad.constraints.linked import KeepJoints as KeepJoints
 from evenroad.constraints.linked import KeepOnCircle as KeepOnCircle
 from evenroad.constraints.linked import KeepTogether as KeepTogether

@@ -13,9 +13,9 @@ from typing import ClassVar
 
 from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
-from evenroad.robot import Robot
-from evenroad.robot.cartesian_path import Moves
-from evenroad.robot.constraint import Constraint
+from evenroad.poses.cartesian_path import Moves
+from evenroad.poses.constraint import Constraint
+from evenroad.robots.robot import Robot
 
 
 class Kind(IntEnum):

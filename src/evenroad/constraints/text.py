@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from evenroad.constraints.driven_world import DifferentialDrive
+from evenroad.constraints.differential_drive import DifferentialDrive
 from evenroad.constraints.linked import KeepJoints, KeepOnCircle, KeepTogether
 from evenroad.constraints.tip import KeepInBox, KeepInPlane, KeepOnLine, KeepOrientation, KeepUpright
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.robot.constraint import Constraint
-from evenroad.robot.pose_goal import as_numbers
+from evenroad.poses.constraint import Constraint
+from evenroad.poses.pose_goal import as_numbers
 
 KINDS: dict[str, tuple[Callable[..., Constraint], tuple[str, ...], int, tuple[str, ...]]] = {
     "upright": (KeepUpright, ("within",), 1, ("axis", "tip")),

@@ -16,10 +16,10 @@ from evenroad._checks import as_row, require_positive
 from evenroad.constraints.keep import WITHIN, Keep, Kind, turns_of
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
-from evenroad.robot import Robot
-from evenroad.robot.cartesian_path import Moves
-from evenroad.robot.chain import chain_of
-from evenroad.robot.pose_goal import AXES, as_axis
+from evenroad.poses.cartesian_path import Moves
+from evenroad.poses.chain import chain_of
+from evenroad.poses.pose_goal import AXES, as_axis
+from evenroad.robots.robot import Robot
 
 UP = (0.0, 0.0, 1.0)
 

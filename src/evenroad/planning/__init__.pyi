@@ -4,8 +4,14 @@ from evenroad.planning.many_results import PlanResults as PlanResults
 from evenroad.planning.plan import plan as plan
 from evenroad.planning.prm import FMT as FMT
 from evenroad.planning.prm import PRM as PRM
+from evenroad.planning.problem import Planner as Planner
+from evenroad.planning.problem import Problem as Problem
+from evenroad.planning.query import Query as Query
 from evenroad.planning.replanner import Replanner as Replanner
+from evenroad.planning.result import PlanResult as PlanResult
+from evenroad.planning.result import SearchedGraph as SearchedGraph
+from evenroad.planning.result import Stage as Stage
+from evenroad.planning.result import Status as Status
 from evenroad.planning.trees import GridSearch as GridSearch
 from evenroad.planning.trees import RRTConnect as RRTConnect
-from evenroad.roadmap.problem import Planner as Planner
-from evenroad.roadmap.problem import Problem as Problem
+from evenroad.planning.world_roadmap import WorldRoadmap as WorldRoadmap

@@ -12,11 +12,11 @@ from evenroad._checks import require_count, require_positive
 from evenroad._native import planning
 from evenroad._native.robot import Checker
 from evenroad._time_limit import BudgetSpent, within
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
+from evenroad.planning.connector import Connection
 from evenroad.planning.drivers import native_points
 from evenroad.points.reversed_halton import PAIRS, ball_points, cube_points, share_pairs, sphere_points
-from evenroad.roadmap.connector import Connection
-from evenroad.robot.arm_world import ArmWorld
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 

@@ -13,13 +13,13 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._native.planning import Answer, Drivers, Improver, Points, answer
 from evenroad._time_limit import BudgetSpent
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.planning import arm_trees
+from evenroad.planning.attempt import NO_LIMIT
+from evenroad.planning.connector import Connection, Connector, Search, Smooth
 from evenroad.planning.drivers import drivers, drivers_by, native_points
+from evenroad.planning.shortcut import shortcut
 from evenroad.points.reversed_halton import cube_points, shifted_cube_points
-from evenroad.roadmap.attempt import NO_LIMIT
-from evenroad.roadmap.connector import Connection, Connector, Search, Smooth
-from evenroad.roadmap.shortcut import shortcut
-from evenroad.robot import ArmWorld
 from evenroad.space.batch import as_batch
 from evenroad.world import World
 
@@ -217,7 +217,7 @@ class PlainTrees:
         return grow_trees(world, start, goals, variant=variant, most_motions=most_motions)
 
     def smooth(self, world: World, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
-        """See :func:`evenroad.roadmap.shortcut.shortcut`."""
+        """See :func:`evenroad.planning.shortcut.shortcut`."""
         return shortcut(world, path)
 
 

@@ -13,14 +13,15 @@ from evenroad._arrays import Bools, Floats
 from evenroad._call import explains_calls
 from evenroad._checks import require_count, require_known
 from evenroad.errors import InvalidValue
+from evenroad.planning.answer import answer, in_its_time, refusal
+from evenroad.planning.attempt import Attempt, Searched
 from evenroad.planning.connectors import connector_of
+from evenroad.planning.problem import Problem
+from evenroad.planning.query import Query
+from evenroad.planning.result import PlanResult, Stage
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.answer import answer, in_its_time, refusal
-from evenroad.roadmap.attempt import Attempt, Searched
+from evenroad.roadmap.edges import LINKS, EdgeCost
 from evenroad.roadmap.points_of import as_points
-from evenroad.roadmap.problem import Problem
-from evenroad.roadmap.query import LINKS, EdgeCost, Query
-from evenroad.roadmap.result import PlanResult, Stage
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily
 

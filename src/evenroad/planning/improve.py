@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from evenroad._time_limit import BudgetSpent, until
+from evenroad.planning.answer import connected, path_message
+from evenroad.planning.attempt import NO_LIMIT, Attempt
+from evenroad.planning.connector import Connector
 from evenroad.planning.connectors import ArmTrees
 from evenroad.planning.growing import GrowingPRM, Interrupted
-from evenroad.roadmap.answer import connected, path_message
-from evenroad.roadmap.attempt import NO_LIMIT, Attempt
+from evenroad.planning.problem import Problem
+from evenroad.planning.result import PlanResult, Stage, led
 from evenroad.roadmap.budget import BEFORE_REASONS, Budget
-from evenroad.roadmap.connector import Connector
-from evenroad.roadmap.problem import Problem
-from evenroad.roadmap.result import PlanResult, Stage, led
 from evenroad.space.path import path_length
 
 NO_BETTER = 1e-9

@@ -15,16 +15,16 @@ from evenroad._native.planning import ManyQueries
 from evenroad._rng import RngLike
 from evenroad._threads import in_order, processors
 from evenroad._time_limit import within
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, shown
+from evenroad.planning.connector import Smooth, require_smooth
 from evenroad.planning.connectors import RESTART, drivers_of, smoothing_of
 from evenroad.planning.many_results import Part, PlanResults, joined
 from evenroad.planning.plan import budget_of, plan
+from evenroad.planning.result import PlanResult
+from evenroad.planning.terminals import from_start_to_goal
 from evenroad.planning.trees import TreesGoOn, variant_of
 from evenroad.roadmap.budget import BEFORE_PROOF, Budget
-from evenroad.roadmap.connector import Smooth, require_smooth
-from evenroad.roadmap.result import PlanResult
-from evenroad.roadmap.terminals import from_start_to_goal
-from evenroad.robot import ArmWorld
 from evenroad.world import World
 
 _SLICE = 0.1

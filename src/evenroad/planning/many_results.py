@@ -18,7 +18,7 @@ from evenroad._files import atomic_write
 from evenroad._native.planning import Answer
 from evenroad._threads import in_order
 from evenroad.errors import InvalidValue
-from evenroad.roadmap.result import PlanResult, Status
+from evenroad.planning.result import PlanResult, Status
 from evenroad.world import MeasuresPaths, World
 
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from evenroad._arrays import Floats, Ints
 from evenroad._time_limit import BudgetSpent
-from evenroad.constraints.kept_world import KeptWorld
+from evenroad.constraints.constrained_world import KeptWorld
+from evenroad.planning.connector import Connection
 from evenroad.points.reversed_halton import cube_points, shifted_cube_points
-from evenroad.roadmap.connector import Connection
 from evenroad.world import World
 
 BATCH = 16

@@ -11,24 +11,26 @@ from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad._shared import once
 from evenroad._time_limit import BudgetSpent, within
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.collision.validate import MeshCheck
 from evenroad.errors import InvalidValue, shown
+from evenroad.infeasibility.goals import proof_between
+from evenroad.planning.answer import out_of_time, require_certified
+from evenroad.planning.connector import Smooth
 from evenroad.planning.connectors import connector_of
-from evenroad.planning.enclosed import with_reasons
+from evenroad.planning.diagnose import with_reasons
 from evenroad.planning.prm import FMT, PRM
+from evenroad.planning.problem import Planner, Problem
 from evenroad.planning.read_request import mesh_check, read_request
 from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request, unreached
+from evenroad.planning.result import PlanResult, Status
 from evenroad.planning.trees import RRTConnect, default_planner
+from evenroad.planning.world_roadmap import WorldRoadmap
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.answer import out_of_time, require_certified
+from evenroad.poses.constraint import Constraint
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.connector import Smooth
-from evenroad.roadmap.problem import Planner, Problem
-from evenroad.roadmap.result import PlanResult, Status
-from evenroad.roadmap.roadmap import Roadmap, WorldRoadmap
-from evenroad.robot import ArmWorld
-from evenroad.robot.constraint import Constraint
-from evenroad.robot.reference.validate import MeshCheck
-from evenroad.robot.scan import allowed_everywhere
+from evenroad.roadmap.roadmap import Roadmap
+from evenroad.scenes.scan import allowed_everywhere
 from evenroad.world import ShowsApart, World
 
 if TYPE_CHECKING:
@@ -204,7 +206,7 @@ def _solved(request: Request, planner: Planner | None, options: Options) -> Plan
     if (result := unreached(request)) is not None:
         return result
     straight = motion is not None and motion.line is not None
-    apart = None if given is None else given.apart(request.world, straight=straight)
+    apart = None if given is None else proof_between(request.world, given, straight=straight)
     stopped = False
 
     def plan_once(world: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
@@ -304,7 +306,7 @@ def _with_proof(request: Request, result: PlanResult) -> PlanResult:
         if request.given is None:
             found = world.apart(request.start, request.goals)
         else:
-            found = request.given.apart(world)(request.start, request.goals, False)
+            found = proof_between(world, request.given)(request.start, request.goals, False)
     except BudgetSpent:
         return replace(result, message=f"{result.message}; there was no time for a proof that there is no path")
     if found is None or not found.proved:

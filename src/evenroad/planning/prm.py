@@ -8,14 +8,15 @@ from typing import ClassVar, Protocol
 from evenroad._call import explains_calls
 from evenroad._checks import require_count, require_known
 from evenroad.errors import InvalidValue
+from evenroad.planning.answer import answer, in_its_time, refusal
+from evenroad.planning.attempt import Attempt
 from evenroad.planning.connectors import connector_of
+from evenroad.planning.problem import Problem
+from evenroad.planning.query import Query
+from evenroad.planning.result import PlanResult, Status
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.answer import answer, in_its_time, refusal
-from evenroad.roadmap.attempt import Attempt
+from evenroad.roadmap.edges import LINKS, EdgeCost
 from evenroad.roadmap.points_of import as_points
-from evenroad.roadmap.problem import Problem
-from evenroad.roadmap.query import LINKS, EdgeCost, Query
-from evenroad.roadmap.result import PlanResult, Status
 from evenroad.roadmap.rules import KNearest, Rule, default_rule
 from evenroad.roadmap.search import FINDERS, FREE, Finder, march
 from evenroad.space import Space

@@ -11,29 +11,24 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._time_limit import off_the_clock
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.collision.validate import MeshCheck, has_meshes, unseen_pairs, validate
 from evenroad.errors import InvalidValue, listed, near, shown
 from evenroad.geometry.pose import Pose
+from evenroad.loading.load import RobotOptions, padded_model
+from evenroad.planning.problem import Planner
+from evenroad.planning.query import as_start_and_goals
 from evenroad.planning.request import ConfigurationLike, Goal, PathLike, Reading, Request
-from evenroad.roadmap.problem import Planner
-from evenroad.roadmap.query import as_start_and_goals
+from evenroad.poses.goals import Goals, goals_of, require_tips
+from evenroad.poses.pose_goal import PoseGoal
 from evenroad.roadmap.roadmap import Roadmap
-from evenroad.robot import (
-    ArmWorld,
-    Robot,
-    Scene,
-    at_states,
-    configuration,
-    in_scene,
-    load_scene,
-    scene_seen_by,
-)
-from evenroad.robot.goals import Goals, goals_of, require_tips
-from evenroad.robot.load import RobotOptions, padded_model
-from evenroad.robot.pose_goal import PoseGoal
-from evenroad.robot.reference.validate import MeshCheck, has_meshes, unseen_pairs, validate
-from evenroad.robot.scan import allowed_near_ends, open_everywhere
-from evenroad.robot.states import as_configuration
-from evenroad.robot.variants import standing_at, with_group
+from evenroad.robots.robot import Robot
+from evenroad.robots.variants import standing_at, with_group
+from evenroad.scenes.robot_in_scene import in_scene
+from evenroad.scenes.scan import allowed_near_ends, open_everywhere, scene_seen_by
+from evenroad.scenes.scene import Scene
+from evenroad.scenes.scene_file import load_scene
+from evenroad.scenes.states import as_configuration, at_states, configuration
 
 if TYPE_CHECKING:
     from evenroad.world import GridMap

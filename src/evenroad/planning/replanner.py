@@ -15,22 +15,22 @@ from evenroad._checks import counted, require_count
 from evenroad._native.planning import Points, answer, shorten
 from evenroad._rng import RngLike
 from evenroad._shared import OwnLock, once
+from evenroad.collision.arm_world import VALIDATION_TOLERANCE, ArmWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
+from evenroad.planning.answer import path_message, refusal
 from evenroad.planning.arm_trees import checks_of
+from evenroad.planning.attempt import Attempt
 from evenroad.planning.connectors import drivers_of
+from evenroad.planning.query import Query
 from evenroad.planning.read_request import reaching, request_in
 from evenroad.planning.request import ConfigurationLike, Reading, unreached
+from evenroad.planning.result import NO_POINTS, PlanResult, Status, make_result
 from evenroad.planning.trees import variant_of
 from evenroad.points.reversed_halton import PAIRS, share_pairs
-from evenroad.roadmap.answer import path_message, refusal
-from evenroad.roadmap.attempt import Attempt
-from evenroad.roadmap.query import Query
-from evenroad.roadmap.result import NO_POINTS, PlanResult, Status, make_result
-from evenroad.robot import ArmWorld, Scene
-from evenroad.robot.arm_world import VALIDATION_TOLERANCE
-from evenroad.robot.obstacle import Bodies
-from evenroad.robot.states import as_configuration
+from evenroad.scenes.obstacle import Bodies
+from evenroad.scenes.scene import Scene
+from evenroad.scenes.states import as_configuration
 from evenroad.space.path import path_length
 
 VARIANTS = 8

@@ -10,12 +10,13 @@ from typing import Any
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.geometry.pose import Pose
-from evenroad.roadmap.result import PlanResult, Status, make_result
-from evenroad.robot import ArmWorld, RobotModel
-from evenroad.robot.goals import Goals
-from evenroad.robot.pose_goal import PoseGoal
-from evenroad.robot.urdf_xml import RobotFile
+from evenroad.loading.description import RobotModel
+from evenroad.loading.urdf_xml import RobotFile
+from evenroad.planning.result import PlanResult, Status, make_result
+from evenroad.poses.goals import Goals
+from evenroad.poses.pose_goal import PoseGoal
 
 PathLike = str | os.PathLike[str]
 ConfigurationLike = str | Mapping[str, float] | npt.ArrayLike

@@ -11,19 +11,18 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._time_limit import BudgetSpent
-from evenroad.constraints.driven_world import DifferentialDrive, driven_world
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.constraints.constrained_world import KeptWorld, keeps_of, kept_line, kept_world
+from evenroad.constraints.differential_drive import DifferentialDrive, driven_world
 from evenroad.constraints.keep import Keep
-from evenroad.constraints.kept_world import KeptWorld, keeps_of, kept_line, kept_world
 from evenroad.errors import InvalidValue
+from evenroad.planning.connector import Smooth
 from evenroad.planning.request import Request, refused
-from evenroad.roadmap import PlanResult, Status
-from evenroad.roadmap.connector import Smooth
-from evenroad.roadmap.result import led, make_result
-from evenroad.robot import ArmWorld
-from evenroad.robot.cartesian_line import CartesianLine, line_from
-from evenroad.robot.cartesian_path import Followed
-from evenroad.robot.chain import Chain, chain_of, default_tip
-from evenroad.robot.constraint import Constraint, part_of
+from evenroad.planning.result import PlanResult, Status, led, make_result
+from evenroad.poses.cartesian_line import CartesianLine, line_from
+from evenroad.poses.cartesian_path import Followed
+from evenroad.poses.chain import Chain, chain_of, default_tip
+from evenroad.poses.constraint import Constraint, part_of
 from evenroad.space.path import path_length
 from evenroad.world import World
 

@@ -16,14 +16,14 @@ from evenroad._native.planning import Answer
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad._time_limit import seconds_left
 from evenroad.errors import InvalidValue
+from evenroad.planning.answer import connected, gave_up, in_its_time, path_message, proof_of, refusal, shown_apart
+from evenroad.planning.attempt import Attempt
+from evenroad.planning.connector import Connection, Connector, require_smooth
 from evenroad.planning.connectors import ARM_TREES, CELLS, RESTART, ArmTrees, connector_of, trees_for
-from evenroad.roadmap.answer import connected, gave_up, in_its_time, path_message, proof_of, refusal, shown_apart
-from evenroad.roadmap.attempt import Attempt
+from evenroad.planning.problem import Planner, Problem
+from evenroad.planning.query import Query
+from evenroad.planning.result import NO_POINTS, PlanResult, Status, make_result
 from evenroad.roadmap.budget import BEFORE_PROOF
-from evenroad.roadmap.connector import Connection, Connector, require_smooth
-from evenroad.roadmap.problem import Planner, Problem
-from evenroad.roadmap.query import Query
-from evenroad.roadmap.result import NO_POINTS, PlanResult, Status, make_result
 from evenroad.space.path import path_length
 
 _NOTHING = Connection(np.empty((0, 0)), -1, 0, 0, 0)
@@ -99,7 +99,7 @@ def default_planner(world: Any, *, improve: bool = False) -> Planner:
     """Return the default planner of this kind of world."""
     connector = connector_of(world)
     if connector is None:
-        from evenroad.constraints.kept_world import KeptWorld
+        from evenroad.constraints.constrained_world import KeptWorld
 
         return RRTConnect(improve) if isinstance(world, KeptWorld) else _growing(improve)
     if connector is CELLS:

@@ -2,15 +2,9 @@ from evenroad.roadmap.budget import Budget as Budget
 from evenroad.roadmap.build import build_roadmap as build_roadmap
 from evenroad.roadmap.certificate import Certificate as Certificate
 from evenroad.roadmap.certify import certify_roadmap as certify_roadmap
+from evenroad.roadmap.edges import EdgeCost as EdgeCost
 from evenroad.roadmap.npz import load_roadmap as load_roadmap
-from evenroad.roadmap.query import EdgeCost as EdgeCost
-from evenroad.roadmap.query import Query as Query
-from evenroad.roadmap.result import PlanResult as PlanResult
-from evenroad.roadmap.result import SearchedGraph as SearchedGraph
-from evenroad.roadmap.result import Stage as Stage
-from evenroad.roadmap.result import Status as Status
 from evenroad.roadmap.roadmap import Roadmap as Roadmap
-from evenroad.roadmap.roadmap import WorldRoadmap as WorldRoadmap
 from evenroad.roadmap.rules import Complete as Complete
 from evenroad.roadmap.rules import KNearest as KNearest
 from evenroad.roadmap.rules import Radius as Radius

@@ -14,8 +14,8 @@ from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points.measures.covering import DispersionBounds, dispersion_bounds
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.certificate import SAFE, Certificate
+from evenroad.roadmap.edges import LINKS, links_among
 from evenroad.roadmap.neighbours import BLOCK, flat_metric
-from evenroad.roadmap.query import LINKS, Query
 from evenroad.roadmap.roadmap import Roadmap
 from evenroad.roadmap.rules import Complete, KNearest, Radius, Reach, Rule
 from evenroad.space import Space
@@ -167,7 +167,7 @@ def _by_neighbours(
 
 
 def _links_among(n: int, links: int | None) -> int:
-    return Query(np.zeros(1), np.zeros((1, 1)), links=links).links_among(n)
+    return links_among(n, links)
 
 
 def linked_within(q: Floats, most: int, space: Space, dispersion: float) -> float:

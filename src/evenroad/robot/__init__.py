@@ -1,4 +1,4 @@
-"""Robots: kinematic trees with capsules as bodies, scenes, and a world that checks them in batches."""
+"""Robots for people: the names of robots, loading, scenes, collision and poses in one place."""
 
 from evenroad._lazy import names_on_use
 

@@ -10,13 +10,15 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from evenroad._arrays import Floats
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.geometry.distance import point_distance
 from evenroad.geometry.inner import capsules_inside
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, PointCloud, Shape, Sphere
-from evenroad.robot import ArmWorld, Robot, Scene
-from evenroad.robot.kinematics import link_poses
+from evenroad.robots.kinematics import link_poses
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Scene
 
 _LEAST = 0.2
 """Share of its size that is left of an object however deep its contacts may be."""

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
 from evenroad.geometry.curve import Curve, circle, polyline, spline
 from evenroad.geometry.pose import Pose
 from evenroad.planning.request import Reading
-from evenroad.robot import ArmWorld
-from evenroad.robot.cartesian_path import Follower
-from evenroad.robot.chain import chain_of, default_tip, frame_pose
-from evenroad.robot.goals import as_pose_goal
+from evenroad.poses.cartesian_path import Follower
+from evenroad.poses.chain import chain_of, default_tip, frame_pose
+from evenroad.poses.goals import as_pose_goal
 from evenroad.task.steps import AlongCurve, MoveAlong, MoveCircular, MoveLinear
 
 _THERE = 1e-9

@@ -10,15 +10,14 @@ from itertools import pairwise
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad.constraints.kept_world import keeps_of, kept_line, kept_world
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.constraints.constrained_world import keeps_of, kept_line, kept_world
 from evenroad.planning.request import Request, refused, unreached
-from evenroad.roadmap import PlanResult, Status
-from evenroad.roadmap.result import led, make_result
-from evenroad.robot import ArmWorld
-from evenroad.robot.cartesian_line import CartesianLine, line_from
-from evenroad.robot.cartesian_path import Followed
-from evenroad.robot.chain import chain_of, default_tip
-from evenroad.robot.constraint import Constraint, with_tip
+from evenroad.planning.result import PlanResult, Status, led, make_result
+from evenroad.poses.cartesian_line import CartesianLine, line_from
+from evenroad.poses.cartesian_path import Followed
+from evenroad.poses.chain import chain_of, default_tip
+from evenroad.poses.constraint import Constraint, with_tip
 from evenroad.space.path import continued, path_length
 from evenroad.task.steps import MoveTo
 

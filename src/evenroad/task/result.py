@@ -10,9 +10,9 @@ from typing import Any, cast
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
-from evenroad.roadmap import PlanResult, Status
-from evenroad.robot import ArmWorld
+from evenroad.planning.result import PlanResult, Status
 from evenroad.task.motion import Motion
 from evenroad.task.steps import Move, Step, Wait
 from evenroad.trajectory.corners import MOST_STATES

@@ -11,18 +11,17 @@ from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._rng import RngLike
 from evenroad._time_limit import BudgetSpent, Deadline, look_at_clock, off_the_clock, until
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, shown
+from evenroad.planning.connector import Smooth
 from evenroad.planning.plan import Options, budget_of, finished, solve
 from evenroad.planning.read_request import request_in
 from evenroad.planning.request import ConfigurationLike, Reading, Request
-from evenroad.roadmap import PlanResult, Status
+from evenroad.planning.result import PlanResult, Status, make_result
+from evenroad.poses.chain import default_tip
+from evenroad.poses.constraint import Constraint
+from evenroad.poses.posture_layers import follow
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.connector import Smooth
-from evenroad.roadmap.result import make_result
-from evenroad.robot import ArmWorld
-from evenroad.robot.chain import default_tip
-from evenroad.robot.constraint import Constraint
-from evenroad.robot.posture_layers import follow
 from evenroad.task.curves import follower_of
 from evenroad.task.motion import Leg, Motion, PlanBetween, along, choices
 from evenroad.task.result import TaskResult

@@ -9,14 +9,16 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_known
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import WORLD
-from evenroad.robot import ArmWorld, Robot, Scene
-from evenroad.robot.chain import default_tip
-from evenroad.robot.held import HeldObject
-from evenroad.robot.kinematics import link_poses
-from evenroad.robot.obstacle import Obstacle
+from evenroad.poses.chain import default_tip
+from evenroad.robots.held import HeldObject
+from evenroad.robots.kinematics import link_poses
+from evenroad.robots.robot import Robot
+from evenroad.scenes.obstacle import Obstacle
+from evenroad.scenes.scene import Scene
 from evenroad.task.contact import core_of, distance_of
 from evenroad.task.steps import Attach, Detach
 

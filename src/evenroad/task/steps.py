@@ -9,12 +9,12 @@ from typing import Any
 from evenroad._arrays import set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_positive
-from evenroad.constraints.driven_world import DifferentialDrive
+from evenroad.constraints.differential_drive import DifferentialDrive
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
-from evenroad.robot.cartesian_line import CartesianLine
-from evenroad.robot.constraint import Constraint, part_of
-from evenroad.robot.pose_goal import PoseGoal
+from evenroad.poses.cartesian_line import CartesianLine
+from evenroad.poses.constraint import Constraint, part_of
+from evenroad.poses.pose_goal import PoseGoal
 
 DEPTH, REACH = 0.005, 0.1
 """How deep an object may be in what it stands on, and the distance at which a gripper takes it, by default [m]."""

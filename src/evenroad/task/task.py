@@ -8,9 +8,9 @@ from typing import Any
 
 from evenroad._arrays import set_fields
 from evenroad._call import explains_calls
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.request import Reading
-from evenroad.robot import ArmWorld
 from evenroad.task.result import TaskResult
 from evenroad.task.steps import Move, Step
 

@@ -15,8 +15,8 @@ from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.constraints.text import constraint_of
 from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import EvenroadError, InvalidValue, shown
-from evenroad.robot.constraint import Constraint
-from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
+from evenroad.poses.constraint import Constraint
+from evenroad.poses.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.task.steps import Attach, Detach, MoveAlong, MoveCircular, MoveLinear, MoveTo, Step, Wait
 from evenroad.task.task import Task
 

@@ -1,4 +1,4 @@
-from evenroad.robot.masses import Mass as Mass
+from evenroad.loading.masses import Mass as Mass
 from evenroad.trajectory.arm import arm_trajectory as arm_trajectory
 from evenroad.trajectory.arm import controller_joints as controller_joints
 from evenroad.trajectory.checked import proved_in as proved_in

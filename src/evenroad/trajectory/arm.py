@@ -14,12 +14,13 @@ import numpy.typing as npt
 from evenroad._arrays import Floats
 from evenroad._checks import as_batch, require_known, require_positive
 from evenroad._shared import once
-from evenroad.constraints.driven_world import DifferentialDrive, DrivenWorld
-from evenroad.constraints.kept_world import KeptWorld
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.constraints.constrained_world import KeptWorld
+from evenroad.constraints.differential_drive import DifferentialDrive, DrivenWorld
 from evenroad.errors import InvalidValue, shown
-from evenroad.robot import ArmWorld, Robot, held_values, tip_links
-from evenroad.robot.constraint import Constraint, part_of
-from evenroad.robot.kinematics import link_poses
+from evenroad.poses.constraint import Constraint, part_of
+from evenroad.robots.kinematics import held_values, link_poses, tip_links
+from evenroad.robots.robot import Robot
 from evenroad.space.path import continued
 from evenroad.trajectory.in_motion import InMotion
 from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of

@@ -7,10 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
-from evenroad.constraints.driven_world import DifferentialDrive
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.constraints.differential_drive import DifferentialDrive
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.robot import ArmWorld, Robot, held_values
-from evenroad.robot.constraint import Constraint, part_of
+from evenroad.poses.constraint import Constraint, part_of
+from evenroad.robots.kinematics import held_values
+from evenroad.robots.robot import Robot
 from evenroad.trajectory.corners import drivable
 from evenroad.trajectory.tip_constraints import constrained_world
 from evenroad.trajectory.trajectory import Trajectory

@@ -15,10 +15,10 @@ from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import as_batch, as_row, require_known, require_positive
 from evenroad._native.trajectory import TorqueLimits
 from evenroad._shared import once_property, state_without
+from evenroad.collision.prepared_robots import prepared
 from evenroad.errors import InvalidValue
-from evenroad.robot import Robot
-from evenroad.robot.masses import Mass, read_masses
-from evenroad.robot.prepared_robots import prepared
+from evenroad.loading.masses import Mass, read_masses
+from evenroad.robots.robot import Robot
 
 EARTH = (0.0, 0.0, -9.81)
 """Acceleration of what falls, in the frame of the root [m/s^2]."""

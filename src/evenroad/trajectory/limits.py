@@ -16,9 +16,9 @@ from evenroad._checks import as_row, require_known, require_positive
 from evenroad._native.trajectory import TipLimits as NativeTip
 from evenroad._native.trajectory import TorqueLimits, further_shares
 from evenroad._shared import once_property, state_without
+from evenroad.collision.prepared_robots import prepared
 from evenroad.errors import InvalidValue, NotAvailable, shown
-from evenroad.robot import Robot
-from evenroad.robot.prepared_robots import prepared
+from evenroad.robots.robot import Robot
 from evenroad.space.joints import SLACK
 from evenroad.trajectory.dynamics import Dynamics, native_links
 from evenroad.trajectory.limits_file import LimitsFile, read_limits

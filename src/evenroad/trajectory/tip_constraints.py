@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
-from evenroad.constraints.kept_world import KeptWorld, keeps_of, kept_world
-from evenroad.robot import ArmWorld
-from evenroad.robot.cartesian_line import STEP, CartesianLine, between, line_at, misses
-from evenroad.robot.chain import Chain, chain_of, default_tip
-from evenroad.robot.constraint import Constraint, part_of
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.constraints.constrained_world import KeptWorld, keeps_of, kept_world
+from evenroad.poses.cartesian_line import STEP, CartesianLine, between, line_at, misses
+from evenroad.poses.chain import Chain, chain_of, default_tip
+from evenroad.poses.constraint import Constraint, part_of
 from evenroad.space import Space
 
 FINE = 8

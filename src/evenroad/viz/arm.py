@@ -11,10 +11,10 @@ from PIL import Image
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
-from evenroad.roadmap import PlanResult, Status
-from evenroad.robot import ArmWorld, tip_links
-from evenroad.robot.kinematics import link_poses
-from evenroad.robot.urdf_xml import RobotFile
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.loading.urdf_xml import RobotFile
+from evenroad.planning.result import PlanResult, Status
+from evenroad.robots.kinematics import link_poses, tip_links
 from evenroad.space.path import configuration_at
 from evenroad.viz import style
 from evenroad.viz.bodies import joined, obstacle_part, rgb, robot_parts

@@ -17,11 +17,11 @@ from evenroad._seal import read_sealed, sealed
 from evenroad.errors import EvenroadError
 from evenroad.geometry.mesh import convex_hull
 from evenroad.geometry.shapes import Capsule, Mesh, Shape, Sphere
-from evenroad.robot import Robot
-from evenroad.robot.cache import file_of, key_of
-from evenroad.robot.load import read_robot
-from evenroad.robot.scene import Obstacle
-from evenroad.robot.urdf_xml import RobotFile
+from evenroad.loading.cache import file_of, key_of
+from evenroad.loading.load import read_robot
+from evenroad.loading.urdf_xml import RobotFile
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Obstacle
 from evenroad.viz import style
 from evenroad.viz.stage import Part, part_of
 from evenroad.viz.surfaces import surface_of

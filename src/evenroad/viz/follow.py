@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad.robot import ArmWorld
-from evenroad.robot.kinematics import link_poses
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.robots.kinematics import link_poses
 
 _SOFTENED, _ROUNDS, _NEAR = 0.05, 12, 1e-3
 """Damping and number of steps, and the error that ends them [m, rad]."""

@@ -14,12 +14,13 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_extra
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import EvenroadError
+from evenroad.loading.urdf_xml import RobotFile
 from evenroad.planning.arm_trees import grown_trees
-from evenroad.roadmap import PlanResult
-from evenroad.robot import ArmWorld, Scene, tip_links
-from evenroad.robot.kinematics import link_poses
-from evenroad.robot.urdf_xml import RobotFile
+from evenroad.planning.result import PlanResult
+from evenroad.robots.kinematics import link_poses, tip_links
+from evenroad.scenes.scene import Scene
 from evenroad.space.path import configuration_at
 from evenroad.viz import style
 from evenroad.viz.bodies import indexed, rgb, robot_sets

@@ -11,7 +11,7 @@ import numpy as np
 from evenroad.errors import EvenroadError
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Box, PointCloud, Shape, Sphere
-from evenroad.robot import Obstacle, Scene
+from evenroad.scenes.scene import Obstacle, Scene
 from evenroad.viz.bodies import indexed, obstacle_part
 from evenroad.viz.follow import matrix_of, wxyz_of
 

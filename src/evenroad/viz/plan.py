@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image, ImageColor
 
 from evenroad._arrays import Floats
-from evenroad.roadmap import PlanResult, Status
+from evenroad.planning.result import PlanResult, Status
 from evenroad.viz import style
 from evenroad.viz.sheet import Entry, Sheet, View, save_png
 

@@ -14,11 +14,11 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import as_file, require_known
 from evenroad._files import atomic_write
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import NotAvailable
-from evenroad.roadmap import PlanResult
-from evenroad.robot import ArmWorld, tip_links
-from evenroad.robot.kinematics import joint_values
-from evenroad.robot.urdf_xml import RobotFile
+from evenroad.loading.urdf_xml import RobotFile
+from evenroad.planning.result import PlanResult
+from evenroad.robots.kinematics import joint_values, tip_links
 from evenroad.space.path import configuration_at
 from evenroad.viz.arm import chosen_camera, kept_distance
 from evenroad.viz.bodies import CAPSULES, COLLISION, VISUAL, indexed, obstacle_part, robot_sets

@@ -6,11 +6,10 @@ import numpy as np
 from PIL import Image
 
 from evenroad._arrays import Floats
-from evenroad.roadmap import Status
-from evenroad.roadmap.result import make_result
-from evenroad.robot import ArmWorld
-from evenroad.robot.cache import file_of
-from evenroad.robot.states import named_states
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.loading.cache import file_of
+from evenroad.planning.result import Status, make_result
+from evenroad.scenes.states import named_states
 from evenroad.viz import style
 from evenroad.viz.arm import SIZE, ArmScene, with_contact
 from evenroad.viz.sheet import Entry, Sheet

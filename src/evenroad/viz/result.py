@@ -9,10 +9,10 @@ import numpy as np
 from PIL import Image
 
 from evenroad._checks import as_file
-from evenroad.constraints.kept_world import KeptWorld
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.constraints.constrained_world import KeptWorld
 from evenroad.errors import NotAvailable
-from evenroad.roadmap import PlanResult
-from evenroad.robot import ArmWorld
+from evenroad.planning.result import PlanResult
 from evenroad.viz.arm import draw_arm_plan
 from evenroad.viz.plan import draw_plan
 from evenroad.viz.sheet import save_png

@@ -7,11 +7,11 @@ import webbrowser
 from typing import Any
 
 from evenroad._checks import require_extra
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, NotAvailable, shown
+from evenroad.loading.cache import file_of
 from evenroad.planning.plan import plan as plan_path
-from evenroad.roadmap import PlanResult
-from evenroad.robot import ArmWorld
-from evenroad.robot.cache import file_of
+from evenroad.planning.result import PlanResult
 from evenroad.viz.page import ArmPage
 from evenroad.viz.posture import draw_arm_world
 from evenroad.world.gridmap import GridMap

@@ -11,8 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints, Ints32
+from evenroad.planning.query import Query
+from evenroad.roadmap.edges import LINKS
 from evenroad.roadmap.neighbours import nearest
-from evenroad.roadmap.query import LINKS, Query
 from evenroad.roadmap.search import components
 from evenroad.world import World
 from evenroad_studies.bench.task import Problem

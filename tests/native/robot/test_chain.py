@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from evenroad._native.robot import Chain
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
-from evenroad.robot.pose_task import PoseTask
+from evenroad.poses.pose_task import PoseTask
 
 DIM = 5
 

@@ -1,6 +1,6 @@
 """The native checks of an arm at their boundary: what is refused, what threads get, what builds agree on.
 
-That verdicts are right is shown in tests/robot, by oracles that know nothing of the kernel.
+That verdicts are right is shown in tests/collision, by oracles that know nothing of the kernel.
 """
 
 import threading
@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from evenroad._native import variants
+from evenroad.collision.native_robot import robot_arrays
+from evenroad.collision.native_scene import native_scene
+from evenroad.collision.prepared_robots import prepared
 from evenroad.errors import InvalidValue
 from evenroad.robot import ArmWorld, load_robot
-from evenroad.robot.kernel.native_robot import robot_arrays
-from evenroad.robot.kernel.native_scene import native_scene
-from evenroad.robot.prepared_robots import prepared
-from tests.robot.kernel_arms import box_scene, random_scene, random_tree, ur5
-from tests.robot.mesh_arms import write_fork_arm
+from tests.robots.kernel_arms import box_scene, random_scene, random_tree, ur5
+from tests.robots.mesh_arms import write_fork_arm
 
 NATIVE = variants.load().robot
 
@@ -136,7 +136,7 @@ def test_every_build_gives_the_same_verdicts(variant, arm, fork_arm, monkeypatch
     assert 0.02 < free.mean() < 0.98
     made = prepared(world.robot)
     theirs = other.Robot(**robot_arrays(world.robot, made.tables, made.bounds))
-    monkeypatch.setattr("evenroad.robot.kernel.native_scene.native", other)
+    monkeypatch.setattr("evenroad.collision.native_scene.native", other)
     scene = native_scene(theirs, made.tables, world.robot.links, world.scene, 0.0)
     checker = other.Checker(theirs, scene, world.resolution, 0.0, False)
     np.testing.assert_array_equal(checker.valid(q), free)

@@ -5,11 +5,13 @@ import pytest
 
 from evenroad._native import robot as native
 from evenroad._native.world import Disk
+from evenroad.collision import native_robot
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
-from evenroad.robot import ArmWorld, Scene, load_robot
-from evenroad.robot.kernel import native_robot
-from tests.robot.kernel_arms import random_scene
-from tests.robot.mesh_arms import write_fork_arm
+from evenroad.loading.load import load_robot
+from evenroad.scenes.scene import Scene
+from tests.robots.kernel_arms import random_scene
+from tests.robots.mesh_arms import write_fork_arm
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
-from evenroad.roadmap import Status
+from evenroad.planning import Status
 from evenroad_studies.bench.arena import STATUSES, write_arena
 from evenroad_studies.bench.rows import FAILURES
 from evenroad_studies.bench.store import open_store

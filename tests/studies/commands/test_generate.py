@@ -9,7 +9,7 @@ import pytest
 
 import evenroad as er
 from tests.refused import refused
-from tests.robot.oracle import clearance
+from tests.robots.oracle import clearance
 
 arrow = pytest.importorskip("pyarrow.parquet")
 

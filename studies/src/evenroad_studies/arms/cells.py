@@ -6,7 +6,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
-from evenroad.robot.kinematics import link_poses
+from evenroad.robots.kinematics import link_poses
 
 
 def cell_of(robot: Robot) -> Scene:

@@ -11,11 +11,11 @@ from functools import lru_cache, partial
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.collision.arm_world import VALIDATION_TOLERANCE
 from evenroad.errors import NotAvailable
 from evenroad.points import PointSet
 from evenroad.roadmap import KNearest, Roadmap, build_roadmap
 from evenroad.robot import ArmWorld, Scene
-from evenroad.robot.arm_world import VALIDATION_TOLERANCE
 from evenroad_studies.arms.cells import cell_of, free_configurations
 from evenroad_studies.arms.robots import arm_named, tool_of
 from evenroad_studies.arms.scenes import GENERATORS, inside_of, places_of

@@ -11,7 +11,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Ints, Ints32
 from evenroad._checks import require_known
-from evenroad.roadmap.query import edge_costs
+from evenroad.roadmap.edges import edge_costs
 from evenroad.roadmap.search import FINDERS, FREE, UNKNOWN, EdgeStates, join, length_along, search_problem
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, load_robot, load_scene
-from evenroad.robot.kinematics import tip_links
+from evenroad.robots.kinematics import tip_links
 from evenroad_studies.arms.cells import cell_of, free_configurations
 from evenroad_studies.arms.scenes import GENERATORS, Region, inside_of, places_of
 

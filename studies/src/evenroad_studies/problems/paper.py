@@ -7,10 +7,10 @@ from functools import partial
 
 import numpy as np
 
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.loading.load import load_robot
 from evenroad.robot import in_scene, with_group
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.load import load_robot
-from evenroad.robot.scene_file import load_scene
+from evenroad.scenes.scene_file import load_scene
 from evenroad.world.gridmap.load import LEVELS, load_maze
 from evenroad_studies.bench.task import Problem, ProblemSource
 from evenroad_studies.worlds.chain import ChainWorld

@@ -16,9 +16,9 @@ from PIL import Image
 from evenroad._arrays import Floats
 from evenroad.errors import NotAvailable
 from evenroad.geometry import rotation_from_quaternion
-from evenroad.planning import PRM, plan
+from evenroad.planning import PRM, PlanResult, plan
 from evenroad.points import draw
-from evenroad.roadmap import KNearest, PlanResult
+from evenroad.roadmap import KNearest
 from evenroad.robot import ArmWorld
 from evenroad.space.path import configuration_at
 from evenroad.viz import style

@@ -1,0 +1,1 @@
+"""Collision: the world of an arm, proved motions, distances, and meshes in coal."""

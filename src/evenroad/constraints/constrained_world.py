@@ -1,0 +1,324 @@
+"""KeptWorld: an arm that keeps constraints along its whole path, such as a glass upright, or a hand on a door."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats, Ints
+from evenroad._fingerprint import fingerprint_of
+from evenroad._native import robot as kernel
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.constraints.keep import Keep
+from evenroad.points.reversed_halton import share_pairs
+from evenroad.poses.cartesian_path import Followed, moves_of
+from evenroad.poses.chain import Chain, chain_of, default_tip
+from evenroad.poses.constraint import Constraint
+from evenroad.space import JointSpace
+from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.space.path import path_length
+
+_STEP = 0.1
+"""Longest step along a motion in the metric of the joints."""
+_AIM, _ENOUGH = 0.3, 0.5
+"""Lengths of residuals that a projection aims at, and that it needs, as shares of their limits: the rest is for motions
+between projected states."""
+_STEPS, _FEW = 20, 12
+"""Largest number of steps of a projection, and of one of states along a motion."""
+_LONGEST = 0.3
+"""Largest movement of a joint in such a step [rad or m]."""
+_JUMP = 2.5
+"""Number of steps beyond which neighbouring projected states are of two branches."""
+_PARTS = 4
+"""Number of parts of a motion at whose ends residuals are measured; between them they are bounded."""
+_SHORTCUTS, _ROUNDS, _LONGER = 24, 3, 0.1
+"""Numbers of motions that are tried to shorten a path and of the rounds in which they are, and by what share it must be
+longer than the straight one."""
+_TOGETHER = 64
+"""Number of motions that are projected at once."""
+
+
+def keeps_of(constraints: Constraint | None) -> tuple[Keep, ...]:
+    """Return those of some constraints that hold along the whole path."""
+    return tuple(each for each in (constraints.parts if constraints else ()) if isinstance(each, Keep))
+
+
+def kept_world(world: ArmWorld, keeps: tuple[Keep, ...], start: Floats, tip: str) -> KeptWorld:
+    """Return the world in which a path from `start`, (dim,), keeps constraints; those without a link, of `tip`."""
+    said = all(getattr(keep, "tip", "said") for keep in keeps)
+    last = tip or ("" if said else default_tip(world.robot))
+    return KeptWorld(world, tuple(keep.bound(world.robot, start, last) for keep in keeps))
+
+
+class ProjectedSpace(JointSpace):
+    """The joints' space, with points of the cube and points between two projected to the constraints, where that is
+    found.
+    """
+
+    def projected_by(self, world: KeptWorld) -> ProjectedSpace:
+        """Return a copy that projects in a world; frozen values need it."""
+        object.__setattr__(self, "_world", world)
+        return self
+
+    def from_cube(self, u: Floats) -> Floats:
+        """Return configurations, (n, dim), of points of the cube, (n, dim); those without a projection stay off."""
+        return self._on(super().from_cube(u))
+
+    def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
+        """Return projected points between configurations, (n, dim) each; the ends as they are."""
+        share = np.broadcast_to(np.asarray(t, dtype=np.float64), len(a))
+        q, inner = super().interpolate(a, b, t), (share > 0.0) & (share < 1.0)
+        q[inner] = self._on(q[inner])
+        return q
+
+    def _on(self, q: Floats) -> Floats:
+        world: KeptWorld = self._world  # type: ignore[attr-defined]
+        return self.wrapped(np.clip(world.projected(q)[0], *world.limits))
+
+
+@dataclass(frozen=True, eq=False)
+class KeptWorld:
+    """The configurations of an arm's world that keep constraints, and motions that do.
+
+    Milestones are projected, and a motion is the straight one with its states projected, one by one: `along`.  It is
+    free if no state jumps to another branch, and of every step it is proved that nothing touches, and that residuals
+    stay within their limits.
+
+    Attributes
+    ----------
+    world : ArmWorld
+    keeps : tuple of Keep
+        Bound constraints.
+    """
+
+    world: ArmWorld
+    keeps: tuple[Keep, ...]
+    space: ProjectedSpace = field(init=False, repr=False)
+    chains: dict[str, Chain] = field(init=False, repr=False)
+    native: kernel.Keeps = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        plain = self.world.space
+        space = ProjectedSpace(plain.low, plain.high, plain.wrapping, plain.weights)
+        tips = dict.fromkeys(tip for keep in self.keeps for tip in keep.tips)
+        object.__setattr__(self, "chains", {tip: chain_of(self.world.robot, tip) for tip in tips})
+        object.__setattr__(self, "space", space.projected_by(self))
+        number = {tip: i for i, tip in enumerate(self.chains)}
+        rows = [
+            (int(kind), number[keep.tips[0]] if keep.tips else 0, number[keep.tips[-1]] if keep.tips else 0, *rest)
+            for keep in self.keeps
+            for kind, numbers in (keep.residual,)
+            for rest in ((keep.limit, np.ascontiguousarray(numbers, dtype=np.float64)),)
+        ]
+        chains = [chain.native for chain in self.chains.values()]
+        object.__setattr__(self, "native", kernel.Keeps(chains, rows, self.limits))
+
+    @property
+    def proof(self) -> str:
+        """``certified``: collisions are proved absent, and the constraints proved kept."""
+        return "certified"
+
+    @property
+    def bodies(self) -> str:
+        """The kinds of bodies that the robot touches obstacles with, see `Robot.bodies`."""
+        return self.world.bodies
+
+    def path_clearance(self, path: Floats) -> float | None:
+        """Return the distance from obstacles that a path, (p, dim), is proved to keep [m], as `ArmWorld`."""
+        return self.world.path_clearance(path)
+
+    def nearest_along(self, path: Floats) -> tuple[str, str] | None:
+        """Return the link and the obstacle that come nearest to each other along a path, (p, dim)."""
+        return self.world.nearest_along(path)
+
+    @property
+    def limits(self) -> Floats:
+        """Limits of the joints, (2, dim); infinite for those that wrap."""
+        ranges = np.array([self.world.space.low, self.world.space.high])
+        return np.where(self.world.space.flat.wrapping, [[-np.inf], [np.inf]], ranges)
+
+    @cached_property
+    def step(self) -> float:
+        """Longest step along a motion: between two states residuals grow with its square."""
+        return min(_STEP, *(math.sqrt(3.0 * keep.limit) for keep in self.keeps if keep.tips), _STEP)
+
+    def shares(self, q: Floats) -> Floats:
+        """Return the lengths of the residuals as shares of their limits, (n, c), at configurations, (n, dim)."""
+        return self.native.shares(np.ascontiguousarray(q))
+
+    def projected(self, q: Floats, *, steps: int = _STEPS) -> tuple[Floats, Bools]:
+        """Return the configurations, (n, dim), moved to where all residuals are within a share of their limits, and
+        which succeeded (damped Gauss-Newton, Nakamura and Hanafusa 1986).
+        """
+        moved, good = self.native.project(np.ascontiguousarray(q), _AIM, _ENOUGH, steps, _LONGEST)
+        return moved, good.view(np.bool_)
+
+    def bounds(self, path: Floats) -> Floats:
+        """Return bounds on the residuals along each motion of a path, (n, dim), as shares of limits: (n - 1, c).
+
+        They are measured at some states.  Between two of these they exceed both by an eighth of the largest second
+        derivative times their distance squared at most (de Boor 1978, II).
+        """
+        moved = self.space.flat.difference(path[:-1], path[1:])
+        states = [path[:-1] + share * moved for share in np.arange(_PARTS) / _PARTS]
+        measured = self.shares(np.concatenate([*states, path[-1:]]))
+        most = np.maximum(measured[: len(moved)], np.vstack([measured[1 : len(moved)], measured[-1:]]))
+        for part in range(1, _PARTS):
+            most = np.maximum(most, measured[part * len(moved) : (part + 1) * len(moved)])
+        moves = {tip: moves_of(chain, moved) for tip, chain in self.chains.items()}
+        for k, keep in enumerate(self.keeps):
+            most[:, k] += keep.bend([moves[tip] for tip in keep.tips]) / (8.0 * _PARTS**2 * keep.limit)
+        return most
+
+    def valid(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), are free and keep the constraints: (n,)."""
+        return self.world.valid(q) & (self.shares(as_batch("q", q, self.space.dim)) <= 1.0).all(axis=1)
+
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, from rows of `a` to those of `b`, (m, dim) arrays, are free and keep them: (m,)."""
+        first, second = as_batch_pair(a, b, self.space.dim)
+        free = np.zeros(len(first), dtype=np.bool_)
+        for begin in range(0, len(first), _TOGETHER):
+            some = slice(begin, begin + _TOGETHER)
+            free[some] = self._followed(first[some], second[some])[0]
+        return free
+
+    def along(self, a: Floats, b: Floats) -> Floats | None:
+        """Return the states of the motion between two configurations, (n, dim), with both; None where it
+        is not free.
+        """
+        row, states = self.first_along(a[np.newaxis], b[np.newaxis])
+        return states if row == 0 else None
+
+    def first_along(self, a: Floats, b: Floats) -> tuple[int, Floats]:
+        """Return the number of the first free one of some motions, (m, dim) each, -1 for none, and its states."""
+        good, motion, states = self._followed(a, b)
+        row = int(good.argmax()) if good.any() else -1
+        return row, states[motion == row]
+
+    def _followed(self, a: Floats, b: Floats) -> tuple[Bools, Ints, Floats]:
+        """Return which motions are free, and the states of those, one after the other, and of which motion each is.
+
+        Each walks to its end along the constraints; then others between these states are projected, which are near.
+        A motion and the one back are the same.
+        """
+        world, flat, finer = self.world, self.space.flat, max(1, int(_STEP / self.step))
+        back, given = is_backwards(a, b), (a, b)
+        a, b = np.where(back[:, np.newaxis], given[::-1], given)
+        states, counts = self.native.walk(a, flat.difference(a, b), flat.scale, self._walking(finer * self.step))
+        states, counts = _without(states, counts, ~world.valid(self.space.wrapped(states)))
+        if finer > 1:
+            states, counts = self.native.refine(states, counts, finer, flat.scale, self._walking(self.step))
+        free = np.flatnonzero(counts)
+        motion, states = np.repeat(np.arange(len(a)), counts), self.space.wrapped(states).copy()
+        # Sums round: the ends are as they were given.
+        states[np.cumsum(counts[free]) - 1] = b[free]
+        good = counts > 0
+        steps = np.flatnonzero(motion[1:] == motion[:-1])
+        for is_free in (
+            lambda rows: world.motion_valid(states[rows], states[rows + 1]),
+            lambda rows: (self.bounds(states)[rows] <= 1.0).all(axis=1),
+            lambda rows: world.motion_certified(states[rows], states[rows + 1], 1e-6),
+        ):
+            if len(steps):
+                good[motion[steps[~is_free(steps)]]] = False
+                steps = steps[good[motion[steps]]]
+        rows = good[motion]
+        return good, *turned_round(motion[rows], states[rows], back)
+
+    def _walking(self, step: float) -> tuple[float, float, float, float, int, float]:
+        """Return how compiled code walks by such steps."""
+        return step, _JUMP, _AIM, _ENOUGH, _FEW, _LONGEST
+
+    def path_through(self, waypoints: Floats) -> Floats:
+        """Return the path through waypoints between which motions are free, (p, dim)."""
+        pieces = [self.along(a, b) for a, b in pairwise(waypoints)]
+        assert all(followed is not None for followed in pieces), "a motion of a path was free and is not"
+        return np.concatenate([waypoints[:1], *(followed[1:] for followed in pieces if followed is not None)])
+
+    def largest(self, path: Floats) -> Floats:
+        """Return bounds on the residuals along a path, (p, dim), as shares of limits: (c,)."""
+        return self.bounds(path).max(axis=0)
+
+    def deviation(self, largest: Floats) -> dict[str, float]:
+        """Return by how much each constraint is off where residuals are such shares of limits, (c,)."""
+        off: dict[str, float] = {}
+        for keep, share in zip(self.keeps, largest.tolist(), strict=True):
+            by = float(keep.off(np.array([share * keep.limit]))[0])
+            off[keep.deviation] = max(off.get(keep.deviation, 0.0), by)
+        return off
+
+    def shortened(self, path: Floats) -> Floats:
+        """Return a path, (p, dim), made shorter by free motions between places along it, if it is much longer than the
+        straight motion, which may leave the constraints.
+        """
+        space = self.world.space
+        least = (1.0 + _LONGER) * float(space.distance(path[:1], path[-1:])[0])
+        for pairs in np.split(np.sort(share_pairs(_SHORTCUTS), axis=1), _ROUNDS):
+            travelled = np.concatenate([[0.0], np.cumsum(space.distance(path[:-1], path[1:]))])
+            if travelled[-1] <= least:
+                break
+            i, j = np.searchsorted(travelled, pairs.T * travelled[-1])
+            # What is hardly longer than the straight way cannot become much shorter.
+            some = j - i > 1
+            some[some] = travelled[j[some]] - travelled[i[some]] > 1.01 * space.distance(path[i[some]], path[j[some]])
+            i, j = i[some], j[some]
+            good, motion, states = self._followed(path[i], path[j])
+            found = {k: states[motion == k] for k in np.flatnonzero(good).tolist()}
+            saved = {k: travelled[j[k]] - travelled[i[k]] - path_length(each, space) for k, each in found.items()}
+            taken: list[int] = []
+            for k in sorted(found, key=lambda k: -saved[k]):
+                if saved[k] > 1e-9 and all(j[k] <= i[other] or j[other] <= i[k] for other in taken):
+                    taken.append(k)
+            for k in sorted(taken, key=lambda k: -int(i[k])):
+                path = np.concatenate([path[: i[k]], found[k], path[j[k] + 1 :]])
+        return path
+
+    def fingerprint(self) -> str:
+        """Return a text that is equal for worlds in which the same is free."""
+        return fingerprint_of("kept", self.world.fingerprint(), *self.keeps)
+
+    def explain(self, q: Floats) -> str:
+        """Return, in words, why one configuration, (dim,), is not free: what touches, or which constraint it leaves."""
+        shares = self.shares(q[np.newaxis])[0]
+        return self.world.explain(q) if (shares <= 1.0).all() else self.exceeded(shares)
+
+    def exceeded(self, shares: Floats) -> str:
+        """Return, in words, which residual, of (c,) shares of limits, is too large, and by how much."""
+        k = int(shares.argmax())
+        keep = self.keeps[k]
+        return keep.words(float(keep.off(np.array([shares[k] * keep.limit]))[0]))
+
+
+def turned_round(motion: Ints, states: Floats, back: Bools) -> tuple[Ints, Floats]:
+    """Return the states of motions with those in the other order, (m,), of which `back` says so; and their motions."""
+    number, until = np.arange(len(motion)), np.searchsorted(motion, motion, "right")
+    begins = np.searchsorted(motion, motion, "left")
+    return motion, states[np.where(back[motion], begins + until - 1 - number, number)]
+
+
+def is_backwards(a: Floats, b: Floats) -> Bools:
+    """Return which rows of `a` come after those of `b`, (m, dim) each, in the order of a dictionary."""
+    moved = b - a
+    number = (moved != 0.0).argmax(axis=1)
+    return np.asarray(moved[np.arange(len(a)), number] < 0.0)
+
+
+def _without(states: Floats, counts: Ints, off: Bools) -> tuple[Floats, Ints]:
+    """Return the states of motions, and how many each has, without motions that have a state which is off."""
+    motion = np.repeat(np.arange(len(counts)), counts)
+    good = np.ones(len(counts), dtype=np.bool_)
+    good[motion[off]] = False
+    return states[good[motion]], np.where(good, counts, 0)
+
+
+def kept_line(world: KeptWorld, line: Followed) -> Followed:
+    """Return a followed line or curve, without its path where that does not keep the constraints."""
+    if len(line.path) < 2:
+        return line
+    largest = world.largest(line.path)
+    return line if (largest <= 1.0).all() else Followed(line.path[:1], f"along it {world.exceeded(largest)}")

@@ -1,0 +1,1 @@
+"""Infeasibility: proofs that no path exists."""

@@ -1,0 +1,284 @@
+"""Infeasibility proofs for arms: the first joints alone cannot pass from start to goal.
+
+The first joints move the first links, for any values of the others.  Their ranges are divided into cells.  All of a
+cell is blocked if its middle is, with bodies thinner by the movement within half a cell and by the excess of the
+check's spheres.  The free cells form components, and no path leaves the component that it starts in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Bools, Floats
+from evenroad._time_limit import look_at_clock, require_time_for
+from evenroad.collision.native_robot import shape_speeds
+from evenroad.collision.placed_capsules import LARGEST_EXCESS, place_capsule, speed_bounds
+from evenroad.collision.prepared_robots import joint_space
+from evenroad.robots.moving_tree import moving_tree
+from evenroad.robots.robot import Robot
+
+SLACK = 1e-4
+"""Distance by which bodies are thinner, besides four times the error of single precision [m]."""
+OF_SHAPES = 4e-4
+"""Distance by which obstacles are smaller, besides, where true shapes are tested: four times what corners left out of
+convex meshes add to these at most [m]."""
+FARTHEST = 0.5
+"""Cells that move shapes by more are never said to be clear [m]."""
+BEYOND = 1e-4
+"""Distance that cells reach beyond the limits of joints, where rounding may put a configuration [rad or m]."""
+_SLOWEST = 0.05
+"""Least speed of links by which cells are sized [m/rad]."""
+_AT_ONCE = 16_384
+"""Number of cells that are checked at once."""
+_LABELLED = 5e-8
+"""Time in which a cell's piece is found, which is not interrupted [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """A robot whose `capsules` are tested in a scene, and the largest error of these checks, >= 0 [m].
+
+    `in_scene` returns which configurations, (n, dim), of such a robot are free there: (n,).  A distance besides says by
+    how much the obstacles are smaller [m].  `shapes` are true shapes of the links, and capsules around them.
+    """
+
+    robot: Robot
+    in_scene: Callable[..., Callable[[Floats], Bools]]
+    margin: float
+    shapes: Robot | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Equal cells of the ranges of some joints: lower ends, upper ends and numbers along each [rad or m].
+
+    `period` is inf where a joint does not wrap.
+    """
+
+    low: Floats
+    high: Floats
+    count: npt.NDArray[np.int64]
+    period: Floats
+
+    @property
+    def size(self) -> Floats:
+        """Sides of a cell [rad or m]."""
+        return (self.high - self.low) / self.count
+
+    @property
+    def whole(self) -> Bools:
+        """Along which joints, of those that wrap, the cells cover the whole circle."""
+        return self.high - self.low >= self.period * (1.0 - 1e-12)
+
+    @property
+    def middles(self) -> list[Floats]:
+        """Middles of the cells along each joint."""
+        axes = zip(self.low, self.size, self.count, strict=True)
+        return [low + size * (np.arange(count) + 0.5) for low, size, count in axes]
+
+    def cell(self, q: Floats) -> tuple[int, ...] | None:
+        """Return the cell of values, (joints,); None where they are in none."""
+        q = np.where(np.isfinite(self.period), self.low + np.mod(q - self.low, self.period), q)
+        number = np.floor((q - self.low) / self.size).astype(int)
+        # Rounding must not put values on the rim outside.
+        inside = (number >= -1) & (number <= self.count)
+        return tuple(np.clip(number, 0, self.count - 1).tolist()) if inside.all() else None
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """All cells of a robot's first joints that a path from its start may reach."""
+
+    cells: Cells
+    reached: Bools
+
+    def holds(self, q: Floats) -> bool:
+        """Return whether a configuration, (dim,), is in one of them."""
+        cell = self.cells.cell(q[: len(self.cells.count)])
+        return cell is not None and bool(self.reached[cell])
+
+
+def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], most: int) -> Piece | None:
+    """Return the cells of the first `len(reach)` joints that a path from a free configuration, (dim,), cannot leave.
+
+    About `most` cells lie around it; `reach` is their extent along each joint, to its limits at most [rad or m].  None
+    where nothing is proved: bodies may be too thin for such cells, or a path may leave them all.
+    """
+    first = first_links(bodies.robot, len(reach))
+    if not first.capsules:
+        return None
+    cells = cells_around(first, configuration[: len(reach)], np.array(reach), most)
+    if bodies.shapes is None and not thinner(first, 0.5 * cells.size, SLACK + 4.0 * bodies.margin).capsules:
+        return None
+    require_time_for("scipy.ndimage")
+    # Imported here, as most plans need no proof.
+    from scipy.ndimage import label
+
+    free = _free_cells(bodies, first, cells)
+    look_at_clock(_LABELLED * free.size)
+    number = _joined(label(free)[0], cells.whole)
+    cell = cells.cell(configuration[: len(reach)])
+    # A configuration in no cell, or in a blocked one, contradicts the check.
+    if cell is None or number[cell] == 0:
+        return None
+    reached = number == number[cell]
+    space = joint_space(first)
+    open_below = np.where(np.isfinite(cells.period), ~cells.whole, cells.low > space.low)
+    open_above = np.where(np.isfinite(cells.period), ~cells.whole, cells.high < space.high)
+    for k in range(len(reach)):
+        # A component must not leave by a side of the cells that is no limit of a joint.
+        below, above = np.moveaxis(reached, k, 0)[[0, -1]].reshape(2, -1).any(axis=1)
+        if (below and open_below[k]) or (above and open_above[k]):
+            return None
+    return Piece(cells, reached)
+
+
+def first_links(robot: Robot, joints: int) -> Robot:
+    """Return the robot with what its first joints alone move: other joints are held, bodies behind them are removed.
+
+    Its limits are a little wider: no cell is blocked for being beyond them.
+    """
+    moved = set(robot.group[joints:])
+    while following := {each.name for each in robot.joints if each.mimic and each.mimic.joint in moved} - moved:
+        moved |= following
+    behind: set[str] = set()
+    for joint in robot.joints:
+        if joint.parent in behind or joint.name in moved:
+            behind.add(joint.child)
+    group = robot.group[:joints]
+    return replace(
+        robot,
+        joints=tuple(
+            replace(joint, lower=joint.lower - BEYOND, upper=joint.upper + BEYOND) if joint.name in group else joint
+            for joint in robot.joints
+        ),
+        capsules=tuple(capsule for capsule in robot.capsules if capsule.link not in behind),
+        pairs=tuple(pair for pair in robot.pairs if behind.isdisjoint(pair)),
+        group=group,
+        planes=(),
+        hulls=(),
+        resting=(),
+        inner=None,
+        shapes=(),
+    )
+
+
+def thinner(robot: Robot, half: Floats, slack: float) -> Robot:
+    """Return the robot with bodies so thin that where one touches, it does throughout the cell; some vanish.
+
+    `half`, (dim,), are half the sides of a cell [rad or m].
+    """
+    kept = []
+    for capsule, far in zip(robot.capsules, (_speeds(robot) @ half).tolist(), strict=True):
+        radius = capsule.radius - far - slack
+        # Spheres that cover it are larger, unless it is one.
+        radius /= 1.0 if capsule.a == capsule.b else LARGEST_EXCESS
+        kept += [replace(capsule, radius=radius)] if radius > 0.0 else []
+    return replace(robot, capsules=tuple(kept))
+
+
+def _speeds(robot: Robot) -> Floats:
+    """Return how fast joints move the segments of capsules at most, (capsules, dim) [m/rad or m/m]."""
+    tree = moving_tree(robot)
+    return speed_bounds(tree, [place_capsule(capsule, tree) for capsule in robot.capsules], [], robot)[0]
+
+
+class CellTests:
+    """What is known of cells of the `first` links of some bodies: which are blocked, and which free, throughout.
+
+    Capsules are thinner by how far half a cell moves them.  True shapes stay as they are, and obstacles are smaller by
+    that: so a point of the one stays in the other.
+    """
+
+    def __init__(self, bodies: Bodies, first: Robot) -> None:
+        self._bodies, self._first, self._slack = bodies, first, SLACK + 4.0 * bodies.margin
+        true, tree = bodies.shapes, moving_tree(first)
+        self._links: list[tuple[Robot, Floats]] = []
+        """Of each moving link that has true shapes a robot of it alone, and how fast joints move it."""
+        for link in dict.fromkeys(capsule.link for capsule in first.capsules) if true is not None else ():
+            of_link: dict[str, Any] = {
+                what: tuple(each for each in getattr(true, what) or () if each.link == link)
+                for what in ("capsules", "inner", "shapes")
+            }
+            robot = replace(first, pairs=(), padding=(), **of_link)
+            speeds = shape_speeds(robot, tree, {link: 0})[0]
+            if of_link["shapes"] and speeds.any():
+                self._links.append((robot, speeds))
+
+    def unblocked(self, half: Floats, middles: Floats) -> Bools:
+        """Return which cells, of these middles, (n, dim), and half sides, (dim,), are not blocked throughout."""
+        free, thin = np.ones(len(middles), dtype=np.bool_), thinner(self._first, half, self._slack)
+        if thin.capsules:
+            free &= self._bodies.in_scene(thin)(middles)
+        for robot, speeds in self._links:
+            far = float(speeds @ half) + self._slack + OF_SHAPES
+            free[free] = self._bodies.in_scene(robot, far)(middles[free])
+        return free
+
+    def clear(self, half: Floats, middles: Floats) -> Bools:
+        """Return which cells are free throughout, as far as obstacles go, or capsules where there are no true shapes.
+
+        No proof relies on it.
+        """
+        if not self._links:
+            thick = [
+                replace(capsule, radius=capsule.radius + far)
+                for capsule, far in zip(self._first.capsules, (_speeds(self._first) @ half).tolist(), strict=True)
+            ]
+            return self._bodies.in_scene(replace(self._first, capsules=tuple(thick)))(middles)
+        free = np.ones(len(middles), dtype=np.bool_)
+        for robot, speeds in self._links:
+            far = float(speeds @ half)
+            free[free] = far < FARTHEST and self._bodies.in_scene(robot, -far)(middles[free])
+        return free
+
+
+def cells_around(first: Robot, configuration: Floats, reach: Floats, most: int) -> Cells:
+    """Return about `most` cells around a configuration; where a joint wraps, at most the whole circle."""
+    space = joint_space(first)
+    period = space.flat.period
+    reach = np.minimum(reach, 0.5 * period)
+    wraps = np.isfinite(period)
+    low = np.where(wraps, configuration - reach, np.maximum(space.low, configuration - reach))
+    high = np.where(wraps, configuration + reach, np.minimum(space.high, configuration + reach))
+    tree = moving_tree(first)
+    placed = [place_capsule(capsule, tree) for capsule in first.capsules]
+    speeds = speed_bounds(tree, placed, [], first)[0].max(axis=0)
+    # Half a cell along any joint moves the links by about the same distance; more cells, less distance.
+    lengths = np.maximum(speeds, _SLOWEST) * (high - low)
+    count = np.ceil(lengths * (most / np.prod(lengths)) ** (1 / len(reach))).astype(int)
+    count = np.maximum(count, 2)
+    return Cells(low, high, count, period)
+
+
+def _free_cells(bodies: Bodies, first: Robot, cells: Cells) -> Bools:
+    middles, shape, tests = cells.middles, tuple(cells.count.tolist()), CellTests(bodies, first)
+    free = np.empty(int(np.prod(shape)), dtype=bool)
+    for begin in range(0, len(free), _AT_ONCE):
+        rows = np.unravel_index(np.arange(begin, min(begin + _AT_ONCE, len(free))), shape)
+        q = np.stack([middles[k][row] for k, row in enumerate(rows)], axis=1)
+        look_at_clock()
+        free[begin : begin + _AT_ONCE] = tests.unblocked(0.5 * cells.size, q)
+    return free.reshape(shape)
+
+
+def _joined(number: npt.NDArray[np.int32], whole: Bools) -> npt.NDArray[np.int32]:
+    """Return the numbers of pieces, 0 where blocked, with those joined that meet where a joint has gone round."""
+    if not whole.any():
+        return number
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    for k in np.flatnonzero(whole):
+        first, last = np.moveaxis(number, k, 0)[[0, -1]].reshape(2, -1)
+        both = (first > 0) & (last > 0)
+        count = int(number.max()) + 1
+        pairs = coo_matrix((np.ones(int(both.sum())), (first[both], last[both])), shape=(count, count))
+        # Nothing is joined to 0, which stays the first.
+        number = connected_components(pairs, directed=False)[1][number]
+    return number

@@ -1,0 +1,227 @@
+"""Texts of infeasibility proofs: about which bodies, which joints, and whether about the whole query."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats
+from evenroad._time_limit import look_at_clock
+from evenroad.infeasibility.adaptive_cells import is_cut_off
+from evenroad.infeasibility.blocking_values import pieces_between_walls
+from evenroad.infeasibility.prefix_cells import BEYOND, Bodies, Piece, piece_of
+from evenroad.poses.chain import Chain
+from evenroad.poses.inverse_kinematics import task_of
+from evenroad.poses.pose_goal import PoseGoal
+from evenroad.poses.pose_task import PoseTask
+from evenroad.robots.robot import Robot
+from evenroad.world.protocol import Apart
+
+ONE = (1, (np.inf,), 2_000)
+QUICK = (ONE, (2, (np.inf, np.inf), 20_000))
+"""How many of the first joints are looked at, how far cells reach from an end along each [rad or m], how many cells.
+Together they take some milliseconds."""
+THOROUGH = (
+    ONE,
+    (2, (np.inf, np.inf), 60_000),
+    (3, (np.inf, np.inf, np.inf), 500_000),
+    (3, (0.35, 0.35, np.inf), 500_000),
+)
+"""These take tenths of a second."""
+
+SPLIT, QUICK_SPLIT, MOST_SPLIT = 2, 200_000, 1_000_000
+"""So many joints are also looked at with cells that are split where it matters, and with how many cells at most,
+quickly or not: some passages are closed by millimetres.  Where one is clear it mostly takes some milliseconds."""
+
+MOST_GOALS = 4
+"""Cells around a goal show what those around the start do not; around no more goals than these."""
+
+_NEAR = 1e-3
+"""By how much a posture may miss its pose and still be said to reach it [m]."""
+
+PROVED = "proved: there is no path"
+
+Task = tuple[Chain, PoseTask]
+"""A pose goal as inverse kinematics takes it."""
+
+Tries = Sequence[tuple[int, tuple[float, ...], int]]
+
+
+class InScene(Protocol):
+    """The parts of an arm's world that proofs use."""
+
+    @property
+    def robot(self) -> Robot: ...  # noqa: D102
+
+    @property
+    def margin(self) -> float: ...  # noqa: D102
+
+    @property
+    def clearance(self) -> float: ...  # noqa: D102
+
+    def with_bodies(self, robot: Robot, spare: float = 0.0) -> Callable[[Floats], Bools]:
+        """Return a check of configurations, (n, dim), for a robot with other bodies, obstacles smaller by `spare`."""
+
+
+def apart(
+    world: InScene,
+    start: Floats,
+    goals: Floats,
+    poses: Sequence[PoseGoal] = (),
+    *,
+    quickly: bool = False,
+    whole: bool = True,
+) -> Apart | None:
+    """Return the reason why no path leads from a start, (dim,), to any of the goals, (g, dim), or None.
+
+    It is proved where it holds for bodies inside the robot's true shapes and all postures that reach the `poses`.  The
+    goals are postures found for these, and given ones; they are not the `whole` where there may be others.
+    """
+    robot, (tries, split) = world.robot, (QUICK, QUICK_SPLIT) if quickly else (THOROUGH, MOST_SPLIT)
+    tasks = [task_of(robot, goal) for goal in poses]
+    bodies, others = outer_bodies(world), False
+    names: tuple[str, ...] = ()
+    if robot.inner is not None:
+        names, others = shown_by(inner_bodies(world), start, goals, tasks, tries, split)
+    truly = bool(names) or robot.inner is None
+    if not names and not robot.shapes:
+        names, others = shown_by(bodies, start, goals, tasks, tries, split)
+    if not names:
+        return None
+    alone = (
+        f"joint {names[0]} alone cannot get there, whatever the others do"
+        if len(names) == 1
+        else f"joints {', '.join(names)} alone cannot get there, whatever the others do"
+    )
+    if not truly:
+        message = (
+            f"no path is found for the capsules that stand for the robot's shapes: {alone}; of the shapes themselves"
+            " that is not proved"
+        )
+        return Apart(message, proved=False)
+    of = "the robot's capsules" if robot.inner is None else "bodies inside of the robot's shapes"
+    of += f", {world.clearance:g} m from obstacles" if world.clearance else ""
+    if others or not whole:
+        found = "the posture found cannot" if len(goals) == 1 else f"none of the {len(goals)} postures found can"
+        return Apart(f"{found} be reached: {alone} (shown for {of}); others may be", proved=False)
+    return Apart(f"{PROVED}: {alone} (shown for {of})", proved=True)
+
+
+def inner_bodies(world: InScene) -> Bodies:
+    """Return bodies inside of the robot's true shapes, and these shapes."""
+    robot = world.robot
+    within = replace(robot, capsules=robot.inner or (), inner=None, shapes=())
+    return Bodies(within, world.with_bodies, world.margin, robot)
+
+
+def outer_bodies(world: InScene) -> Bodies:
+    """Return the bodies that are planned with; pairs of which hulls decide are left out."""
+    sharp = {hull.link for hull in world.robot.hulls if not hull.is_round}
+    pairs = tuple(pair for pair in world.robot.pairs if sharp.isdisjoint(pair))
+    return Bodies(replace(world.robot, pairs=pairs), world.with_bodies, world.margin)
+
+
+def shown_by(
+    bodies: Bodies, start: Floats, goals: Floats, tasks: Sequence[Task], tries: Tries, split: int = MOST_SPLIT
+) -> tuple[tuple[str, ...], bool]:
+    """Return which joints cannot reach any goal, none where that is not shown; and whether other postures of poses may.
+
+    Walls come first: they say which single joints cannot.
+    """
+    group = bodies.robot.group
+    used, shown = dict[str, None](), tuple[str, ...]()
+    unreached, undecided = list(goals), list(tasks)
+    for k, enclosure in pieces_between_walls(bodies.robot, start):
+        before = len(unreached) + len(undecided)
+        unreached = [goal for goal in unreached if enclosure.holds(goal)]
+        undecided = [task for task in undecided if not is_beyond(enclosure, *task)]
+        if len(unreached) + len(undecided) < before:
+            used[group[k]] = None
+    if used and not unreached:
+        shown = tuple(used)
+        if not undecided:
+            return shown, False
+    for joints, reach, cells in tries:
+        if joints > len(group):
+            break
+        look_at_clock()
+        if joints == SPLIT and unreached and is_cut_off(bodies, start, np.array(unreached), joints, split):
+            unreached = []
+        piece = piece_of(bodies, start, reach, cells) if unreached or undecided else None
+        if piece is not None:
+            unreached = [goal for goal in unreached if piece.holds(goal)]
+            undecided = [task for task in undecided if not is_beyond(piece, *task)]
+        if np.isfinite(reach).any() and len(unreached) <= MOST_GOALS:
+            unreached = [goal for goal in unreached if not _is_walled(bodies, goal, start, reach, cells)]
+        if not unreached:
+            names = tuple(dict.fromkeys((*group[:joints], *used)))
+            if not undecided:
+                return names, False
+            shown = shown or names
+    return shown, bool(undecided)
+
+
+def _is_walled(bodies: Bodies, goal: Floats, start: Floats, reach: tuple[float, ...], cells: int) -> bool:
+    piece = piece_of(bodies, goal, reach, cells)
+    return piece is not None and not piece.holds(start)
+
+
+def is_beyond(piece: Piece, chain: Chain, task: PoseTask) -> bool:
+    """Return whether no posture in a piece brings a tip to a pose, for all values of the other joints.
+
+    The first joints place the next one's axis; from there the tip is no farther than the links are long, and no nearer
+    than one of them is longer than all others.
+    """
+    known, coordinates = len(piece.cells.count), chain.coordinates.tolist()
+    first_free = next((i for i, coordinate in enumerate(coordinates) if coordinate >= known), len(coordinates))
+    bars, target = np.linalg.norm(chain.rows[first_free + 1 :, 9:12], axis=1).tolist(), np.array(task.pose.xyz)
+    if bars and task.turns_fully and task.angle_tolerance == 0.0:
+        # Where the last joint is is known, too.
+        turn = task.pose.rotation_matrix @ chain.rows[-1, :9].reshape(3, 3).T
+        target, bars = target - turn @ chain.rows[-1, 9:12], bars[:-1]
+    slides = _slides(chain)
+    most = sum(bars) + sum(slides[first_free:])
+    least = max([0.0, *(2.0 * bar - most for bar in bars)])
+    away, moved = _distances(piece, chain, first_free, target, slides)
+    near = _NEAR + task.position_tolerance
+    return bool(((away - moved > most + near) | (away + moved < least - near)).all())
+
+
+def _slides(chain: Chain) -> list[float]:
+    """Return how far each frame slides at most; 0 where it turns [m]."""
+    lengths = []
+    for coordinate, slides, row in zip(chain.coordinates, chain.slides, chain.rows, strict=False):
+        (low, high), (multiplier, offset) = chain.bounds[:, coordinate] + (-BEYOND, BEYOND), row[12:]
+        extremes = abs(multiplier * low + offset), abs(multiplier * high + offset)
+        lengths.append(float(max(extremes)) if slides else 0.0)
+    return lengths
+
+
+def _distances(
+    piece: Piece, chain: Chain, first_free: int, target: Floats, slides: list[float]
+) -> tuple[Floats, float]:
+    """Return how far a frame's origin is from a point in all cells' middles, (n,), and how far half a cell moves it."""
+    cells, rows, coordinates = piece.cells, chain.rows, chain.coordinates
+    where = np.nonzero(piece.reached)
+    q = np.stack([cells.middles[k][row] for k, row in enumerate(where)], axis=1)
+    rotation, origin = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
+    for i in range(first_free):
+        origin = origin + rotation @ rows[i, 9:12]
+        rotation = rotation @ rows[i, :9].reshape(3, 3)
+        value = rows[i, 12] * q[:, coordinates[i]] + rows[i, 13]
+        if chain.slides[i]:
+            origin = origin + rotation[:, :, 2] * value[:, np.newaxis]
+            continue
+        cosine, sine, zero = np.cos(value), np.sin(value), np.zeros_like(value)
+        turn = np.stack([cosine, -sine, zero, sine, cosine, zero, zero, zero, zero + 1.0], axis=1)
+        rotation = rotation @ turn.reshape(-1, 3, 3)
+    origin = origin + rotation @ rows[first_free, 9:12]
+    straight, moved = float(np.linalg.norm(rows[first_free, 9:12])), 0.0
+    for i in range(first_free - 1, -1, -1):
+        half = 0.5 * float(cells.size[coordinates[i]]) * abs(float(rows[i, 12]))
+        moved += half * (1.0 if chain.slides[i] else straight)
+        straight += float(np.linalg.norm(rows[i, 9:12])) + slides[i]
+    return np.linalg.norm(origin - target, axis=1), moved

@@ -1,0 +1,191 @@
+"""A cache of robots between runs: fitting capsules to meshes and sampling contacts takes seconds.
+
+A digest seals each file, as a flipped bit is as likely in a radius as in a bracket.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import os
+import time
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from copy import deepcopy
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from evenroad import __version__
+from evenroad._arrays import Floats
+from evenroad._files import atomic_write, cache_folder, read_bytes
+from evenroad._fingerprint import fingerprint_of
+from evenroad._seal import read_sealed, sealed
+from evenroad.errors import BrokenFile
+from evenroad.geometry.hulls import Hull
+from evenroad.geometry.mesh import TriangleMesh
+from evenroad.geometry.parts import Parts
+from evenroad.geometry.shapes import Capsule, Mesh, Shape
+from evenroad.loading.description import LinkBody, RobotModel
+from evenroad.loading.urdf import Urdf
+from evenroad.loading.urdf_xml import RobotFile
+from evenroad.robots.joint import Joint, Mimic
+from evenroad.robots.planes import Plane
+from evenroad.robots.robot import Robot
+
+_FORMAT = 28
+"""Version of the cache: it counts up when the same files give another robot, or the format changes."""
+
+
+def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | Sequence[str] | None) -> str:
+    """Return the hash of all that decides the robot: what its file says, the content of meshes and others, the group.
+
+    The others have a name for errors: BrokenFile if one is missing, as a cached robot is never returned for files that
+    are gone.
+    """
+    unchecked = [(joint.acceleration, joint.deceleration, joint.jerk, joint.hard, joint.of) for joint in urdf.joints]
+    said = fingerprint_of(replace(urdf, shapes=()), unchecked, [_said(shape) for shape in urdf.shapes], group)
+    digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{said}".encode())
+    sources = [shape.source for shape in urdf.shapes if isinstance(shape, Mesh)]
+    meshes = [("mesh", source) for source in sources if isinstance(source, Path)]
+    for what, path in (*meshes, *others):
+        try:
+            # An empty file is refused where none at all is fine.
+            content = b"absent" if path is None else b"present" + read_bytes(path)
+        except OSError as error:
+            raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+        digest.update(hashlib.sha256(content).digest())
+    return digest.hexdigest()
+
+
+def _said(shape: Shape) -> object:
+    """Return all values of a shape in full; its repr is rounded."""
+    if not isinstance(shape, Mesh) or isinstance(shape.source, TriangleMesh):
+        return shape
+    return shape.kind, str(shape.source), shape.scale, shape.pose, shape.link
+
+
+def cached(key: str) -> RobotModel | None:
+    """Return the cached robot of this key; None when there is none, or its file is damaged.
+
+    A damaged file is logged in one line.
+    """
+    content = read_sealed(_file(key), key, "the robot")
+    return None if content is None else _model(json.loads(content))
+
+
+def keep(key: str, model: RobotModel) -> None:
+    """Write a robot into the cache; where that fails, the next run takes longer."""
+    file = _file(key)
+    with suppress(OSError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with atomic_write(file) as stream:
+            stream.write(sealed(json.dumps(asdict(model), default=written).encode(), key))
+
+
+def written(array: Floats) -> list[Any] | dict[str, Any]:
+    """Return what JSON has of an array: of one of triangles its bytes, which are sooner read."""
+    if array.ndim < 3:
+        return array.tolist()
+    return {"shape": array.shape, "bytes": base64.b64encode(array.tobytes()).decode()}
+
+
+def _triangles(record: Any) -> Floats:
+    """Return an array that was `written`."""
+    return np.frombuffer(base64.b64decode(record["bytes"])).reshape(record["shape"])
+
+
+_known: dict[object, tuple[dict[Path, tuple[int, ...]], RobotModel, RobotModel]] = {}
+"""Request of this process -> its files with their times, the robot, and a copy for comparison."""
+_AT_ONCE = 100_000_000
+"""A file that was saved so shortly before it is read might be saved again without a new time [ns]."""
+_FOLDERS = ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
+
+
+def stamps(files: Iterable[Any]) -> dict[Path, tuple[int, ...]]:
+    """Return when each of these files was saved, and how large it is; what is no file is left out."""
+    found: dict[Path, tuple[int, ...]] = {}
+    for path in files:
+        if isinstance(path, Path):
+            with suppress(OSError):
+                status = path.stat()
+                found[path] = status.st_mtime_ns, status.st_size, status.st_ino
+    return found
+
+
+def known(asked: object) -> RobotModel | None:
+    """Return the robot that was made of the same files in this process, if none of them was saved since."""
+    files, model, copy = _known.get(_asked_here(asked), ({}, None, None))
+    if model is None or copy is None or stamps(files) != files:
+        return None
+    # Mappings are the only part of a robot that can change.
+    same = (model.robot.states, model.robot.held) == (copy.robot.states, copy.robot.held)
+    return model if same else None
+
+
+def know(asked: object, files: dict[Path, tuple[int, ...]], model: RobotModel) -> None:
+    """Remember a robot for this process, but not where a file includes others, or was saved just now."""
+    content = next(iter(files)).read_bytes()
+    plain = b"<robot" in content and b"<xacro:" not in content and b"<mujoco" not in content
+    if not plain or max(saved for saved, *_ in files.values()) > time.time_ns() - _AT_ONCE or stamps(files) != files:
+        return
+    if len(_known) >= 32:
+        _known.clear()
+    robot = replace(model.robot, states=deepcopy(model.robot.states), held=dict(model.robot.held))
+    _known[_asked_here(asked)] = files, model, replace(model, robot=robot)
+
+
+def file_of(robot: Robot) -> RobotFile | None:
+    """Return the file that a robot was loaded from in this process, if that is known."""
+    for _, model, _ in reversed(list(_known.values())):
+        own = model.robot
+        if (own.name, own.links, own.joints) == (robot.name, robot.links, robot.joints):
+            return model.file
+    return None
+
+
+def _asked_here(asked: object) -> object:
+    return asked, os.getcwd(), *map(os.environ.get, _FOLDERS)
+
+
+def _file(key: str) -> Path:
+    return cache_folder() / "robots" / f"{key[:32]}.json"
+
+
+def _model(record: dict[str, Any]) -> RobotModel:
+    robot = record.pop("robot")
+    bodies = tuple(LinkBody(**_with_tuples(body)) for body in record.pop("bodies"))
+    return RobotModel(robot_of(robot), bodies, **_with_tuples(record))
+
+
+def robot_of(record: dict[str, Any]) -> Robot:
+    """Return the robot that ``asdict`` made this record of, read back from JSON."""
+    joints = [joint | {"mimic": joint["mimic"] and Mimic(**joint["mimic"])} for joint in record.pop("joints")]
+    hulls = [Hull(**each) for each in record.pop("hulls")]
+    planes = [Plane(**_with_tuples(each)) for each in record.pop("planes", ())]
+    # Where a file does not say what lies within the shapes, nothing does.
+    inner = record.pop("inner", [])
+    shapes = [Parts(**each | {"corners": _triangles(each["corners"])}) for each in record.pop("shapes", ())]
+    return Robot(
+        joints=tuple(Joint(**_with_tuples(joint)) for joint in joints),
+        capsules=_capsules(record.pop("capsules")),
+        hulls=tuple(hulls),
+        planes=tuple(planes),
+        shapes=tuple(shapes),
+        inner=None if inner is None else _capsules(inner),
+        **_with_tuples(record),
+    )
+
+
+def _capsules(records: Iterable[dict[str, Any]]) -> tuple[Capsule, ...]:
+    return tuple(Capsule(each["a"], each["b"], each["radius"], link=each["link"]) for each in records)
+
+
+def _with_tuples(value: Any) -> Any:
+    """Return a record with tuples where JSON has lists."""
+    if isinstance(value, dict):
+        return {key: _with_tuples(entry) for key, entry in value.items()}
+    return tuple(map(_with_tuples, value)) if isinstance(value, list) else value

@@ -1,0 +1,296 @@
+"""Loading a robot: a shipped one by its name, or any URDF, xacro or MJCF."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TypedDict, Unpack
+
+from evenroad._call import explains_calls, require_options
+from evenroad.errors import BrokenFile
+from evenroad.geometry.hulls import Piece
+from evenroad.geometry.inner import inner_of
+from evenroad.geometry.parts import parts_of
+from evenroad.geometry.shapes import Mesh
+from evenroad.loading.bodies_file import read_bodies
+from evenroad.loading.cache import cached, keep, key_of, know, known, stamps
+from evenroad.loading.description import RobotModel
+from evenroad.loading.find import find_robot
+from evenroad.loading.groups import EVERY, choose_group, chosen_states, group_notes, held_states
+from evenroad.loading.link_bodies import capsules_of, link_body, opened, pieces_of, shapes_of
+from evenroad.loading.ready_posture import held_apart
+from evenroad.loading.srdf import Srdf, read_srdf, with_moving_base
+from evenroad.loading.units import size_notes
+from evenroad.loading.urdf import Urdf, read_urdf, require_few_links
+from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.xml_file import outermost
+from evenroad.robots.free_joints import without_moved
+from evenroad.robots.pairs import SelfPairs, pairs_of, self_pairs
+from evenroad.robots.robot import Padding, Robot
+
+SHAPES, CAPSULES = "shapes", "capsules"
+"""`bodies` where the maker's shapes decide once capsules touch an obstacle, and where capsules alone do."""
+PathLike = str | os.PathLike[str]
+
+
+class ModelOptions(TypedDict, total=False):
+    """Options of reading a robot; see :func:`load_model`."""
+
+    srdf: PathLike | None
+    group: str | Sequence[str] | None
+    bodies: PathLike | None
+    use_visuals: bool
+    packages: Mapping[str, PathLike]
+    arguments: Mapping[str, str]
+    progress: Callable[[int, int, str], None] | None
+
+
+class RobotOptions(ModelOptions, total=False):
+    """Options of a robot: those of reading it, and by how much its links are larger."""
+
+    padding: Padding | None
+
+
+@explains_calls
+def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
+    """Return a robot from its file, or a shipped one by its name.
+
+    Warns of tested pairs of links that touch in every sampled configuration, and of robots in self-collision in all of
+    them.
+
+    Parameters
+    ----------
+    source : str or path-like
+        A URDF, xacro or MJCF; or, where there is no such file, ``ur5`` or ``arm7``.
+    **options
+        ``srdf``, ``group``, ``bodies``, ``use_visuals``, ``packages``, ``arguments``, ``progress``: as
+        :func:`evenroad.robot.load_model` takes them, which also returns how the robot was made.  ``padding``: by how
+        much links are larger against obstacles [m], as :meth:`evenroad.robot.Robot.with_padding` takes it.
+
+    Returns
+    -------
+    Robot
+
+    Raises
+    ------
+    UnknownName
+        If there is neither such a file nor such a robot, or a group, joint, link or keyword is not known.
+    BrokenFile
+        If a file is missing, broken or lacks a piece.
+    InvalidValue
+        If a number is none, or out of its range.
+    NotAvailable
+        If an extra is needed that is not installed.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.load_robot("ur5").joint_names[:2]
+    ('shoulder_pan_joint', 'shoulder_lift_joint')
+    """
+    model = padded_model(source, **options)
+    if model.always_touching:
+        pairs = ", ".join(f"{first} and {second}" for first, second in model.always_touching)
+        advice = "disable these pairs in the SRDF, or give smaller bodies"
+        always = f"{model.robot.name!r} is in collision in every sampled configuration"
+        warnings.warn(f"{always}: {pairs}; {advice}", stacklevel=2)
+    elif model.never_free:
+        warnings.warn(f"{model.robot.name!r}: {model.never_free}", stacklevel=2)
+    return model.robot
+
+
+@explains_calls
+def load_model(
+    source: PathLike,
+    *,
+    srdf: PathLike | None = None,
+    group: str | Sequence[str] | None = None,
+    bodies: PathLike | None = None,
+    use_visuals: bool = False,
+    packages: Mapping[str, PathLike] | None = None,
+    arguments: Mapping[str, str] | None = None,
+    progress: Callable[[int, int, str], None] | None = None,
+) -> RobotModel:
+    """Return a robot and how it was made from its files.
+
+    The robot is kept in the user's cache, by the content of all files, meshes included.  A link without collision
+    geometry touches nothing; the model names such links, and all that was read otherwise than it stands in the file.
+
+    Parameters
+    ----------
+    source : str or path-like
+        A URDF, xacro or MJCF (extra ``[mjcf]``); or, where there is no such file, the name of a
+        shipped robot: ``ur5``, ``arm7``; with the extra ``[robots]`` also ``panda`` and others.
+    srdf : str or path-like, optional
+        Its SRDF: groups, named states, pairs that need no test.  Robots by name have one of their own.
+    group : str or sequence of str, optional
+        Groups of the SRDF and joints (one text: with commas), which are planned for in this order.  Default: the
+        SRDF's only group, or the longest chain among several, else every joint that moves and is no mimic, in the order
+        of the file.
+    bodies : str or path-like, optional
+        ``shapes``, the default: where capsules touch an obstacle the file's shapes decide.  ``capsules``: these alone
+        do.  Or a YAML file of capsules and spheres, in place of shapes of the file (see :func:`read_bodies`).
+    use_visuals : bool
+        Links without collision geometry use their visuals.
+    packages : mapping of str to path-like, optional
+        Folders of ROS packages, beside those that are found.
+    arguments : mapping of str to str, optional
+        Arguments of a xacro.
+    progress : callable, optional
+        Called with step, steps and a text before each body is fitted; not at all for a robot from the cache.
+
+    Raises UnknownName if there is neither such a file nor such a robot, or a group, a joint or a link is not known;
+    BrokenFile if a file is missing, broken or lacks a piece, the links do not form a tree, a mesh is missing or empty,
+    or the robot has no body at all; InvalidValue if a number is not one, or out of its range; NotAvailable if an extra
+    is needed that is not installed.
+    """
+    path, own_srdf = find_robot(source)
+    file = RobotFile(
+        path,
+        use_visuals,
+        tuple((name, os.fspath(folder)) for name, folder in sorted((packages or {}).items())),
+        tuple(sorted((arguments or {}).items())),
+    )
+    srdf_path = own_srdf if srdf is None else Path(srdf)
+    named = None if bodies is None else os.fspath(bodies)
+    with_shapes = named != CAPSULES
+    bodies_path = None if named in (None, SHAPES, CAPSULES) else Path(named)
+    asked = file, srdf_path, bodies_path, str(group), with_shapes
+    model = known(asked)
+    if model is not None:
+        return model
+    before = stamps((path, srdf_path, bodies_path))
+    urdf = read_robot(file)
+    before |= stamps(shape.source for shape in urdf.shapes if isinstance(shape, Mesh))
+    others = [("SRDF", srdf_path), ("file of bodies", bodies_path), *([] if with_shapes else [(CAPSULES, None)])]
+    key = key_of(urdf, others, group)
+    model = cached(key)
+    if model is None:
+        model = _build(file, urdf, srdf_path, bodies_path, group, progress, with_shapes)
+        # Files may have been saved while they were read: the robot may then mix two versions.
+        if key_of(urdf, others, group) == key:
+            keep(key, model)
+    model = replace(model, file=file)
+    know(asked, before, model)
+    return model
+
+
+def padded_model(source: PathLike, *, padding: Padding | None = None, **options: Unpack[ModelOptions]) -> RobotModel:
+    """Return what :func:`load_model` does, with links that keep more away from obstacles.
+
+    Raises UnknownName for an option that neither has.
+    """
+    require_options("load_robot", options, RobotOptions)
+    model = load_model(source, **options)
+    return model if padding is None else replace(model, robot=model.robot.with_padding(padding))
+
+
+def read_robot(file: RobotFile) -> Urdf:
+    """Return what the file of a robot says: an MJCF with the suffix ``.xml`` or ``.mjcf``, else a URDF or xacro."""
+    is_mjcf = file.path.suffix in (".xml", ".mjcf") and outermost(file.path) != "robot"
+    if not is_mjcf:
+        return read_urdf(file)
+    # Imported late: most robots are URDFs.
+    from evenroad.loading.mjcf import read_mjcf
+
+    return read_mjcf(file)
+
+
+def _build(
+    file: RobotFile,
+    urdf: Urdf,
+    srdf_path: Path | None,
+    bodies_path: Path | None,
+    group: str | Sequence[str] | None,
+    progress: Callable[[int, int, str], None] | None,
+    with_shapes: bool,
+) -> RobotModel:
+    urdf, srdf, chosen = _planned(urdf, srdf_path, group)
+    given = {} if bodies_path is None else read_bodies(bodies_path, urdf.links)
+    require_few_links(len(urdf.links), len({shape.link for shape in urdf.shapes}), file.path)
+    urdf = replace(urdf, shapes=opened(urdf.shapes))
+    capsules = capsules_of(urdf, given, progress)
+    if not capsules:
+        hint = "; --use-visuals takes what is drawn" if urdf.drawn_only else ""
+        raise BrokenFile(f"{file.path} has no collision geometry at all: the robot would never collide{hint}")
+    robot = Robot(
+        urdf.name,
+        urdf.links,
+        urdf.joints,
+        tuple(capsule for link in urdf.links for capsule in capsules.get(link, ())),
+        pairs=(),
+        group=chosen,
+        states=_states(urdf, srdf, chosen, group),
+        planes=urdf.planes,
+        # Capsules that the user gives replace a link's shapes as they are.
+        inner=inner_of(shapes_of(urdf, given)),
+        shapes=parts_of(shapes_of(urdf, given)) if with_shapes else (),
+    )
+    robot, pairs = _with_pairs(robot, urdf, srdf, pieces_of(urdf, given))
+    return RobotModel(
+        robot,
+        tuple(link_body(urdf, link, capsules[link], link in given) for link in capsules),
+        pairs_from="SRDF" if robot.pairs_given else "computed" if urdf.untested is None else "MJCF",
+        dropped=pairs.dropped,
+        drawn_only=tuple(link for link in urdf.drawn_only if link not in capsules),
+        always_touching=pairs.always,
+        never_free=pairs.never_free,
+        notes=(
+            *without_moved(urdf.notes, urdf.joints, chosen),
+            *(() if srdf is None else srdf.notes),
+            *group_notes(urdf, srdf, group),
+            *size_notes(capsules, urdf.joints),
+            *map(_contained, pairs.contained),
+        ),
+    )
+
+
+def _states(
+    urdf: Urdf, srdf: Srdf | None, chosen: tuple[str, ...], group: str | Sequence[str] | None
+) -> dict[str, dict[str, float]]:
+    """Return the named states with a value for every joint chosen; of two of a name that of the SRDF."""
+    own = {name: dict(values) for name, values in urdf.states.items() if set(chosen) <= set(values)}
+    return own | ({} if srdf is None else chosen_states(srdf, chosen, group))
+
+
+def _with_pairs(robot: Robot, urdf: Urdf, srdf: Srdf | None, pieces: dict[str, list[Piece]]) -> tuple[Robot, SelfPairs]:
+    """Return a robot with the pairs of links that are tested, and what is known of all pairs."""
+    # Of those that a robot's own file lets touch, each has its reason; those of an SRDF have one for all.
+    untested = {frozenset((a, b)): why for a, b, why in urdf.untested or ()}
+    by_srdf = srdf is not None and bool(srdf.disabled)
+    if srdf is not None and by_srdf:
+        untested = dict.fromkeys(srdf.disabled, "disabled in the SRDF") | untested
+        # Elsewhere pairs that touch where they are held are not tested as long as they are held there.
+        robot = replace(robot, held=held_states(srdf, robot))
+        apart = held_apart(robot, pieces, pairs_of(robot, pieces, untested), srdf.states.values())
+        robot = replace(robot, held={**robot.held, **apart})
+    said = by_srdf or urdf.untested is not None
+    pairs = self_pairs(robot, pieces, untested if said else None, drop_touching=not by_srdf)
+    return replace(robot, pairs=pairs.tested, hulls=pairs.hulls, pairs_given=by_srdf, resting=pairs.held), pairs
+
+
+def _planned(
+    urdf: Urdf, srdf_path: Path | None, group: str | Sequence[str] | None
+) -> tuple[Urdf, Srdf | None, tuple[str, ...]]:
+    """Return the robot, its SRDF and the group that is planned for; its base moves if the group says so."""
+    if srdf_path is None:
+        return urdf, None, choose_group(urdf, None, group)
+    moving = with_moving_base(urdf, srdf_path)
+    if group not in (None, EVERY):
+        srdf = read_srdf(srdf_path, moving)
+        chosen = choose_group(moving, srdf, group)
+        if not set(chosen) <= set(urdf.order):
+            return moving, srdf, chosen
+    srdf = read_srdf(srdf_path, urdf)
+    return replace(urdf, notes=moving.notes), srdf, choose_group(urdf, srdf, group)
+
+
+def _contained(pair: tuple[str, str]) -> str:
+    first, second = pair
+    return (
+        f"{first!r} and {second!r}, of which one goes into the other as drawn, are not tested against each other: an"
+        " SRDF that disables other pairs alone has them tested"
+    )

@@ -1,0 +1,320 @@
+"""Turns what an attempt found into the result that the caller gets."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from functools import wraps
+from typing import Any
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad._time_limit import BudgetSpent, is_limited, until, within
+from evenroad.errors import EvenroadError
+from evenroad.planning.attempt import Attempt, Searched
+from evenroad.planning.connector import Connection
+from evenroad.planning.problem import Problem
+from evenroad.planning.result import PlanResult, SearchedGraph, Status, make_result
+from evenroad.planning.shortcut import shortcut
+from evenroad.roadmap.budget import BEFORE_REASONS
+from evenroad.roadmap.neighbours import flat_metric
+from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
+from evenroad.space import Space
+from evenroad.space.path import path_length
+from evenroad.world import Explains, ExplainsStarts, ShowsApart, ValidatesPaths, World
+
+
+def refusal(attempt: Attempt) -> PlanResult | None:
+    """Return the result if the start or all goals are in collision; else None, and the attempt keeps the free goals."""
+    terminals, world = attempt.query.start_and_goals, attempt.world
+    free = attempt.valid_terminals()
+    if free[0] and attempt.goals.size:
+        return None
+    row = int(free[0])
+    try:
+        reason = f": {world.explain(terminals[row])}" if isinstance(world, Explains) else ""
+        if not row and isinstance(world, ExplainsStarts):
+            reason = f": {world.explain_start(terminals[0])}"
+    except BudgetSpent:
+        reason = "; there was no time to say what blocks it"
+    within = world.space.contains(terminals[1:] if row else terminals[:1])
+    if within.any():
+        status = (Status.START_INVALID, Status.GOAL_INVALID)[row]
+        where = "in collision" if within.all() else "in collision or outside the limits"
+    else:
+        status, where = (Status.START_OUTSIDE_LIMITS, Status.GOAL_OUTSIDE_LIMITS)[row], "outside the limits"
+    if row and len(terminals) > 2:
+        return _result(attempt, status, f"all {len(terminals) - 1} goals are {where}; the first{reason}")
+    return _result(attempt, status, f"the {('start', 'goal')[row]} is {where}{reason}")
+
+
+def answer(
+    attempt: Attempt,
+    searched: Searched,
+    points: int,
+    *,
+    best: Searched | None = None,
+    keep_graph: bool = True,
+) -> PlanResult:
+    """Return the result of a search over this number of points, with its graph unless it is to be left out.
+
+    Where another search found the `best` path, that one is the answer.
+    """
+    states = searched.states
+    counts = dict(
+        points=points,
+        valid=int(np.count_nonzero(states.node_states[: -1 - len(attempt.goals)] == FREE)),
+        configurations_checked=attempt.checked + states.configurations_checked,
+        edges_considered=len(states.edges),
+        edges_checked=states.motions_checked,
+        edges_free=int(np.count_nonzero(states.edge_states == FREE)),
+    )
+    graph = _searched_graph(states, 1 + len(attempt.goals)) if keep_graph else None
+    best = searched if best is None else best
+    if best.cost is not None:
+        nodes, q = best.found.nodes, best.states.configurations
+        goal = attempt.goals[nodes[-1] - len(q)]
+        # A disk's paths along a roadmap stay equal to published rows.
+        by_connector = attempt.query.edge_cost is None and isinstance(attempt.world, ValidatesPaths)
+        result = _with_path(attempt, q[nodes], best.cost, int(goal), counts, by_connector=by_connector)
+        return replace(result, roadmap=graph)
+    so_far, missing = _reach(attempt, searched, counts)
+    made = f"(n={points}, {attempt.rule})"
+    if attempt.spent:
+        limits = attempt.query.budget.text(samples=attempt.grows)
+        failed = _result(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
+    else:
+        # With ``complete`` only more points help.
+        wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
+        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "") + _few_directions(attempt, points)
+        failed = _result(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
+    return replace(failed, counts=counts, roadmap=graph)
+
+
+def connected(attempt: Attempt, connection: Connection) -> PlanResult:
+    """Return the result of a connector that found a path."""
+    path, goal = connection.path, int(attempt.goals[connection.goal])
+    length = path_length(path, attempt.world.space)
+    return _with_path(attempt, path, length, goal, _counts_of(attempt, connection), by_connector=True)
+
+
+def in_its_time(solve: Callable[[Any, Problem], PlanResult]) -> Callable[[Any, Problem], PlanResult]:
+    """Return a planner's `solve` that ends with the problem's time, and says so where it has nothing to hand out."""
+
+    @wraps(solve)
+    def solved(planner: Any, problem: Problem) -> PlanResult:
+        try:
+            if is_limited():
+                # By the caller of the planner: the problem has what is left of that.
+                return solve(planner, problem)
+            with within(problem.budget.seconds):
+                return solve(planner, problem)
+        except BudgetSpent:
+            return out_of_time(problem)
+
+    return solved
+
+
+def out_of_time(problem: Problem) -> PlanResult:
+    """Return the result of a query whose time was over before a search."""
+    message = (
+        f"no path within {problem.budget.text(samples=False)}: the time was over before a search was; give it more"
+    )
+    return make_result(problem.world, problem.start, problem.goals, Status.BUDGET_SPENT, message)
+
+
+def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
+    """Return the result of a connector that found no path within the budget."""
+    cut = ", and there was no time for a proof that there is none" if attempt.proof_cut else ""
+    message = (
+        f"no path within {attempt.query.budget.text(samples=False)}: {connection.nodes} nodes were grown and"
+        f" {connection.motions} motions checked{cut}; give it more time"
+    )
+    return replace(_result(attempt, Status.BUDGET_SPENT, message), counts=_counts_of(attempt, connection))
+
+
+def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None:
+    """Return the result where the world finds that no path leads to any goal, with its reason; else None.
+
+    The status is ``not_connected`` where that is proved.
+    """
+    world, query = attempt.world, attempt.query
+    with attempt.watch("proof"):
+        attempt.proof_tried |= not quickly
+        if not isinstance(world, ShowsApart):
+            return None
+        prove = query.apart or (lambda start, goals, quick: world.apart(start, goals, quickly=quick))
+        try:
+            with until(attempt.time.part(attempt.began, BEFORE_REASONS)):
+                found = prove(query.start, query.goals, quickly)
+        except BudgetSpent:
+            attempt.proof_cut = True
+            return None
+    if found is None:
+        return None
+    status = Status.NOT_CONNECTED if found.proved else Status.BUDGET_SPENT
+    return _result(attempt, status, found.message)
+
+
+def _counts_of(attempt: Attempt, connection: Connection) -> dict[str, int]:
+    return dict(
+        nodes=connection.nodes,
+        configurations_checked=attempt.checked + connection.configurations,
+        edges_checked=connection.motions,
+    )
+
+
+def _with_path(
+    attempt: Attempt, raw: Floats, raw_cost: float, goal: int, counts: dict[str, int], *, by_connector: bool
+) -> PlanResult:
+    """Return the result with a path, smoothed if wanted: by the connector where there is one and costs are lengths."""
+    world, query = attempt.world, attempt.query
+    path, length, cost, is_cut = raw, raw_cost, query.edge_cost, False
+    if query.smooth:
+        counts["shortcut_motions"] = 0
+        with attempt.watch("shortcut"), until(attempt.time):
+            try:
+                if by_connector and query.connector is not None:
+                    path, counts["shortcut_motions"] = query.connector.smooth(world, raw, quick=query.smooth == "quick")
+                else:
+                    path, counts["shortcut_motions"] = shortcut(world, raw, cost)
+                    is_cut = attempt.time.is_over
+            except BudgetSpent:
+                is_cut = True
+            if path is not raw:
+                measure = world.space.distance if cost is None else cost
+                length = float(np.sum(measure(path[:-1], path[1:])))
+    return _result(
+        attempt,
+        Status.SOLVED,
+        path_message(path, length, goal, len(query.goals), "length" if cost is None else "cost", is_cut=is_cut),
+        goal_index=goal,
+        path=path,
+        milestone_path=raw,
+        proof=proof_of(world),
+        cost=length,
+        milestone_cost=raw_cost,
+        counts=counts,
+    )
+
+
+def path_message(
+    path: Floats, cost: float, goal: int, goals: int, named: str = "length", *, is_cut: bool = False
+) -> str:
+    """Return what a result says about its path; `is_cut` says that there was no time to smooth it to the end."""
+    to = f" to goal {goal}" if goals > 1 else ""
+    cut = ", not smoothed to the end: the time was spent" if is_cut else ""
+    return f"path of {named} {cost:.6g} with {len(path)} waypoints{to}{cut}"
+
+
+def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tuple[str, str]:
+    """Return, in words, how far start and goals reach and what is missing, and add the counts."""
+    states = searched.states
+    if searched.found.reached is not None:
+        counts["start_component"] = reached = searched.found.reached - 1
+        return f"the tree reached {reached} of {counts['valid']} valid milestones", "but not the goal"
+    start = len(states.node_states) - 1 - len(attempt.goals)
+    goals = np.arange(start + 1, len(states.node_states), dtype=np.int32)
+    is_open = (states.node_states[states.edges] != BLOCKED).all(axis=1) & (states.edge_states != BLOCKED)
+    # The goals are one virtual node.
+    edges = np.concatenate([states.edges[is_open], np.stack([goals, np.roll(goals, 1)], axis=1)])
+    label = components(len(states.node_states), edges)
+    open_nodes = states.node_states[:start] != BLOCKED
+    for end, name in ((start, "start_component"), (start + 1, "goal_component")):
+        counts[name] = int(np.count_nonzero(open_nodes & (label[:start] == label[end])))
+    both = f"start reaches {counts['start_component']} and goal {counts['goal_component']}"
+    return f"{both} of {counts['valid']} valid milestones", "and the two components do not meet"
+
+
+def _few_directions(attempt: Attempt, points: int) -> str:
+    """Return a hint for a Korobov lattice whose points have neighbours in too few directions."""
+    space, d = attempt.world.space, attempt.world.space.cube_dim
+    rule, method = re.match(r"k=(\d+) symmetrised", attempt.rule), attempt.origin.method
+    lattice = re.match(r"rank-1 lattice (a|z)=([\d ]+), ", method)
+    if rule is None or lattice is None:
+        return ""
+    k, scale = int(rule[1]), _axis_scales(space)
+    if scale is None:
+        return ""
+    # Imported late: most plans are not on lattices.
+    from evenroad.points.measures.rank_one import least_neighbours
+    from evenroad.points.measures.short_vectors import MOST_AXES, lattice_basis
+
+    # Nearest points come in opposite pairs: at least this number is needed.
+    least, advice = 2 * d - 1, f"at least {2 * d - 1} are needed"
+    if d <= MOST_AXES and not ("permuted" in method and np.ptp(scale) > 1e-9 * scale[0]):
+        numbers = [int(each) for each in lattice[2].split()]
+        vector = [pow(numbers[0], i, points) for i in range(d)] if lattice[1] == "a" else numbers
+        try:
+            if (np.abs(lattice_basis(points, vector, scale)) >= points).any():
+                # The box is so long, or the points are so few, that neighbours would lie beyond it.
+                return ""
+            needed = least_neighbours(points, vector, scale)
+        except EvenroadError:
+            # Even longer, or the points are not all of the lattice's.
+            return ""
+        # Fewer are enough if equally near ones happen to be the right ones.
+        least, advice = needed, f"{max(needed, least)} would not"
+    return f"; the nearest {k} of this lattice leave directions out, {advice}" if k < least else ""
+
+
+def _axis_scales(space: Space) -> Floats | None:
+    """Return the weight of each axis of the cube in a flat space, (d,), or None."""
+    metric = flat_metric(space)
+    if metric is None:
+        return None
+    corners = space.from_cube(np.vstack([np.zeros(space.cube_dim), 0.25 * np.eye(space.cube_dim)]))
+    return np.asarray(4.0 * np.linalg.norm(metric.scale * (corners[1:] - corners[0]), axis=1))
+
+
+def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> PlanResult:
+    query = attempt.query
+    more.update(
+        origin=attempt.origin,
+        rule=attempt.rule,
+        links=query.links,
+        planner=attempt.planner,
+        timings=attempt.watch.seconds,
+    )
+    return make_result(attempt.world, query.start, query.goals, status, message, **more)
+
+
+def _searched_graph(states: EdgeStates, terminals: int) -> SearchedGraph:
+    """Return the graph without invalid nodes, start and goals as the last `terminals`, and with the free edges."""
+    kept = states.node_states != BLOCKED
+    number = np.cumsum(kept, dtype=np.int32) - 1
+    edges = states.edges[states.edge_states == FREE]
+    return SearchedGraph(states.configurations[kept], number[edges].astype(np.int32), int(kept.sum()) - terminals)
+
+
+def proof_of(world: World) -> str:
+    """Return what a check of this world shows: ``exact``, ``certified``, or ``resolution`` if it does not say."""
+    # `isinstance` would take as long as some checks.
+    return str(getattr(world, "proof", "resolution"))
+
+
+def require_certified(world: World, result: PlanResult) -> PlanResult:
+    """Return the plan if a separate check proves all motions of its path free, else ``not_certified``.
+
+    The message then names the first motion that is not proved; the path stays in the result.
+    """
+    if result.path is None or result.proof == "exact":
+        return result
+    if not (isinstance(world, ValidatesPaths) and world.proof == "certified"):
+        message = "the path is free at the states tested; motions of this world cannot be proved free"
+        return replace(result, status=Status.NOT_CERTIFIED, message=message)
+    try:
+        failed = np.flatnonzero(~world.validate(result.path))
+    except BudgetSpent:
+        message = f"{result.message}; there was no time to prove it once more"
+        return replace(result, status=Status.NOT_CERTIFIED, message=message)
+    if not len(failed):
+        return replace(result, proof="certified")
+    first, last = ("(" + ", ".join(f"{x:.6g}" for x in result.path[failed[0] + i]) + ")" for i in (0, 1))
+    message = (
+        f"motion {failed[0] + 1} of {len(result.path) - 1} is not proved free, from {first} to {last}:"
+        " it may touch, or pass too near to contact for a proof"
+    )
+    return replace(result, status=Status.NOT_CERTIFIED, message=message, proof="resolution")

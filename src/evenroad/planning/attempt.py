@@ -1,0 +1,197 @@
+"""The frame of all planners: the budget of a query, its world, and its counts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from time import perf_counter as now
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats, Ints32
+from evenroad._time_limit import BudgetSpent, Deadline, until
+from evenroad.planning.connector import Connection, Connector
+from evenroad.planning.query import Query
+from evenroad.points.pointset import Origin
+from evenroad.roadmap.budget import BEFORE_PROOF, BEFORE_REASONS, Budget, Stopwatch
+from evenroad.roadmap.edges import BOUND, edge_costs
+from evenroad.roadmap.neighbours import Surroundings, nearest_of
+from evenroad.roadmap.rules import Rule, ascending
+from evenroad.roadmap.search import (
+    FREE,
+    NOT_FOUND,
+    EdgeStates,
+    Finder,
+    Found,
+    SearchProblem,
+    StateCache,
+    Terminals,
+    confirm,
+    length_along,
+    search_problem,
+)
+from evenroad.world import ShowsApart, World
+
+NO_LIMIT = 2**31 - 1
+"""Number of motions that stands for no limit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Searched:
+    """The states of a graph after a search of it, and the path with its cost, if there is one."""
+
+    states: EdgeStates
+    found: Found = NOT_FOUND
+    cost: float | None = None
+
+
+@dataclass(eq=False)
+class Attempt:
+    """One query while it is answered, by one thread.
+
+    `origin`, `rule` and `planner` are those of :class:`PlanResult`.  `grows` says whether the planner draws its points
+    itself, until the budget is spent.  `checked` configurations were checked outside a graph, and `motions_checked`
+    motions in earlier graphs: both count for the budget.  `spent` says whether it ran out.  `proof_tried` says whether
+    the world has tried to prove that there is no path, or cannot, and `proof_cut` that there was no time for it.
+    `goals` are the rows of the query's goals, (g,), after `valid_terminals` only the free ones.
+    """
+
+    world: World
+    query: Query
+    origin: Origin
+    rule: str
+    planner: str
+    grows: bool = False
+    watch: Stopwatch = field(default_factory=Stopwatch)
+    checked: int = 0
+    motions_checked: int = 0
+    spent: bool = False
+    proof_tried: bool = False
+    proof_cut: bool = False
+
+    def __post_init__(self) -> None:
+        self.began = now()
+        self.deadline = self.query.budget.deadline()
+        self.goals = np.arange(len(self.query.goals))
+
+    @property
+    def free_goals(self) -> Floats:
+        """The goals that are not known to be blocked, (g, dim)."""
+        all_goals = self.query.goals
+        return all_goals if len(self.goals) == len(all_goals) else all_goals[self.goals]
+
+    @property
+    def start_and_goals(self) -> Floats:
+        """The start, then the goals that are free, (1 + g, dim)."""
+        return self.query.start_and_goals[np.append(0, 1 + self.goals)]
+
+    def valid_terminals(self) -> Bools:
+        """Return which of the start and all goals are free, (1 + g,), and drop the other goals."""
+        terminals = self.query.start_and_goals
+        with self.watch("validity"):
+            free = self.world.valid(terminals)
+        self.checked += len(terminals)
+        (self.goals,) = free[1:].nonzero()
+        return free
+
+    def valid(self, samples: Floats) -> Bools:
+        """Return which of the samples, (n, dim), are known to be free, as far as time allows: (n,)."""
+        states = self.states(samples, np.empty((0, 2), dtype=np.int32))
+        try:
+            with until(self.search_end()):
+                states.evaluate_nodes(np.arange(len(samples)))
+        except BudgetSpent:
+            self.spent = True
+        self.checked += states.configurations_checked
+        return states.node_states == FREE
+
+    def candidates(self, rule: Rule, milestones: Floats) -> EdgeStates:
+        """Return the graph of milestones, start and goals: the edges of the rule, and the links that the query adds."""
+        space, terminals = self.world.space, self.start_and_goals
+        configurations = np.concatenate([milestones, terminals])
+        n = len(milestones)
+        with self.watch("neighbours"):
+            edges = rule.edges(configurations, space, terminals=len(terminals))
+            if most := self.query.links_among(n):
+                surroundings, usable = Surroundings(milestones, space), np.ones(n, dtype=np.bool_)
+                near = [nearest_of(surroundings.distances(end), usable, most) for end in terminals]
+                links = [np.stack([rows, np.full(len(rows), n + i)], axis=1) for i, rows in enumerate(near)]
+                edges = ascending(np.concatenate([edges, *links]), len(configurations))
+        return self.states(configurations, edges)
+
+    def states(self, configurations: Floats, edges: Ints32, cache: StateCache | None = None) -> EdgeStates:
+        """Return the states of a graph, by default unknown, with the rest of the budget to evaluate more."""
+        most = self.query.budget.motions
+        most = None if most is None else most - self.motions_checked
+        return EdgeStates(self.world, configurations, edges, self.watch, most, cache)
+
+    def search(self, find: Finder, states: EdgeStates, problem: SearchProblem | None = None) -> Searched:
+        """Find a path that the world confirms, over all edges of `states`, or as `problem` says."""
+        space, q, edges = self.world.space, states.configurations, states.edges
+        cost, goals = self.query.edge_cost, len(self.goals)
+        with self.watch("search"), until(self.search_end()):
+            try:
+                if problem is not None or self.query.success_only:
+                    what = problem or Terminals.last(len(q), goals)
+                else:
+                    costs, bound = edge_costs(space, q, edges, cost), 1.0 if cost is None else BOUND
+                    what = search_problem(states, costs, goals, bound=bound)
+                while not confirm(states, found := find(what, states)):
+                    pass
+            except BudgetSpent:
+                self.spent = True
+                return Searched(states)
+            if not len(found.nodes):
+                return Searched(states, found)
+            return Searched(states, found, length_along(edge_costs(space, q, edges[found.edges], cost)))
+
+    def connect(
+        self, connector: Connector, variant: int = 0, most: int = NO_LIMIT, goal: int | None = None
+    ) -> Connection:
+        """Join the start to one of the free goals, or to this one, within the rest of the budget.
+
+        A variant >= 1 searches differently, where the connector `varies`.  It stops after `most` motions.
+        """
+        start, goals, motions = self.query.start, self.free_goals, self.query.budget.motions
+        goals = goals if goal is None else goals[goal : goal + 1]
+        if motions is not None:
+            most = min(most, max(motions - self.motions_checked, 1))
+        with self.watch("search"), until(self.search_end()):
+            try:
+                found = connector.connect(self.world, start, goals, variant=variant, most_motions=most)
+            except BudgetSpent:
+                found = Connection(np.empty((0, len(start))), -1, 0, 0, 0, spent=True)
+        self.motions_checked += found.motions
+        return found if goal is None or found.goal < 0 else replace(found, goal=goal)
+
+    def search_end(self) -> Deadline:
+        """Return when a search ends, so that there is time for a proof that there is no path, and for the reasons."""
+        is_proof_due = not (self.grows or self.proof_tried) and isinstance(self.world, ShowsApart)
+        return self.time.part(self.began, BEFORE_PROOF if is_proof_due else BEFORE_REASONS)
+
+    @property
+    def time(self) -> Deadline:
+        """The end of its time."""
+        return Deadline(self.deadline)
+
+    def take(self, motions: int, seconds: float) -> None:
+        """Count an earlier search: its motions, and its time."""
+        self.motions_checked += motions
+        self.watch.seconds["search"] = self.watch.seconds.get("search", 0.0) + seconds
+        self.began -= seconds
+        self.deadline -= seconds
+
+    def elapsed(self) -> float:
+        """Return the seconds since the query began."""
+        return now() - self.began
+
+    def left(self) -> Budget | None:
+        """Return the rest of the budget, or None if it is spent."""
+        budget, motions = self.query.budget, self.query.budget.motions
+        seconds = self.deadline - now()
+        if seconds <= 0.0 or (motions is not None and motions <= self.motions_checked):
+            return None
+        return replace(
+            budget,
+            seconds=None if budget.seconds is None else seconds,
+            motions=None if motions is None else motions - self.motions_checked,
+        )

@@ -1,0 +1,471 @@
+"""PlanResult: a path, or the reason why there is none, with all counts."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import MISSING, dataclass, field, fields, replace
+from enum import StrEnum
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from evenroad._arrays import Floats, Ints32
+from evenroad._call import explains_calls
+from evenroad.errors import InvalidValue
+from evenroad.planning.result_html import as_html
+from evenroad.planning.terminals import from_start_to_goal, turns, turns_at_end
+from evenroad.points.pointset import Origin
+from evenroad.roadmap.certificate import Certificate
+from evenroad.space.path import path_length, resample
+from evenroad.world import BoundsLengths, MeasuresPaths, NamesNearest, World
+
+NO_POINTS = Origin(family="none", method="no points")
+"""Origin of a result whose planner draws no points."""
+
+
+class Status(StrEnum):
+    """How a query ended.  No path is an answer, not an error."""
+
+    SOLVED = "solved"
+    START_INVALID = "start_invalid"
+    GOAL_INVALID = "goal_invalid"
+    START_OUTSIDE_LIMITS = "start_outside_limits"
+    GOAL_OUTSIDE_LIMITS = "goal_outside_limits"
+    GOAL_UNREACHABLE = "goal_unreachable"
+    NOT_CONNECTED = "not_connected"
+    BUDGET_SPENT = "budget_spent"
+    MESH_COLLISION = "mesh_collision"
+    NOT_CERTIFIED = "not_certified"
+
+
+@dataclass(frozen=True, eq=False)
+class SearchedGraph:
+    """The milestones and motions known to be free in one query, for pictures.
+
+    `configurations`, (v, dim), are `milestones` ones not known to be invalid, then the start, then the goals; `edges`,
+    (m, 2), are free motions, as pairs of rows, smaller first.
+    """
+
+    configurations: Floats
+    edges: Ints32
+    milestones: int
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One stage of a plan that grows, or a round of one that improves in which a better path was found.
+
+    `points` is the number of points so far, of which `valid` are; of a round, the nodes of all trees so far, all valid.
+    `edges_checked` motions were checked up to its end, `seconds` after the query began (not compared).  `cost` is that
+    of this stage's path along the roadmap, or of a round's path after shortcutting; None without a path.
+    """
+
+    points: int
+    valid: int
+    edges_checked: int
+    cost: float | None
+    seconds: float = field(default=0.0, compare=False)
+
+
+@explains_calls
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class PlanResult:
+    """The answer to one query.
+
+    Attributes
+    ----------
+    status : Status
+        ``goal_invalid``: all goals are.  ``start_outside_limits``, ``goal_outside_limits``: outside of the space, by a
+        joint's limits or a map's; the message says whose.  ``goal_unreachable``: no configuration was found for a pose.
+        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.  ``not_certified``: a
+        proof was requested, and the path is free only at states tested.
+    message : str
+        One sentence for people: what happened and, without a path, what to try.
+    start, goals : ndarrays, shapes (dim,) and (g, dim)
+        Start and goals of the query.
+    goal_index : int or None
+        Row of the goal that the path ends at; None without a path.
+    path : ndarray, shape (p, dim), or None
+        Waypoints after shortcutting, from start to goal, in the units of the space.  Joints that turn endlessly begin
+        at the numbers of the start, and go on from there; where they end at another turn than the goal's, the message
+        says so.
+    milestone_path : ndarray, shape (q, dim), or None
+        The path along the roadmap, before shortcutting; along a robot's own, motions may be free at states alone.
+    proof : str or None
+        What is shown of the motions of `path`: ``exact`` (no gap, up to rounding), ``certified`` (no gap), or
+        ``resolution`` (free at states close together); None without a path.
+    cost, milestone_cost : float or None
+        Costs of the two paths: lengths in the metric of the space, or the user's edge costs.
+    counts : dict of str to int
+        ``points`` (N), ``valid`` (milestones known to be valid), ``configurations_checked`` (without those inside
+        of motions), ``edges_considered``, ``edges_checked``, ``edges_free`` (known to be),
+        ``shortcut_motions``, ``nodes`` (of trees), ``rounds`` (of a planner that improves) and, when not connected,
+        ``start_component`` and ``goal_component`` (milestones that start and goals can reach over what is not known
+        to be blocked).
+    timings : dict of str to float
+        Wall time of each phase [s]: ``validity``, ``neighbours``, ``motions``, ``search``, ``shortcut``.
+    origin : Origin
+        Where the points came from.
+    rule : str
+        The connection rule, by name.
+    links : int or None
+        Number of links of the query; see :func:`plan`.
+    planner : str
+        Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest); ``prm anytime``,
+        ``fmt*``; or the world itself, with ``trees`` or ``cells``.
+    deviation : dict of str to float
+        Largest deviations of a path under tip constraints, on fine grids: ``line_m`` and ``line_rad`` from the
+        straight lines, ``tilt_rad`` from upright.
+    stages : tuple of Stage
+        Stages of a plan that grows or improves, its cost over time; empty for all others.
+    certificate : Certificate or None
+        What the roadmap guarantees, if :func:`plan` was called with ``certify``.  Without a path, and if it is
+        `complete`, no path has a clearance of its `dispersion`.
+    roadmap : SearchedGraph or None
+        The searched graph; None if start or goal is invalid, and for a reused roadmap.
+    notes : tuple of str
+        What was read of the robot otherwise than its files say, and what seems unusual in it or its scene, one line
+        each.
+    world : World or None
+        World of the query; None in a plan that was read from a file.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import evenroad as er
+    >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+    >>> round(er.plan(world, (3, 3), (27, 17)).cost, 3)
+    27.785
+    """
+
+    status: Status
+    message: str
+    start: Floats
+    goals: Floats
+    origin: Origin
+    rule: str
+    links: int | None = None
+    planner: str = "prm full"
+    goal_index: int | None = None
+    path: Floats | None = None
+    milestone_path: Floats | None = None
+    proof: str | None = None
+    cost: float | None = None
+    milestone_cost: float | None = None
+    counts: dict[str, int] = field(default_factory=dict)
+    timings: dict[str, float] = field(default_factory=dict)
+    deviation: dict[str, float] = field(default_factory=dict)
+    stages: tuple[Stage, ...] = ()
+    certificate: Certificate | None = None
+    roadmap: SearchedGraph | None = None
+    notes: tuple[str, ...] = ()
+    world: World | None = field(default=None, repr=False)
+
+    @cached_property
+    def clearance(self) -> float | None:
+        """Lower bound of the path's distance from all obstacles; None where the world cannot measure it.
+
+        For a disk in map units, exact within 1e-3 pixels; for an arm in metres, proved for its `bodies`, within 0.1 mm,
+        and 1 m at most.  The clearances of the query and of obstacles and the padding of links are part of it.  It is
+        computed on first use: for an arm in some milliseconds.
+        """
+        if self.path is None or not isinstance(self.world, MeasuresPaths):
+            return None
+        return self.world.path_clearance(self.path)
+
+    @cached_property
+    def nearest(self) -> tuple[str, str] | None:
+        """The link and the obstacle that come nearest to each other along the path.
+
+        None where all is farther than 1 m, or the world does not say.  It is computed on first use.
+        """
+        if self.path is None or not isinstance(self.world, NamesNearest):
+            return None
+        return self.world.nearest_along(self.path)
+
+    @cached_property
+    def lower_bound(self) -> float | None:
+        """A length that no path from the start to a goal falls below, in the units of the space.
+
+        For a disk on a map it is that of the shortest way through all cells that are not blocked throughout, found in
+        some milliseconds on first use; else the straight distance to the nearest goal.  None in a plan that was read
+        from a file.
+        """
+        if self.world is None:
+            return None
+        if isinstance(self.world, BoundsLengths):
+            return self.world.least_length(self.start, self.goals)
+        return float(self.world.space.distance(np.broadcast_to(self.start, self.goals.shape), self.goals).min())
+
+    @cached_property
+    def gap(self) -> float | None:
+        """By what share the path is longer than the shortest, at most: no path is shorter than `lower_bound`.
+
+        None without a path, and in a plan that was read from a file.
+        """
+        least = self.lower_bound
+        if self.path is None or self.world is None or least is None:
+            return None
+        length = path_length(self.path, self.world.space)
+        return max(length / least - 1.0, 0.0) if least > 0.0 else 0.0 if length == 0.0 else np.inf
+
+    @property
+    def solved(self) -> bool:
+        """Whether a path was found."""
+        return self.status is Status.SOLVED
+
+    @property
+    def goal(self) -> Floats:
+        """The goal that the path ends at, (dim,); without a path the first one."""
+        return self.goals[0 if self.goal_index is None else self.goal_index]
+
+    @property
+    def seconds(self) -> float:
+        """Wall time of the query [s]: the sum of `timings`."""
+        return sum(self.timings.values())
+
+    @cached_property
+    def length(self) -> float | None:
+        """Length of `path` in the metric of the space; None without a path or a world."""
+        if self.path is None or self.world is None:
+            return None
+        return path_length(self.path, self.world.space)
+
+    @cached_property
+    def bodies(self) -> str | None:
+        """The kinds of the robot's bodies that the answer is about, as ``hulls and meshes`` or ``capsules``.
+
+        None of what is no arm.
+        """
+        return getattr(self.world, "bodies", None)
+
+    @property
+    def _proved(self) -> str:
+        """What is shown, and about which bodies."""
+        return str(self.proof) if self.bodies is None else f"{self.proof} ({self.bodies})"
+
+    def resample(self, step: float) -> Floats:
+        """Return states along the path.
+
+        Parameters
+        ----------
+        step : float
+            Largest distance between neighbours, > 0, in the metric of the space.
+
+        Returns
+        -------
+        ndarray, shape (s, dim)
+            States of the path, waypoints included.
+
+        Raises
+        ------
+        InvalidValue
+            If `step` is not a finite number > 0, or there is no path.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> er.plan(world, (3, 3), (27, 17)).resample(0.5).shape
+        (57, 2)
+        """
+        path, world = self._required("resampled")
+        return resample(path, world.space, step)[0]
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the plan to a file, atomically.
+
+        Parameters
+        ----------
+        path : str or path-like
+            ``.json``, all of it; ``.csv``, the waypoints; ``.png``, a picture.
+
+        Raises
+        ------
+        UnknownName
+            For another suffix.
+        InvalidValue
+            For a ``.csv`` without a path.
+        BrokenFile
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     er.plan(world, (3, 3), (27, 17)).save(f"{folder}/plan.json")
+        ...     er.io.load_plan(f"{folder}/plan.json")[0].status
+        <Status.SOLVED: 'solved'>
+        """
+        from evenroad.io import save_result
+
+        save_result(self, path)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> PlanResult:
+        """Return a plan that was saved, without its world, origin and searched graph.
+
+        Parameters
+        ----------
+        path : str or path-like
+            A ``.json`` of :meth:`save` or ``evenroad plan``; :func:`evenroad.io.load_plan` also returns the query.
+
+        Returns
+        -------
+        PlanResult
+
+        Raises
+        ------
+        BrokenFile
+            If the file is missing, or is no such plan.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> result = er.plan(er.GridMap(np.zeros((20, 30), dtype=bool)).world(2), (3, 3), (27, 17))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     result.save(f"{folder}/plan.json")
+        ...     er.PlanResult.load(f"{folder}/plan.json").cost == result.cost
+        True
+        """
+        from evenroad.io import load_plan
+
+        return load_plan(path)[0]
+
+    def plot(self, path: str | os.PathLike[str] | None = None, *, world: World | None = None) -> Any:
+        """Return a picture of the plan, a PIL image, which a notebook shows; save it if a file is named.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            A ``.png``.
+        world : World, optional
+            Default: the world of the plan.  Disks on maps and arms can be drawn.
+
+        Returns
+        -------
+        PIL.Image.Image
+
+        Raises
+        ------
+        NotAvailable
+            If it is another world, or none is known.
+        BrokenFile
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> er.plan(world, (3, 3), (27, 17)).plot().mode
+        'RGB'
+        """
+        from evenroad.viz.result import plot_result
+
+        return plot_result(self, path, world)
+
+    def trajectory(self, limits: Any = None, *, speed: float = 1.0, **options: Any) -> Any:
+        """Return the path with times; the motion as driven is checked.
+
+        Parameters
+        ----------
+        limits : Limits, or the file of a ``joint_limits.yaml``, optional
+            Default: those of the robot; of worlds without one as `speed` says.
+        speed : float
+            With limits, 0 < speed <= 1: takes ``1 / speed`` as long as at full speed.  Without, as on a map: the
+            largest speed along the path, > 0 [units of the map per second], which is reached in half a second.
+        **options
+            As :func:`evenroad.trajectory.arm_trajectory` takes them.
+
+        Returns
+        -------
+        Trajectory
+
+        Raises
+        ------
+        InvalidValue
+            If there is no path, or there are no limits; else as :func:`evenroad.trajectory.make_trajectory`.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> er.plan(world, (3, 3), (27, 17)).trajectory(speed=5.0)
+        Trajectory(5.992 s, 2 joints, 750 states)
+        """
+        from evenroad.trajectory.arm import trajectory_of
+
+        path, world = self._required("driven")
+        return trajectory_of(world, path, limits, speed=speed, **options)
+
+    def _required(self, how: str) -> tuple[Floats, World]:
+        """Return path and world, or raise InvalidValue that names the missing one."""
+        if self.path is None:
+            raise InvalidValue(f"there is no path that could be {how}: {self.message}")
+        if self.world is None:
+            raise InvalidValue(f"this plan does not know its world, without which it cannot be {how}")
+        return self.path, self.world
+
+    def __repr__(self) -> str:
+        parts = [str(self.status)]
+        if self.path is not None:
+            parts += [f"{len(self.path)} waypoints", self._proved]
+        if self.cost is not None:
+            parts.insert(1, f"cost {self.cost:.4g}")
+        took = self.seconds
+        parts.append(f"{took:.3g} s" if took >= 1.0 else f"{1e3 * took:.3g} ms")
+        return f"{type(self).__name__}({', '.join(parts)})"
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        rows = {"status": f"{self.status}: {self.message}", "planner": self.planner}
+        if self.cost is not None:
+            rows |= {"cost": f"{self.cost:.6g}", "proved": self._proved}
+        rows["time"] = f"{1e3 * self.seconds:.1f} ms"
+        return as_html(rows, self.path)
+
+
+def make_result(
+    world: World | None, start: Floats, goals: Floats, status: Status, message: str, **more: Any
+) -> PlanResult:
+    """Return the result of a query: every result is made here, and a path leads from its start to its goal.
+
+    `more` are attributes of the result; by default there are no points, no rule and no planner.
+    """
+    # Written as they are: one field after the other, as a frozen class writes them, would take twice as long.
+    result = object.__new__(PlanResult)
+    vars(result).update(_DEFAULTS, counts={}, timings={}, deviation={})
+    vars(result).update(more, status=status, message=message, start=start, goals=goals, world=world)
+    return result if world is None else led(world, result)
+
+
+_DEFAULTS = {each.name: each.default for each in fields(PlanResult) if each.default is not MISSING}
+_DEFAULTS |= {"origin": NO_POINTS, "rule": "none", "planner": "none"}
+
+
+def led(world: World, result: PlanResult) -> PlanResult:
+    """Return a result whose paths lead from its start, by its very numbers, to its goal.
+
+    Its message says where coordinates that repeat end at other numbers than the goal's.  AssertionError where a path
+    does not lead there, which is a bug of evenroad: no robot must drive such a path.
+    """
+    given, milestones, space = result.path, result.milestone_path, world.space
+    path = None if given is None else from_start_to_goal(space, given, result.start, result.goal)
+    raw = path
+    if milestones is not given and milestones is not None:
+        raw = from_start_to_goal(space, milestones, result.start, result.goal)
+    said = "" if path is None or not turns(space) else turns_at_end(world, path, result.goal)
+    if said and said not in result.message:
+        result = replace(result, message=result.message + said)
+    if path is given and (raw is milestones or milestones is None):
+        return result
+    return replace(result, path=path, milestone_path=None if milestones is None else raw)

@@ -1,0 +1,1 @@
+"""Poses: inverse kinematics, goals by poses, and curves of the tip."""

@@ -1,1 +1,0 @@
-"""Robots and scenes as the native kernel takes them."""

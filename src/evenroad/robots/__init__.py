@@ -1,0 +1,1 @@
+"""Robots: kinematic trees with their bodies, groups of joints, and what a robot holds."""

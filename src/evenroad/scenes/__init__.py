@@ -1,0 +1,1 @@
+"""Scenes: the obstacles around a robot, from values and files, and the robot's states in them."""

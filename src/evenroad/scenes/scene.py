@@ -1,0 +1,313 @@
+"""Scene: the obstacles around a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, cast
+
+import numpy.typing as npt
+
+from evenroad._arrays import Floats, set_fields
+from evenroad._call import explains_calls
+from evenroad._checks import counted, require_known
+from evenroad._fingerprint import fingerprint_of
+from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import PRIMITIVES
+from evenroad.robots.held import HeldObject
+from evenroad.scenes.changes import Changes
+from evenroad.scenes.obstacle import MARGIN as MARGIN
+from evenroad.scenes.obstacle import Bodies, as_obstacles, box_rows, smaller_rows
+from evenroad.scenes.obstacle import Cut as Cut
+from evenroad.scenes.obstacle import Obstacle as Obstacle
+from evenroad.scenes.obstacle import Seen as Seen
+from evenroad.scenes.obstacles import Boxes, Obstacles, named_twice
+
+
+@explains_calls
+@dataclass(frozen=True, init=False, repr=False)
+class Scene(Changes):
+    """Obstacles, no two of one name; allowed contacts and named configurations.
+
+    Parameters
+    ----------
+    obstacles : sequence of Shape or Obstacle, or mapping
+        Shapes have their poses in the frame of the robot's root link; without a name of their own they are called
+        ``box 0``, ``box 1``, ``sphere 0``.  A mapping says what a scene's file does, see :func:`evenroad.load_scene`,
+        and files that it names lie in the current folder; nothing else is given with it but a name.
+    name : str
+        What the scene is called.
+    allowed : frozenset of (str, str)
+        Contacts that are not tested, (link, obstacle), e.g. of the base with its table.
+    states : mapping
+        Named configurations, joint -> value [rad or m], in which joints that are not planned for are held.
+    limits : mapping
+        Ranges to plan in, joint -> (lower, upper) [rad or m]; a world keeps to them by itself.
+    attached : tuple of HeldObject
+        What the robot holds, no two of one name; :func:`evenroad.robot.in_scene` takes over both.
+    near_ends : frozenset of (str, str, float)
+        Contacts, (link, cloud, distance), not tested with points within the distance [m] of the link's body at the
+        start or a goal; see :func:`evenroad.robot.allowed_near_ends`.
+
+    Raises
+    ------
+    InvalidValue
+        If two have one name, or something is no shape.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.Scene([er.Box((0.8, 1.2, 0.04), xyz=(0.5, 0, -0.02), name="table"), er.Sphere(0.1, xyz=(0.5, 0, 0.4))])
+    Scene('scene', 2 obstacles: table, sphere 0)
+    >>> er.Scene({"obstacles": {"can": {"shape": "cylinder", "radius": 0.03, "length": 0.12, "xyz": [0.4, 0, 0.06]}}})
+    Scene('scene', 1 obstacle: can)
+    """
+
+    name: str
+    obstacles: Sequence[Obstacle]
+    allowed: frozenset[tuple[str, str]]
+    states: Mapping[str, Mapping[str, float]]
+    limits: Mapping[str, tuple[float, float]]
+    attached: tuple[HeldObject, ...]
+    near_ends: frozenset[tuple[str, str, float]]
+
+    def __init__(
+        self,
+        obstacles: Bodies | Mapping[str, Any] = (),
+        *,
+        name: str = "scene",
+        allowed: frozenset[tuple[str, str]] = frozenset(),
+        states: Mapping[str, Mapping[str, float]] | None = None,
+        limits: Mapping[str, tuple[float, float]] | None = None,
+        attached: tuple[HeldObject, ...] = (),
+        near_ends: frozenset[tuple[str, str, float]] = frozenset(),
+    ) -> None:
+        values: dict[str, Any] = dict(allowed=allowed, attached=attached, near_ends=near_ends)
+        values |= {"states": {} if states is None else states, "limits": {} if limits is None else limits}
+        if isinstance(obstacles, Mapping):
+            if more := sorted(key for key in values if values[key]):
+                raise InvalidValue(
+                    f"a scene of a mapping has what the mapping says: put {', '.join(more)} into it, too"
+                )
+            from evenroad.scenes.scene_file import scene_of
+
+            scene = scene_of(obstacles, _named(name))
+            set_fields(self, **{each.name: getattr(scene, each.name) for each in fields(scene)})
+            return
+        known = obstacles if isinstance(obstacles, Obstacles) else None
+        all_of_them = Obstacles(as_obstacles(obstacles, lambda name: False, name)) if known is None else known
+        set_fields(self, name=_named(name), obstacles=all_of_them, **values)
+        if attached:
+            self._require_attached()
+        if known is None:
+            _require_different(self.name, all_of_them.names)
+
+    @classmethod
+    def of_boxes(
+        cls,
+        size: npt.ArrayLike,
+        xyz: npt.ArrayLike,
+        *,
+        xyzw: npt.ArrayLike | None = None,
+        names: Sequence[str] = (),
+        name: str = "scene",
+        allowed: frozenset[tuple[str, str]] = frozenset(),
+    ) -> Scene:
+        """Return a scene of many boxes, given as arrays: in a tenth of the time that their objects take.
+
+        Parameters
+        ----------
+        size, xyz : array_like, shape (n, 3)
+            Full extents, > 0, and centres in the frame of the robot's root link [m].
+        xyzw : array_like, shape (n, 4), optional
+            Quaternions of any norm > 0.  Default: the boxes lie along the axes.
+        names : sequence of str
+            Of the boxes.  Default: ``box 0``, ``box 1``, ...
+        name, allowed : str, frozenset of (str, str)
+            As of :class:`Scene`.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        InvalidValue
+            If an array has another shape, or an entry that is not allowed, or two boxes have one name.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.Scene.of_boxes([(0.1, 0.1, 0.3), (0.8, 1.2, 0.04)], [(0.5, 0, 0.15), (0.5, 0, -0.02)])
+        Scene('scene', 2 obstacles: box 0, box 1)
+        """
+        rows = box_rows(size, xyz, xyzw)
+        texts = tuple(names) if len(names) else tuple([f"box {i}" for i in range(len(rows))])
+        if len(texts) != len(rows):
+            raise InvalidValue(f"names must be {len(rows)}, one a box, got {len(texts)}")
+        _require_different(_named(name), texts)
+        return cls(Boxes(rows, texts), name=name, allowed=allowed)
+
+    @property
+    def table(self) -> Obstacles:
+        """The obstacles, which also give their names and rows."""
+        # No assertion: of a change it would take a tenth of the time.
+        return cast(Obstacles, self.obstacles)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the obstacles."""
+        return self.table.names
+
+    @property
+    def rows(self) -> Floats:
+        """The obstacles but clouds and meshes, (n, 17), as the native kernel takes them.
+
+        Their kind; full extents of a box, or radius and length without caps, and zeros [m]; rotation to the root link's
+        frame, row by row; centre in that frame [m]; clearance [m].
+        """
+        return self.table.rows
+
+    @property
+    def surfaces(self) -> tuple[tuple[int, Obstacle], ...]:
+        """The clouds and meshes among the obstacles, with their numbers."""
+        return self.table.surfaces
+
+    @property
+    def solid_names(self) -> tuple[str, ...]:
+        """Names of the obstacles but clouds and meshes: those of `rows`."""
+        return tuple(each.name for each in self.obstacles if each.row) if self.surfaces else self.names
+
+    def __repr__(self) -> str:
+        names = self.names
+        listed = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
+        return f"Scene({self.name!r}, {counted(len(names), 'obstacle')}{': ' if names else ''}{listed})"
+
+    def _require_attached(self) -> None:
+        held = [each.name for each in self.attached]
+        if twice := named_twice(held):
+            raise InvalidValue(f"scene {self.name!r} has something attached twice: {', '.join(twice)}")
+        if both := sorted(name for name in held if self.table.has(name)):
+            raise InvalidValue(
+                f"scene {self.name!r} has {both[0]!r} attached and as an obstacle: a robot that holds it would touch it"
+            )
+
+    def _require_known(self, names: Iterable[str]) -> None:
+        for name in names:
+            if not self.table.has(name):
+                require_known(f"obstacle of scene {self.name!r}:", name, self.names)
+
+    def _moved(self, poses: Mapping[str, Pose]) -> Scene:
+        self._require_known(poses)
+        for name, pose in poses.items():
+            if not isinstance(pose, Pose):
+                raise InvalidValue(f"the pose of obstacle {name!r} must be a Pose, got {shown(pose)}")
+        return self._with_parts(self.table.moving(poses), self.allowed, self.near_ends)
+
+    def _named_new(self, bodies: Sequence[object]) -> tuple[Obstacle, ...]:
+        """Return shapes and obstacles, also lists of such, as obstacles with names that this scene does not have.
+
+        Raises InvalidValue if a name is taken, or something is no shape.
+        """
+        flat = [each for part in bodies for each in (part if isinstance(part, list | tuple | Obstacles) else [part])]
+        added = as_obstacles(flat, self.table.has, self.name)
+        names = [each.name for each in added]
+        if any(map(self.table.has, names)) or named_twice(names):
+            _require_different(self.name, (*self.names, *names))
+        return added
+
+    def _with(self, obstacles: Sequence[object], allowed: Sequence[tuple[str, str]]) -> Scene:
+        added = self._named_new(obstacles)
+        if self.attached and any(each.name == one.name for each in self.attached for one in added):
+            return replace(self, obstacles=self.table.adding(added))  # which names the two
+        return self._with_parts(self.table.adding(added), self.allowed.union(allowed), self.near_ends)
+
+    def _without(self, names: Sequence[str]) -> Scene:
+        self._require_known(names)
+        allowed = frozenset([each for each in self.allowed if each[1] not in names])
+        near_ends = frozenset([each for each in self.near_ends if each[1] not in names])
+        return self._with_parts(self.table.removing(names), allowed, near_ends)
+
+    def _with_parts(
+        self,
+        obstacles: Obstacles,
+        allowed: frozenset[tuple[str, str]],
+        near_ends: frozenset[tuple[str, str, float]],
+    ) -> Scene:
+        """Return a scene with other parts, which fit each other: `replace` would look at them again."""
+        scene = object.__new__(Scene)
+        vars(scene).update(vars(self), obstacles=obstacles, allowed=allowed, near_ends=near_ends)
+        return scene
+
+    def with_clearance(self, clearance: Mapping[str, float]) -> Scene:
+        """Return the scene with obstacles from which robots keep more away.
+
+        Parameters
+        ----------
+        clearance : mapping of str to float
+            Obstacle -> distance to keep, 0 to 1 [m], beside the clearance of a world and the padding of links.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        UnknownName
+            If there is no such obstacle.
+        InvalidValue
+            If a distance is not such a number.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> scene = er.load_scene("box-reach").with_clearance({"box top": 0.01})
+        >>> scene.obstacles[scene.names.index("box top")].clearance
+        0.01
+        """
+        if not isinstance(clearance, Mapping):
+            raise InvalidValue(f"clearance must be a mapping, obstacle -> metres, got {shown(clearance)}")
+        for name in clearance:
+            require_known(f"obstacle of scene {self.name!r}:", name, self.names)
+        changed = (replace(each, clearance=clearance.get(each.name, each.clearance)) for each in self.obstacles)
+        return replace(self, obstacles=Obstacles(changed))
+
+    def fingerprint(self) -> str:
+        """Return the SHA-256 (hex) of what decides results: obstacles and allowed contacts, in any order."""
+        rows = set()
+        for each in self.obstacles:
+            numbers = (*each.size, *each.xyz, *each.rotation)
+            content: tuple[str | float, ...] = (fingerprint_of(each.body),) if each.shape not in PRIMITIVES else ()
+            content += (each.clearance,) if each.clearance else ()
+            rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))  # -0.0 is 0.0
+        return fingerprint_of(rows, self.allowed, *sorted(self.near_ends))
+
+
+def smaller_scene(scene: Scene, by: float) -> Scene:
+    """Return a scene for checks alone: its obstacles reach less far by a distance [m]; clouds and meshes are gone."""
+    rows, left = smaller_rows(scene.rows, by)
+    solid = [name for number, name in enumerate(scene.names) if number not in dict(scene.surfaces)]
+    names = tuple(name for name, is_left in zip(solid, left.tolist(), strict=True) if is_left)
+    allowed = frozenset(each for each in scene.allowed if each[1] in names)
+    return Scene(Boxes(rows, names), name=scene.name, allowed=allowed)
+
+
+def _named(name: object) -> str:
+    """Return the name of a scene, or raise InvalidValue."""
+    if not isinstance(name, str):
+        raise InvalidValue(f"the name of a scene must be a text, got {shown(name)}")
+    return name
+
+
+def _require_different(scene: str, names: Sequence[str]) -> None:
+    """Raise InvalidValue if two obstacles have one name: what may touch the one would be allowed to touch the other."""
+    if twice := named_twice(names):
+        raise InvalidValue(f"obstacles of scene {scene!r} must have names of their own, twice: {twice}")
+
+
+def limits_in_words(scene: Scene | None, joint: str, lower: float, upper: float, whose: str = "its limits") -> str:
+    """Return what to call the limits of a joint: those of the scene where it has one of them, else `whose`."""
+    if scene is not None and {lower, upper}.intersection(scene.limits.get(joint, ())):
+        whose = f"the limits of scene {scene.name!r}"
+    return f"{whose} [{lower:.6g}, {upper:.6g}]"

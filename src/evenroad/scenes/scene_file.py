@@ -1,0 +1,247 @@
+"""Reading a scene: a YAML file of the obstacles around a robot."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from evenroad._call import explains_calls
+from evenroad._checks import as_file, require_known, require_positive
+from evenroad._yaml import numbers, read_mapping, require_keys
+from evenroad.errors import BrokenFile, InvalidValue, shown
+from evenroad.geometry.shapes import PRIMITIVES, PointCloud
+from evenroad.loading.find import DATA
+from evenroad.robots.held import HeldObject
+from evenroad.scenes.moveit_scene import read_scene_text
+from evenroad.scenes.planning_scene import read_planning_scene
+from evenroad.scenes.scan import allowed_within
+from evenroad.scenes.scene import Obstacle, Scene
+from evenroad.scenes.scene_entries import POSE, mapping_of, obstacle_of, obstacles_of, region_of
+from evenroad.scenes.scene_objects import OBJECT_FILES, objects_of
+
+SCENES = ("box-reach", "box-reach-narrow", "empty", "shelf")
+"""Names of the shipped scenes."""
+_SECTIONS = ("name", "allowed", "states", "limits", "attach")
+
+
+def is_scene(path: str | os.PathLike[str]) -> bool:
+    """Return whether a file is a scene and no map: by its suffix, or YAML with the key ``obstacles`` or ``world``."""
+    if Path(path).suffix.lower() in (".scene", *OBJECT_FILES):
+        return True
+    try:
+        return not {"obstacles", "world"}.isdisjoint(read_mapping(find_scene(path), "scene"))
+    except BrokenFile:
+        return False
+
+
+def find_scene(source: str | os.PathLike[str]) -> Path:
+    """Return the file of a scene: `source` itself or, where there is no such file, the shipped one of that name."""
+    path = as_file("a scene", source, "a scene of shapes, or of a mapping, is er.Scene(...)")
+    if not path.is_file() and path.parent == Path() and path.stem in SCENES and path.suffix in ("", ".yaml"):
+        return DATA / f"{path.stem}.yaml"
+    return path
+
+
+@explains_calls
+def load_scene(source: str | os.PathLike[str]) -> Scene:
+    """Return a scene from its file, or a shipped one by its name.
+
+    ::
+
+        obstacles:                                # frame: the robot's root link; metres, radians
+          table: {shape: box, size: [1, 1.2, 0.05], xyz: [0.25, 0, -0.025], rpy: [0, 0, 0.1], cell: true}
+          ball: {shape: sphere, radius: 0.1, xyz: [0.5, 0, 0.5]}
+          post: {shape: cylinder, radius: 0.05, length: 1.0, xyz: [0, 0.6, 0.5]}   # along z; so is a capsule
+          scan: {shape: cloud, file: scan.ply, radius: 0.01, seen_at: home, margin: 0.02}
+          shelf: {shape: mesh, file: shelf.stl, scale: 0.001, xyz: [0.8, 0, 0]}    # convex: true: its convex hull
+          floor: {shape: plane, xyz: [0, 0, -0.8]}                                 # all that is below its x-y plane
+          ground: {shape: height_map, file: ground.npy, spacing: 0.05, depth: 1}   # (x, y) heights, solid below
+          kitchen: {include: kitchen.glb, xyz: [1, 0, 0]}                          # its objects: kitchen/table, ...
+          fridge: {include: fridge.urdf, joints: {door: 1.2}, xyz: [0, 1, 0]}      # its links: fridge/door, ...
+        allowed:                                  # contacts that are not tested
+          table: [base_link]
+          scan:                                   # of a cloud: near the start and the goal, and within a region [m]
+            - {link: crate, near_ends: 0.02}
+            - {link: crate, within: {shape: box, size: [0.2, 0.2, 0.1], xyz: [0.5, 0, 0]}, grow: 0.01}
+        states:                                   # named configurations, joint by joint
+          home: {joint_1: 0.0, joint_2: -1.57}
+        limits:                                   # ranges to plan in, within the robot's own
+          joint_1: [-3.14, 3.14]
+        attach:                                   # what the robot holds: a shape in the frame of a link
+          crate: {shape: box, size: [0.1, 0.1, 0.2], link: tool0, xyz: [0, 0, 0.1], touches: [wrist_3_link, table]}
+
+    Obstacles may also be a list whose entries have a ``name``, and ``box: {size: [1, 1, 1]}`` stands for ``shape: box,
+    size: [1, 1, 1]``.  The length of a capsule is without its caps; ``xyzw: [x, y, z, w]``, a quaternion, may stand for
+    ``rpy``; ``cell: true`` marks what belongs to the fixed cell.  Files of
+    clouds (:func:`evenroad.geometry.load_cloud`) and meshes (:func:`evenroad.geometry.load_mesh`) are looked for beside
+    the scene; points within `margin` of the robot, where it stood when it was `seen_at`, are left out when one plans.
+    So are those that a cloud's ``cut`` names, a list of shapes, ``{shape: box, size: [0.1, 0.1, 0.2], xyz: [0.5, 0,
+    0.1], grow: 0.01}``, and of what is attached where the robot stands, ``{attached: crate, at: grasp, grow: 0.01}``.
+    MoveIt's scenes are read, too (:mod:`evenroad.scenes.moveit_scene`, :mod:`evenroad.scenes.planning_scene`).
+
+    Parameters
+    ----------
+    source : str or path-like
+        A ``.yaml`` as above, a scene of MoveIt, a URDF or glTF whose bodies become obstacles, or ``box-reach``,
+        ``box-reach-narrow`` or ``empty``.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, not YAML, lacks something, or has a key twice.
+    UnknownName
+        For a key, a shape or an obstacle that there is not.
+    InvalidValue
+        For a value of the wrong type or range.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> len(er.load_scene("box-reach").obstacles)
+    6
+    """
+    path = find_scene(source)
+    if not path.is_file():
+        raise BrokenFile(f"there is no scene file {path}; shipped: {', '.join(f'{name}.yaml' for name in SCENES)}")
+    if path.suffix == ".scene":
+        return read_scene_text(path)
+    if path.suffix.lower() in OBJECT_FILES:
+        bodies = objects_of(path, {})
+        return Scene([Obstacle(name, body) for name, body in bodies.items()], name=path.stem)
+    document = read_mapping(path, "scene")
+    return _of_document(document, path)
+
+
+def _of_document(document: dict[str, Any], path: Path) -> Scene:
+    if "obstacles" not in document and "world" in document:
+        return read_planning_scene(document, path)
+    return _scene(document, path)
+
+
+def scene_of(document: Mapping[str, Any], name: str) -> Scene:
+    """Return the scene that a mapping describes as a file does; errors as :func:`load_scene`."""
+    return _of_document({"name": name, **document}, Path("scene"))
+
+
+def _scene(document: dict[str, Any], path: Path) -> Scene:
+    require_keys(document, ("obstacles",), _SECTIONS, f"the scene {path}")
+    entries = _entries(document["obstacles"], path)
+    groups = {name: obstacles_of(name, entry, path) for name, entry in entries.items()}
+    obstacles = tuple(each for group in groups.values() for each in group)
+    groups |= {each.name: (each,) for each in obstacles}
+    allowed: set[tuple[str, str]] = set()
+    parts: list[tuple[str, str, dict[str, Any]]] = []
+    for obstacle, links in mapping_of(document.get("allowed"), f"allowed in {path}").items():
+        require_known(f"obstacle in 'allowed' of {path}:", obstacle, groups)
+        if not isinstance(links, list) or not all(isinstance(link, str | dict) for link in links):
+            raise InvalidValue(f"allowed contacts of {obstacle!r} in {path} must be a list of links, got {links!r}")
+        allowed.update((link, each.name) for link in links if isinstance(link, str) for each in groups[obstacle])
+        parts += [_part(obstacle, each, path) for each in links if isinstance(each, dict)]
+    states: dict[str, dict[str, float]] = {}
+    for name, values in mapping_of(document.get("states"), f"states in {path}").items():
+        states[name] = {}
+        for joint, value in mapping_of(values, f"state {name!r} in {path}").items():
+            (states[name][joint],) = numbers(value, 1, f"joint {joint!r} of state {name!r} in {path}")
+    limits = {
+        joint: _range(value, f"limits of joint {joint!r} in {path}")
+        for joint, value in mapping_of(document.get("limits"), f"limits in {path}").items()
+    }
+    attached = []
+    for name, entry in mapping_of(document.get("attach"), f"attach in {path}").items():
+        held, obstacles_touched = _attached(name, mapping_of(entry, f"attached {name!r} in {path}"), path, groups)
+        attached.append(held)
+        allowed.update((name, each.name) for obstacle in obstacles_touched for each in groups[obstacle])
+    name = str(document.get("name", path.stem))
+    scene = Scene(
+        obstacles,
+        name=name,
+        allowed=frozenset(allowed),
+        states=states,
+        limits=limits,
+        attached=tuple(attached),
+    )
+    return _with_parts(scene, parts, path)
+
+
+def _entries(obstacles: object, path: Path) -> dict[str, dict[str, Any]]:
+    """Return name -> entry of the obstacles of a file: a mapping, or a list whose entries say their own names."""
+    if not isinstance(obstacles, list | tuple):
+        named = mapping_of(obstacles, f"obstacles in {path}")
+        return {name: _in_full(entry, f"obstacle {name!r} in {path}") for name, entry in named.items()}
+    entries: dict[str, dict[str, Any]] = {}
+    for i, each in enumerate(obstacles):
+        entry = _in_full(each, f"obstacle {i} in {path}")
+        kind = entry.get("shape") or Path(str(entry.get("include"))).stem
+        name = str(entry.pop("name", f"{kind} {i}"))
+        if name in entries:
+            raise InvalidValue(f"obstacles in {path} must have names of their own, twice: {name!r}")
+        entries[name] = entry
+    return entries
+
+
+def _in_full(value: object, where: str) -> dict[str, Any]:
+    """Return an entry as ``shape: box, size: ...``; ``box: {size: ...}`` and ``sphere: 0.1`` say the same."""
+    entry = mapping_of(value, where)
+    kinds = [key for key in entry if key in PRIMITIVES]
+    if "shape" in entry or len(kinds) != 1:
+        return entry
+    given, dimensions = entry.pop(kinds[0]), PRIMITIVES[kinds[0]].dimensions
+    if not isinstance(given, Mapping) and len(dimensions) == 1:
+        given = {dimensions[0][0]: given}
+    inside = mapping_of(given, f"{kinds[0]} of {where}")
+    if twice := sorted(inside.keys() & entry.keys()):
+        raise InvalidValue(f"{where} must say {twice[0]} once, beside its {kinds[0]} or in it")
+    return {"shape": kinds[0], **inside, **entry}
+
+
+def _part(cloud: str, entry: dict[str, Any], path: Path) -> tuple[str, str, dict[str, Any]]:
+    """Return link and cloud of a contact that is allowed with a part of the cloud, and which part."""
+    where = f"what is allowed to touch {cloud!r} in {path}"
+    require_keys(entry, ("link",), ("near_ends", "within", "grow"), where)
+    if not isinstance(entry["link"], str) or ("near_ends" in entry) == ("within" in entry):
+        raise InvalidValue(f"{where} must have a link and one of near_ends and within, got {shown(entry)}")
+    if "near_ends" in entry and "grow" in entry:
+        raise InvalidValue(f"{where} must have grow with within alone: near_ends is a distance itself")
+    return entry["link"], cloud, entry
+
+
+def _with_parts(scene: Scene, parts: list[tuple[str, str, dict[str, Any]]], path: Path) -> Scene:
+    """Return a scene with contacts that are allowed with parts of clouds."""
+    near = set()
+    for link, cloud, entry in parts:
+        where = f"what is allowed to touch {cloud!r} in {path}"
+        if not any(isinstance(each.body, PointCloud) for each in scene.obstacles if each.name.startswith(cloud)):
+            raise InvalidValue(f"{where} must be a link: a part can be allowed of a cloud alone")
+        if "near_ends" in entry:
+            (distance,) = numbers(entry["near_ends"], 1, f"near_ends of {where}")
+            near.add((link, cloud, require_positive(f"near_ends of {where}", distance, or_zero=True)))
+        else:
+            scene = allowed_within(scene, link, cloud, *region_of(entry["within"], entry, f"within of {where}", path))
+    return replace(scene, near_ends=frozenset(near))
+
+
+def _attached(name: str, entry: dict[str, Any], path: Path, obstacles: Collection[str]) -> tuple[HeldObject, list[str]]:
+    """Return what is held, and the obstacles that it may touch."""
+    where = f"attached {name!r} in {path}"
+    link, touches = entry.pop("link", None), entry.pop("touches", [])
+    if not isinstance(link, str):
+        raise InvalidValue(f"{where} must have the link that carries it, got link: {link!r}")
+    if not isinstance(touches, list) or not all(isinstance(each, str) for each in touches):
+        raise InvalidValue(f"touches of {where} must be a list of links and obstacles, got {touches!r}")
+    body = obstacle_of(name, entry, path, where, (*POSE, "link", "touches")).body
+    links = tuple(each for each in touches if each not in obstacles)
+    return HeldObject(name, body, link, links), [each for each in touches if each in obstacles]
+
+
+def _range(value: object, what: str) -> tuple[float, float]:
+    lower, upper = numbers(value, 2, what)
+    if not lower < upper:
+        raise InvalidValue(f"{what} must satisfy lower < upper, got {value!r}")
+    return lower, upper

@@ -1,0 +1,70 @@
+"""Notes about scenes that seem to have another unit than metres."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+
+import evenroad as er
+from evenroad.geometry.shapes import Mesh, PointCloud
+from evenroad.robot import ArmWorld, Obstacle, load_robot, load_scene
+from evenroad.robots.planes import Plane
+from tests.robots.urdf_texts import two_joints
+
+FAR, HUGE = "is within the robot's reach", "m long, the robot reaches"
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory):
+    file = tmp_path_factory.mktemp("robot") / "arm.urdf"
+    file.write_text(two_joints())
+    return load_robot(file)
+
+
+def block(side, **where):
+    made = trimesh.creation.box((side, side, side))
+    return Mesh(er.geometry.TriangleMesh(np.array(made.vertices), np.array(made.faces), "block"), **where)
+
+
+@pytest.mark.parametrize(
+    ("obstacles", "said"),
+    [
+        ([er.Box((50, 50, 50), xyz=(500, 0, 250)), er.Sphere(20, xyz=(0, 300, 0))], FAR),
+        ([er.Cylinder(30, 1000, xyz=(600, 0, 0)), er.Capsule((0, 300, 0), (0, 300, 90), 25)], FAR),
+        ([PointCloud(np.full((20, 3), 300.0), 5.0), block(200, xyz=(700, 0, 0))], FAR),
+        # A large side is near though its middle is far, and a corner of a turned box far though its middle is near.
+        ([er.Box((1.0, 9.0, 9.0), xyz=(0.9, 4.5, 4.5))], ""),
+        ([er.Box((900, 0.05, 0.05), xyz=(0, 3, 0), rpy=(0, 0, 0.001))], FAR),
+        ([er.Box((2000, 2000, 60), xyz=(900, 0, -30.5))], HUGE),
+        ([er.Sphere(1500, xyz=(0, 0, -1600)), er.Box((0.1, 0.1, 0.1), xyz=(0.5, 0, 0))], HUGE),
+        ([block(2000, xyz=(0, 0, -1000.2)), er.Box((0.1, 0.1, 0.1), xyz=(0.5, 0, 0))], HUGE),
+        ([block(0.0004, xyz=(0.3, 0, 0))], HUGE),
+        ([er.Box((0.0004, 0.0008, 0.0001), xyz=(0.5, 0, 0.1)), er.Sphere(2e-4, xyz=(0.5, 0, 0))], HUGE),
+        ([er.Box((2000, 2000, 0.1), xyz=(0, 0, -0.3))], ""),
+        ([Obstacle("floor", Plane("floor", (0, 0, -0.3), tuple(np.eye(3).ravel())).body, cell=True)], ""),
+        ([er.Sphere(2e-4, xyz=(0.5, 0, 0)), er.Box((0.1, 0.1, 0.1), xyz=(0.5, 0, 0.3))], ""),
+        ([PointCloud(np.full((20, 3), 0.3), 1e-4)], ""),
+        ([], ""),
+    ],
+)
+def test_a_world_notes_obstacles_out_of_reach_and_sizes_that_do_not_fit(robot, obstacles, said):
+    notes = ArmWorld(robot, er.Scene(obstacles)).notes
+    assert len(notes) == bool(said)
+    assert all(said in note and note.endswith("metres are expected") for note in notes)
+
+
+def test_shipped_scenes_are_of_usual_sizes():
+    for name in ("box-reach", "box-reach-narrow", "empty", "shelf"):
+        scene = load_scene(name)
+        assert ArmWorld("arm7" if name == "shelf" else "ur5", scene).notes == ()
+
+
+def test_a_plan_hands_on_the_note_about_its_scene(robot, tmp_path):
+    (tmp_path / "arm.urdf").write_text(two_joints())
+    (tmp_path / "far.yaml").write_text("obstacles:\n  desk: {shape: box, size: [50, 50, 50], xyz: [400, 0, 250]}\n")
+    (note,) = er.plan(tmp_path / "far.yaml", [0.0, 0.0], [0.5, 0.5], robot=tmp_path / "arm.urdf").notes
+    assert FAR in note
+    assert "'far'" in note
+    world = ArmWorld(robot, load_scene(tmp_path / "far.yaml"))
+    assert er.plan(world, [0.0, 0.0], [0.5, 0.5]).notes == (note,)
