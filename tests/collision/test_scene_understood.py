@@ -13,7 +13,7 @@ import evenroad as er
 from evenroad.errors import EvenroadError, InvalidValue, UnknownName
 from evenroad.geometry import mesh
 from evenroad.robot import load_robot, load_scene
-from tests.robot.urdf_texts import two_joints
+from tests.robots.urdf_texts import two_joints
 
 OF_THE_FILE = {"states", "home", "limits", "joints", "allowed", "attach", "obstacles"}
 """Mappings whose keys are names of the file's own, of joints or obstacles."""
