@@ -18,7 +18,7 @@ import yaml
 from evenroad.loading.find import example_robots
 
 ROOT = Path(__file__).parents[1]
-DATA = ROOT / "src" / "evenroad" / "robot" / "data"
+DATA = ROOT / "src" / "evenroad" / "loading" / "data"
 
 MAPS = """
 import numpy as np

@@ -35,7 +35,7 @@ SECONDS, BUSY = 2.0, 4.0
 """Processor time that a plan gets, and how much longer that may take by the clock, which alone RoboPlan reads."""
 LONGEST = 0.05
 """Longest step along a constraint [rad]."""
-URDF = Path(er.__file__).parent / "robot" / "data" / "ur5.urdf"
+URDF = Path(er.__file__).parent / "loading" / "data" / "ur5.urdf"
 RANKS = {"tray": 1, "line": 5, "door": 5, "box": 6}
 """Number of coordinates that a constraint takes away."""
 ROWS = {"tray": (3,), "line": (3, 9), "door": (11,), "box": (12,)}

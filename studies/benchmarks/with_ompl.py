@@ -34,7 +34,7 @@ from evenroad.robots.robot import Robot
 
 SECONDS = 2.0
 APART = 1e-3
-DATA = Path(er.__file__).parent / "robot" / "data"
+DATA = Path(er.__file__).parent / "loading" / "data"
 Row = tuple[float, Vector | None]
 """Time [ms] and path of a plan, None where there is none."""
 

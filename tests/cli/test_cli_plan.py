@@ -291,7 +291,7 @@ def test_an_interrupt_and_too_little_memory_leave_no_half_file(run, tmp_path, mo
     def fail(*_args, **_kwargs):
         raise error
 
-    monkeypatch.setattr("evenroad.cli.plan_disk.solve", fail)
+    monkeypatch.setattr("evenroad.cli.plan_parts.solve", fail)
     found, _, err = run(*plan_arguments(out="a", n=64))
     assert (found, err.count("\n")) == (code, 1)
     assert says in err

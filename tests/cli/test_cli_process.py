@@ -153,7 +153,7 @@ print(sorted({HEAVY | unused!r} & set(sys.modules)))
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])
 def test_output_fits_into_every_encoding(tmp_path, encoding):
     file = tmp_path / "arm.urdf"
-    text = (PACKAGE / "robot" / "data" / "ur5.urdf").read_text()
+    text = (PACKAGE / "loading" / "data" / "ur5.urdf").read_text()
     file.write_text(text.replace("wrist_3_joint", "手首_ž").replace('name="ur5"', 'name="ромашка"'), encoding="utf-8")
     for command in (["robot", str(file)], ["plan", "empty.yaml", "--robot", str(tmp_path / "не.urdf")]):
         given = [sys.executable, "-m", "evenroad", *command]

@@ -335,6 +335,6 @@ def test_altering_a_joint_that_is_not_there_is_refused(alter):
 @pytest.mark.parametrize("attribute", ["radius", "length", "xyz"])
 def test_a_length_whose_powers_are_no_numbers_is_refused(tmp_path, monkeypatch, attribute, huge):
     monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path / "cache"))
-    text = (resources.files("evenroad.robot") / "data" / "ur5.urdf").read_text()
+    text = (resources.files("evenroad.loading") / "data" / "ur5.urdf").read_text()
     (tmp_path / "huge.urdf").write_text(re.sub(rf'{attribute}="[^" ]*', f'{attribute}="{huge}', text, count=1))
     refused(InvalidValue, r"must (be at most|lie between -1e\+09 and) 1e\+09", load_robot, tmp_path / "huge.urdf")

@@ -55,7 +55,8 @@ def test_a_plan_is_drawn_tight_unless_quick_shortcuts_or_no_smoothing_are_wanted
     plans = {how: er.plan(world, path[0], path[-1], smooth=how) for how in (True, "quick", False)}
     raw = plans[False].path
     np.testing.assert_array_equal(plans["quick"].path, shorten(world, raw)[0])
-    np.testing.assert_array_equal(plans[True].path, smooth_apart(world, raw, batches=500)[0])
+    # Joints that wrap are brought into their range and back, which rounds.
+    np.testing.assert_allclose(plans[True].path, smooth_apart(world, raw, batches=500)[0], rtol=0, atol=1e-14)
     assert max(plans[True].cost, plans["quick"].cost) < plans[False].cost
     # To keep 5 mm off may cost 2 % of the length.
     assert plans[True].cost < 1.02 * plans["quick"].cost
