@@ -142,7 +142,7 @@ def test_coordinates_at_the_ends_of_the_cube_stay_inside(values, seed):
     assert moved.points.shape == points.points.shape
 
 
-def test_the_reflection_of_zero_is_the_largest_coordinate():
+def test_the_reflection_of_zero_is_the_largest_coordinate_that_float32_holds():
     points = PointSet([[0.0], [0.25]], Origin(family="mine", objective="centred"))
     reflected = next(each for each in (reflect(points, rng=seed) for seed in range(20)) if each != points)
-    np.testing.assert_array_equal(reflected.points, [[np.nextafter(1.0, 0.0)], [0.75]])
+    np.testing.assert_array_equal(reflected.points, [[np.nextafter(np.float32(1.0), np.float32(0.0))], [0.75]])
