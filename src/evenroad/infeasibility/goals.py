@@ -22,10 +22,10 @@ def proof_between(
     """
     poses = [] if straight else [goal for goal, _ in goals.poses]
 
-    def prove(start: Floats, ends: Floats, quickly: bool) -> Apart | None:
+    def prove(start: Floats, terminals: Floats, quickly: bool) -> Apart | None:
         # Imported late: few plans need the proof.
         from evenroad.infeasibility.proof import apart
 
-        return apart(world, start, ends, poses, quickly=quickly, whole=goals.whole and not straight)
+        return apart(world, start, terminals, poses, quickly=quickly, whole=goals.whole and not straight)
 
     return prove
