@@ -11,7 +11,6 @@ import math
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from time import perf_counter as now
 
@@ -99,15 +98,19 @@ class within(until):
         self._at, self._outer = math.inf if seconds is None else now() + seconds, _here.at
 
 
-@contextmanager
-def off_the_clock() -> Iterator[None]:
+class off_the_clock:
     """Do what a query needs before its time begins, without a limit: the deadline moves by what the block takes."""
-    outer, began = _here.at, now()
-    _end_at(math.inf)
-    try:
-        yield
-    finally:
-        _end_at(outer + now() - began)
+
+    __slots__ = ("_began", "_outer")
+
+    def __enter__(self) -> None:
+        self._outer, self._began = _here.at, now()
+        if self._outer < math.inf:
+            _end_at(math.inf)
+
+    def __exit__(self, *_: object) -> None:
+        if self._outer < math.inf:
+            _end_at(self._outer + now() - self._began)
 
 
 def look_at_clock(ahead: float = 0.0) -> None:

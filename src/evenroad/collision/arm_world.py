@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -16,12 +16,12 @@ from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad._native.robot import Checker
 from evenroad._native.robot import Scene as NativeScene
-from evenroad._shared import once_property, state_without
+from evenroad._shared import once_property
 from evenroad._time_limit import require_time_for
 from evenroad.collision.coerce import as_robot, as_scene
 from evenroad.collision.distance import LEAST, MOST, WITH, Distance
 from evenroad.collision.native_scene import native_scene
-from evenroad.collision.numbered_scene import NumberedScene, numbered_scene
+from evenroad.collision.numbered_scene import NumberedScene
 from evenroad.collision.prepared_robots import prepared
 from evenroad.collision.robot_tables import PADDING, RobotTables
 from evenroad.collision.units import scene_notes
@@ -145,16 +145,15 @@ class ArmWorld(Changes, OneOrMany):
         return f"ArmWorld({self.robot!r}, {self.scene!r})"
 
     @once_property
-    def _numbered(self) -> NumberedScene:
-        """The obstacles as native checks read them, by their numbers."""
-        made = prepared(self.robot)
-        return numbered_scene(made.native, made.tables, self.robot.links, self.scene, self.clearance)
-
-    @property
     def native_scene(self) -> NativeScene:
         """The obstacles as native checks read them."""
-        native: NativeScene = self._numbered.native
-        return native
+        made = prepared(self.robot)
+        return native_scene(made.native, made.tables, self.robot.links, self.scene, self.clearance)
+
+    @once_property
+    def _numbered(self) -> NumberedScene:
+        """The native scene with the numbers of its obstacles."""
+        return NumberedScene(self.native_scene, self.scene.solid_names, self.scene.table)
 
     @once_property
     def notes(self) -> tuple[str, ...]:
@@ -170,8 +169,7 @@ class ArmWorld(Changes, OneOrMany):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy is made of: it makes checks of its own."""
-        made = ("checker", "roomier", "fixed_contact", "_measuring", "_bare", "_unpadded", "_numbered", "notes")
-        return {**state_without(self, made), "_since": None}
+        return {each.name: getattr(self, each.name) for each in fields(self)} | {"_since": None}
 
     def valid(self, q: Any) -> Any:
         """Return which configurations, (n, dim), are within the limits, up to 1e-5, and touch nothing: (n,).
@@ -406,7 +404,8 @@ class ArmWorld(Changes, OneOrMany):
             return self.within(scene)
         since, changed = (self, {}) if self._since is None else self._since
         changed = {**changed, **dict.fromkeys(gone), **dict.fromkeys(come)}
-        return self._copy(scene, self.clearance, _numbered=numbered, _since=(since, changed))
+        more = dict(native_scene=numbered.native, _numbered=numbered, _since=(since, changed))
+        return self._copy(scene, self.clearance, **more)
 
     def fingerprint(self) -> str:
         """Return a text that is equal for worlds of equal robot, scene, resolution and clearance."""

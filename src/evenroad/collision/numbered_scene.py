@@ -9,7 +9,6 @@ import numpy as np
 
 from evenroad._native.robot import Robot as NativeRobot
 from evenroad._native.robot import Scene as NativeScene
-from evenroad.collision.native_scene import native_scene
 from evenroad.collision.robot_tables import RobotTables
 from evenroad.scenes.obstacles import Obstacles
 from evenroad.scenes.scene import Scene
@@ -70,10 +69,3 @@ class NumberedScene:
         if native is None or native.too_far >= 0:
             return None
         return NumberedScene(native, self.solid, self.base, {**later, **fresh}, self.last + len(fresh))
-
-
-def numbered_scene(
-    robot: NativeRobot, tables: RobotTables, links: tuple[str, ...], scene: Scene, clearance: float
-) -> NumberedScene:
-    """Return a scene made anew; raises as :func:`native_scene`."""
-    return NumberedScene(native_scene(robot, tables, links, scene, clearance), scene.solid_names, scene.table)

@@ -1,8 +1,8 @@
 // Proofs that a motion is free throughout, not at states alone.
 //
-// The method is that of evenroad.collision.certified, for sixteen stretches of a motion at once: every stretch is tested in
-// its middle with bodies enlarged by what half of the stretch can move them, and halved where that fails.  Of many
-// short motions, as of a trajectory, sixteen are tried at once, each as one stretch, and what fails is halved.
+// The method is that of evenroad.collision.certified, for sixteen stretches of a motion at once: every stretch is
+// tested in its middle with bodies enlarged by what half of the stretch can move them, and halved where that fails.  Of
+// many short motions, as of a trajectory, sixteen are tried at once, each as one stretch, and what fails is halved.
 #include "robot/motion_check.hpp"
 
 namespace evenroad::robot {
