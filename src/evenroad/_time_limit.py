@@ -21,8 +21,11 @@ from evenroad._native.time_limit import end_after as _end_after
 
 _FIRST_BATCH = 4
 """Number of rows in the first batch of checks where time is limited."""
-_FAST = 2e-3
-"""Time that a batch of checks should take [s]; faster batches grow, slower ones shrink."""
+_SHARE, _LEAST, _MOST = 0.01, 2e-3, 2e-2
+"""Share of the time that is left which a batch of checks should take, and the least and the most that it should [s].
+
+Faster batches grow, slower ones shrink.  Of an array function a small batch takes as long as a larger one.
+"""
 _TO_LOAD = 0.1
 """Least time for which a large module is loaded that only proofs and reasons need [s]: once, it takes a bit more."""
 
@@ -153,7 +156,7 @@ def in_time(rows: npt.NDArray[np.integer], pace: Pace | None = None) -> Iterator
         began, size = now(), pace.size if is_paced else len(rows)
         yield rows[first : first + size]
         first += size
-        if now() - began >= _FAST:
+        if now() - began >= min(max(_SHARE * (_here.at - began), _LEAST), _MOST):
             pace.size = max(pace.size // 2, 1)
         elif size <= len(rows):
             pace.size = 2 * pace.size
