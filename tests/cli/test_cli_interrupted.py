@@ -10,13 +10,13 @@ from evenroad.io import load_plan
 
 INTERRUPTED = """
 import os, signal, sys, threading
-from evenroad.planning import improve
+from evenroad.planning import growing, improve
 
-# A real signal, soon after there is a path that can become shorter.
+# A real signal, soon after there is a path that can become shorter; trees take long, a roadmap may be done at once.
 soon = threading.Timer(0.4, os.kill, (os.getpid(), signal.SIGINT))
-for name in ("_below_bounds", "_by_growth"):
-    own = getattr(improve, name)
-    setattr(improve, name, lambda *given, own=own: (soon.start(), own(*given))[1])
+bounds, draw = improve._below_bounds, growing._draw
+improve._below_bounds = lambda *given: (soon.start(), bounds(*given))[1]
+growing._draw = lambda *given: (given[1] > 500 and os.kill(os.getpid(), signal.SIGINT), draw(*given))[1]
 from evenroad.cli import main
 
 sys.argv = ["evenroad", *sys.argv[1:]]
