@@ -12,6 +12,7 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats
 from evenroad._call import explains_calls
 from evenroad._checks import require_count, require_known
+from evenroad._time_limit import seconds_left
 from evenroad.errors import InvalidValue
 from evenroad.planning.answer import answer, in_its_time, refusal
 from evenroad.planning.attempt import Attempt, Searched
@@ -34,6 +35,9 @@ GROWING = 5
 
 SETTLED = 0.01
 """Share of shortening up to which a path counts as settled when the points were doubled."""
+
+LONGER = 3.0
+"""How many times as long as for one stage it takes at most to make the graph of the next one."""
 
 
 @explains_calls
@@ -109,6 +113,8 @@ class GrowingPRM:
         growth = _Growth(attempt, rule, informed=self.informed)
         try:
             while growth.take(points) and not growth.is_done(self.until) and points.n < budget.samples:
+                if not growth.has_time():
+                    break
                 points = _draw(sampler, min(2 * points.n, budget.samples), problem, points)
         except KeyboardInterrupt:
             if growth.best is None:
@@ -136,11 +142,17 @@ class _Growth:
         self.stages: list[Stage] = []
         self.best: Searched | None = None
         self.last: Searched
+        self.began, self.prepared = now(), 0.0
+
+    def has_time(self) -> bool:
+        """Return whether there is time to make the graph of the next stage, of twice as many points."""
+        return seconds_left() > LONGER * self.prepared
 
     def take(self, points: PointSet) -> bool:
         """Search with these points, whose first ones were searched before; return whether the budget was enough."""
         attempt, terminals = self.attempt, len(self.attempt.start_and_goals)
         samples = attempt.world.space.from_cube(points.points[self.drawn :])
+        drawn = now() - self.began
         # Names of nodes: start and goals first, then the points.
         names = terminals + np.arange(self.drawn, points.n)
         if self.best is not None and self.informed:
@@ -151,12 +163,15 @@ class _Growth:
         self.names = np.concatenate([self.names, names[valid]])
         self.milestones = np.concatenate([self.milestones, samples[valid]])
         self.drawn = points.n
+        began = now()
         states = attempt.candidates(self.rule, self.milestones)
         states.node_states[:] = FREE
         with attempt.watch("search"):
             named = np.concatenate([self.names, np.arange(terminals)])[states.edges]
             states.edge_states[:] = self.pairs.recall(named)
+        self.prepared = drawn + now() - began
         self.last = attempt.search(find_lazily, states)
+        self.began = now()
         with attempt.watch("search"):
             self.pairs.store(named, states.edge_states)
         attempt.motions_checked += states.motions_checked
@@ -198,20 +213,25 @@ class PairCache:
     """States of pairs of nodes, by names below 2^31 that outlive the nodes' numbers; memory O(pairs)."""
 
     def __init__(self) -> None:
-        self._states: dict[int, int] = {}
+        self._keys, self._states = np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int8)
 
     def recall(self, pairs: npt.NDArray[np.int64]) -> npt.NDArray[np.int8]:
         """Return the state of each pair, (m, 2) -> (m,)."""
-        return np.array([self._states.get(key, UNKNOWN) for key in _keys(pairs)], dtype=np.int8)
+        keys = _keys(pairs)
+        at = np.searchsorted(self._keys, keys)
+        known = np.append(self._keys, -1)[at] == keys
+        return np.where(known, np.append(self._states, UNKNOWN)[at], UNKNOWN).astype(np.int8)
 
     def store(self, pairs: npt.NDArray[np.int64], states: npt.NDArray[np.int8]) -> None:
-        """Store states of pairs, the later one of two; `UNKNOWN` is ignored."""
+        """Store states of distinct pairs, the later one of two; `UNKNOWN` is ignored."""
         new = states != UNKNOWN
-        self._states.update(zip(_keys(pairs[new]), states[new].tolist(), strict=True))
+        keys = np.concatenate([_keys(pairs[new]), self._keys])
+        self._keys, first = np.unique(keys, return_index=True)
+        self._states = np.concatenate([states[new], self._states])[first]
 
 
-def _keys(pairs: npt.NDArray[np.int64]) -> list[int]:
-    return (pairs.min(axis=1) << 32 | pairs.max(axis=1)).tolist()
+def _keys(pairs: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    return pairs.min(axis=1) << 32 | pairs.max(axis=1)
 
 
 def _draw(sampler: Sampler, n: int, problem: Problem, before: PointSet | None) -> PointSet:
