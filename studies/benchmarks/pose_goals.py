@@ -22,7 +22,7 @@ from studies.benchmarks.rows import parser_of, write_rows
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.geometry import Pose
 from evenroad.loading.load import load_robot
-from evenroad.poses import closed_form
+from evenroad.poses import inverse_kinematics
 from evenroad.poses.chain import TURN, default_tip
 from evenroad.poses.inverse_kinematics import reach
 from evenroad.poses.pose_goal import PoseGoal
@@ -92,7 +92,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()
     if options.numeric:
-        closed_form._made = lambda chain: None
+        inverse_kinematics.closed_form = lambda chain: None
     rows = []
     for source in ("ur5", "arm7", *options.foreign):
         rows.append(row(source, options.count, options.seed))

@@ -1,7 +1,9 @@
 """Configurations for poses: they reach them, all branches are there, and where there are none the answer says why."""
 
 import math
+import sys
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +12,9 @@ from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.loading.load import load_robot
-from evenroad.poses import closed_form as closed
+from evenroad.poses import inverse_kinematics
 from evenroad.poses.chain import TURN, chain_of, default_tip
+from evenroad.poses.closed_form import closed_form
 from evenroad.poses.inverse_kinematics import MOST, reach, reach_quickly, task_of
 from evenroad.poses.pose_goal import PoseGoal, as_axis, pose_of
 from evenroad.robots.joint import Joint
@@ -61,8 +64,7 @@ def test_every_configuration_found_is_free_within_limits_and_reaches_the_pose(ro
 
 
 def test_the_posture_that_made_a_pose_is_among_those_found_without_a_closed_form(monkeypatch):
-    monkeypatch.setattr(closed, "_made", lambda chain: None)
-    monkeypatch.setattr(closed, "_kept", {})
+    monkeypatch.setattr(inverse_kinematics, "closed_form", lambda chain: None)
     world = ArmWorld(UR5, EMPTY)
     own = random_free(world, 100, seed=3)
     hit = [
@@ -106,6 +108,9 @@ class EaikOf:
         rows = np.concatenate([postures + TURN, wrong])
         self.Q = rows[:, chain.coordinates] * chain.rows[:6, 12] + chain.rows[:6, 13]
 
+    def has_known_decomposition(self):
+        return True
+
     def calculate_IK(self, pose):
         return self
 
@@ -113,9 +118,13 @@ class EaikOf:
 def test_what_a_closed_form_says_is_checked_and_brought_into_the_limits(monkeypatch):
     q = np.array([[0.3, -1.2, 1.4, -0.8, 0.9, 0.2]])
     world, chain = ArmWorld(UR5, EMPTY), chain_of(UR5, "tool0")
-    monkeypatch.setattr(closed, "_kept", {id(chain): (chain, EaikOf(chain, q))})
+    eaik = SimpleNamespace(Robot=lambda *_: EaikOf(chain, q))
+    monkeypatch.setitem(sys.modules, "eaik", SimpleNamespace())
+    monkeypatch.setitem(sys.modules, "eaik.pybindings", SimpleNamespace(EAIK=eaik))
+    closed_form.cache_clear()
     reached = reach(world, PoseGoal(Pose.from_matrix(tips(UR5, q, "tool0")[0])), q[0])
     assert (reached.solver, reached.branches) == ("closed form", 1)
+    closed_form.cache_clear()
     assert reached.configurations[0] == pytest.approx(q[0], abs=1e-9)
 
 

@@ -57,7 +57,7 @@ def robot_arrays(robot: Robot, tables: RobotTables, bounds: Floats) -> dict[str,
             "by_hulls": _ints([tables.by_hulls]),
             "speeds": np.ascontiguousarray(tables.pair_speeds.T),
         },
-        "hulls": hull_arrays([placed.leaves for placed in tables.hulls.values()]),
+        "hulls": hull_arrays([placed.leaves for placed in tables.hulls.values()])._asdict(),
         "shapes": _shapes(robot, tables.tree, number),
         "limits": {
             "bounds": np.ascontiguousarray(bounds),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,10 +14,7 @@ from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable, shown
 from evenroad.geometry.parts import spread
 from evenroad.geometry.shapes import Capsule
-from evenroad.robots.robot import Padding
-
-if TYPE_CHECKING:
-    from evenroad.robots.robot import Robot
+from evenroad.robots.robot import Padding, Robot
 
 MOST_PADDING = 1.0
 """Largest padding of a link [m]."""
@@ -76,7 +72,7 @@ def padding_of(robot: Robot, padding: Padding) -> dict[str, float]:
     return dict(padding)
 
 
-def padded(what: str, metres: Any) -> float:
+def padded(what: str, metres: object) -> float:
     """Return a padding, 0 to 1 [m], or raise InvalidValue."""
     return require_positive(what, metres, or_zero=True, at_most=MOST_PADDING)
 
@@ -86,7 +82,7 @@ def _read_padding(robot: Robot, path: Path) -> dict[str, float]:
 
     A scale s of a link adds (s - 1) times the largest distance of its shapes from their middle.
     """
-    said: dict[str, Any] = {}
+    said: dict[str, object] = {}
     for name, value in _entries(read_mapping(path, "file of padding")):
         if name in said:
             raise BrokenFile(f"{path} has {name} twice")
@@ -110,7 +106,7 @@ def _read_padding(robot: Robot, path: Path) -> dict[str, float]:
     return metres
 
 
-def _entries(document: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+def _entries(document: Mapping[str, object]) -> Iterator[tuple[str, object]]:
     """Yield names and values of all parameters about padding, however deep they lie among those of others.
 
     Raises UnknownName for one that is misspelt.
@@ -126,7 +122,7 @@ def _entries(document: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _by_link(
-    robot: Robot, said: dict[str, Any], names: tuple[str, str], default: float, path: Path
+    robot: Robot, said: dict[str, object], names: tuple[str, str], default: float, path: Path
 ) -> dict[str, float]:
     """Return the number of each link, of the parameters for all and for single ones."""
     every, single = names

@@ -10,12 +10,14 @@ import hashlib
 import json
 import os
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from copy import deepcopy
-from dataclasses import asdict, replace
+from dataclasses import asdict, is_dataclass, replace
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from types import UnionType
+from typing import get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -25,15 +27,11 @@ from evenroad._files import atomic_write, cache_folder, read_bytes
 from evenroad._fingerprint import fingerprint_of
 from evenroad._seal import read_sealed, sealed
 from evenroad.errors import BrokenFile
-from evenroad.geometry.hulls import Hull
 from evenroad.geometry.mesh import TriangleMesh
-from evenroad.geometry.parts import Parts
-from evenroad.geometry.shapes import Capsule, Mesh, Shape
-from evenroad.loading.description import LinkBody, RobotModel
+from evenroad.geometry.shapes import Mesh, Shape
+from evenroad.loading.description import RobotModel
 from evenroad.loading.urdf import Urdf
 from evenroad.loading.urdf_xml import RobotFile
-from evenroad.robots.joint import Joint, Mimic
-from evenroad.robots.planes import Plane
 from evenroad.robots.robot import Robot
 
 _FORMAT = 28
@@ -74,7 +72,9 @@ def cached(key: str) -> RobotModel | None:
     A damaged file is logged in one line.
     """
     content = read_sealed(_file(key), key, "the robot")
-    return None if content is None else _model(json.loads(content))
+    model = None if content is None else _restored(RobotModel, json.loads(content))
+    assert model is None or isinstance(model, RobotModel), "what is sealed was written by this version"
+    return model
 
 
 def keep(key: str, model: RobotModel) -> None:
@@ -83,19 +83,14 @@ def keep(key: str, model: RobotModel) -> None:
     with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
         with atomic_write(file) as stream:
-            stream.write(sealed(json.dumps(asdict(model), default=written).encode(), key))
+            stream.write(sealed(json.dumps(asdict(model), default=_written).encode(), key))
 
 
-def written(array: Floats) -> list[Any] | dict[str, Any]:
-    """Return what JSON has of an array: of one of triangles its bytes, which are sooner read."""
+def _written(array: Floats) -> object:
+    """Return an array for JSON: triangles as bytes, which are sooner read."""
     if array.ndim < 3:
         return array.tolist()
     return {"shape": array.shape, "bytes": base64.b64encode(array.tobytes()).decode()}
-
-
-def _triangles(record: Any) -> Floats:
-    """Return an array that was `written`."""
-    return np.frombuffer(base64.b64decode(record["bytes"])).reshape(record["shape"])
 
 
 _known: dict[object, tuple[dict[Path, tuple[int, ...]], RobotModel, RobotModel]] = {}
@@ -105,7 +100,7 @@ _AT_ONCE = 100_000_000
 _FOLDERS = ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
 
 
-def stamps(files: Iterable[Any]) -> dict[Path, tuple[int, ...]]:
+def stamps(files: Iterable[object]) -> dict[Path, tuple[int, ...]]:
     """Return when each of these files was saved, and how large it is; what is no file is left out."""
     found: dict[Path, tuple[int, ...]] = {}
     for path in files:
@@ -155,37 +150,23 @@ def _file(key: str) -> Path:
     return cache_folder() / "robots" / f"{key[:32]}.json"
 
 
-def _model(record: dict[str, Any]) -> RobotModel:
-    robot = record.pop("robot")
-    bodies = tuple(LinkBody(**_with_tuples(body)) for body in record.pop("bodies"))
-    return RobotModel(robot_of(robot), bodies, **_with_tuples(record))
+@lru_cache
+def _fields_of(kind: type) -> dict[str, object]:
+    return get_type_hints(kind)
 
 
-def robot_of(record: dict[str, Any]) -> Robot:
-    """Return the robot that ``asdict`` made this record of, read back from JSON."""
-    joints = [joint | {"mimic": joint["mimic"] and Mimic(**joint["mimic"])} for joint in record.pop("joints")]
-    hulls = [Hull(**each) for each in record.pop("hulls")]
-    planes = [Plane(**_with_tuples(each)) for each in record.pop("planes", ())]
-    # Where a file does not say what lies within the shapes, nothing does.
-    inner = record.pop("inner", [])
-    shapes = [Parts(**each | {"corners": _triangles(each["corners"])}) for each in record.pop("shapes", ())]
-    return Robot(
-        joints=tuple(Joint(**_with_tuples(joint)) for joint in joints),
-        capsules=_capsules(record.pop("capsules")),
-        hulls=tuple(hulls),
-        planes=tuple(planes),
-        shapes=tuple(shapes),
-        inner=None if inner is None else _capsules(inner),
-        **_with_tuples(record),
-    )
-
-
-def _capsules(records: Iterable[dict[str, Any]]) -> tuple[Capsule, ...]:
-    return tuple(Capsule(each["a"], each["b"], each["radius"], link=each["link"]) for each in records)
-
-
-def _with_tuples(value: Any) -> Any:
-    """Return a record with tuples where JSON has lists."""
-    if isinstance(value, dict):
-        return {key: _with_tuples(entry) for key, entry in value.items()}
-    return tuple(map(_with_tuples, value)) if isinstance(value, list) else value
+def _restored(kind: object, value: object) -> object:
+    """Return the value of this type that `asdict` and JSON made this of."""
+    if isinstance(kind, UnionType):
+        return None if value is None else _restored(get_args(kind)[0], value)
+    if kind == Floats and isinstance(value, dict):
+        return np.frombuffer(base64.b64decode(value["bytes"])).reshape(value["shape"])
+    if isinstance(kind, type) and is_dataclass(kind) and isinstance(value, dict):
+        make: Callable[..., object] = kind
+        fields = _fields_of(kind)
+        return make(**{name: _restored(fields[name], each) for name, each in value.items()})
+    if get_origin(kind) is tuple and isinstance(value, list):
+        inner = get_args(kind)
+        kinds = (inner[0],) * len(value) if Ellipsis in inner else inner
+        return tuple(map(_restored, kinds, value))
+    return value

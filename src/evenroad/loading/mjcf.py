@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -16,8 +15,9 @@ from evenroad.geometry.mesh import TriangleMesh, convex_hull
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Mesh, Shape, shape_of
 from evenroad.loading.mjcf_contacts import Contacts, contacts_of, untested_pairs
-from evenroad.loading.mjcf_equalities import name_of, with_equalities
+from evenroad.loading.mjcf_equalities import with_equalities
 from evenroad.loading.mjcf_guard import require_bounded
+from evenroad.loading.mjcf_model import CompiledMjcf
 from evenroad.loading.mjcf_states import keyframes, note_left_out
 from evenroad.loading.urdf import Urdf, as_tree, require_few_links
 from evenroad.loading.urdf_xml import RobotFile
@@ -27,7 +27,7 @@ from evenroad.robots.planes import DEPTH, SIDE, Plane
 
 _FAR = 1e6
 """Limits of prismatic joints without limits [m]."""
-_KINDS: dict[str, Kind] = {"mjJNT_HINGE": "revolute", "mjJNT_SLIDE": "prismatic"}
+_KINDS: dict[str, Kind] = {"hinge": "revolute", "slide": "prismatic"}
 
 
 def read_mjcf(file: RobotFile) -> Urdf:
@@ -57,17 +57,17 @@ def read_mjcf(file: RobotFile) -> Urdf:
         said = " ".join(str(error).split())
         raise BrokenFile(f"MuJoCo cannot read {file.path}: {said}") from error
     require_few_links(model.nbody, len(set(model.geom_bodyid.tolist())), file.path)
-    return _Reader(mujoco, model, file, spec.modelname).urdf()
+    return _Reader(CompiledMjcf(mujoco, model, str(file.path)), file, spec.modelname).urdf()
 
 
 class _Reader:
     """A compiled model, and the links and joints made of it."""
 
-    def __init__(self, mujoco: Any, model: Any, file: RobotFile, name: str) -> None:
-        self.mujoco, self.model, self.file, self.name = mujoco, model, file, name
-        self.notes: list[str] = []
-        self.links = [name_of(model.body(i), "body") for i in range(model.nbody)]
-        self.kinds = [mujoco.mjtGeom(int(kind)).name.removeprefix("mjGEOM_").lower() for kind in model.geom_type]
+    def __init__(self, mjcf: CompiledMjcf, file: RobotFile, name: str) -> None:
+        self.mjcf, self.file, self.name = mjcf, file, name
+        self.model, self.notes = mjcf.model, mjcf.notes
+        self.links = [mjcf.name("body", i) for i in range(self.model.nbody)]
+        self.kinds = [mjcf.kind_of("mjtGeom", "mjGEOM_", kind) for kind in self.model.geom_type]
 
     def urdf(self) -> Urdf:
         model, links = self.model, list(self.links)
@@ -77,9 +77,9 @@ class _Reader:
                 joints.append(joint)
                 if joint.child not in links:
                     links.append(joint.child)
-        joints = with_equalities(self.mujoco, model, joints, str(self.file.path), self.notes)
+        joints = with_equalities(self.mjcf, joints)
         bodies, drawn = self._bodies()
-        contacts = contacts_of(self.mujoco, model, drawn)
+        contacts = contacts_of(self.mjcf, drawn)
         solid = [geom for geom in bodies if self.kinds[geom] not in ("plane", "hfield")]
         geoms = self._by_link(solid, contacts)
         for link in geoms:
@@ -96,10 +96,10 @@ class _Reader:
         moving = {link: of for link, of in geoms.items() if link not in still}
         planes = self._planes([geom for geom in bodies if geom not in solid], geoms, moving, contacts)
         self._note(solid, contacts)
-        note_left_out(self.mujoco, model, self.notes)
-        states = keyframes(self.mujoco, model, self.notes)
+        note_left_out(self.mjcf)
+        states = keyframes(self.mjcf)
         drawn_only = tuple(link for link in self.links[1:] if link in bare)
-        tree = as_tree(self.name, links, joints, shapes, str(self.file.path), drawn_only, self.notes)
+        tree = as_tree(self.name, links, joints, shapes, self.mjcf.where, drawn_only, self.notes)
         untested = None if self.file.as_drawn else untested_pairs(contacts, geoms)
         return replace(tree, untested=untested, planes=planes, states=states)
 
@@ -128,7 +128,7 @@ class _Reader:
         of_link: dict[str, list[int]] = {}
         for geom in geoms:
             link = self.links[self.model.geom_bodyid[geom]]
-            own = f"{link}/{name_of(self.model.geom(geom), 'geom')}"
+            own = f"{link}/{self.mjcf.name('geom', geom)}"
             for name in (link, *(each for each in of_link if each.startswith(f"{link}/")), own):
                 same = of_link.setdefault(name, [geom])[0]
                 if self.file.as_drawn or (contacts.collide[same] == contacts.collide[geom]).all():
@@ -143,10 +143,10 @@ class _Reader:
         parent, anchor = self.links[model.body_parentid[body]], IDENTITY
         first, count = model.body_jntadr[body], model.body_jntnum[body]
         for number in range(first, first + count):
-            name = name_of(model.joint(number), "joint")
-            kind = self.mujoco.mjtJoint(model.jnt_type[number]).name
+            name = self.mjcf.name("joint", number)
+            kind = self.mjcf.kind_of("mjtJoint", "mjJNT_", model.jnt_type[number])
             if kind not in _KINDS:
-                said = "free" if "FREE" in kind else "a ball"
+                said = "free" if kind == "free" else "a ball"
                 self.notes.append(f"joint {name!r} of {link!r}, {said}, is fixed")
                 continue
             own = Pose(tuple(model.jnt_pos[number].tolist()))
@@ -193,7 +193,7 @@ class _Reader:
 
     def _mesh(self, number: int, grown: float) -> TriangleMesh:
         """Return the hull of a compiled mesh, or all of its triangles where it is drawn."""
-        model, name = self.model, name_of(self.model.mesh(number), "mesh")
+        model, name = self.model, self.mjcf.name("mesh", number)
         first, count = model.mesh_vertadr[number], model.mesh_vertnum[number]
         vertices = np.array(model.mesh_vert[first : first + count], dtype=np.float64)
         if not self.file.as_drawn:
@@ -210,8 +210,8 @@ class _Reader:
     ) -> tuple[Plane, ...]:
         """Return the planes, each with those links that are not tested against it; height fields are left out."""
         model, planes = self.model, []
-        data = self.mujoco.MjData(model)
-        self.mujoco.mj_kinematics(model, data)
+        data = self.mjcf.mujoco.MjData(model)
+        self.mjcf.mujoco.mj_kinematics(model, data)
         for geom in geoms:
             link, kind = self.links[model.geom_bodyid[geom]], self.kinds[geom]
             if kind == "hfield":
@@ -240,7 +240,7 @@ class _Reader:
             self.notes.append(f"margins of up to {grown.max():g} m are part of the bodies that have them")
         if len(solid) > 1 and not contacts.collide[np.ix_(solid, solid)].any():
             self.notes.append("by contype, conaffinity and excludes of the file no two of its bodies ever collide")
-        if int(self.model.opt.disableflags) & int(self.mujoco.mjtDisableBit.mjDSBL_CONTACT):
+        if int(self.model.opt.disableflags) & int(self.mjcf.mujoco.mjtDisableBit.mjDSBL_CONTACT):
             self.notes.append("the file switches contacts off: they are tested nevertheless")
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
+from evenroad.loading.mjcf_model import CompiledMjcf
 
 _ALL = 0xFFFFFFFF
 """Mask of visuals that are taken for bodies: they collide with all that collide."""
@@ -35,13 +35,14 @@ class Contacts:
         return "contype and conaffinity of the MJCF"
 
 
-def contacts_of(mujoco: Any, model: Any, drawn: Sequence[int]) -> Contacts:
+def contacts_of(mjcf: CompiledMjcf, drawn: Sequence[int]) -> Contacts:
     """Return which geoms collide; visuals in `drawn`, which MuJoCo lets collide with none, collide with every kind.
 
     Geoms of one body, or of bodies without a joint between them, do not; nor those of a body and its parent, unless
     that stands in the world; nor those of excluded bodies, or of types and affinities without a common bit.  Pairs that
     the file names collide in any case.
     """
+    model = mjcf.model
     body = model.geom_bodyid
     types, affinities = (
         np.array(masks, dtype=np.int64) & _ALL for masks in (model.geom_contype, model.geom_conaffinity)
@@ -51,7 +52,7 @@ def contacts_of(mujoco: Any, model: Any, drawn: Sequence[int]) -> Contacts:
     weld = model.body_weldid[body]
     above = model.body_weldid[model.body_parentid[weld]]
     parents = (above[:, np.newaxis] == weld) & (weld != 0) & (weld[:, np.newaxis] != 0)
-    if int(model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT):
+    if int(model.opt.disableflags) & int(mjcf.mujoco.mjtDisableBit.mjDSBL_FILTERPARENT):
         parents[:] = False
     excluded = np.zeros_like(meet)
     for signature in model.exclude_signature.tolist():

@@ -4,66 +4,67 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 from evenroad.errors import BrokenFile
+from evenroad.loading.mjcf_model import CompiledMjcf
 from evenroad.robots.joint import Joint, Mimic
 
 
-def name_of(element: Any, what: str) -> str:
-    """Return the name of a body, joint or geom of a compiled model; its number if it has none."""
-    return str(element.name) or f"{what}_{element.id}"
-
-
-def with_equalities(mujoco: Any, model: Any, joints: Sequence[Joint], where: str, notes: list[str]) -> list[Joint]:
+def with_equalities(mjcf: CompiledMjcf, joints: Sequence[Joint]) -> list[Joint]:
     """Return the joints after all equalities.
 
     ``q1 = c0 + c1 q2`` makes a mimic, ``q1 = c0`` a locked joint.  Inactive ones, and welds to bodies of motion
     capture, which are placed from outside, are left out with a note.  Raises BrokenFile if bodies that move on each
     other are connected or welded, or an equality is of any other kind.
     """
+    model, where = mjcf.model, mjcf.where
     mimics: dict[str, Mimic] = {}
     locked: dict[str, float] = {}
     for number in range(model.neq):
-        kind = mujoco.mjtEq(int(model.eq_type[number])).name.removeprefix("mjEQ_").lower()
+        kind = mjcf.kind_of("mjtEq", "mjEQ_", model.eq_type[number])
         if kind in ("connect", "weld"):
-            said = _loop(mujoco, model, number, kind, notes)
+            said = _loop(mjcf, number, kind)
+        elif kind == "joint":
+            said = f"its equality of joint {mjcf.name('joint', model.eq_obj1id[number])!r}"
         else:
             said = f"its equality of {kind}s"
-            if kind == "joint":
-                said = f"its equality of joint {name_of(model.joint(model.eq_obj1id[number]), 'joint')!r}"
-        if said and not model.eq_active0[number]:
-            notes.append(f"{said} is left out: it is not active")
-        elif said and kind in ("connect", "weld"):
+        if not said:
+            continue
+        if not model.eq_active0[number]:
+            mjcf.notes.append(f"{said} is left out: it is not active")
+        elif kind in ("connect", "weld"):
             raise BrokenFile(
                 f"{where} closes a loop: {said}; links must form a tree, and without it this one would be planned as"
                 " an open chain"
             )
-        elif said:
-            if kind != "joint":
-                raise BrokenFile(f"{where} cannot be planned for: {said}, where only those of two joints are known")
-            _of_joint(model, number, mimics, locked, f"{where} cannot be planned for: {said}")
+        elif kind == "joint":
+            _of_joint(mjcf, number, mimics, locked, f"{where} cannot be planned for: {said}")
+        else:
+            raise BrokenFile(f"{where} cannot be planned for: {said}, where only those of two joints are known")
     return [_changed(joint, mimics, locked) for joint in joints]
 
 
-def _loop(mujoco: Any, model: Any, number: int, kind: str, notes: list[str]) -> str:
+def _loop(mjcf: CompiledMjcf, number: int, kind: str) -> str:
     """Return, in words, the loop that an equality closes; empty if none."""
+    model = mjcf.model
     joined = [int(model.eq_obj1id[number]), int(model.eq_obj2id[number])]
-    if int(model.eq_objtype[number]) == int(mujoco.mjtObj.mjOBJ_SITE):
+    if int(model.eq_objtype[number]) == int(mjcf.mujoco.mjtObj.mjOBJ_SITE):
         joined = [int(model.site_bodyid[site]) for site in joined]
     if model.body_weldid[joined[0]] == model.body_weldid[joined[1]]:
         return ""
-    first, second = (name_of(model.body(body), "body") for body in joined)
+    first, second = (mjcf.name("body", body) for body in joined)
     said = f"the {kind} of {first!r} with {second!r}"
     if any(model.body_mocapid[body] >= 0 for body in joined):
-        notes.append(f"{said} is left out: a body of motion capture goes where it is put")
+        mjcf.notes.append(f"{said} is left out: a body of motion capture goes where it is put")
         return ""
     return said
 
 
-def _of_joint(model: Any, number: int, mimics: dict[str, Mimic], locked: dict[str, float], said: str) -> None:
+def _of_joint(mjcf: CompiledMjcf, number: int, mimics: dict[str, Mimic], locked: dict[str, float], said: str) -> None:
+    """Add the mimic or locked joint that an equality makes."""
+    model = mjcf.model
     first, second = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
-    name = name_of(model.joint(first), "joint")
+    name = mjcf.name("joint", first)
     c0, c1, *others = model.eq_data[number][:5].tolist()
     if name in mimics or name in locked:
         raise BrokenFile(f"{said} is its second")
@@ -74,7 +75,7 @@ def _of_joint(model: Any, number: int, mimics: dict[str, Mimic], locked: dict[st
     if any(others):
         raise BrokenFile(f"{said} is not linear, which no mimic is")
     other = float(model.qpos0[model.jnt_qposadr[second]])
-    mimics[name] = Mimic(name_of(model.joint(second), "joint"), c1, c0 + own - c1 * other)
+    mimics[name] = Mimic(mjcf.name("joint", second), c1, c0 + own - c1 * other)
 
 
 def _changed(joint: Joint, mimics: dict[str, Mimic], locked: dict[str, float]) -> Joint:

@@ -15,13 +15,17 @@ from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
-from evenroad.loading.urdf_limits import joint_limits, soft_notes
+from evenroad.loading.urdf_limits import soft_notes, with_limits_of
 from evenroad.loading.urdf_xml import RobotFile, drawn_only, find_mesh, read_urdf_xml
 from evenroad.robots.free_joints import coordinates, held_note
-from evenroad.robots.joint import Joint, Mimic, with_direct_mimics, within_limits_of_mimics
+from evenroad.robots.joint import Joint, Kind, Mimic, with_direct_mimics, within_limits_of_mimics
 from evenroad.robots.planes import Plane
 
-_KINDS = ("revolute", "continuous", "prismatic", "fixed", "planar", "floating")
+_KINDS: dict[str, Kind] = {
+    **{"revolute": "revolute", "continuous": "continuous", "prismatic": "prismatic", "fixed": "fixed"},
+    **{"planar": "fixed", "floating": "fixed"},
+}
+"""Type of a joint in a URDF -> its kind; those with several coordinates are read as fixed, then replaced."""
 _ANY = 1000.0
 """A range of more than this is that of a joint without limits [rad or m]."""
 _MOST_LINKS, _MOST_BODIES = 1000, 500
@@ -134,35 +138,35 @@ def _without_end(joint: Joint, notes: list[str]) -> Joint:
 
 def _joints(element: Element, path: Path, notes: list[str]) -> list[Joint]:
     """Return the joint of an element, or the coordinates of a planar or floating one."""
-    kind = element.attrib["type"]
-    joint = _joint(element, "fixed" if kind in ("planar", "floating") else kind, path, notes)
-    if kind != joint.kind:
-        plane = (0.0, 0.0, 1.0) if element.find("axis") is None else _axis(element, f"joint {joint.name!r} in {path}")
-        joints = coordinates(kind, replace(joint, axis=plane))
-        notes.append(held_note(kind, joint.name, joints))
-        return joints
-    return [joint]
-
-
-def _joint(element: Element, kind: str, path: Path, notes: list[str]) -> Joint:
-    name = element.attrib["name"]
+    name, word = element.attrib["name"], element.attrib["type"]
     where = f"joint {name!r} in {path}"
-    require_known(f"type of {where}:", kind, _KINDS)
+    require_known(f"type of {where}:", word, _KINDS)
+    joint = _joint(element, _KINDS[word], where, notes)
+    if word not in ("planar", "floating"):
+        return [joint]
+    plane = (0.0, 0.0, 1.0) if element.find("axis") is None else _axis(element, where)
+    joints = coordinates(word, replace(joint, axis=plane))
+    notes.append(held_note(word, name, joints))
+    return joints
+
+
+def _joint(element: Element, kind: Kind, where: str, notes: list[str]) -> Joint:
     origin, follows = _pose(element), element.find("mimic")
     mimic = None
     if follows is not None and kind != "fixed":
         multiplier, offset = float(follows.get("multiplier", 1.0)), float(follows.get("offset", 0.0))
         mimic = Mimic(follows.attrib["joint"], multiplier, offset)
-    return Joint(
-        name=name,
+    joint = Joint(
+        name=element.attrib["name"],
+        kind=kind,
         parent=_link(element, "parent"),
         child=_link(element, "child"),
         xyz=origin.xyz,
         rotation=origin.rotation,
         axis=(0.0, 0.0, 1.0) if kind == "fixed" else _axis(element, where),
         mimic=mimic,
-        **joint_limits(element, kind, where, notes),
     )
+    return with_limits_of(element, joint, where, notes)
 
 
 def _link(joint: Element, end: str) -> str:

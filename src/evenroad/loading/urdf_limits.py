@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import Any
+from dataclasses import replace
 from xml.etree.ElementTree import Element
 
 from evenroad.errors import BrokenFile, InvalidValue, listed
@@ -14,23 +14,23 @@ from evenroad.robots.joint import Joint
 _RATES = ("velocity", "acceleration", "deceleration", "jerk")
 
 
-def joint_limits(joint: Element, kind: str, where: str, notes: list[str]) -> dict[str, Any]:
-    """Return the kind and limits of a checked joint by the names of the fields of :class:`Joint`.
+def with_limits_of(element: Element, joint: Joint, where: str, notes: list[str]) -> Joint:
+    """Return a joint with the limits of its checked element.
 
     A joint that turns without end has limits where soft ones give it some.  A rate of 0 in a URDF means that nobody
     knew it.
     """
-    limit = joint.find("limit")
+    kind, limit = joint.kind, element.find("limit")
     given = _numbers(limit, LIMITS)
     # The word for the same in Drake's dialect.
     for value in _numbers(limit, ("drake:acceleration",)).values():
         given["acceleration"] = min(value, given.get("acceleration") or value)
-    rates = {rate: given.get(rate) or math.inf for rate in _RATES}
-    for rate, most in rates.items():
+    rates = [given.get(rate) or math.inf for rate in _RATES]
+    for rate, most in zip(_RATES, rates, strict=True):
         if most < 0.0:
             raise InvalidValue(f"the {rate} limit of {where} must be >= 0, got {most:g}")
     lower, upper = hard = _hard(given if limit is not None else None, kind, where, notes)
-    safety = _numbers(joint.find("safety_controller"), SOFT)
+    safety = _numbers(element.find("safety_controller"), SOFT)
     # Files that have no use for soft limits leave them at 0, their default.
     turns_on = kind == "continuous" and len(safety) < len(SOFT)
     if kind != "fixed" and any(safety.values()) and not turns_on:
@@ -38,10 +38,12 @@ def joint_limits(joint: Element, kind: str, where: str, notes: list[str]) -> dic
         if not lower < upper:
             notes.append(f"the soft limits of {where.partition(' in ')[0]} leave it no range: they are left out")
             lower, upper = hard
+    velocity, acceleration, deceleration, jerk = rates
+    joint = replace(joint, lower=lower, upper=upper, velocity=velocity)
+    joint = replace(joint, acceleration=acceleration, deceleration=deceleration, jerk=jerk)
     if (lower, upper) == hard:
-        return {"kind": kind, "lower": lower, "upper": upper, **rates}
-    kind = "revolute" if kind == "continuous" else kind
-    return {"kind": kind, "lower": lower, "upper": upper, "hard": hard, **rates}
+        return joint
+    return replace(joint, kind="revolute" if kind == "continuous" else kind, hard=hard)
 
 
 def soft_notes(joints: Iterable[Joint]) -> list[str]:

@@ -22,7 +22,7 @@ from evenroad.planning.diagnose import with_reasons
 from evenroad.planning.prm import FMT, PRM
 from evenroad.planning.problem import Planner, Problem
 from evenroad.planning.read_request import mesh_check, read_request
-from evenroad.planning.request import ConfigurationLike, Goal, Reading, Request, unreached
+from evenroad.planning.request import Goal, Reading, Request, unreached
 from evenroad.planning.result import PlanResult, Status
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.planning.world_roadmap import WorldRoadmap
@@ -30,6 +30,7 @@ from evenroad.points.pointset import PointSet
 from evenroad.poses.constraint import Constraint
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.roadmap import Roadmap
+from evenroad.robots.robot import ConfigurationLike
 from evenroad.scenes.scan import allowed_everywhere
 from evenroad.world import ShowsApart, World
 

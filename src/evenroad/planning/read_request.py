@@ -18,11 +18,11 @@ from evenroad.geometry.pose import Pose
 from evenroad.loading.load import RobotOptions, padded_model
 from evenroad.planning.problem import Planner
 from evenroad.planning.query import as_start_and_goals
-from evenroad.planning.request import ConfigurationLike, Goal, PathLike, Reading, Request
+from evenroad.planning.request import Goal, PathLike, Reading, Request
 from evenroad.poses.goals import Goals, goals_of, require_tips
 from evenroad.poses.pose_goal import PoseGoal
 from evenroad.roadmap.roadmap import Roadmap
-from evenroad.robots.robot import Robot
+from evenroad.robots.robot import ConfigurationLike, Robot
 from evenroad.robots.variants import standing_at, with_group
 from evenroad.scenes.robot_in_scene import in_scene
 from evenroad.scenes.scan import allowed_near_ends, open_everywhere, scene_seen_by

@@ -24,10 +24,11 @@ from evenroad.planning.attempt import Attempt
 from evenroad.planning.connectors import drivers_of
 from evenroad.planning.query import Query
 from evenroad.planning.read_request import reaching, request_in
-from evenroad.planning.request import ConfigurationLike, Reading, unreached
+from evenroad.planning.request import Reading, unreached
 from evenroad.planning.result import NO_POINTS, PlanResult, Status, make_result
 from evenroad.planning.trees import variant_of
 from evenroad.points.reversed_halton import PAIRS, share_pairs
+from evenroad.robots.robot import ConfigurationLike
 from evenroad.scenes.obstacle import Bodies
 from evenroad.scenes.scene import Scene
 from evenroad.scenes.states import as_configuration

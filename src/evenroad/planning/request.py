@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy.typing as npt
-
 from evenroad._arrays import Floats
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.geometry.pose import Pose
@@ -17,12 +15,9 @@ from evenroad.loading.urdf_xml import RobotFile
 from evenroad.planning.result import PlanResult, Status, make_result
 from evenroad.poses.goals import Goals
 from evenroad.poses.pose_goal import PoseGoal
+from evenroad.robots.robot import ConfigurationLike
 
 PathLike = str | os.PathLike[str]
-ConfigurationLike = str | Mapping[str, float] | npt.ArrayLike
-"""A configuration: numbers in the order of the group, joint -> value, or a text as
-:func:`evenroad.robot.configuration` takes it."""
-
 Goal = ConfigurationLike | Pose | PoseGoal
 """A configuration, or a pose of a link."""
 

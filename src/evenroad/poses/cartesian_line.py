@@ -105,4 +105,4 @@ def tilts(chain: Chain, q: Floats, axis: Sequence[float], direction: Sequence[fl
     """Return the angles, (n,) [rad], between a direction of the root's frame and an axis of the tip's, at (n, dim)."""
     pointing = chain.tip_poses(q)[:, :9].reshape(-1, 3, 3) @ np.array(axis)
     across = np.linalg.norm(np.cross(pointing, np.array(direction)), axis=1)
-    return np.arctan2(across, pointing @ np.array(direction))
+    return np.asarray(np.arctan2(across, pointing @ np.array(direction)))

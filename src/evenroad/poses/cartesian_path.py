@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from evenroad.geometry.curve import Curve
 from evenroad.geometry.pose import Pose
 from evenroad.poses.chain import Chain
 from evenroad.poses.pose_task import PoseTask
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 OFF_M, OFF_RAD = 4e-5, 1e-3
 """Largest deviations of a tip from its curve [m, rad].  With rounded corners, 0.1 mm and 0.1 degrees are kept."""
@@ -196,7 +199,7 @@ def moves_of(chain: Chain, moved: Floats) -> Moves:
     return Moves((joints * arms).sum(axis=1), turning.sum(axis=1), pushes)
 
 
-def _rotations(poses: Floats) -> Any:
+def _rotations(poses: Floats) -> Rotation:
     # A plan without curves that turn does without it.
     from scipy.spatial.transform import Rotation
 
@@ -206,7 +209,7 @@ def _rotations(poses: Floats) -> Any:
 def _angles(a: Floats, b: Floats) -> Floats:
     """Return the angles between the rotations of poses, (n, 12) each."""
     half = np.sqrt(np.square(a[:, :9] - b[:, :9]).sum(axis=1) / 8.0)
-    return 2.0 * np.arcsin(np.minimum(half, 1.0))
+    return np.asarray(2.0 * np.arcsin(np.minimum(half, 1.0)))
 
 
 def _turns(poses: Floats) -> Floats | None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 
@@ -10,29 +11,13 @@ from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
 from evenroad.poses.chain import Chain
 
-_kept: dict[int, tuple[Chain, Any]] = {}
 
+@lru_cache(32)
+def closed_form(chain: Chain) -> Callable[[Pose], Floats] | None:
+    """Return a function of the tip's pose: all configurations that EAIK finds, (n, dim), in any turn, unchecked.
 
-def closed_form(chain: Chain) -> Any | None:
-    """Return EAIK's robot for a chain; None if it is not installed or does not solve such joints."""
-    if (known := _kept.get(id(chain))) is not None:
-        return known[1]
-    if len(_kept) >= 32:
-        _kept.clear()
-    robot = _made(chain)
-    _kept[id(chain)] = chain, robot
-    return robot
-
-
-def branches(chain: Chain, robot: Any, pose: Pose) -> Floats:
-    """Return all configurations that EAIK finds for the tip's pose, (n, dim), angles in any turn; not yet checked."""
-    angles = np.array(robot.calculate_IK(pose.matrix).Q, dtype=np.float64).reshape(-1, 6)
-    q = np.zeros((len(angles), len(chain.group)))
-    q[:, chain.coordinates] = (angles - chain.rows[:6, 13]) / chain.rows[:6, 12]
-    return q[np.isfinite(q).all(axis=1)]
-
-
-def _made(chain: Chain) -> Any | None:
+    None if EAIK is not installed or does not solve such joints.
+    """
     coordinates = chain.coordinates
     if len(chain.frames) != 6 or len(set(coordinates.tolist())) != 6 or chain.slides.any():
         return None
@@ -49,4 +34,13 @@ def _made(chain: Chain) -> Any | None:
         if i < 6:
             axes[:, i] = rotation[:, 2]
     robot = EAIK.Robot(axes, np.diff(origins, axis=1), rotation, [], True)
-    return robot if robot.has_known_decomposition() else None
+    if not robot.has_known_decomposition():
+        return None
+
+    def configurations(pose: Pose) -> Floats:
+        angles = np.array(robot.calculate_IK(pose.matrix).Q, dtype=np.float64).reshape(-1, 6)
+        q = np.zeros((len(angles), len(chain.group)))
+        q[:, coordinates] = (angles - chain.rows[:6, 13]) / chain.rows[:6, 12]
+        return q[np.isfinite(q).all(axis=1)]
+
+    return configurations

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter as now
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from evenroad.geometry.pose import Pose
 from evenroad.poses.chain import chain_of, default_tip, frame_pose
 from evenroad.poses.inverse_kinematics import Checks, Reached, reach, reach_quickly, task_of
 from evenroad.poses.pose_goal import PoseGoal, as_pose_goal
-from evenroad.robots.robot import Robot
+from evenroad.robots.robot import ConfigurationLike, Robot
 
 MANY = 8
 """Number of goal poses from which on those that are hard to reach count only where no other is reached."""
@@ -54,12 +53,12 @@ class Goals:
         """Whether some pose is reached, but always in collision."""
         return any(reached.in_collision for _, reached in self.poses)
 
-    def records(self, world: Checks, end: Floats | None) -> list[dict[str, Any]]:
+    def records(self, world: Checks, end: Floats | None) -> list[dict[str, object]]:
         """Return the poses as plain values; `end`, (dim,), is the end of a path, for its deviations from them."""
         return [_record(world, goal, reached, end) for goal, reached in self.poses]
 
 
-def require_tips(robot: Robot, targets: Sequence[Any], tip: str = "", frame: str = "") -> None:
+def require_tips(robot: Robot, targets: Sequence[object], tip: str = "", frame: str = "") -> None:
     """Raise what `goals_of` would for a pose of an impossible link or frame: making a world first is expensive."""
     for target in targets:
         if isinstance(target, _POSES):
@@ -71,8 +70,8 @@ def require_tips(robot: Robot, targets: Sequence[Any], tip: str = "", frame: str
 def goals_of(
     world: Checks,
     start: Floats,
-    targets: Sequence[Any],
-    read: Callable[[Any], Floats],
+    targets: Sequence[Pose | PoseGoal | ConfigurationLike],
+    read: Callable[[ConfigurationLike], Floats],
     tip: str = "",
     frame: str = "",
 ) -> Goals:
@@ -108,8 +107,8 @@ def goals_of(
     return Goals(rows[0] if len(rows) == 1 else np.concatenate(rows), tuple(names), tuple(poses), took)
 
 
-def _record(world: Checks, goal: PoseGoal, reached: Reached, end: Floats | None) -> dict[str, Any]:
-    record = {
+def _record(world: Checks, goal: PoseGoal, reached: Reached, end: Floats | None) -> dict[str, object]:
+    record: dict[str, object] = {
         "tip": goal.tip,
         "frame": goal.frame or world.robot.links[0],
         "xyz": list(goal.pose.xyz),

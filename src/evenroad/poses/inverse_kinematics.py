@@ -16,7 +16,7 @@ from evenroad._arrays import Bools, Floats
 from evenroad._checks import as_row
 from evenroad._time_limit import BudgetSpent
 from evenroad.poses.chain import Chain, chain_of, default_tip, frame_pose
-from evenroad.poses.closed_form import branches, closed_form
+from evenroad.poses.closed_form import closed_form
 from evenroad.poses.pose_goal import PoseGoal
 from evenroad.poses.pose_task import PoseTask
 from evenroad.poses.whole_turns import MOST, distinct, with_turns, wrapped
@@ -219,9 +219,9 @@ def stages(chain: Chain, task: PoseTask, start: Floats, *, exact: bool) -> Itera
 
     A posture stands for all configurations that differ by whole turns.  A closed form yields all at once.
     """
-    robot = closed_form(chain) if exact else None
-    if robot is not None:
-        q = branches(chain, robot, task.pose)
+    solve = closed_form(chain) if exact else None
+    if solve is not None:
+        q = solve(task.pose)
         q[:, chain.still] = start[chain.still]
         q = wrapped(chain, _polished(chain, task, q))
         q = q[((q >= chain.bounds[0]) & (q <= chain.bounds[1])).all(axis=1)]
@@ -254,7 +254,8 @@ def _polished(chain: Chain, task: PoseTask, q: Floats) -> Floats:
     singularities.
     """
     moved, missing = chain.reached(q, task.row, limits=False, steps=_POLISHED)
-    return moved[(missing < 1e-18) & (np.abs(moved - q).max(axis=1, initial=0.0) < _COARSE)]
+    near = np.abs(moved - q).max(axis=1, initial=0.0) < _COARSE
+    return np.compress((missing < 1e-18) & near, moved, axis=0)
 
 
 def _why_not(chain: Chain, task: PoseTask, goal: PoseGoal, best: Floats, start: Floats) -> str:

@@ -19,7 +19,7 @@ from evenroad.poses.chain import default_tip
 from evenroad.poses.inverse_kinematics import reach
 from evenroad.poses.pose_goal import PoseGoal, as_pose_goal
 from evenroad.robots.kinematics import link_poses
-from evenroad.robots.robot import Padding, Robot
+from evenroad.robots.robot import ConfigurationLike, Padding, Robot
 from evenroad.scenes.states import as_configuration
 
 
@@ -38,7 +38,7 @@ class _Anywhere:
         return "it is free"
 
 
-def pose_of_link(robot: Robot, q: npt.ArrayLike | Mapping[str, float] | str, link: str = "") -> Pose:
+def pose_of_link(robot: Robot, q: ConfigurationLike, link: str = "") -> Pose:
     """Return what :meth:`Robot.fk` does."""
     link = link or default_tip(robot)
     require_known(f"link of {robot.name!r}:", link, robot.links)
@@ -51,7 +51,7 @@ def configurations_at(
     robot: Robot,
     pose: Pose | PoseGoal | npt.ArrayLike,
     link: str = "",
-    start: npt.ArrayLike | Mapping[str, float] | str = (),
+    start: ConfigurationLike = (),
 ) -> Floats:
     """Return what :meth:`Robot.ik` does."""
     if isinstance(pose, str | Mapping) or (not isinstance(pose, Pose | PoseGoal) and np.shape(pose) != (4, 4)):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,19 +15,28 @@ Leaves = Sequence[tuple[Floats, float]]
 """Hulls of one body: the corners of some, (hulls, corners, 3), in its frame, and by how much each is widened [m]."""
 
 
-def hull_arrays(bodies: Iterable[Leaves]) -> dict[str, Any]:
+class HullArrays(NamedTuple):
+    """Hulls of bodies as the native kernel takes them: the first numbers of parts and points, points and widths."""
+
+    first_part: Ints
+    first_point: Ints
+    points: Floats
+    widths: Floats
+
+
+def hull_arrays(bodies: Iterable[Leaves]) -> HullArrays:
     """Return the hulls of bodies as the native kernel takes them."""
     every = list(bodies)
     leaves = [leaf for of_body in every for leaf in of_body]
     counts = [0, *(count for corners, _ in leaves for count in [corners.shape[1]] * len(corners))]
     parts = [0, *(sum(len(corners) for corners, _ in of_body) for of_body in every)]
     none = [np.zeros((0, 3))]
-    return {
-        "first_part": np.cumsum(parts, dtype=np.int64),
-        "first_point": np.cumsum(counts, dtype=np.int64),
-        "points": np.concatenate([*none, *(corners.reshape(-1, 3) for corners, _ in leaves)]),
-        "widths": np.repeat([float(width) for _, width in leaves], [len(corners) for corners, _ in leaves]),
-    }
+    return HullArrays(
+        np.cumsum(parts, dtype=np.int64),
+        np.cumsum(counts, dtype=np.int64),
+        np.concatenate([*none, *(corners.reshape(-1, 3) for corners, _ in leaves)]),
+        np.repeat([float(width) for _, width in leaves], [len(corners) for corners, _ in leaves]),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +53,7 @@ class HullTrees:
 
 def hull_trees(bodies: Mapping[str, Leaves]) -> HullTrees:
     """Return the trees of bodies, each in a frame of its own."""
-    return HullTrees({name: i for i, name in enumerate(bodies)}, native.HullTrees(**hull_arrays(bodies.values())))
+    return HullTrees({name: i for i, name in enumerate(bodies)}, native.HullTrees(*hull_arrays(bodies.values())))
 
 
 def contacts(trees: HullTrees, first: str, second: str, poses: Floats, others: Floats) -> Ints:

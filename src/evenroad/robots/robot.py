@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from evenroad.poses.pose_goal import PoseGoal
     from evenroad.scenes.scene import Scene
 
+ConfigurationLike = str | Mapping[str, float] | npt.ArrayLike
+"""A configuration: numbers in the order of the group, joint -> value, or a text as
+:func:`evenroad.robot.configuration` takes it."""
 Padding = float | Mapping[str, float] | str | os.PathLike[str]
 """What says by how much links are larger: a length of all of them, link -> length, or a file of MoveIt."""
 
@@ -117,7 +120,7 @@ class Robot:
         joints = {joint.name: joint for joint in self.joints}
         return np.array([(joints[name].lower, joints[name].upper) for name in self.group]).reshape(-1, 2)
 
-    def configuration(self, q: npt.ArrayLike | Mapping[str, float] | str, scene: Scene | None = None) -> Floats:
+    def configuration(self, q: ConfigurationLike, scene: Scene | None = None) -> Floats:
         """Return a configuration as numbers, from numbers, a mapping or a text.
 
         Parameters
@@ -150,7 +153,7 @@ class Robot:
 
         return as_configuration(self, q, scene)
 
-    def fk(self, q: npt.ArrayLike | Mapping[str, float] | str, link: str = "") -> Pose:
+    def fk(self, q: ConfigurationLike, link: str = "") -> Pose:
         """Return the pose of a link: forward kinematics.
 
         Parameters
@@ -184,9 +187,7 @@ class Robot:
 
         return pose_of_link(self, q, link)
 
-    def ik(
-        self, pose: Pose | PoseGoal, link: str = "", *, start: npt.ArrayLike | Mapping[str, float] | str = ()
-    ) -> Floats:
+    def ik(self, pose: Pose | PoseGoal, link: str = "", *, start: ConfigurationLike = ()) -> Floats:
         """Return the configurations that bring a link to a pose: inverse kinematics.
 
         Nothing is tested for collisions; :func:`evenroad.plan` takes poses as goals, and does.

@@ -7,14 +7,13 @@ import re
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_row, require_known
 from evenroad.errors import InvalidValue, UnknownName, listed, near, shown
 from evenroad.robots.joint import Joint, require_within
 from evenroad.robots.kinematics import held_values
-from evenroad.robots.robot import Robot, require_robot
+from evenroad.robots.robot import ConfigurationLike, Robot, require_robot
 from evenroad.robots.variants import with_group
 from evenroad.scenes.scene import Scene, limits_in_words
 from evenroad.space.joints import SLACK
@@ -125,9 +124,7 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
     return q
 
 
-def as_configuration(
-    robot: Robot, q: npt.ArrayLike | Mapping[str, float] | str, scene: Scene | None = None, *, name: str = "q"
-) -> Floats:
+def as_configuration(robot: Robot, q: ConfigurationLike, scene: Scene | None = None, *, name: str = "q") -> Floats:
     """Return a configuration, (dim,) [rad or m], from a text, a mapping or numbers; `name` names it in errors.
 
     Parameters

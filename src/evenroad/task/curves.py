@@ -12,7 +12,7 @@ from evenroad.geometry.pose import Pose
 from evenroad.planning.request import Reading
 from evenroad.poses.cartesian_path import Follower
 from evenroad.poses.chain import chain_of, default_tip, frame_pose
-from evenroad.poses.goals import as_pose_goal
+from evenroad.poses.pose_goal import as_pose_goal
 from evenroad.task.steps import AlongCurve, MoveAlong, MoveCircular, MoveLinear
 
 _THERE = 1e-9

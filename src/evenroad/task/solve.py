@@ -16,12 +16,13 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.planning.connector import Smooth
 from evenroad.planning.plan import Options, budget_of, finished, solve
 from evenroad.planning.read_request import request_in
-from evenroad.planning.request import ConfigurationLike, Reading, Request
+from evenroad.planning.request import Reading, Request
 from evenroad.planning.result import PlanResult, Status, make_result
 from evenroad.poses.chain import default_tip
 from evenroad.poses.constraint import Constraint
 from evenroad.poses.posture_layers import follow
 from evenroad.roadmap.budget import Budget
+from evenroad.robots.robot import ConfigurationLike
 from evenroad.task.curves import follower_of
 from evenroad.task.motion import Leg, Motion, PlanBetween, along, choices
 from evenroad.task.result import TaskResult

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import ast
 import operator
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
-from typing import Any
 
 from evenroad.errors import EvenroadError, InvalidValue, UnknownName, shown
 from evenroad.loading.xacro.functions import MAP, METHODS, filled_by_percent
@@ -20,7 +19,7 @@ _LONGEST = 2000
 """Largest number of characters of an expression: Python's parser overflows its stack on deep ones."""
 _STEP = 10
 """Work of a node, in units of `Budget`."""
-_ARITHMETIC: dict[type[ast.operator], Callable[[Any, Any], object]] = {
+_OPERATORS: dict[type[ast.AST], Callable[..., object]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
@@ -28,13 +27,9 @@ _ARITHMETIC: dict[type[ast.operator], Callable[[Any, Any], object]] = {
     ast.FloorDiv: operator.floordiv,
     ast.Mod: operator.mod,
     ast.Pow: operator.pow,
-}
-_SIGNS: dict[type[ast.unaryop], Callable[[Any], object]] = {
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,
     ast.Not: operator.not_,
-}
-_COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], object]] = {
     ast.Eq: operator.eq,
     ast.NotEq: operator.ne,
     ast.Lt: operator.lt,
@@ -46,6 +41,7 @@ _COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], object]] = {
     ast.In: lambda entry, within: entry in within,
     ast.NotIn: lambda entry, within: entry not in within,
 }
+_item: Callable[..., object] = operator.getitem
 _FAULTS = (TypeError, ValueError, LookupError, ArithmeticError, AttributeError)
 """What operations on plain values raise."""
 
@@ -79,15 +75,16 @@ class _Evaluator:
     def __init__(self, names: Scope, budget: Budget) -> None:
         self._names, self._budget = names, budget
 
-    def value(self, node: ast.expr) -> Any:
+    def value(self, node: ast.expr) -> object:
         """Return the value of a node."""
         self._budget.spend(_STEP)
         method = getattr(self, f"_{type(node).__name__.lower()}", None)
         if method is None:
             raise InvalidValue(f"{type(node).__name__} is not part of expressions that are read")
-        return method(node)
+        found: object = method(node)
+        return found
 
-    def _plain(self, node: ast.expr) -> Any:
+    def _plain(self, node: ast.expr) -> object:
         """Return the value of a node after its size is spent."""
         return self._budget.weigh(self.value(node))
 
@@ -109,18 +106,15 @@ class _Evaluator:
         raise InvalidValue(f"{type(owner).__name__} has no attribute {node.attr!r} that is read")
 
     def _subscript(self, node: ast.Subscript) -> object:
-        owner, index = self.value(node.value), node.slice
-        if not isinstance(owner, str | list | tuple | dict):
-            raise InvalidValue(f"a {type(owner).__name__.lower()} has no entries")
+        owner, index = _with_entries(self.value(node.value)), node.slice
         if not isinstance(index, ast.Slice):
-            return owner[self._plain(index)]
-        bounds = (None if each is None else self._plain(each) for each in (index.lower, index.upper, index.step))
-        return self._budget.weigh(owner[slice(*bounds)])
+            return _item(owner, self._plain(index))
+        lower, upper, step = (each and self._plain(each) for each in (index.lower, index.upper, index.step))
+        return self._budget.weigh(_item(owner, slice(lower, upper, step)))
 
     def _binop(self, node: ast.BinOp) -> object:
         left, right, kind = self.value(node.left), self.value(node.right), type(node.op)
-        if kind not in _ARITHMETIC:
-            raise InvalidValue(f"the operator {kind.__name__} is not part of expressions that are read")
+        operate = _operator(node.op)
         if kind is ast.Pow and isinstance(left, int) and isinstance(right, int):
             require_bits(left.bit_length() * max(right, 0))
         if kind is ast.Mult:
@@ -129,12 +123,10 @@ class _Evaluator:
                     require_size(len(many) * max(times, 0))
         if kind is ast.Mod and isinstance(left, str):
             return self._budget.weigh(filled_by_percent(left, self._budget.weigh(right)))
-        return self._budget.weigh(_ARITHMETIC[kind](left, right))
+        return self._budget.weigh(operate(left, right))
 
     def _unaryop(self, node: ast.UnaryOp) -> object:
-        if type(node.op) not in _SIGNS:
-            raise InvalidValue(f"the operator {type(node.op).__name__} is not part of expressions that are read")
-        return _SIGNS[type(node.op)](self.value(node.operand))
+        return _operator(node.op)(self.value(node.operand))
 
     def _boolop(self, node: ast.BoolOp) -> object:
         found: object = None
@@ -145,14 +137,13 @@ class _Evaluator:
         return found
 
     def _compare(self, node: ast.Compare) -> object:
-        left, found = self._plain(node.left), True
+        left = self._plain(node.left)
         for kind, each in zip(node.ops, node.comparators, strict=True):
             right = self._plain(each)
-            found = bool(_COMPARISONS[type(kind)](left, right))
-            if not found:
-                break
+            if not _operator(kind)(left, right):
+                return False
             left = right
-        return found
+        return True
 
     def _ifexp(self, node: ast.IfExp) -> object:
         return self.value(node.body if self.value(node.test) else node.orelse)
@@ -195,7 +186,8 @@ class _Evaluator:
         function, *rows = (self.value(each) for each in arguments)
         if not isinstance(function, Function) or function is MAP:
             raise InvalidValue("map takes a function that is read, and lists")
-        return self._budget.weigh([self._budget.weigh(function.call(*row)) for row in zip(*rows, strict=False)])
+        every = zip(*map(_with_entries, rows), strict=False)
+        return self._budget.weigh([self._budget.weigh(function.call(*row)) for row in every])
 
     def _listcomp(self, node: ast.ListComp | ast.GeneratorExp) -> object:
         made = [inner.value(node.elt) for inner in self._each(node.generators)]
@@ -209,20 +201,31 @@ class _Evaluator:
             yield self
             return
         loop = loops[0]
-        entries = self._plain(loop.iter)
-        if not isinstance(entries, str | list | tuple | dict):
-            raise InvalidValue(f"a {type(entries).__name__} has no entries")
-        for entry in entries:
+        for entry in _with_entries(self._plain(loop.iter)):
             self._budget.spend(_STEP)
             inner = _Evaluator(Scope(self._names, _bound(loop.target, entry)), self._budget)
             if all(inner.value(condition) for condition in loop.ifs):
                 yield from inner._each(loops[1:])
 
 
-def _bound(target: ast.expr, entry: Any) -> dict[str, object]:
+def _operator(node: ast.operator | ast.unaryop | ast.cmpop) -> Callable[..., object]:
+    if type(node) not in _OPERATORS:
+        raise InvalidValue(f"the operator {type(node).__name__} is not part of expressions that are read")
+    return _OPERATORS[type(node)]
+
+
+def _with_entries(value: object) -> Iterable[object]:
+    """Return a text, list, tuple or dictionary; InvalidValue for what has no entries."""
+    if not isinstance(value, str | list | tuple | dict):
+        raise InvalidValue(f"a {type(value).__name__.lower()} has no entries")
+    return value
+
+
+def _bound(target: ast.expr, entry: object) -> dict[str, object]:
     """Return the names that a loop binds."""
     if isinstance(target, ast.Name):
         return {target.id: entry}
-    if isinstance(target, ast.Tuple) and all(isinstance(each, ast.Name) for each in target.elts):
-        return {each.id: part for each, part in zip(target.elts, entry, strict=True) if isinstance(each, ast.Name)}
-    raise InvalidValue("a loop binds one name, or several with commas")
+    names = [each.id for each in getattr(target, "elts", ()) if isinstance(each, ast.Name)]
+    if not isinstance(target, ast.Tuple) or len(names) < len(target.elts):
+        raise InvalidValue("a loop binds one name, or several with commas")
+    return dict(zip(names, _with_entries(entry), strict=True))

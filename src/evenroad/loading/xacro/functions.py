@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from evenroad.errors import InvalidValue
 from evenroad.loading.xacro.values import Function, Scope, require_size
@@ -34,9 +33,10 @@ def _rounded(number: float, ndigits: int | None = None) -> float:
     return round(number, ndigits)
 
 
-def _sum(numbers: list[Any], start: float = 0) -> float:
+def _sum(entries: list[object], start: float = 0) -> float:
+    numbers = [each for each in entries if isinstance(each, int | float)]
     # A sum of lists copies each of them again and again.
-    if not all(isinstance(each, int | float) for each in numbers):
+    if len(numbers) < len(entries):
         raise InvalidValue("sum takes numbers alone")
     return sum(numbers, start)
 
