@@ -1,13 +1,12 @@
-import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.geometry import Box, Pose
-from evenroad.loading.cache import robot_of
-from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot
+from evenroad.loading.cache import cached, keep
+from evenroad.robot import ArmWorld, Obstacle, Scene, load_model, load_robot
 from evenroad.robots.kinematics import link_poses
 from evenroad.robots.planes import Plane
 from evenroad.scenes.robot_in_scene import with_planes
@@ -48,4 +47,5 @@ def test_a_plane_comes_with_the_robot_once_and_only_under_its_own_name():
 def test_planes_tell_robots_apart_and_are_kept_with_them():
     assert ON_FLOOR.fingerprint() != UR5.fingerprint()
     assert replace(ON_FLOOR, planes=()).fingerprint() == UR5.fingerprint()
-    assert robot_of(json.loads(json.dumps(asdict(ON_FLOOR), default=np.ndarray.tolist))) == ON_FLOOR
+    keep("on a floor", replace(load_model("ur5"), robot=ON_FLOOR, file=None))
+    assert cached("on a floor").robot == ON_FLOOR
