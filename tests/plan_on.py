@@ -8,8 +8,7 @@ from functools import partial
 import numpy as np
 
 from evenroad.planning import FMT, PRM, GrowingPRM, Problem
-from evenroad.planning.connectors import connector_of
-from evenroad.planning.query import as_start_and_goals
+from evenroad.planning.terminals import as_start_and_goals
 from evenroad.planning.trees import default_planner
 from evenroad.roadmap import Budget
 
@@ -18,8 +17,7 @@ def solve(planner, world, start, goal, *, rng=0, smooth=True, budget=None):
     """Let a planner find a path."""
     first, goals = as_start_and_goals(start, goal, world.space)
     budget = Budget(seconds=planner.seconds) if budget is None else budget
-    how = dict(budget=budget, smooth=smooth, rng=rng, connector=connector_of(world))
-    return planner.solve(Problem(world, first, goals, **how))
+    return planner.solve(Problem(world, first, goals, budget=budget, smooth=smooth, rng=rng))
 
 
 def plan_on(world, start, goal, points, *, by=PRM, smooth=True, budget=None, **options):

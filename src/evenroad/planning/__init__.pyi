@@ -6,7 +6,6 @@ from evenroad.planning.prm import FMT as FMT
 from evenroad.planning.prm import PRM as PRM
 from evenroad.planning.problem import Planner as Planner
 from evenroad.planning.problem import Problem as Problem
-from evenroad.planning.query import Query as Query
 from evenroad.planning.replanner import Replanner as Replanner
 from evenroad.planning.result import PlanResult as PlanResult
 from evenroad.planning.result import SearchedGraph as SearchedGraph

@@ -6,12 +6,13 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import wraps
-from typing import Any
+from typing import Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._time_limit import BudgetSpent, is_limited, until, within
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import EvenroadError
 from evenroad.planning.attempt import Attempt, Searched
 from evenroad.planning.connector import Connection
@@ -24,11 +25,15 @@ from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.space import Space
 from evenroad.space.path import path_length
 from evenroad.world import Explains, ExplainsStarts, ShowsApart, ValidatesPaths, World
+from evenroad.world.protocol import Apart
+
+Solver = TypeVar("Solver")
+More = ParamSpec("More")
 
 
 def refusal(attempt: Attempt) -> PlanResult | None:
     """Return the result if the start or all goals are in collision; else None, and the attempt keeps the free goals."""
-    terminals, world = attempt.query.start_and_goals, attempt.world
+    terminals, world = attempt.problem.start_and_goals, attempt.world
     free = attempt.valid_terminals()
     if free[0] and attempt.goals.size:
         return None
@@ -77,13 +82,13 @@ def answer(
         nodes, q = best.found.nodes, best.states.configurations
         goal = attempt.goals[nodes[-1] - len(q)]
         # A disk's paths along a roadmap stay equal to published rows.
-        by_connector = attempt.query.edge_cost is None and isinstance(attempt.world, ValidatesPaths)
+        by_connector = attempt.edge_cost is None and isinstance(attempt.world, ValidatesPaths)
         result = _with_path(attempt, q[nodes], best.cost, int(goal), counts, by_connector=by_connector)
         return replace(result, roadmap=graph)
     so_far, missing = _reach(attempt, searched, counts)
     made = f"(n={points}, {attempt.rule})"
     if attempt.spent:
-        limits = attempt.query.budget.text(samples=attempt.grows)
+        limits = attempt.problem.budget.text(samples=attempt.grows)
         failed = _result(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
     else:
         # With ``complete`` only more points help.
@@ -100,17 +105,19 @@ def connected(attempt: Attempt, connection: Connection) -> PlanResult:
     return _with_path(attempt, path, length, goal, _counts_of(attempt, connection), by_connector=True)
 
 
-def in_its_time(solve: Callable[[Any, Problem], PlanResult]) -> Callable[[Any, Problem], PlanResult]:
+def in_its_time(
+    solve: Callable[Concatenate[Solver, Problem, More], PlanResult],
+) -> Callable[Concatenate[Solver, Problem, More], PlanResult]:
     """Return a planner's `solve` that ends with the problem's time, and says so where it has nothing to hand out."""
 
     @wraps(solve)
-    def solved(planner: Any, problem: Problem) -> PlanResult:
+    def solved(planner: Solver, problem: Problem, *args: More.args, **more: More.kwargs) -> PlanResult:
         try:
             if is_limited():
                 # By the caller of the planner: the problem has what is left of that.
-                return solve(planner, problem)
+                return solve(planner, problem, *args, **more)
             with within(problem.budget.seconds):
-                return solve(planner, problem)
+                return solve(planner, problem, *args, **more)
         except BudgetSpent:
             return out_of_time(problem)
 
@@ -129,7 +136,7 @@ def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
     """Return the result of a connector that found no path within the budget."""
     cut = ", and there was no time for a proof that there is none" if attempt.proof_cut else ""
     message = (
-        f"no path within {attempt.query.budget.text(samples=False)}: {connection.nodes} nodes were grown and"
+        f"no path within {attempt.problem.budget.text(samples=False)}: {connection.nodes} nodes were grown and"
         f" {connection.motions} motions checked{cut}; give it more time"
     )
     return replace(_result(attempt, Status.BUDGET_SPENT, message), counts=_counts_of(attempt, connection))
@@ -140,15 +147,11 @@ def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None
 
     The status is ``not_connected`` where that is proved.
     """
-    world, query = attempt.world, attempt.query
     with attempt.watch("proof"):
         attempt.proof_tried |= not quickly
-        if not isinstance(world, ShowsApart):
-            return None
-        prove = query.apart or (lambda start, goals, quick: world.apart(start, goals, quickly=quick))
         try:
             with until(attempt.time.part(attempt.began, BEFORE_REASONS)):
-                found = prove(query.start, query.goals, quickly)
+                found = apart_in(attempt.problem, quickly=quickly)
         except BudgetSpent:
             attempt.proof_cut = True
             return None
@@ -156,6 +159,20 @@ def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None
         return None
     status = Status.NOT_CONNECTED if found.proved else Status.BUDGET_SPENT
     return _result(attempt, status, found.message)
+
+
+def apart_in(problem: Problem, *, quickly: bool = False) -> Apart | None:
+    """Return why no path of a problem exists, quickly or not, or None; other postures would do at its goal poses."""
+    world, given = problem.world, problem.given
+    if not isinstance(world, ShowsApart):
+        return None
+    if given is None or not isinstance(world, ArmWorld):
+        return world.apart(problem.start, problem.goals, quickly=quickly)
+    # Imported late: few plans need the proof.
+    from evenroad.infeasibility.proof import apart
+
+    poses = [goal for goal, _ in given.poses]
+    return apart(world, problem.start, problem.goals, poses, quickly=quickly, whole=given.whole)
 
 
 def _counts_of(attempt: Attempt, connection: Connection) -> dict[str, int]:
@@ -170,14 +187,15 @@ def _with_path(
     attempt: Attempt, raw: Floats, raw_cost: float, goal: int, counts: dict[str, int], *, by_connector: bool
 ) -> PlanResult:
     """Return the result with a path, smoothed if wanted: by the connector where there is one and costs are lengths."""
-    world, query = attempt.world, attempt.query
-    path, length, cost, is_cut = raw, raw_cost, query.edge_cost, False
-    if query.smooth:
+    world, problem = attempt.world, attempt.problem
+    path, length, cost, is_cut = raw, raw_cost, attempt.edge_cost, False
+    if problem.smooth:
         counts["shortcut_motions"] = 0
         with attempt.watch("shortcut"), until(attempt.time):
             try:
-                if by_connector and query.connector is not None:
-                    path, counts["shortcut_motions"] = query.connector.smooth(world, raw, quick=query.smooth == "quick")
+                if by_connector and attempt.connector is not None:
+                    quick = problem.smooth == "quick"
+                    path, counts["shortcut_motions"] = attempt.connector.smooth(world, raw, quick=quick)
                 else:
                     path, counts["shortcut_motions"] = shortcut(world, raw, cost)
                     is_cut = attempt.time.is_over
@@ -189,7 +207,7 @@ def _with_path(
     return _result(
         attempt,
         Status.SOLVED,
-        path_message(path, length, goal, len(query.goals), "length" if cost is None else "cost", is_cut=is_cut),
+        path_message(path, length, goal, len(problem.goals), "length" if cost is None else "cost", is_cut=is_cut),
         goal_index=goal,
         path=path,
         milestone_path=raw,
@@ -270,15 +288,15 @@ def _axis_scales(space: Space) -> Floats | None:
 
 
 def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> PlanResult:
-    query = attempt.query
+    problem = attempt.problem
     more.update(
         origin=attempt.origin,
         rule=attempt.rule,
-        links=query.links,
+        links=attempt.links,
         planner=attempt.planner,
         timings=attempt.watch.seconds,
     )
-    return make_result(attempt.world, query.start, query.goals, status, message, **more)
+    return make_result(problem.world, problem.start, problem.goals, status, message, **more)
 
 
 def _searched_graph(states: EdgeStates, terminals: int) -> SearchedGraph:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from time import perf_counter as now
 
 import numpy as np
@@ -10,10 +10,11 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints32
 from evenroad._time_limit import BudgetSpent, Deadline, until
 from evenroad.planning.connector import Connection, Connector
-from evenroad.planning.query import Query
+from evenroad.planning.problem import Problem
+from evenroad.planning.result import NO_POINTS
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.budget import BEFORE_PROOF, BEFORE_REASONS, Budget, Stopwatch
-from evenroad.roadmap.edges import BOUND, edge_costs
+from evenroad.roadmap.edges import BOUND, EdgeCost, edge_costs, links_among
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.rules import Rule, ascending
 from evenroad.roadmap.search import (
@@ -26,6 +27,7 @@ from evenroad.roadmap.search import (
     StateCache,
     Terminals,
     confirm,
+    find_any,
     length_along,
     search_problem,
 )
@@ -46,20 +48,24 @@ class Searched:
 
 @dataclass(eq=False)
 class Attempt:
-    """One query while it is answered, by one thread.
+    """One search for the path of a problem, by one thread.
 
-    `origin`, `rule` and `planner` are those of :class:`PlanResult`.  `grows` says whether the planner draws its points
+    `planner`, `origin`, `rule` and `links` are those of :class:`PlanResult`.  The `connector` smooths paths where there
+    is one and edges have no other `edge_cost` than their lengths.  `grows` says whether the planner draws its points
     itself, until the budget is spent.  `checked` configurations were checked outside a graph, and `motions_checked`
     motions in earlier graphs: both count for the budget.  `spent` says whether it ran out.  `proof_tried` says whether
     the world has tried to prove that there is no path, or cannot, and `proof_cut` that there was no time for it.
-    `goals` are the rows of the query's goals, (g,), after `valid_terminals` only the free ones.
+    `goals` are the rows of the problem's goals, (g,), after `valid_terminals` only the free ones.
     """
 
-    world: World
-    query: Query
-    origin: Origin
-    rule: str
+    problem: Problem
     planner: str
+    origin: Origin = NO_POINTS
+    rule: str = "none"
+    _: KW_ONLY
+    connector: Connector | None = None
+    edge_cost: EdgeCost | None = None
+    links: int | None = None
     grows: bool = False
     watch: Stopwatch = field(default_factory=Stopwatch)
     checked: int = 0
@@ -70,23 +76,28 @@ class Attempt:
 
     def __post_init__(self) -> None:
         self.began = now()
-        self.deadline = self.query.budget.deadline()
-        self.goals = np.arange(len(self.query.goals))
+        self.deadline = self.problem.budget.deadline()
+        self.goals = np.arange(len(self.problem.goals))
+
+    @property
+    def world(self) -> World:
+        """The world of the problem."""
+        return self.problem.world
 
     @property
     def free_goals(self) -> Floats:
         """The goals that are not known to be blocked, (g, dim)."""
-        all_goals = self.query.goals
+        all_goals = self.problem.goals
         return all_goals if len(self.goals) == len(all_goals) else all_goals[self.goals]
 
     @property
     def start_and_goals(self) -> Floats:
         """The start, then the goals that are free, (1 + g, dim)."""
-        return self.query.start_and_goals[np.append(0, 1 + self.goals)]
+        return self.problem.start_and_goals[np.append(0, 1 + self.goals)]
 
     def valid_terminals(self) -> Bools:
         """Return which of the start and all goals are free, (1 + g,), and drop the other goals."""
-        terminals = self.query.start_and_goals
+        terminals = self.problem.start_and_goals
         with self.watch("validity"):
             free = self.world.valid(terminals)
         self.checked += len(terminals)
@@ -105,13 +116,13 @@ class Attempt:
         return states.node_states == FREE
 
     def candidates(self, rule: Rule, milestones: Floats) -> EdgeStates:
-        """Return the graph of milestones, start and goals: the edges of the rule, and the links that the query adds."""
+        """Return the graph of milestones, start and goals: the edges of the rule, and the links besides."""
         space, terminals = self.world.space, self.start_and_goals
         configurations = np.concatenate([milestones, terminals])
         n = len(milestones)
         with self.watch("neighbours"):
             edges = rule.edges(configurations, space, terminals=len(terminals))
-            if most := self.query.links_among(n):
+            if most := links_among(n, self.links):
                 surroundings, usable = Surroundings(milestones, space), np.ones(n, dtype=np.bool_)
                 near = [nearest_of(surroundings.distances(end), usable, most) for end in terminals]
                 links = [np.stack([rows, np.full(len(rows), n + i)], axis=1) for i, rows in enumerate(near)]
@@ -120,18 +131,18 @@ class Attempt:
 
     def states(self, configurations: Floats, edges: Ints32, cache: StateCache | None = None) -> EdgeStates:
         """Return the states of a graph, by default unknown, with the rest of the budget to evaluate more."""
-        most = self.query.budget.motions
+        most = self.problem.budget.motions
         most = None if most is None else most - self.motions_checked
         return EdgeStates(self.world, configurations, edges, self.watch, most, cache)
 
-    def search(self, find: Finder, states: EdgeStates, problem: SearchProblem | None = None) -> Searched:
-        """Find a path that the world confirms, over all edges of `states`, or as `problem` says."""
+    def search(self, find: Finder, states: EdgeStates, graph: SearchProblem | None = None) -> Searched:
+        """Find a path that the world confirms, over all edges of `states`, or those of a `graph`."""
         space, q, edges = self.world.space, states.configurations, states.edges
-        cost, goals = self.query.edge_cost, len(self.goals)
+        cost, goals = self.edge_cost, len(self.goals)
         with self.watch("search"), until(self.search_end()):
             try:
-                if problem is not None or self.query.success_only:
-                    what = problem or Terminals.last(len(q), goals)
+                if graph is not None or find is find_any:
+                    what = graph or Terminals.last(len(q), goals)
                 else:
                     costs, bound = edge_costs(space, q, edges, cost), 1.0 if cost is None else BOUND
                     what = search_problem(states, costs, goals, bound=bound)
@@ -151,7 +162,7 @@ class Attempt:
 
         A variant >= 1 searches differently, where the connector `varies`.  It stops after `most` motions.
         """
-        start, goals, motions = self.query.start, self.free_goals, self.query.budget.motions
+        start, goals, motions = self.problem.start, self.free_goals, self.problem.budget.motions
         goals = goals if goal is None else goals[goal : goal + 1]
         if motions is not None:
             most = min(most, max(motions - self.motions_checked, 1))
@@ -186,7 +197,7 @@ class Attempt:
 
     def left(self) -> Budget | None:
         """Return the rest of the budget, or None if it is spent."""
-        budget, motions = self.query.budget, self.query.budget.motions
+        budget, motions = self.problem.budget, self.problem.budget.motions
         seconds = self.deadline - now()
         if seconds <= 0.0 or (motions is not None and motions <= self.motions_checked):
             return None

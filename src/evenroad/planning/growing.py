@@ -18,10 +18,9 @@ from evenroad.planning.answer import answer, in_its_time, refusal
 from evenroad.planning.attempt import Attempt, Searched
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.problem import Problem
-from evenroad.planning.query import Query
 from evenroad.planning.result import PlanResult, Stage
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.edges import LINKS, EdgeCost
+from evenroad.roadmap.edges import LINKS, EdgeCost, require_links
 from evenroad.roadmap.points_of import as_points
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily
@@ -83,6 +82,7 @@ class GrowingPRM:
     def __post_init__(self) -> None:
         require_known("until", self.until, UNTIL)
         require_count("first", self.first)
+        require_links(self.links)
         if self.informed and self.edge_cost is not None:
             raise InvalidValue("informed must be False where edge_cost is given: costs may be below distances")
 
@@ -91,15 +91,6 @@ class GrowingPRM:
         """Return the best path of all stages; see :class:`GrowingPRM`."""
         world, budget = problem.world, problem.budget
         rule = default_rule(world.space) if self.rule is None else self.rule
-        query = Query(
-            problem.start,
-            problem.goals,
-            smooth=problem.smooth,
-            edge_cost=self.edge_cost,
-            links=self.links,
-            budget=budget,
-            connector=connector_of(world),
-        )
         sampler = self.sampler
         if sampler is None:
             from evenroad.points.samplers import make_sampler
@@ -107,7 +98,16 @@ class GrowingPRM:
             # By name: the module of Sobol's points imports scipy.stats, half a second that nobody else needs.
             sampler = make_sampler("growing" if world.space.cube_dim <= GROWING else "sobol")
         points = _draw(sampler, min(self.first, budget.samples), problem, None)
-        attempt = Attempt(world, query, points.origin, str(rule), "prm anytime", grows=True)
+        attempt = Attempt(
+            problem,
+            "prm anytime",
+            points.origin,
+            str(rule),
+            connector=connector_of(world),
+            edge_cost=self.edge_cost,
+            links=self.links,
+            grows=True,
+        )
         if (refused := refusal(attempt)) is not None:
             return refused
         growth = _Growth(attempt, rule, informed=self.informed)

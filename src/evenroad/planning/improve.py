@@ -15,9 +15,8 @@ from evenroad.planning.attempt import NO_LIMIT, Attempt
 from evenroad.planning.connector import Connector
 from evenroad.planning.connectors import ArmTrees
 from evenroad.planning.growing import GrowingPRM, Interrupted
-from evenroad.planning.problem import Problem
 from evenroad.planning.result import PlanResult, Stage, led
-from evenroad.roadmap.budget import BEFORE_REASONS, Budget
+from evenroad.roadmap.budget import BEFORE_REASONS
 from evenroad.space.path import path_length
 
 NO_BETTER = 1e-9
@@ -42,15 +41,15 @@ def improved(attempt: Attempt, connector: Connector, first: PlanResult, variant:
 def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stage: Stage, variant: int) -> PlanResult:
     """Plan in native code, each time below a bound on the length; see `evenroad._native.planning.Improver`."""
     assert first.path is not None
-    query, counts, space = attempt.query, dict(first.counts), attempt.world.space
-    budget = query.budget
+    problem, counts, space = attempt.problem, dict(first.counts), attempt.world.space
+    budget = problem.budget
     goal = int(np.flatnonzero(attempt.goals == first.goal_index)[0])
     improver = connector.improver(
         attempt.world,
         attempt.start_and_goals,
         (first.path, goal, attempt.motions_checked),
         variant=variant,
-        is_smoothing=bool(query.smooth),
+        is_smoothing=bool(problem.smooth),
     )
     rounds = NO_LIMIT if budget.rounds is None else budget.rounds
     motions = NO_LIMIT if budget.motions is None else max(budget.motions - attempt.motions_checked, 0)
@@ -74,7 +73,7 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
         "edges_checked": attempt.motions_checked,
         "rounds": improver.rounds,
     }
-    if query.smooth:
+    if problem.smooth:
         counts["shortcut_motions"] += improver.smoothing_motions
     more: dict[str, Any] = dict(counts=counts, timings=attempt.watch.seconds)
     if len(stages) > 1:
@@ -83,7 +82,7 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
         cost = path_length(path, space)
         # The kernel sums lengths in another order: its last bit may differ.
         stages[-1] = replace(stages[-1], cost=cost)
-        more |= dict(path=path, cost=cost, goal_index=row, message=path_message(path, cost, row, len(query.goals)))
+        more |= dict(path=path, cost=cost, goal_index=row, message=path_message(path, cost, row, len(problem.goals)))
         if not np.array_equal(raw, first.path):
             more |= dict(milestone_path=raw, milestone_cost=path_length(raw, space))
     best = led(attempt.world, replace(first, stages=tuple(stages), **more))
@@ -128,7 +127,7 @@ def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage:
         counts["configurations_checked"] += connection.configurations
         if result is None:
             continue
-        if attempt.query.smooth:
+        if attempt.problem.smooth:
             counts["shortcut_motions"] += result.counts["shortcut_motions"]
         if _cost(result) < _cost(best):
             best = result
@@ -147,7 +146,7 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
     before, stopped = attempt.elapsed(), True
     try:
         with until(attempt.time.part(attempt.began, BEFORE_REASONS)):
-            grown = GrowingPRM(until="budget", informed=True).solve(rest_of(attempt, left))
+            grown = GrowingPRM(until="budget", informed=True).solve(replace(attempt.problem, budget=left, rng=0))
         stopped = False
     except Interrupted as stop:
         grown = stop.best
@@ -162,7 +161,7 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
 
 def _goes_on(attempt: Attempt, best: PlanResult, number: int) -> bool:
     """Return whether the budget allows this round and the path exceeds the distance to the nearest goal."""
-    budget, start, goals = attempt.query.budget, attempt.query.start, attempt.free_goals
+    budget, start, goals = attempt.problem.budget, attempt.problem.start, attempt.free_goals
     least = float(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals).min())
     return (
         now() < attempt.deadline
@@ -175,9 +174,3 @@ def _goes_on(attempt: Attempt, best: PlanResult, number: int) -> bool:
 def _cost(result: PlanResult) -> float:
     assert result.cost is not None
     return result.cost
-
-
-def rest_of(attempt: Attempt, left: Budget) -> Problem:
-    """Return the problem of an attempt with what is left of its budget."""
-    query = attempt.query
-    return Problem(attempt.world, query.start, query.goals, budget=left, smooth=query.smooth)

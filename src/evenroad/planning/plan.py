@@ -14,10 +14,8 @@ from evenroad._time_limit import BudgetSpent, within
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.collision.validate import MeshCheck
 from evenroad.errors import InvalidValue, shown
-from evenroad.infeasibility.goals import proof_between
-from evenroad.planning.answer import out_of_time, require_certified
+from evenroad.planning.answer import apart_in, out_of_time, require_certified
 from evenroad.planning.connector import Smooth
-from evenroad.planning.connectors import connector_of
 from evenroad.planning.diagnose import with_reasons
 from evenroad.planning.prm import FMT, PRM
 from evenroad.planning.problem import Planner, Problem
@@ -32,7 +30,7 @@ from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.roadmap import Roadmap
 from evenroad.robots.robot import ConfigurationLike
 from evenroad.scenes.scan import allowed_everywhere
-from evenroad.world import ShowsApart, World
+from evenroad.world import World
 
 if TYPE_CHECKING:
     from evenroad.planning.tip_motion import TipMotion
@@ -206,8 +204,9 @@ def _solved(request: Request, planner: Planner | None, options: Options) -> Plan
     given, motion = request.given, None if options.constraints is None else _motion_of(options.constraints)
     if (result := unreached(request)) is not None:
         return result
-    straight = motion is not None and motion.line is not None
-    apart = None if given is None else proof_between(request.world, given, straight=straight)
+    if given is not None and motion is not None and motion.line is not None:
+        # Lines to other postures may lead elsewhere: nothing is proved about poses.
+        given = replace(given, poses=(), whole=False)
     stopped = False
 
     def plan_once(world: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
@@ -218,8 +217,7 @@ def _solved(request: Request, planner: Planner | None, options: Options) -> Plan
             budget=options.budget,
             smooth=smooth,
             rng=options.rng,
-            apart=apart,
-            connector=connector_of(world),
+            given=given,
         )
         nonlocal stopped
         try:
@@ -300,14 +298,10 @@ def finished(request: Request, result: PlanResult, *, certified: bool = False) -
 
 def _with_proof(request: Request, result: PlanResult) -> PlanResult:
     """Return a result of points without a path, with the proof that more points would not find one."""
-    world: Any = request.world
-    if result.status is not Status.NOT_CONNECTED or not isinstance(request.world, ShowsApart):
+    if result.status is not Status.NOT_CONNECTED:
         return result
     try:
-        if request.given is None:
-            found = world.apart(request.start, request.goals)
-        else:
-            found = proof_between(world, request.given)(request.start, request.goals, False)
+        found = apart_in(Problem(request.world, request.start, request.goals, given=request.given))
     except BudgetSpent:
         return replace(result, message=f"{result.message}; there was no time for a proof that there is no path")
     if found is None or not found.proved:

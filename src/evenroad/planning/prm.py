@@ -12,13 +12,12 @@ from evenroad.planning.answer import answer, in_its_time, refusal
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.problem import Problem
-from evenroad.planning.query import Query
 from evenroad.planning.result import PlanResult, Status
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.edges import LINKS, EdgeCost
+from evenroad.roadmap.edges import LINKS, EdgeCost, require_links
 from evenroad.roadmap.points_of import as_points
 from evenroad.roadmap.rules import KNearest, Rule, default_rule
-from evenroad.roadmap.search import FINDERS, FREE, Finder, march
+from evenroad.roadmap.search import FINDERS, FREE, Finder, find_any, march
 from evenroad.space import Space
 
 
@@ -82,7 +81,7 @@ class PRM:
 
     def __post_init__(self) -> None:
         require_known("search", self.search, FINDERS)
-        _require_one_rule(self)
+        _require_links_and_rule(self)
         if self.certify and (self.success_only or self.edge_cost is not None):
             raise InvalidValue("certify speaks of shortest paths: it goes without edge_cost and success_only")
 
@@ -92,8 +91,8 @@ class PRM:
     @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
         """Return the shortest path along the roadmap, smoothed; see :class:`PRM`."""
-        query = _query(self, problem, search=self.search, success_only=self.success_only)
-        return _on_points(self, problem, query, query.planner, query.find)
+        name, find = ("any", find_any) if self.success_only else (self.search, FINDERS[self.search])
+        return _on_points(self, problem, f"prm {name}", find)
 
 
 @explains_calls
@@ -131,7 +130,7 @@ class FMT:
     links: int | None = LINKS
 
     def __post_init__(self) -> None:
-        _require_one_rule(self)
+        _require_links_and_rule(self)
 
     def __repr__(self) -> str:
         return _text(self)
@@ -139,7 +138,7 @@ class FMT:
     @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
         """Return the path along the tree, smoothed; see :class:`FMT`."""
-        return _on_points(self, problem, _query(self, problem), "fmt*", march)
+        return _on_points(self, problem, "fmt*", march)
 
 
 class _OnPoints(Protocol):
@@ -166,7 +165,8 @@ def rule_of(planner: _OnPoints, space: Space) -> Rule:
     return default_rule(space) if planner.k is None else KNearest(planner.k)
 
 
-def _require_one_rule(planner: _OnPoints) -> None:
+def _require_links_and_rule(planner: _OnPoints) -> None:
+    require_links(planner.links)
     if planner.k is not None:
         require_count("k", planner.k)
         if planner.rule is not None:
@@ -179,28 +179,22 @@ def _text(planner: _OnPoints) -> str:
     return f"{type(planner).__name__}({what}{'' if rule is None else f', {rule}'})"
 
 
-def _query(planner: _OnPoints, problem: Problem, **more: object) -> Query:
-    return Query(
-        problem.start,
-        problem.goals,
-        smooth=problem.smooth,
-        budget=problem.budget,
-        apart=problem.apart,
-        connector=connector_of(problem.world),
-        edge_cost=planner.edge_cost,
-        links=planner.links,
-        **more,  # type: ignore[arg-type]
-    )
-
-
-def _on_points(planner: _OnPoints, problem: Problem, query: Query, name: str, find: Finder) -> PlanResult:
+def _on_points(planner: _OnPoints, problem: Problem, name: str, find: Finder) -> PlanResult:
     """Map the points into the space, join them by the rule, and find a path along the free motions."""
     world = problem.world
     # The points are chosen for a rule that was given.
     given = rule_of(planner, world.space) if planner.rule is not None or planner.k is not None else None
     points = as_points(planner.points, world.space, given, rng=problem.rng)
     rule = default_rule(world.space) if given is None else given
-    attempt = Attempt(world, query, points.origin, str(rule), name)
+    attempt = Attempt(
+        problem,
+        name,
+        points.origin,
+        str(rule),
+        connector=connector_of(world),
+        edge_cost=planner.edge_cost,
+        links=planner.links,
+    )
     if (refused := refusal(attempt)) is not None:
         return refused
     milestones = world.space.from_cube(points.points)

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
+from functools import cached_property
 from typing import Protocol, runtime_checkable
+
+import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
-from evenroad.planning.connector import Connector, Smooth
-from evenroad.planning.query import ProvesApart
+from evenroad.planning.connector import Smooth, require_smooth
 from evenroad.planning.result import PlanResult
+from evenroad.poses.goals import Goals
 from evenroad.roadmap.budget import Budget
 from evenroad.world import World
+
+_USUAL = Budget()
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,29 +28,37 @@ class Problem:
     world : World
         Checks configurations and motions.
     start, goals : ndarrays, shapes (dim,) and (g, dim)
-        Configurations.
+        Configurations; they become read-only.
     budget : Budget
         Limits of the search.
     smooth : bool or "quick"
         Whether the path is made shorter once it is found; "quick": by straight shortcuts alone.
     rng : int, SeedSequence or Generator
         Seed of what a planner draws.
-    apart : callable, optional
-        Proves, instead of the world, that no path exists, where other goals would do, too.  It takes start, goals and
-        whether to be quick, and returns an :class:`evenroad.world.Apart` or None.
-    connector : Connector, optional
-        Joins start and goal in this kind of world, and smooths paths, in compiled code.
+    given : Goals, optional
+        What the goals of an arm were made of.
     """
 
     world: World
     start: Floats
     goals: Floats
     _: KW_ONLY
-    budget: Budget
+    budget: Budget = _USUAL
     smooth: Smooth = True
     rng: RngLike = 0
-    apart: ProvesApart | None = None
-    connector: Connector | None = None
+    given: Goals | None = None
+
+    def __post_init__(self) -> None:
+        require_smooth(self.smooth)
+        self.start.setflags(write=False)
+        self.goals.setflags(write=False)
+
+    @cached_property
+    def start_and_goals(self) -> Floats:
+        """The start, then the goals, (1 + g, dim)."""
+        terminals = np.concatenate([self.start[np.newaxis], self.goals])
+        terminals.setflags(write=False)
+        return terminals
 
 
 @runtime_checkable

@@ -17,8 +17,8 @@ from evenroad.errors import InvalidValue, listed, near, shown
 from evenroad.geometry.pose import Pose
 from evenroad.loading.load import RobotOptions, padded_model
 from evenroad.planning.problem import Planner
-from evenroad.planning.query import as_start_and_goals
 from evenroad.planning.request import Goal, PathLike, Reading, Request
+from evenroad.planning.terminals import as_start_and_goals
 from evenroad.poses.goals import Goals, goals_of, require_tips
 from evenroad.poses.pose_goal import PoseGoal
 from evenroad.roadmap.roadmap import Roadmap

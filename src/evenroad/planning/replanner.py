@@ -22,10 +22,10 @@ from evenroad.planning.answer import path_message, refusal
 from evenroad.planning.arm_trees import checks_of
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.connectors import drivers_of
-from evenroad.planning.query import Query
+from evenroad.planning.problem import Problem
 from evenroad.planning.read_request import reaching, request_in
 from evenroad.planning.request import Reading, unreached
-from evenroad.planning.result import NO_POINTS, PlanResult, Status, make_result
+from evenroad.planning.result import PlanResult, Status, make_result
 from evenroad.planning.trees import variant_of
 from evenroad.points.reversed_halton import PAIRS, share_pairs
 from evenroad.robots.robot import ConfigurationLike
@@ -203,7 +203,7 @@ class Replanner:
         goals = request.goals
         (free,) = np.nonzero(world.valid(goals))
         if not len(free) or not world.valid(start):
-            found = refusal(Attempt(world, Query(start, goals), NO_POINTS, "none", "trees"))
+            found = refusal(Attempt(Problem(world, start, goals), "trees"))
             assert found is not None
             return found
         order = free[np.argsort(world.space.distance(np.broadcast_to(start, goals[free].shape), goals[free]))]

@@ -6,8 +6,10 @@ import math
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue
 from evenroad.space import Space
 from evenroad.space.path import continued
 from evenroad.space.protocol import period_of
@@ -16,6 +18,33 @@ SAME = 1e-9
 """Largest difference of the numbers at which a path begins from those of the start, for numbers of 1."""
 NEAR = 1e-6
 """Distance up to which the end of a path counts as the goal, for numbers of 1: rounding only."""
+
+
+def as_start_and_goals(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) -> tuple[Floats, Floats]:
+    """Return start, (dim,), and goals, (g, dim), from one start and one or more goals.
+
+    Raises InvalidValue if they do not have the dimension of the space, or are not finite.
+    """
+    dim = space.dim
+    first, goals = _finite(start), _finite(goal)
+    if first.shape != (dim,):
+        raise InvalidValue(f"start must be {dim} finite numbers, got {start!r}")
+    if goals.shape != (dim,) and (goals.ndim != 2 or goals.shape[1] != dim or not len(goals)):
+        several = f"or an array (g, {dim}) of g >= 1 goals"
+        raise InvalidValue(f"goal must be {dim} finite numbers, {several}, got {goal!r}")
+    return first, goals.reshape(-1, dim)
+
+
+def _finite(value: npt.ArrayLike) -> Floats:
+    """Return a copy as floats; for anything but finite numbers an array of a shape that is refused."""
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        return np.empty((0, 0))
+    # Squares of most are finite, too, and faster to test.
+    if math.isfinite(np.vdot(array, array)) or np.isfinite(array).all():
+        return array
+    return np.empty((0, 0))
 
 
 def turns(space: Space) -> bool:

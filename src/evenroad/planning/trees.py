@@ -18,11 +18,10 @@ from evenroad._time_limit import seconds_left
 from evenroad.errors import InvalidValue
 from evenroad.planning.answer import connected, gave_up, in_its_time, path_message, proof_of, refusal, shown_apart
 from evenroad.planning.attempt import Attempt
-from evenroad.planning.connector import Connection, Connector, require_smooth
+from evenroad.planning.connector import Connection, Connector
 from evenroad.planning.connectors import ARM_TREES, CELLS, RESTART, ArmTrees, connector_of, trees_for
 from evenroad.planning.problem import Planner, Problem
-from evenroad.planning.query import Query
-from evenroad.planning.result import NO_POINTS, PlanResult, Status, make_result
+from evenroad.planning.result import PlanResult, Status, make_result
 from evenroad.roadmap.budget import BEFORE_PROOF
 from evenroad.space.path import path_length
 
@@ -135,20 +134,12 @@ def solve_by(
 
     `first` is what the first search found, where that is done.
     """
-    world, variant = problem.world, variant_of(problem.rng)
+    variant = variant_of(problem.rng)
     if first is None and isinstance(connector, ArmTrees) and len(problem.goals) == 1 and not improve:
         first = _answer(problem, connector, variant)
         if first.ended == "solved":
             return _solved(problem, connector, first)
-    query = Query(
-        problem.start,
-        problem.goals,
-        smooth=problem.smooth,
-        budget=problem.budget,
-        apart=problem.apart,
-        connector=connector,
-    )
-    attempt = Attempt(world, query, NO_POINTS, "none", connector.planner)
+    attempt = Attempt(problem, connector.planner, connector=connector)
     if (refused := refusal(attempt)) is not None:
         return refused
     connection = _first_path(attempt, connector, variant, first)
@@ -157,14 +148,14 @@ def solve_by(
     if connection.goal >= 0 and not improve:
         return connected(attempt, connection)
     # Imported late: most searches end before.
-    from evenroad.planning.improve import improved, rest_of
+    from evenroad.planning.improve import improved
 
     if connection.goal >= 0:
         result = connected(attempt, connection)
         return improved(attempt, connector, result, variant)
     if connection.spent or (left := attempt.left()) is None:
         return gave_up(attempt, connection)
-    return _growing(improve).solve(rest_of(attempt, left))
+    return _growing(improve).solve(replace(problem, budget=left, rng=0))
 
 
 def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Answer | None) -> Connection | PlanResult:
@@ -198,7 +189,6 @@ def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Ans
 
 def _answer(problem: Problem, connector: ArmTrees, variant: int) -> Answer:
     """Return what one call of compiled code finds, which most queries are answered by."""
-    require_smooth(problem.smooth)
     budget, most = problem.budget, RESTART
     world: Any = problem.world
     return connector.answer(
@@ -221,8 +211,6 @@ def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult
     if smoothing:
         raw = found.raw
         raw_length = _length(raw, found.raw_length, world)
-    start.setflags(write=False)
-    goals.setflags(write=False)
     counts = {"nodes": nodes, "configurations_checked": configurations, "edges_checked": motions}
     search, shortcut = found.seconds
     timings = {"search": search}
@@ -265,7 +253,7 @@ def _connection(attempt: Attempt, connector: Connector, most: int, variant: int)
     """Join the start to a goal, first by trees to the nearest one: trees to many may meet a far one."""
     if len(attempt.goals) == 1 or not connector.varies:
         return attempt.connect(connector, variant, most)
-    start, goals = attempt.query.start, attempt.free_goals
+    start, goals = attempt.problem.start, attempt.free_goals
     nearest = int(np.argmin(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals)))
     near = attempt.connect(connector, variant, min(most, TO_NEAREST), nearest)
     if near.goal >= 0 or near.spent or attempt.left() is None:

@@ -10,20 +10,22 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._checks import require_known
 from evenroad._shared import OwnLock
-from evenroad._time_limit import BudgetSpent, within
-from evenroad.planning.answer import answer, connected, out_of_time, refusal, shown_apart
+from evenroad.planning.answer import answer, connected, in_its_time, refusal, shown_apart
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.connector import Connector, Smooth
+from evenroad.planning.connectors import connector_of
 from evenroad.planning.problem import Problem
-from evenroad.planning.query import Query, as_start_and_goals
 from evenroad.planning.result import PlanResult
+from evenroad.planning.terminals import as_start_and_goals
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.edges import BOUND, LINKS, EdgeCost, edge_costs
+from evenroad.roadmap.edges import BOUND, LINKS, EdgeCost, edge_costs, links_among, require_links
 from evenroad.roadmap.neighbours import nearest_of
 from evenroad.roadmap.roadmap import EdgeWeights, Roadmap
 from evenroad.roadmap.search import (
     BLOCKED,
+    FINDERS,
     FREE,
     UNKNOWN,
     EdgeStates,
@@ -94,41 +96,40 @@ class WorldRoadmap:
         connector : Connector, optional
             Smooths the path, and searches where the roadmap has no path; not with an `edge_cost`.
         """
-        query = Query(
-            *as_start_and_goals(start, goal, self.world.space),
-            search=search,
-            smooth=smooth,
-            edge_cost=self._edge_cost,
-            links=links,
-            budget=budget or Budget(),
-            connector=connector,
+        require_known("search", search, FINDERS)
+        require_links(links)
+        terminals = as_start_and_goals(start, goal, self.world.space)
+        return self._solved(
+            Problem(self.world, *terminals, budget=budget or Budget(), smooth=smooth), search, links, connector
         )
-        try:
-            with within(query.budget.seconds):
-                return self._answered(query, connector)
-        except BudgetSpent:
-            return out_of_time(Problem(self.world, query.start, query.goals, budget=query.budget))
 
-    def _answered(self, query: Query, connector: Connector | None) -> PlanResult:
+    def solve(self, problem: Problem) -> PlanResult:
+        """Plan along the roadmap, in its world, as planners of :func:`evenroad.plan` do."""
+        return self._solved(problem, "lazy", LINKS, connector_of(self.world))
+
+    @in_its_time
+    def _solved(self, problem: Problem, search: str, links: int | None, connector: Connector | None) -> PlanResult:
         roadmap = self.roadmap
-        rule, planner = f"{roadmap.rule} of all points", query.planner
         with self._lock:
-            attempt = Attempt(self.world, query, roadmap.points.origin, rule, planner)
+            attempt = Attempt(
+                problem,
+                f"prm {search}",
+                roadmap.points.origin,
+                f"{roadmap.rule} of all points",
+                connector=connector,
+                edge_cost=self._edge_cost,
+                links=links,
+            )
             if (refused := refusal(attempt)) is not None:
                 return refused
             with attempt.watch("neighbours"):
-                states, problem = self._link(attempt)
-            searched = attempt.search(query.find, states, problem)
+                states, graph = self._link(attempt)
+            searched = attempt.search(FINDERS[search], states, graph)
             if connector is not None and searched.cost is None and not attempt.spent:
                 joined = self._connect(attempt, states, connector)
                 if joined is not None:
                     return joined
             return answer(attempt, searched, roadmap.points.n, keep_graph=False)
-
-    def solve(self, problem: Problem) -> PlanResult:
-        """Plan along the roadmap, in its world, as planners of :func:`evenroad.plan` do."""
-        start, goals, how = problem.start, problem.goals, dict(budget=problem.budget, smooth=problem.smooth)
-        return self.plan(start, goals, connector=problem.connector, **how)  # type: ignore[arg-type]
 
     def _connect(self, attempt: Attempt, states: EdgeStates, connector: Connector) -> PlanResult | None:
         """Return the result of a connector, or None if it finds nothing."""
@@ -147,7 +148,7 @@ class WorldRoadmap:
         """Append start and goals to the milestones, and their links to the edges."""
         roadmap, terminals, space = self.roadmap, attempt.start_and_goals, self.world.space
         distances = [roadmap.surroundings.distances(end) for end in terminals]
-        links = self._links(distances, attempt.query)
+        links = self._links(distances, attempt.links)
         n, m = len(roadmap.milestones), len(roadmap.edges)
         nodes, edges = n + len(terminals), m + len(links)
         cache = self._cache = StateCache(
@@ -169,12 +170,12 @@ class WorldRoadmap:
         states = attempt.states(q, self._edges[:edges], cache=cache)
         return states, SearchProblem(n, np.arange(n + 1, nodes), graph, weights, bounds)
 
-    def _links(self, distances: list[Floats], query: Query) -> Ints32:
+    def _links(self, distances: list[Floats], wanted: int | None) -> Ints32:
         """Return the links of start and goals, (l, 2), from their distances to the milestones."""
         n = len(self.roadmap.milestones)
         reach = self.roadmap.rule.reach(n, self.world.space)
         usable = self._cache.nodes[:n] == FREE
-        links, most = [], query.links_among(n)
+        links, most = [], links_among(n, wanted)
         for node, away in enumerate(distances, start=n):
             near = nearest_of(away, usable, reach.k, reach.radius)
             if most:

@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from evenroad._arrays import Floats, Ints32
+from evenroad._checks import require_count
 from evenroad.errors import InvalidValue
 from evenroad.space import Space
 
@@ -33,6 +34,12 @@ def links_among(milestones: int, links: int | None) -> int:
     if links is None:
         return 0
     return milestones if milestones <= FEW else min(links, milestones)
+
+
+def require_links(links: int | None) -> None:
+    """Raise InvalidValue unless this is a number of links, or None."""
+    if links is not None:
+        require_count("links", links)
 
 
 def edge_costs(space: Space, q: Floats, edges: Ints32, cost: EdgeCost | None = None) -> Floats:

@@ -11,8 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints, Ints32
-from evenroad.planning.query import Query
-from evenroad.roadmap.edges import LINKS
+from evenroad.roadmap.edges import LINKS, links_among
 from evenroad.roadmap.neighbours import nearest
 from evenroad.roadmap.search import components
 from evenroad.world import World
@@ -38,7 +37,7 @@ def connected(problem: Problem, points: Floats, ks: Sequence[int]) -> Bools:
     pairs, first = np.unique(key, return_index=True)
     rank = rank[order][first]
     pairs = np.stack([pairs // (n + 2), pairs % (n + 2)], axis=1).astype(np.int32)
-    most = Query(problem.start, problem.goal[np.newaxis], links=LINKS).links_among(n)
+    most = links_among(n, LINKS)
     linked = [_free_links(world, q, end, most) for end in (n, n + 1)]
     free = np.empty((0, 2), dtype=np.int32)
     label: Ints32 = np.arange(n + 2, dtype=np.int32)
