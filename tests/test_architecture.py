@@ -38,12 +38,14 @@ MAY_IMPORT = {
     "planning": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap"},
     "trajectory": BASE | {"space", "world", *OF_ARMS, "constraints"},
     "task": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory"},
+    "datasets": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
     "qmc": BASE | {"points"},
     "io": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning"},
     "testing": BASE | {"space", "world"},
     "viz": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning"},
     "adapters": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
-    "cli": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory", "task", "io", "viz"},
+    "cli": BASE
+    | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory", "task", "datasets", "io", "viz"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""

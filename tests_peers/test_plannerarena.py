@@ -7,11 +7,11 @@ import pytest
 from plannerarena.database import load_database
 from plannerarena.performance import boxplot, ecdf_plot, enums_plot
 
+from evenroad.datasets.workers import in_process
 from evenroad_studies.bench.arena import write_arena
 from evenroad_studies.bench.runner import run_tasks
 from evenroad_studies.bench.store import open_store, read_rows
 from evenroad_studies.bench.task import Task
-from evenroad_studies.workers import in_process
 
 TASKS = [
     Task(problem, 0, sampler, n, "k=10 earlier", search, run, 1)

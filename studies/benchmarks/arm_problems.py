@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.collision.arm_world import ArmWorld
+from evenroad.datasets.random_scenes import cell_of
 from evenroad.robots.kinematics import link_poses
 from evenroad.robots.robot import Robot
 from evenroad.scenes.scene import Obstacle, Scene
-from evenroad_studies.arms.cells import cell_of
 from evenroad_studies.arms.robots import arm_named as arm_named
 
 KINDS = ("shelf", "box", "cage", "table")

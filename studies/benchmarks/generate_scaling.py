@@ -25,9 +25,9 @@ import numpy.typing as npt
 from studies.benchmarks.rows import parser_of
 from studies.benchmarks.sizes import draw_costs, most_held, shown, write_table
 
-from evenroad_studies.datasets.folder import write
-from evenroad_studies.datasets.part import Request, make_part
-from evenroad_studies.workers import processes
+from evenroad.datasets.folder import write
+from evenroad.datasets.part import Request, make_part
+from evenroad.datasets.workers import processes
 
 Floats = npt.NDArray[np.float64]
 ROWS, WHOLE = 100, 1000

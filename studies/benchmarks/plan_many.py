@@ -20,10 +20,10 @@ from studies.benchmarks.plan_call import BOXES, boxes_around
 from studies.benchmarks.rows import parser_of
 
 import evenroad as er
+from evenroad.datasets.random_scenes import GENERATORS
 from evenroad.planning.connector import Smooth
 from evenroad_studies.arms.problems import draw_problem
 from evenroad_studies.arms.robots import arm_named
-from evenroad_studies.arms.scenes import GENERATORS
 
 SEEDS = 3
 WAYS: tuple[Smooth, ...] = ("quick", True)

@@ -31,6 +31,10 @@ VERBS = {
         "show what a roadmap of points guarantees, whatever the obstacles",
     ),
     "robot": ("evenroad.cli.robot:Robot", "show an arm's joints, limits and shapes, and how fast it is checked"),
+    "generate": (
+        "evenroad.cli.generate:Generate",
+        "make a data set of problems with timed paths, for learning",
+    ),
     "demo": ("evenroad.cli.plan:Demo", "plan through a maze that ships with evenroad"),
 }
 """Name of a verb -> its class, loaded on use, and its description."""
@@ -38,7 +42,6 @@ VERBS = {
 OF_STUDIES = {
     "train": "train point sets for an objective of your own",
     "bench": "run benchmarks; one file, the store, takes the results",
-    "generate": "make a data set of problems with timed paths, for learning",
     "report": "write a page, figures and tables of a store",
     "export": "write a store for OMPL's Planner Arena",
 }
@@ -48,7 +51,7 @@ ENTRY_POINTS = "evenroad.verbs"
 
 GROUPS = {
     "a path, from the plan to the robot": (
-        ("plan", "view", "send", "run", "roadmap", "robot", "demo"),
+        ("plan", "view", "send", "run", "roadmap", "robot", "generate", "demo"),
         (
             "evenroad plan box-reach.yaml --robot ur5 --start home --goal inside",
             "evenroad view box-reach.json --html reach.html",

@@ -11,13 +11,13 @@ import dask
 import distributed  # noqa: F401  (its defaults must be there before one of them is changed)
 import pytest
 
+from evenroad.datasets import dask_cluster
+from evenroad.datasets.dask_cluster import dask_workers
+from evenroad.datasets.workers import in_process
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad_studies.bench import schedulers
 from evenroad_studies.bench.runner import run_tasks
-from evenroad_studies.bench.schedulers import dask_workers
 from evenroad_studies.bench.store import open_store, read_rows
 from evenroad_studies.bench.task import Task
-from evenroad_studies.workers import in_process
 from tests.refused import refused
 from tests.studies.bench.tables import table_of
 
@@ -95,11 +95,11 @@ def test_a_cluster_that_loses_a_worker_gives_the_table_of_one_process_and_withou
     """One cluster for all, which takes seconds to start: what is refused first, then what it survives."""
     address, add_workers, running = scheduler
     with monkeypatch.context() as change:
-        change.setattr(schedulers, "WORKER_SECONDS", 0.5)
+        change.setattr(dask_cluster, "WORKER_SECONDS", 0.5)
         refused(NotAvailable, "has no workers", dask_workers, address)
     add_workers("a", "b")
     with monkeypatch.context() as change:
-        change.setattr(schedulers, "__version__", "0.0.0")
+        change.setattr(dask_cluster, "__version__", "0.0.0")
         refused(NotAvailable, "have evenroad .*, here it is 0.0.0", dask_workers, address)
     workers = dask_workers(address)
     executor = workers.make()
@@ -116,7 +116,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_table_of_one_process_and_withou
         run_tasks("test", TASKS, store, in_process())
     assert table_of(tmp_path / "dask.db") == table_of(tmp_path / "alone.db")
 
-    monkeypatch.setattr(schedulers, "CONNECT_SECONDS", 2.0)
+    monkeypatch.setattr(dask_cluster, "CONNECT_SECONDS", 2.0)
     kill, killed = _killing(running[0], 1)
     with open_store(tmp_path / "left.db") as store, pytest.raises(NotAvailable, match="no Dask scheduler answers"):
         run_tasks("test", TASKS, store, workers, callback=kill)
@@ -124,7 +124,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_table_of_one_process_and_withou
 
 
 def test_an_unreachable_scheduler_is_said_within_seconds(monkeypatch):
-    monkeypatch.setattr(schedulers, "CONNECT_SECONDS", 1.0)
+    monkeypatch.setattr(dask_cluster, "CONNECT_SECONDS", 1.0)
     began = time.monotonic()
     refused(NotAvailable, "no Dask scheduler answers at", dask_workers, "tcp://127.0.0.1:9")
     assert time.monotonic() - began < 20.0
@@ -140,7 +140,7 @@ def test_an_address_of_another_form_is_refused_with_an_example(address):
 
 @pytest.mark.parametrize("address", ["tcp://host.example.org:8786", "tls://10.0.0.1:1", "tcp://[::1]:8786"])
 def test_addresses_of_machines_are_of_that_form(address):
-    assert schedulers.ADDRESS.fullmatch(address)
+    assert dask_cluster.ADDRESS.fullmatch(address)
 
 
 def test_without_certificates_or_the_package_it_is_said_what_is_needed(monkeypatch):

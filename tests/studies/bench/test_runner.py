@@ -10,13 +10,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evenroad.datasets.workers import ProcessPool, SerialExecutor, Workers, in_process, processes
 from evenroad.errors import BrokenFile, InvalidValue, WorkerLost
 from evenroad_studies.bench import runner
 from evenroad_studies.bench.execute import LONGEST_LIMIT
 from evenroad_studies.bench.runner import Chunker, Done, run_chunk, run_tasks
 from evenroad_studies.bench.store import open_store, read_rows
 from evenroad_studies.bench.task import Outcome, Task
-from evenroad_studies.workers import ProcessPool, SerialExecutor, Workers, in_process, processes
 from tests.refused import refused
 from tests.studies.bench.tables import table_of
 

@@ -12,13 +12,13 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.collision.arm_world import VALIDATION_TOLERANCE
+from evenroad.datasets.queries import free_configurations
+from evenroad.datasets.random_scenes import GENERATORS, cell_of, draw_scene, inside_of
 from evenroad.errors import NotAvailable
 from evenroad.points import PointSet
 from evenroad.roadmap import KNearest, Roadmap, build_roadmap
 from evenroad.robot import ArmWorld, Scene
-from evenroad_studies.arms.cells import cell_of, free_configurations
 from evenroad_studies.arms.robots import arm_named, tool_of
-from evenroad_studies.arms.scenes import GENERATORS, inside_of, places_of
 from evenroad_studies.bench.task import Problem, ProblemSource
 
 POOL = 300_000
@@ -75,7 +75,7 @@ def _drawn(robot: str, generator: str, stream: str, rng: np.random.Generator) ->
     """Return a scene with two free configurations, or None where it cannot be reached into."""
     arm = arm_named(robot)
     cell = cell_of(arm)
-    obstacles, regions = places_of(generator, stream, rng)
+    obstacles, regions = draw_scene(generator, stream, rng)
     named = tuple(replace(each, name=f"{generator} {i}") for i, each in enumerate(obstacles))
     scene = Scene((*cell.obstacles, *named), name=f"{robot} {generator}", allowed=cell.allowed)
     world = ArmWorld(arm, scene)

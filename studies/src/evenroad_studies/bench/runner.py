@@ -10,13 +10,13 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, wait
 from typing import NamedTuple
 
+from evenroad.datasets.workers import Workers
 from evenroad.errors import WorkerLost
 from evenroad_studies.bench.execute import DEFAULT_LIMIT, require_limit, run_task
 from evenroad_studies.bench.rows import FAILURES
 from evenroad_studies.bench.store import Store
 from evenroad_studies.bench.store_parts import PartsStore
 from evenroad_studies.bench.task import Outcome, Task
-from evenroad_studies.workers import Workers
 
 POLL_SECONDS = 0.2
 IN_FLIGHT = 2

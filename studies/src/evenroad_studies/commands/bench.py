@@ -12,6 +12,7 @@ import numpy as np
 
 from evenroad._terminal import print_table, progress_shown
 from evenroad.cli.options import Positional
+from evenroad.datasets.workers import Workers, in_process, interrupt_between_steps, processes
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.bank import has_large_sets
 from evenroad_studies.bench.execute import DEFAULT_LIMIT, require_limit
@@ -23,7 +24,6 @@ from evenroad_studies.bench.task import Task
 from evenroad_studies.problems import PROBLEMS
 from evenroad_studies.report.analysis import failures_of
 from evenroad_studies.suites import SUITES, Suite
-from evenroad_studies.workers import Workers, in_process, interrupt_between_steps, processes
 
 HEADINGS = {
     "halton paper-blocks": ("halton", "blocks"),
@@ -123,7 +123,7 @@ class Bench:
 
     def _workers(self) -> Workers:
         if self.scheduler is not None:
-            from evenroad_studies.bench.schedulers import dask_workers
+            from evenroad.datasets.dask_cluster import dask_workers
 
             return dask_workers(self.scheduler)
         return in_process() if self.jobs == 1 else processes(self.jobs)

@@ -11,14 +11,14 @@ import numpy as np
 from evenroad._checks import require_count
 from evenroad._files import require_writable_folder
 from evenroad._terminal import progress_shown
+from evenroad.datasets.folder import claim_folder
+from evenroad.datasets.workers import interrupt_between_steps
 from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.points import PointSet, load_points, save_points
 from evenroad.points.anneal import SCHEDULE, Callback, require_points_for
 from evenroad.points.measures import star_discrepancy
 from evenroad_studies.training import anneal_many, order_many, train_many
-from evenroad_studies.training.folder import claim_folder
 from evenroad_studies.training.objective import parse_objective
-from evenroad_studies.workers import interrupt_between_steps
 
 if TYPE_CHECKING:
     from evenroad_studies.network import NetworkConfig

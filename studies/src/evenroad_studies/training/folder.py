@@ -5,7 +5,6 @@ The request is written beside the sets, so sets of two requests never mix unnoti
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
@@ -14,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from evenroad._files import atomic_write, remove_abandoned_parts
-from evenroad.errors import BrokenFile, InvalidValue, shown
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points.anneal import SCHEDULE, Callback, anneal
 from evenroad.points.npz import load_points, save_points
 from evenroad.points.pointset import Origin, PointSet
@@ -31,32 +29,6 @@ REQUEST_FILE = "request.json"
 def set_name(index: int) -> str:
     """Return the file name of a set inside its folder."""
     return f"set-{index:04d}.npz"
-
-
-def claim_folder(folder: Path, request: dict[str, Any], name: str = REQUEST_FILE) -> None:
-    """Write the request into the file `name` of `folder`; if it is there, check that it is the same.
-
-    Temporary files that killed trainings left in the folder are removed.  Raises InvalidValue, with the first
-    difference, if the folder belongs to another request; BrokenFile if it is missing or cannot be written, or the
-    request not read.
-    """
-    path = folder / name
-    remove_abandoned_parts(folder)
-    if not path.exists():
-        with atomic_write(path) as file:
-            file.write(json.dumps(request, indent=1).encode())
-        return
-    try:
-        found = json.loads(path.read_bytes())
-    except (OSError, ValueError) as error:
-        raise BrokenFile(f"{path} is not readable as JSON: {error}") from None
-    for key, wanted in request.items():
-        there = found.get(key) if isinstance(found, dict) else None
-        if there != wanted:
-            raise InvalidValue(
-                f"{folder} holds sets with {key}={shown(there)}, asked for {key}={shown(wanted)};"
-                f" use another folder (what there is: {name})"
-            )
 
 
 def read_set(path: Path, origin: Origin, shape: tuple[int, int]) -> PointSet | None:

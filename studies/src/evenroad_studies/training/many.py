@@ -15,19 +15,20 @@ import numpy as np
 
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
+from evenroad.datasets.folder import claim_folder
+from evenroad.datasets.workers import ProcessPool, processors
 from evenroad.errors import InvalidValue, WorkerLost
 from evenroad.points.anneal import Callback, require_points_for
 from evenroad.points.pointset import Origin, PointSet
 from evenroad_studies.training.folder import (
+    REQUEST_FILE,
     SetTask,
-    claim_folder,
     finished_set,
     make_set,
     request_of,
     set_name,
 )
 from evenroad_studies.training.objective import Objective, parse_objective
-from evenroad_studies.workers import ProcessPool, usable_processors
 
 if TYPE_CHECKING:
     from evenroad_studies.network import NetworkConfig
@@ -132,7 +133,7 @@ def _make_all(
 ) -> tuple[PointSet, ...]:
     """Make sets like the `first`, each of its own child of the seed, and with its own file in the folder."""
     sets, home = require_count("sets", sets), None if folder is None else Path(folder)
-    processes = require_count("workers", usable_processors() if workers is None else workers)
+    processes = require_count("workers", processors() if workers is None else workers)
     root = first.seeds
     tasks = [
         replace(
@@ -144,7 +145,7 @@ def _make_all(
         for i in range(sets)
     ]
     if home is not None:
-        claim_folder(home, request_of(tasks[0]))
+        claim_folder(home, request_of(tasks[0]), REQUEST_FILE)
     done = {task.replica: points for task in tasks if (points := finished_set(task)) is not None}
     missing = [task for task in tasks if task.replica not in done]
     make = _one_by_one if min(processes, len(missing)) <= 1 else _in_processes

@@ -24,7 +24,7 @@ def files_of(folder):
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """The files of a set that one process makes."""
-    from evenroad_studies.datasets.part import Request, make_part
+    from evenroad.datasets.part import Request, make_part
 
     request = Request("arm7", ("clutter", "boxes"), 50, rows=20, of_each=5)
     folder = tmp_path_factory.mktemp("made")
@@ -74,8 +74,8 @@ def test_shards_merge_to_the_bytes_of_one_machine(run, tmp_path, made):
 @pytest.fixture
 def small():
     """A request whose parts are texts, and the folder's function that makes its missing parts."""
-    from evenroad_studies.datasets import folder as of
-    from evenroad_studies.datasets.part import Request
+    from evenroad.datasets import folder as of
+    from evenroad.datasets.part import Request
 
     return of, Request("arm7", ("boxes",), 3, rows=1)
 
@@ -161,7 +161,7 @@ def test_hdf5_holds_the_same(made):
     h5py = pytest.importorskip("h5py")
     from io import BytesIO
 
-    from evenroad_studies.datasets.part import Request, make_part
+    from evenroad.datasets.part import Request, make_part
 
     request = Request("arm7", ("clutter", "boxes"), 50, rows=20, of_each=5, format="hdf5")
     content = make_part(request, 2)

@@ -1,6 +1,4 @@
-"""The folder of a data set: parts that are there, and as they were made, are done; a card says what the set is, and how
-it was made.
-"""
+"""The folder of a data set: its parts with their digests, and a card that says what the set is and how it was made."""
 
 from __future__ import annotations
 
@@ -12,24 +10,19 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
-from evenroad._files import atomic_write
-from evenroad.errors import BrokenFile, InvalidValue
-from evenroad_studies.datasets.part import Request, make_part
-from evenroad_studies.training.folder import claim_folder
-from evenroad_studies.workers import Workers
+from evenroad._files import atomic_write, remove_abandoned_parts
+from evenroad.datasets.part import Request, make_part
+from evenroad.datasets.workers import Workers
+from evenroad.errors import BrokenFile, InvalidValue, shown
 
 REQUEST, CARD = "_request.json", "_card.json"
-"""Readers of folders of Parquet files pass over names that begin like these."""
+"""Names of files; readers of folders of Parquet files ignore those that begin with an underscore."""
 
 
 def make_parts(
     request: Request, folder: Path, shard: tuple[int, int], workers: Workers, report: Callable[[int, int], None]
 ) -> int:
-    """Make the parts of a shard, i of n, that a folder has not; return how many those are.
-
-    What a killed run has left is whole parts: nothing is lost, and nothing made twice.  A part that is damaged is made
-    again.
-    """
+    """Make the parts of a shard, i of n, that a folder lacks or that are damaged; return how many those are."""
     claim_folder(folder, request.values(), REQUEST)
     mine = range(shard[0], request.parts, shard[1])
     missing = deque(part for part in mine if digest_of(folder / request.name(part)) is None)
@@ -52,11 +45,37 @@ def make_parts(
     return todo
 
 
+def claim_folder(folder: Path, request: dict[str, Any], name: str) -> None:
+    """Write the request into the file `name` of `folder`; if it is there, check that it is the same.
+
+    Temporary files that killed processes left in the folder are removed.  Raises InvalidValue, with the first
+    difference, if the folder belongs to another request; BrokenFile if it is missing or cannot be written, or the
+    request not read.
+    """
+    path = folder / name
+    remove_abandoned_parts(folder)
+    if not path.exists():
+        with atomic_write(path) as file:
+            file.write(json.dumps(request, indent=1).encode())
+        return
+    try:
+        found = json.loads(path.read_bytes())
+    except (OSError, ValueError) as error:
+        raise BrokenFile(f"{path} is not readable as JSON: {error}") from None
+    for key, wanted in request.items():
+        there = found.get(key) if isinstance(found, dict) else None
+        if there != wanted:
+            raise InvalidValue(
+                f"{folder} holds sets with {key}={shown(there)}, asked for {key}={shown(wanted)};"
+                f" use another folder (what there is: {name})"
+            )
+
+
 def merge(shards: Sequence[Path], folder: Path) -> Request:
     """Copy the parts of shards into a folder; return their request.
 
-    Raises InvalidValue where shards are of different requests; BrokenFile where a folder is none of a set, or a part is
-    damaged.
+    Raises InvalidValue for shards of different requests; BrokenFile for a folder that is none of a set, or a damaged
+    part.
     """
     requests = [request_of(shard) for shard in shards]
     for shard, request in zip(shards, requests, strict=True):
@@ -75,7 +94,7 @@ def merge(shards: Sequence[Path], folder: Path) -> Request:
 
 
 def request_of(folder: Path) -> Request:
-    """Return the request of a folder; BrokenFile where it has none."""
+    """Return the request of a folder; BrokenFile if it has none."""
     try:
         values: dict[str, Any] = json.loads((folder / REQUEST).read_bytes())
         fields = {name: values[name] for name in Request.__dataclass_fields__}
@@ -85,7 +104,7 @@ def request_of(folder: Path) -> Request:
 
 
 def write_card(request: Request, folder: Path) -> int:
-    """Write what the set is and the digests of its parts, where all are there; return how many are, undamaged."""
+    """Write the card of a set whose parts are all there; return how many are, undamaged."""
     files = [folder / request.name(part) for part in range(request.parts)]
     hashes = {file.name: digest for file in files if (digest := digest_of(file)) is not None}
     if len(hashes) < len(files):
@@ -102,7 +121,7 @@ def write_card(request: Request, folder: Path) -> int:
 
 
 def write_part(file: Path, content: bytes) -> None:
-    """Write a part, and before it the digest of what was made: what is on disk later may be something else."""
+    """Write a part, and before it the digest of what was made, as the file may be damaged later."""
     digest = hashlib.sha256(content).hexdigest()
     # As `sha256sum --check` reads it.
     write(_digest_file(file), f"{digest}  {file.name}\n".encode())
@@ -110,7 +129,7 @@ def write_part(file: Path, content: bytes) -> None:
 
 
 def digest_of(file: Path) -> str | None:
-    """Return the digest of a part that is what was made; None where there is none, or it is damaged."""
+    """Return the digest of a part; None if it is missing or damaged."""
     try:
         said = _digest_file(file).read_bytes()
         with file.open("rb") as opened:
@@ -125,7 +144,7 @@ def _digest_file(file: Path) -> Path:
 
 
 def write(path: Path, content: bytes) -> None:
-    """Write a file at once, or not at all."""
+    """Write a file whole, or not at all."""
     with atomic_write(path) as file:
         file.write(content)
 
@@ -139,4 +158,4 @@ COLUMNS = {
     "path": "waypoints; straight motions between them are proved free (HDF5: waypoints, offsets)",
     "scene": "obstacles in the robot's base frame as JSON, or the scene's file (HDF5: scenes, scene_of)",
 }
-"""What the columns hold."""
+"""Name of a column, and what it holds."""

@@ -1,4 +1,4 @@
-"""Workers: where calls run, in this process, others of this machine, or wherever an executor sends them; and Ctrl-C."""
+"""Workers: in this process, in others of this machine, or wherever an executor sends calls; and Ctrl-C."""
 
 from __future__ import annotations
 
@@ -14,41 +14,42 @@ from dataclasses import dataclass
 from typing import Any, ParamSpec, TypeVar
 
 from evenroad._checks import require_count
+from evenroad._threads import processors
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
-THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 @dataclass(frozen=True)
 class Workers:
-    """How to make an executor, and again after its processes died; and how many calls one works on at a time now."""
+    """Functions that make an executor, again after its processes died, and count the calls that it runs at a time."""
 
     make: Callable[[], Executor]
     count: Callable[[Any], int]
 
 
 def in_process() -> Workers:
-    """Return the worker that is this process: for tests, debuggers and profilers."""
+    """Return this process as the only worker, for tests, debuggers and profilers."""
     return Workers(SerialExecutor, lambda executor: 1)
 
 
 def processes(jobs: int | None = None) -> Workers:
-    """Return so many processes of this machine, each with one thread; by default one a processor.
+    """Return processes of this machine, each with one thread; by default one a processor.
 
     They are spawned: a script must guard its main part with ``if __name__ == "__main__"``.
     """
-    jobs = usable_processors() if jobs is None else require_count("jobs", jobs)
+    jobs = processors() if jobs is None else require_count("jobs", jobs)
     return Workers(lambda: ProcessPool(jobs), lambda executor: jobs)
 
 
 class SerialExecutor(Executor):
-    """Runs what is submitted at once, and returns when it is done."""
+    """Runs each call at once, in this process."""
 
     def submit(
         self, fn: Callable[Arguments, Result], /, *args: Arguments.args, **kwargs: Arguments.kwargs
     ) -> Future[Result]:
-        """Run the call; what it raises is in the future, but Ctrl-C stops everything."""
+        """Run the call; its exception is kept in the future, but Ctrl-C stops everything."""
         future: Future[Result] = Future()
         try:
             with _dropped_interrupts_raised():
@@ -67,7 +68,7 @@ class ProcessPool(ProcessPoolExecutor):
     def __init__(
         self, jobs: int, initializer: Callable[..., object] | None = None, initargs: tuple[Any, ...] = ()
     ) -> None:
-        # Spawned, not forked: a fork of a process with threads (numba, BLAS) can hang.
+        # Spawned, not forked: a fork of a process with threads (BLAS) can hang.
         super().__init__(
             jobs, multiprocessing.get_context("spawn"), initializer=_settle, initargs=(initializer, initargs)
         )
@@ -75,12 +76,12 @@ class ProcessPool(ProcessPoolExecutor):
     def submit(
         self, fn: Callable[Arguments, Result], /, *args: Arguments.args, **kwargs: Arguments.kwargs
     ) -> Future[Result]:
-        """Submit a call; a process that starts for it is deaf to Ctrl-C from its first moment."""
+        """Submit a call; a process that starts for it ignores Ctrl-C from its first moment."""
         with _interrupts_held_back():
             return super().submit(fn, *args, **kwargs)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Shut down; without `wait`, end the processes in what they do, for which Python would wait when it exits."""
+        """Shut down; without `wait`, end the processes, for whose calls Python would wait when it exits."""
         running = list((self._processes or {}).values())
         try:
             super().shutdown(wait, cancel_futures=cancel_futures)
@@ -88,13 +89,6 @@ class ProcessPool(ProcessPoolExecutor):
             if not wait:
                 for process in running:
                     process.terminate()
-
-
-def usable_processors() -> int:
-    """Return how many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 @contextmanager
@@ -131,7 +125,7 @@ def _dropped_interrupts_raised() -> Iterator[None]:
         yield
     finally:
         sys.unraisablehook = before
-        # Whatever the call raised: after an interrupt that is no outcome.
+        # An interrupt counts more than whatever the call raised.
         if dropped:
             raise KeyboardInterrupt
 
@@ -147,7 +141,7 @@ def _settle(initializer: Callable[..., object] | None, initargs: tuple[Any, ...]
 
 
 def _leave_with_parent() -> None:
-    """End this process when the parent has ended, however it did: nobody would send it a task, nor an end."""
+    """End this process when the parent has ended: nobody else would."""
     parent = multiprocessing.parent_process()
     assert parent is not None  # a worker has one
     parent.join()
@@ -158,8 +152,8 @@ def _leave_with_parent() -> None:
 def interrupt_between_steps() -> Iterator[Callable[[], None]]:
     """Yield ``check()``, which raises KeyboardInterrupt if Ctrl-C was pressed; a second Ctrl-C acts at once.
 
-    A signal handler runs in the middle of whatever is computed, where state is half-written; the library keeps
-    what is done when its callback raises.  Outside the main thread handlers cannot be set and nothing changes.
+    A signal handler runs in the middle of a computation, when state is half-written; between steps, what is done is
+    kept.  Outside the main thread handlers cannot be set and nothing changes.
     """
     pressed = False
 
@@ -176,7 +170,7 @@ def interrupt_between_steps() -> Iterator[Callable[[], None]]:
 
     before = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or before != signal.default_int_handler:
-        # Not ours to set, or somebody else's: with SIGINT ignored (nohup, a background job) it stays so.
+        # An ignored SIGINT (nohup, a background job) and a handler of others stay as they are.
         yield check
         return
     signal.signal(signal.SIGINT, press)

@@ -1,45 +1,46 @@
-"""One part of a data set: queries are drawn, answered and timed, and become the bytes of a file."""
+"""One part of a data set: the bytes of a file of queries with their paths and trajectories."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from io import BytesIO
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from evenroad import __version__
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_extra
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.datasets.queries import Queries, draw_queries
 from evenroad.errors import EvenroadError
 from evenroad.planning.connectors import RESTART
 from evenroad.planning.many import by_compiled_code
 from evenroad.roadmap import Budget
-from evenroad.robot import ArmWorld
 from evenroad.trajectory.arm import arm_trajectory
-from evenroad_studies.datasets.queries import Queries, draw_queries
 
 STATES = 64
 """Number of states of a trajectory that are kept, evenly in time."""
 
 Format = Literal["parquet", "hdf5"]
+_Columns: TypeAlias = "dict[str, Floats | np.ndarray[Any, np.dtype[Any]]]"
 
 
 @dataclass(frozen=True)
 class Request:
-    """What a set is made of: the same request has the same bytes, whoever makes which part."""
+    """Request for a set; it decides about every byte of each part."""
 
     robot: str
     sources: tuple[str, ...]
     count: int
     seed: int = 0
     rows: int = 1000
-    """Of a part."""
+    """Number of problems of a part."""
     of_each: int = 16
-    """Queries in one scene."""
+    """Number of queries in one scene."""
     format: Format = "parquet"
     motions: int = RESTART
-    """Largest number of motions that trees check for one query: no clock decides about a path."""
+    """Largest number of motions that trees check for one query, in place of a time limit."""
 
     @property
     def parts(self) -> int:
@@ -56,12 +57,12 @@ class Request:
 
 
 def make_part(request: Request, part: int) -> bytes:
-    """Return the file of a part; threads are left to other parts."""
+    """Return the file of a part, made in one thread."""
     rows = min(request.rows, request.count - part * request.rows)
     queries = draw_queries(request.robot, request.sources, request.seed, part, rows, request.of_each)
     terminals = np.stack([queries.starts, queries.goals], axis=1)
     of, budget = np.array(queries.scene_of), Budget(motions=request.motions)
-    # As of er.plan_many, but for hard queries, on which it would go on: seconds each, and hardly a path more.
+    # er.plan_many would go on with hard queries: that takes seven times as long, for hardly a path more.
     found = by_compiled_code(list(queries.worlds), of, terminals, budget, True, 0, 1, lambda done: None)
     counts = np.zeros(rows, dtype=np.int64)
     counts[found.rows] = found.counts
@@ -90,14 +91,14 @@ def timed(world: ArmWorld, path: Floats) -> tuple[float, Floats]:
     try:
         trajectory = arm_trajectory(world, path)
     except EvenroadError:
-        # Such as one without a proof at some corner: the path stays.
+        # Some corner has no proof: the path stays.
         return np.nan, np.zeros((STATES, path.shape[1]))
     at = np.linspace(0.0, trajectory.duration, STATES)
     columns = [np.interp(at, trajectory.times, column) for column in trajectory.positions.T]
     return float(trajectory.duration), np.stack(columns, axis=1)
 
 
-def _parquet(columns: dict[str, Any], waypoints: Floats, offsets: Any, queries: Queries) -> bytes:
+def _parquet(columns: _Columns, waypoints: Floats, offsets: Ints, queries: Queries) -> bytes:
     arrow = require_extra("pyarrow", "parquet", "a data set")
     parquet = require_extra("pyarrow.parquet", "parquet", "a data set")
 
@@ -115,7 +116,7 @@ def _parquet(columns: dict[str, Any], waypoints: Floats, offsets: Any, queries: 
     return file.getvalue()
 
 
-def _hdf5(columns: dict[str, Any], waypoints: Floats, offsets: Any, queries: Queries) -> bytes:
+def _hdf5(columns: _Columns, waypoints: Floats, offsets: Ints, queries: Queries) -> bytes:
     h5py = require_extra("h5py", "hdf5", "a data set in HDF5")
     file = BytesIO()
     arrays: dict[str, Any] = {

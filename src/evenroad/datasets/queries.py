@@ -1,4 +1,4 @@
-"""Queries of one arm in random scenes, or in those of files: the same for the same seed and part."""
+"""Queries of one arm in random scenes, or in those of files; seed and part decide about every bit."""
 
 from __future__ import annotations
 
@@ -11,27 +11,30 @@ from pathlib import Path
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.datasets.random_scenes import GENERATORS, Region, cell_of, draw_scene, inside_of
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
-from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, load_robot, load_scene
-from evenroad.robots.kinematics import tip_links
-from evenroad_studies.arms.cells import cell_of, free_configurations
-from evenroad_studies.arms.scenes import GENERATORS, Region, inside_of, places_of
+from evenroad.loading.load import load_robot
+from evenroad.robots.kinematics import link_poses, tip_links
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Obstacle, Scene
+from evenroad.scenes.scene_file import load_scene
 
 POOL = 40_000
-"""Number of configurations of which those with the tool in a region are taken."""
+"""Number of configurations that are drawn once, to find those with the tool in a region."""
 TRIES = 200
-"""Scenes that are drawn for one at most: into some no arm can reach."""
+"""Largest number of scenes drawn until the arm reaches into one."""
 CHOICE = 8
-"""Goals that the one is chosen from which is nearest to the start."""
+"""Number of goals of which the nearest to the start is taken."""
 STREAM = "report"
-"""Whose ranges of parameters scenes are drawn from."""
+"""Name of the ranges that scenes are drawn from."""
 
 
 @dataclass(frozen=True)
 class Queries:
     """Queries of one part of a set, one row each.
 
-    `scenes` are texts, JSON of the obstacles or the name of a file, and `scene_of`, (m,), says which each row has.
+    `scenes` are texts, each JSON of the obstacles or the name of a file.  `scene_of`, (m,), is the scene of each row.
     """
 
     worlds: tuple[ArmWorld, ...]
@@ -62,23 +65,21 @@ def sources_of(given: Sequence[str]) -> tuple[str, ...]:
 
 
 def draw_queries(robot: str, sources: Sequence[str], seed: int, part: int, rows: int, of_each: int) -> Queries:
-    """Return the queries of a part, `of_each` in every scene; both ends are free.
+    """Return the queries of a part, `of_each` in every scene; starts and goals are free.
 
-    Raises NotAvailable where an arm finds no free configurations in a scene, however often that is drawn.
+    Raises NotAvailable if scene after scene has no two free configurations.
     """
     rng = np.random.default_rng([20261126, seed, part])
-    arm, worlds, scenes = _robot(robot), list[ArmWorld](), list[str]()
-    starts, goals = list[Floats](), list[Floats]()
-    scene_of: list[int] = []
+    worlds, scenes, scene_of, terminals = list[ArmWorld](), list[str](), list[int](), list[Floats]()
     while len(scene_of) < rows:
         source = sources[int(rng.integers(len(sources)))]
-        world, text, ends = _scene_with_ends(arm, robot, source, min(of_each, rows - len(scene_of)), rng)
-        scene_of += [len(worlds)] * len(ends)
+        world, text, pairs = _reached_scene(robot, source, min(of_each, rows - len(scene_of)), rng)
+        scene_of += [len(worlds)] * len(pairs)
         worlds.append(world)
         scenes.append(text)
-        starts.append(ends[:, 0])
-        goals.append(ends[:, 1])
-    return Queries(tuple(worlds), tuple(scenes), tuple(scene_of), np.concatenate(starts), np.concatenate(goals))
+        terminals.append(pairs)
+    starts, goals = np.concatenate(terminals).transpose(1, 0, 2)
+    return Queries(tuple(worlds), tuple(scenes), tuple(scene_of), starts, goals)
 
 
 @lru_cache(maxsize=2)
@@ -97,33 +98,34 @@ def _file(name: str) -> Scene:
     return load_scene(name)
 
 
-def _scene_with_ends(
-    arm: Robot, robot: str, source: str, count: int, rng: np.random.Generator
-) -> tuple[ArmWorld, str, Floats]:
+def _reached_scene(robot: str, source: str, count: int, rng: np.random.Generator) -> tuple[ArmWorld, str, Floats]:
     """Return a world, its text, and the starts and goals in it, (count, 2, dim)."""
+    arm = _robot(robot)
     for _ in range(TRIES):
         scene, regions = _drawn(arm, source, rng)
         world = ArmWorld(arm, scene)
-        ends = _ends(world, robot, regions, count, rng)
-        if ends is not None:
-            return world, source if source not in GENERATORS else as_text(scene), ends
-    raise NotAvailable(f"of {TRIES} scenes of {source!r} {robot} finds two free configurations in none")
+        terminals = _terminals(world, robot, regions, count, rng)
+        if terminals is not None:
+            return world, source if source not in GENERATORS else as_text(scene), terminals
+    raise NotAvailable(f"{robot} has no two free configurations in any of {TRIES} scenes of {source!r}")
 
 
 def _drawn(arm: Robot, source: str, rng: np.random.Generator) -> tuple[Scene, list[Region]]:
     if source not in GENERATORS:
         return _file(source), []
     cell = _cell(arm)
-    obstacles, regions = places_of(source, STREAM, rng)
+    obstacles, regions = draw_scene(source, STREAM, rng)
     named = tuple(replace(each, name=f"{source} {i}") for i, each in enumerate(obstacles))
     return Scene((*cell.obstacles, *named), name=source, allowed=cell.allowed), regions
 
 
-def _ends(world: ArmWorld, robot: str, regions: list[Region], count: int, rng: np.random.Generator) -> Floats | None:
+def _terminals(
+    world: ArmWorld, robot: str, regions: list[Region], count: int, rng: np.random.Generator
+) -> Floats | None:
     """Return free starts and goals, each with the tool in another region, or anywhere; None where there are none."""
     pool, tools = _pool(robot)
     chosen = [regions[int(i)] for i in rng.permutation(len(regions))[:2]] if regions else [None, None]
-    ends: list[Floats] = []
+    found: list[Floats] = []
     for region in chosen:
         rows = np.arange(len(pool)) if region is None else np.flatnonzero(inside_of(tools, region))
         if not len(rows):
@@ -133,12 +135,12 @@ def _ends(world: ArmWorld, robot: str, regions: list[Region], count: int, rng: n
         if not len(free):
             return None
         several = free[rng.integers(len(free), size=(count, CHOICE))]
-        if ends:
-            # Near in its joints: an arm that turns on often cannot come around.
-            away = np.linalg.norm(several - ends[0][:, np.newaxis], axis=2)
+        if found:
+            # A goal that is far in the joints often cannot be reached.
+            away = np.linalg.norm(several - found[0][:, np.newaxis], axis=2)
             several = np.take_along_axis(several, away.argmin(axis=1)[:, np.newaxis, np.newaxis], axis=1)
-        ends.append(several[:, 0])
-    return np.stack(ends, axis=1)
+        found.append(several[:, 0])
+    return np.stack(found, axis=1)
 
 
 @lru_cache(maxsize=2)
@@ -149,12 +151,21 @@ def _pool(robot: str) -> tuple[Floats, Floats]:
     return free_configurations(arm, _cell(arm), POOL, arm.links.index(tip_links(arm)[-1]))
 
 
+def free_configurations(arm: Robot, cell: Scene, count: int, link: int) -> tuple[Floats, Floats]:
+    """Return those of uniform configurations that are free of robot and cell, (n, dim), and where a link is, (n, 3)."""
+    world = ArmWorld(arm, cell)
+    q = world.space.from_cube(np.random.default_rng(0).random((count, world.space.dim)))
+    q = q[world.valid(q)]
+    # In batches: the poses of all links are much larger than those of one.
+    return q, np.concatenate([link_poses(arm, part)[:, link, :3, 3] for part in np.array_split(q, 40)])
+
+
 def as_text(scene: Scene) -> str:
     """Return a scene as one line of JSON, which `er.Scene` reads as a mapping."""
     keys = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
     obstacles = {}
     for each in scene.obstacles:
-        values = [list(each.size)] if each.shape == "box" else list(each.size)
+        values = (each.size,) if each.shape == "box" else each.size
         sizes = dict(zip(keys[each.shape], values, strict=True))
         obstacles[each.name] = {"shape": each.shape, **sizes, "xyz": list(each.xyz), "rpy": list(each.body.pose.rpy)}
     allowed: dict[str, list[str]] = {}

@@ -1,15 +1,16 @@
-"""Workers of a Dask cluster: other machines, behind one scheduler."""
+"""Workers of a Dask cluster: other machines behind one scheduler."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future
 from typing import Any
 
 from evenroad import __version__
 from evenroad._checks import require_extra
+from evenroad.datasets.workers import Arguments, Result, Workers
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad_studies.workers import Workers
 
 CONNECT_SECONDS = 8.0
 WORKER_SECONDS = 60.0
@@ -72,16 +73,20 @@ class _DaskExecutor(Executor):
     def count_threads(self) -> int:
         """Return how many tasks the cluster runs at a time now, at least 1."""
         try:
-            return max(1, sum(self._client.nthreads().values()))
+            threads: int = sum(self._client.nthreads().values())
+            return max(1, threads)
         except OSError:
             # The connection is lost, as the next call that is submitted will say.
             return 1
 
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+    def submit(
+        self, fn: Callable[Arguments, Result], /, *args: Arguments.args, **kwargs: Arguments.kwargs
+    ) -> Future[Result]:
         """Submit a call; BrokenExecutor if the scheduler is gone."""
         if self._client.status != "running":
             raise BrokenExecutor(f"the connection to the scheduler at {self._address} was lost")
-        return self._executor.submit(fn, *args, **kwargs)
+        future: Future[Result] = self._executor.submit(fn, *args, **kwargs)
+        return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Cancel or wait for what is in flight, and close the connection; the cluster goes on."""

@@ -10,14 +10,14 @@ from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 
-from evenroad_studies.workers import ProcessPool, SerialExecutor
+from evenroad.datasets.workers import ProcessPool, SerialExecutor
 from tests.refused import refused
 
 PATIENCE = 60.0
 
 PARENT_OF_IDLE_WORKERS = """
 import os, time
-from evenroad_studies.workers import ProcessPool
+from evenroad.datasets.workers import ProcessPool
 
 if __name__ == "__main__":
     pool = ProcessPool(2)
@@ -60,7 +60,7 @@ def test_each_process_has_one_thread_and_is_set_up_once_before_its_first_call():
     with ProcessPool(1, os.putenv, ("EVENROAD_SET_UP", "yes")) as pool:
         shell = pool.submit(subprocess.check_output, "echo $EVENROAD_SET_UP", shell=True)
         assert shell.result() == b"yes\n"
-        assert pool.submit(os.getenv, "NUMBA_NUM_THREADS").result() == "1"
+        assert pool.submit(os.getenv, "OMP_NUM_THREADS").result() == "1"
 
 
 def test_processes_that_are_not_waited_for_are_ended_in_what_they_do():

@@ -1,6 +1,7 @@
-"""Scenes at random, and where the tool goes in them: shelf, clutter, tight, boxes and cage.
+"""Random scenes, and where the tool goes in them: shelf, clutter, tight, boxes and cage.
 
-Each generator has two ranges of parameters: constants are chosen on the one, figures come from the other.
+Each generator has two ranges of parameters: ``report`` for data sets and published figures, ``tune`` for the choice of
+constants.
 """
 
 from __future__ import annotations
@@ -10,29 +11,30 @@ from typing import NamedTuple
 
 import numpy as np
 
-from evenroad._arrays import Floats
-from evenroad.robot import Obstacle
+from evenroad._arrays import Bools, Floats
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Obstacle, Scene
 
 
 class Region(NamedTuple):
-    """A box for the tool's place: centre and half extents, (3,) each [m], turned about z by an angle."""
+    """A box for the tool's position: centre and half extents, (3,) each [m], turned about z by an angle."""
 
     centre: Floats
     half: Floats
     angle: float
 
 
-def inside_of(places: Floats, region: Region) -> Floats:
-    """Return which places, (n, 3), are in a region, (n,)."""
+def inside_of(positions: Floats, region: Region) -> Bools:
+    """Return which positions, (n, 3), are in a region, (n,)."""
     cosine, sine = np.cos(region.angle), np.sin(region.angle)
-    x, y, z = (places - region.centre).T
-    first, second, third = region.half
-    inside: Floats = (np.abs(cosine * x + sine * y) <= first) & (np.abs(cosine * y - sine * x) <= second)
-    return inside & (np.abs(z) <= third)
+    x, y, z = (positions - region.centre).T
+    own = np.stack([cosine * x + sine * y, cosine * y - sine * x, z], axis=1)
+    inside: Bools = (np.abs(own) <= region.half).all(axis=1)
+    return inside
 
 
-Places = tuple[list[Obstacle], list[Region]]
-"""Obstacles and regions; without any, the ends are anywhere."""
+Drawn = tuple[list[Obstacle], list[Region]]
+"""Obstacles, and regions for the tool at start and goal; without regions it is anywhere."""
 
 
 def _about_z(angle: float) -> Floats:
@@ -41,13 +43,13 @@ def _about_z(angle: float) -> Floats:
 
 
 def _boxes(centre: Floats, angle: float, parts: list[tuple[list[float], list[float]]]) -> list[Obstacle]:
-    """Return boxes, each given by its place and full extents in a frame at `centre` turned about z."""
+    """Return boxes, each given by its position and full extents in a frame at `centre` turned about z."""
     turn = _about_z(angle)
-    return [_box(size, centre + turn @ place, turn) for place, size in parts]
+    return [_box(size, centre + turn @ position, turn) for position, size in parts]
 
 
-def _box(size: list[float] | Floats, place: Floats, turn: Floats) -> Obstacle:
-    return Obstacle.of("", "box", tuple(map(float, size)), tuple(map(float, place)), tuple(turn.ravel().tolist()))
+def _box(size: list[float] | Floats, position: Floats, turn: Floats) -> Obstacle:
+    return Obstacle.of("", "box", tuple(map(float, size)), tuple(map(float, position)), tuple(turn.ravel().tolist()))
 
 
 def _before(rng: np.random.Generator) -> Region:
@@ -57,7 +59,7 @@ def _before(rng: np.random.Generator) -> Region:
 
 
 class _Ranges(NamedTuple):
-    """What a stream draws from, uniformly [m, rad]; counts without their last."""
+    """Ranges of uniform draws [m, rad]; of counts the upper end is excluded."""
 
     shelf_angle: tuple[float, float]
     shelf_away: tuple[float, float]
@@ -106,10 +108,10 @@ RANGES = {
         cage_bars=(1, 3),
     ),
 }
-"""Stream -> its parameters."""
+"""Stream -> its ranges."""
 
 
-def _shelf(ranges: _Ranges, rng: np.random.Generator) -> Places:
+def _shelf(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
     """Return a shelf of three rows, its open side towards the robot; the tool goes into compartments."""
     angle, away = rng.uniform(*ranges.shelf_angle), rng.uniform(*ranges.shelf_away)
     columns, board, depth = int(rng.integers(*ranges.shelf_columns)), 0.02, 0.3
@@ -132,18 +134,18 @@ def _shelf(ranges: _Ranges, rng: np.random.Generator) -> Places:
     return _boxes(centre, angle, parts), [*regions, _before(rng)]
 
 
-def _clutter(ranges: _Ranges, rng: np.random.Generator) -> Places:
+def _clutter(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
     """Return a table with things on it; the tool goes low between them."""
     obstacles = []
     for _ in range(int(rng.integers(*ranges.things))):
         angle, away, tall = rng.uniform(-1.4, 1.4), rng.uniform(0.35, 0.8), rng.uniform(*ranges.thing_height)
-        place = np.array([away * np.cos(angle), away * np.sin(angle), 0.5 * tall])
+        position = np.array([away * np.cos(angle), away * np.sin(angle), 0.5 * tall])
         if rng.random() < 0.5:
             size = (float(rng.uniform(0.03, 0.07)), float(tall))
-            obstacles.append(Obstacle.of("", "cylinder", size, tuple(place.tolist())))
+            obstacles.append(Obstacle.of("", "cylinder", size, tuple(position.tolist())))
         else:
             size2 = [*rng.uniform(0.05, 0.15, 2), tall]
-            obstacles.append(_box(size2, place, _about_z(rng.uniform(-np.pi, np.pi))))
+            obstacles.append(_box(size2, position, _about_z(rng.uniform(-np.pi, np.pi))))
     regions = []
     for _ in range(2):
         angle, away = rng.uniform(-1.2, 1.2), rng.uniform(0.4, 0.7)
@@ -152,7 +154,7 @@ def _clutter(ranges: _Ranges, rng: np.random.Generator) -> Places:
     return obstacles, regions
 
 
-def _tight(ranges: _Ranges, rng: np.random.Generator) -> Places:
+def _wall(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
     """Return a wall with two windows, hardly larger than the hand; the tool goes through them."""
     angle, away, thick = rng.uniform(-0.8, 0.8), rng.uniform(*ranges.wall_away), 0.02
     centre = np.array([away * np.cos(angle), away * np.sin(angle), 0.0])
@@ -177,18 +179,18 @@ def _tight(ranges: _Ranges, rng: np.random.Generator) -> Places:
     return _boxes(centre, angle, parts), [*regions, _before(rng)]
 
 
-def _random_boxes(ranges: _Ranges, rng: np.random.Generator) -> Places:
-    """Return boxes anywhere in reach, turned about z; both ends are anywhere."""
+def _random_boxes(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
+    """Return boxes anywhere in reach, turned about z; start and goal are anywhere."""
     obstacles = []
     for _ in range(int(rng.integers(*ranges.boxes))):
         angle, away = rng.uniform(-np.pi, np.pi), rng.uniform(0.3, 1.0)
-        place = np.array([away * np.cos(angle), away * np.sin(angle), rng.uniform(0.0, 1.0)])
+        position = np.array([away * np.cos(angle), away * np.sin(angle), rng.uniform(0.0, 1.0)])
         size = 2.0 * rng.uniform(*ranges.box_half, 3)
-        obstacles.append(_box(size, place, _about_z(rng.uniform(-np.pi, np.pi))))
+        obstacles.append(_box(size, position, _about_z(rng.uniform(-np.pi, np.pi))))
     return obstacles, []
 
 
-def _cage(ranges: _Ranges, rng: np.random.Generator) -> Places:
+def _cage(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
     """Return a cage of bars, one along every edge and some between; the tool goes in between bars."""
     angle, away, bar = rng.uniform(-0.8, 0.8), rng.uniform(0.5, 0.62), 0.015
     width, height = rng.uniform(*ranges.cage_width), rng.uniform(0.45, 0.6)
@@ -208,16 +210,23 @@ def _cage(ranges: _Ranges, rng: np.random.Generator) -> Places:
     return _boxes(centre, angle, parts), [inside, _before(rng)]
 
 
-GENERATORS: dict[str, Callable[[_Ranges, np.random.Generator], Places]] = {
+GENERATORS: dict[str, Callable[[_Ranges, np.random.Generator], Drawn]] = {
     "shelf": _shelf,
     "clutter": _clutter,
-    "tight": _tight,
+    "tight": _wall,
     "boxes": _random_boxes,
     "cage": _cage,
 }
-"""Name -> obstacles without names, and regions."""
+"""Name -> function that draws obstacles without names, and regions."""
 
 
-def places_of(generator: str, stream: str, rng: np.random.Generator) -> Places:
+def draw_scene(generator: str, stream: str, rng: np.random.Generator) -> Drawn:
     """Return the obstacles and regions that a generator draws for a stream, ``tune`` or ``report``."""
     return GENERATORS[generator](RANGES[stream], rng)
+
+
+def cell_of(robot: Robot) -> Scene:
+    """Return the cell of all problems of the studies: the table that the robot stands on."""
+    table = Obstacle.of("table", "box", (1.6, 1.6, 0.05), (0.3, 0.0, -0.03))
+    bodied = [link for link in robot.links if any(capsule.link == link for capsule in robot.capsules)]
+    return Scene((table,), name="table", allowed=frozenset((link, "table") for link in bodied[:2]))

@@ -1,4 +1,4 @@
-"""``evenroad generate``: a data set of problems with timed, proved paths, for learning; the same line resumes."""
+"""``evenroad generate``: a data set of problems with timed, proved paths, for learning."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from evenroad._checks import counted, require_count, require_extra
 from evenroad._files import require_writable_folder
 from evenroad._terminal import progress_shown
 from evenroad.cli.options import Positional
+from evenroad.datasets.dask_cluster import dask_workers
+from evenroad.datasets.folder import CARD, make_parts, merge, write_card
+from evenroad.datasets.part import Format, Request
+from evenroad.datasets.queries import sources_of
+from evenroad.datasets.workers import interrupt_between_steps, processes
 from evenroad.errors import BrokenFile, InvalidValue, shown
-from evenroad.robot import load_robot
-from evenroad_studies.bench.schedulers import dask_workers
-from evenroad_studies.datasets.folder import CARD, make_parts, merge, write_card
-from evenroad_studies.datasets.part import Format, Request
-from evenroad_studies.datasets.queries import sources_of
-from evenroad_studies.workers import interrupt_between_steps, processes
+from evenroad.loading.load import load_robot
 
 
 @dataclass(frozen=True, kw_only=True)
 class Generate:
     """Make a data set of problems of an arm, with paths that are proved free and timed, for learning.
 
-    A problem is a scene, a start and a goal.  The same command goes on where it stopped, and
-    makes files again that are damaged.
+    A problem is a scene, a start and a goal.  The same command resumes an interrupted run, and makes damaged files
+    again.
 
     Example: evenroad generate shelf boxes --robot ur5 --count 1000 -o problems
     """
@@ -36,19 +36,19 @@ class Generate:
     robot: str = "ur5"
     """The arm: a name or a file."""
     count: float = 10_000
-    """How many problems, such as 1e6."""
+    """Number of problems, such as 1e6."""
     out: Annotated[Path, "-o"]
     """The folder of the set; made if its parent exists."""
     seed: int = 0
     """Seed of everything random; file i depends on it and on i alone."""
     rows: int = 1000
-    """How many problems a file has."""
+    """Number of problems of a file."""
     per_scene: int = 16
-    """How many problems a scene has."""
+    """Number of problems in a scene."""
     format: Format = "parquet"
     """Kind of the files; each needs the extra of its name."""
     shard: str = "0/1"
-    """i/n: make the files number i, i + n, i + 2 n ... alone.  So n machines share a set, i from 0 to n - 1."""
+    """i/n: make only the files number i, i + n, i + 2 n ..., so that n machines share a set, i from 0 to n - 1."""
     merge: bool = False
     """Gather the files of shards into one set, with a _card.json that describes it."""
     jobs: int | None = None
@@ -57,7 +57,7 @@ class Generate:
     """Address of a Dask scheduler whose workers make the files, tcp://host:port (extra [dask])."""
 
     def run(self) -> int:
-        """Make what is missing, and say what there is."""
+        """Make the missing files, and report; return 0 if none is missing now, else 1."""
         self._make_folder()
         if self.merge:
             request = merge([Path(each) for each in self.scenes], self.out)
