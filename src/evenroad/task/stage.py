@@ -9,6 +9,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_known
+from evenroad._time_limit import look_at_clock
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.pose import Pose
@@ -23,6 +24,9 @@ from evenroad.task.contact import core_of, distance_of
 from evenroad.task.steps import Attach, Detach
 
 Contacts = frozenset[tuple[str, str]]
+
+_TO_HOLD = 5e-3
+"""Seconds that it takes to make the tables of a robot that holds something."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,6 +181,7 @@ def _world(stage: Stage, scene: Scene) -> ArmWorld:
     robot = stage.empty
     for held in scene.attached:
         if held.name not in robot.holds:
+            look_at_clock(_TO_HOLD)
             # First, so that where both touch, messages name the object, whose own shape decides of both.
             if held.name in stage.depths:
                 as_capsule = not robot.holding(held).shapes
