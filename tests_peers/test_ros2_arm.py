@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from evenroad.errors import InvalidValue
-from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot
+from evenroad.errors import EvenroadError, InvalidValue
+from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
 from evenroad.trajectory import Limits, make_trajectory
 from evenroad.trajectory.files import joint_trajectory
 from tests_peers.ros2_messages import FOLDER, Cdr, _header, _module, _pose, _sent, _written
@@ -163,15 +163,23 @@ def test_no_path_is_an_answer(store, make):
 
 
 def _far(make):
-    return _collision_object(make, "far", frame="camera")
+    return _collision_object(make, "far", [_solid(make, 2, (0.1,))], [_pose(make, (0, 0, 0))], frame="camera")
 
 
 def _floor(make):
     return _collision_object(make, "floor", planes=[make("shape_msgs/msg/Plane")], plane_poses=[_pose(make, (0, 0, 0))])
 
 
-def _padded(make):
-    return make("moveit_msgs/msg/LinkPadding", link_name="tool0", padding=0.01)
+def test_padded_links_and_objects_in_the_frames_of_links_are_honoured(store, make):
+    robot = load_robot("ur5")
+    padding = make("moveit_msgs/msg/LinkPadding", link_name="tool0", padding=0.01)
+    solid, pose = _solid(make, 1, (0.1, 0.1, 0.2)), _pose(make, (0.0, 0.0, 0.3))
+    box = _collision_object(make, "box", [solid], [pose], frame="tool0")
+    message = _planning_scene(make, START, [box], link_padding=[padding])
+    scene = _module("messages").planning_scene(_sent(store, message), robot)
+    assert scene.padding == {"tool0": 0.01}
+    tip = link_poses(robot, [[*START.values()]])[0, robot.links.index("tool0")]
+    np.testing.assert_allclose(scene.obstacles[0].xyz, (tip @ (0.0, 0.0, 0.3, 1.0))[:3])
 
 
 def _scaled(make):
@@ -183,8 +191,7 @@ def _scaled(make):
     [
         ("difference", [], {"is_diff": lambda make: True}),
         ("octomap", [], {"octomap": lambda make: (1, 2)}),
-        ("padded", [], {"link_padding": lambda make: [_padded(make)]}),
-        ("scaled", [], {"link_scale": lambda make: [_scaled(make)]}),
+        ("link_scale", [], {"link_scale": lambda make: [_scaled(make)]}),
         ("camera", [_far], {}),
         ("plane", [_floor], {}),
     ],
@@ -192,7 +199,7 @@ def _scaled(make):
 def test_what_would_be_left_out_is_refused(make, said, objects, changes):
     fields = {name: value(make) for name, value in changes.items()}
     message = _planning_scene(make, START, [each(make) for each in objects], **fields)
-    with pytest.raises(InvalidValue, match=said):
+    with pytest.raises(EvenroadError, match=said):
         _module("messages").planning_scene(message, load_robot("ur5"))
 
 

@@ -6,6 +6,7 @@ A message that comes in may be of any library that has its fields; one that goes
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,9 @@ import numpy.typing as npt
 
 import evenroad as er
 from evenroad.errors import InvalidValue
-from evenroad.robot import HeldObject, Robot, Scene, with_group
-from evenroad.scenes.moveit_scene import read_planning_scene
+from evenroad.robot import Robot, Scene, with_group
+from evenroad.scenes.planning_scene import read_planning_scene
+from evenroad.scenes.robot_in_scene import placed_scene
 from evenroad.world import MapFrame
 
 Make = Callable[..., Any]
@@ -82,78 +84,32 @@ def path_message(
 
 
 def planning_scene(message: Any, robot: Robot) -> Scene:
-    """Return the scene of a ``moveit_msgs/PlanningScene``: objects, what the robot holds, and allowed contacts.
+    """Return the scene of a ``moveit_msgs/PlanningScene``: objects, what the robot holds, padding, allowed contacts.
 
-    What would be left out is refused (InvalidValue): a difference to another scene, an octomap, padded or scaled
-    links, planes, and objects in frames other than the robot's root link.
+    Objects in the frames of links are placed by the state of the robot in the message.  What would be left out is
+    refused (InvalidValue or UnknownName): a difference to another scene, an octomap, scaled links, planes, and objects
+    in frames that neither the message nor the robot has.
     """
-    if message.is_diff:
-        raise InvalidValue("the planning scene must be whole, not a difference to another")
-    if len(message.world.octomap.octomap.data):
-        raise InvalidValue("the planning scene has an octomap: give its points as a cloud")
-    if any(each.padding != 0.0 for each in message.link_padding):
-        raise InvalidValue("the planning scene has padded links: give clearance to the robot's capsules")
-    if any(each.scale != 1.0 for each in message.link_scale):
-        raise InvalidValue("the planning scene has scaled links")
-    objects = message.world.collision_objects
-    scene = _scene(objects, message.name or "planning scene", robot.links[0])
-    held = []
-    for each in message.robot_state.attached_collision_objects:
-        parts = _scene([each.object], "held", each.link_name).obstacles
-        held += [HeldObject(part.name, part.body, each.link_name, tuple(each.touch_links)) for part in parts]
-    allowed = _allowed(message.allowed_collision_matrix, robot, [each.id for each in objects])
-    pairs = [(link, part.name) for part in scene.obstacles for link, name in allowed if part.name.split("/")[0] == name]
-    return Scene(scene.obstacles, name=scene.name, allowed=frozenset(pairs), attached=tuple(held))
+    document = _plain(message)
+    root = {"child_frame_id": robot.links[0], "transform": {"translation": [0.0] * 3, "rotation": [0.0, 0.0, 0.0, 1.0]}}
+    document["fixed_frame_transforms"].append(root)
+    scene = placed_scene(robot, read_planning_scene(document, Path(message.name or "planning scene")))
+    links = {*robot.links, *(each.name for each in scene.attached)}
+    return replace(scene, allowed=frozenset(pair for pair in scene.allowed if pair[0] in links))
 
 
-def _scene(objects: Sequence[Any], name: str, frame: str) -> Scene:
-    for each in objects:
-        if each.header.frame_id not in ("", frame):
-            raise InvalidValue(f"object {each.id!r} must be in the frame {frame!r}, got {each.header.frame_id!r}")
-    document = {"name": name, "world": {"collision_objects": [_object(each) for each in objects]}}
-    return read_planning_scene(document, Path(name))
-
-
-def _object(message: Any) -> dict[str, Any]:
-    """Return a ``moveit_msgs/CollisionObject`` as the YAML that evenroad reads."""
-    return {
-        "id": message.id,
-        "pose": _pose(message.pose),
-        "primitives": [
-            {"type": int(each.type), "dimensions": [float(size) for size in each.dimensions]}
-            for each in message.primitives
-        ],
-        "primitive_poses": [_pose(each) for each in message.primitive_poses],
-        "meshes": [
-            {
-                "vertices": [[each.x, each.y, each.z] for each in mesh.vertices],
-                "triangles": [[int(corner) for corner in each.vertex_indices] for each in mesh.triangles],
-            }
-            for mesh in message.meshes
-        ],
-        "mesh_poses": [_pose(each) for each in message.mesh_poses],
-        "planes": len(message.planes) > 0,
-    }
-
-
-def _pose(message: Any) -> dict[str, list[float]]:
-    place, turn = message.position, message.orientation
-    quaternion = [turn.x, turn.y, turn.z, turn.w]
-    # As MoveIt takes a pose that nobody has filled in.
-    quaternion = quaternion if any(quaternion) else [0.0, 0.0, 0.0, 1.0]
-    return {"position": [place.x, place.y, place.z], "orientation": quaternion}
-
-
-def _allowed(matrix: Any, robot: Robot, objects: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the pairs of a link and an object that may touch."""
-    names, links = list(matrix.entry_names), set(robot.links)
-    enabled = {
-        (one, other)
-        for one, row in zip(names, matrix.entry_values, strict=True)
-        for other, may in zip(names, row.enabled, strict=True)
-        if may
-    }
-    return [(link, name) for link in links for name in objects if {(link, name), (name, link)} & enabled]
+def _plain(value: Any) -> Any:
+    """Return a message as the YAML of ``ros2 topic echo`` has it: mappings, lists, numbers and texts."""
+    if isinstance(value, str | bytes | bool | int | float):
+        return value
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, Sequence):
+        return [_plain(each) for each in value]
+    own = value.get_fields_and_field_types() if hasattr(value, "get_fields_and_field_types") else vars(value)
+    plain = {name: _plain(getattr(value, name)) for name in own if name[0].islower()}
+    # As MoveIt takes a quaternion that nobody has filled in.
+    return {**plain, "w": 1.0} if plain.keys() == {*"xyzw"} and not any(plain.values()) else plain
 
 
 def standing(message: Any, robot: Robot) -> tuple[Robot, list[float]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from inspect import Parameter, signature
 from types import FunctionType
@@ -38,9 +38,9 @@ def explains_calls(called: Called) -> Called:
     return explained  # type: ignore[return-value]
 
 
-def require_options(name: str, given: Mapping[str, object], options: type) -> None:
-    """Raise UnknownName for a keyword that a function takes by no name of its own, and its TypedDict does not have."""
-    known = options.__annotations__
+def require_options(name: str, given: Mapping[str, object], options: type, own: Sequence[str] = ()) -> None:
+    """Raise UnknownName for a keyword that is neither one of a function's own, nor in its TypedDict."""
+    known = (*own, *options.__annotations__)
     for keyword in given:
         if keyword not in known:
             raise UnknownName.among(f"keyword of {name}:", keyword, known)

@@ -9,7 +9,7 @@ from evenroad.loading.cache import cached, keep
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_model, load_robot
 from evenroad.robots.kinematics import link_poses
 from evenroad.robots.planes import Plane
-from evenroad.scenes.robot_in_scene import with_planes
+from evenroad.scenes.robot_in_scene import scene_around
 
 UR5 = load_robot("ur5")
 TILTED = Pose.from_quaternion((0.1, -0.2, -0.3), xyzw=(np.sin(0.2), 0.0, 0.0, np.cos(0.2)))
@@ -38,8 +38,8 @@ def test_what_reaches_below_a_plane_is_blocked_and_nothing_else_is_by_it():
 def test_a_plane_comes_with_the_robot_once_and_only_under_its_own_name():
     world = ArmWorld(ON_FLOOR, EMPTY)
     assert [obstacle.name for obstacle in world.scene.obstacles] == ["floor"]
-    assert with_planes(world.scene, ON_FLOOR.planes, UR5.links) == world.scene
-    assert with_planes(EMPTY, (), UR5.links) is EMPTY
+    assert scene_around(ON_FLOOR, world.scene) == world.scene
+    assert scene_around(UR5, EMPTY) is EMPTY
     with pytest.raises(InvalidValue, match="'floor', which is the name of a plane in the robot's file"):
         ArmWorld(ON_FLOOR, EMPTY.with_(Obstacle("floor", Box((1.0, 1.0, 0.1)))))
 

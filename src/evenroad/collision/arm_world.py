@@ -31,7 +31,7 @@ from evenroad.geometry.shapes import PointCloud
 from evenroad.robots.robot import Robot
 from evenroad.scenes.changes import Changes
 from evenroad.scenes.obstacle import MOST_CLEARANCE
-from evenroad.scenes.robot_in_scene import with_planes, within_scene
+from evenroad.scenes.robot_in_scene import scene_around, within_scene
 from evenroad.scenes.scene import Scene, limits_in_words, smaller_scene
 from evenroad.scenes.states import as_configuration
 from evenroad.space import JointSpace
@@ -107,14 +107,14 @@ class ArmWorld(Changes, OneOrMany):
         apart = require_positive("clearance", self.clearance, or_zero=True, at_most=MOST_CLEARANCE)
         resolution = require_positive("resolution", self.resolution)
         robot = within_scene(as_robot(self.robot), scene)
+        scene = scene_around(robot, scene)
         set_fields(self, robot=robot, scene=scene, resolution=resolution, clearance=apart)
-        for held in self.scene.attached:
-            if held.name not in self.robot.holds:
+        for held in scene.attached:
+            if held.name not in robot.holds:
                 raise InvalidValue(
-                    f"scene {self.scene.name!r} attaches {held.name!r}, which the robot does not hold: give the world"
+                    f"scene {scene.name!r} attaches {held.name!r}, which the robot does not hold: give the world"
                     " in_scene(robot, scene)"
                 )
-        object.__setattr__(self, "scene", with_planes(self.scene, self.robot.planes, self.robot.links))
         if self.scene.near_ends:
             which = f"scene {self.scene.name!r} allows contacts near start and goals, which a world does not know"
             raise InvalidValue(f"{which}: plan does, or give it allowed_near_ends(robot, scene, start_and_goals)")
@@ -265,7 +265,11 @@ class ArmWorld(Changes, OneOrMany):
         Obstacles reach less far by what they are to `spare`, or farther where that is less than 0 [m].
         """
         # Ranges are those of the robot.
-        scene = smaller_scene(self.scene, spare) if spare > 0.0 else replace(self.scene, limits={})
+        scene = (
+            smaller_scene(self.scene, spare)
+            if spare > 0.0
+            else replace(self.scene, setup=replace(self.scene.setup, limits={}))
+        )
         return replace(self, robot=robot, scene=scene, clearance=self.clearance + max(-spare, 0.0)).valid
 
     @once_property

@@ -23,7 +23,7 @@ from evenroad.loading.load import read_robot
 from evenroad.loading.urdf_xml import RobotFile
 from evenroad.robots.kinematics import link_poses
 from evenroad.robots.robot import Robot
-from evenroad.scenes.robot_in_scene import with_planes
+from evenroad.scenes.robot_in_scene import scene_around
 from evenroad.scenes.scene import Scene
 from evenroad.space import JointSpace
 from evenroad.world.function import FunctionWorld, TestedAtStates
@@ -51,7 +51,7 @@ class EngineWorld(TestedAtStates, ABC):
     def __post_init__(self) -> None:
         shapes = sound_shapes(self.robot, self.shapes)
         states = FunctionWorld(joint_space(self.robot), self._free, self.resolution)
-        scene = with_planes(self.scene, self.robot.planes, self.robot.links)
+        scene = scene_around(self.robot, self.scene)
         set_fields(self, scene=scene, shapes=shapes, _shapes=shapes, _states=states)
 
     @property

@@ -24,7 +24,7 @@ from evenroad.poses.pose_goal import PoseGoal
 from evenroad.roadmap.roadmap import Roadmap
 from evenroad.robots.robot import ConfigurationLike, Robot
 from evenroad.robots.variants import standing_at, with_group
-from evenroad.scenes.robot_in_scene import in_scene
+from evenroad.scenes.robot_in_scene import in_scene, placed_scene
 from evenroad.scenes.scan import allowed_near_ends, open_everywhere, scene_seen_by
 from evenroad.scenes.scene import Scene
 from evenroad.scenes.scene_file import load_scene
@@ -135,6 +135,7 @@ def arm_request(
             source, robot = model.file, model.robot
         goals = _goal_list(goal, len(robot.group))
         texts = [target for target in (start, *goals) if isinstance(target, str)]
+        scene = placed_scene(robot, scene)
         robot = at_states(in_scene(robot, scene), texts, scene)
         if reading.held:
             robot = with_group(robot, robot.group, {**robot.held, **reading.held})

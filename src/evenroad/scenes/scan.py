@@ -17,6 +17,7 @@ from evenroad.geometry.shapes import PRIMITIVES, PointCloud, Shape
 from evenroad.robots.kinematics import capsule_endpoints, link_poses
 from evenroad.robots.pairs import rigid_links
 from evenroad.robots.robot import Robot
+from evenroad.scenes.robot_in_scene import placed_scene
 from evenroad.scenes.scene import MARGIN, Obstacle, Scene
 from evenroad.scenes.states import at_states, configuration
 
@@ -50,6 +51,7 @@ def scene_seen_by(robot: Robot, scene: Scene) -> Scene:
     Raises InvalidValue or UnknownName as :func:`evenroad.robot.configuration` where the robot's pose is no
     configuration.
     """
+    scene = placed_scene(robot, scene)
     obstacles: list[Obstacle] = []
     for obstacle in scene.obstacles:
         body: Shape | None = obstacle.body

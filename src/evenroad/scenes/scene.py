@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Unpack
 
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, set_fields
-from evenroad._call import explains_calls
+from evenroad._call import explains_calls, require_options
 from evenroad._checks import counted, require_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, shown
@@ -23,6 +23,7 @@ from evenroad.scenes.obstacle import Cut as Cut
 from evenroad.scenes.obstacle import Obstacle as Obstacle
 from evenroad.scenes.obstacle import Seen as Seen
 from evenroad.scenes.obstacles import Boxes, Obstacles, named_twice
+from evenroad.scenes.robot_setup import NO_SETUP, RobotSetup, Said
 
 
 @explains_calls
@@ -40,15 +41,17 @@ class Scene(Changes):
         What the scene is called.
     allowed : frozenset of (str, str)
         Contacts that are not tested, (link, obstacle), e.g. of the base with its table.
-    states : mapping
-        Named configurations, joint -> value [rad or m], in which joints that are not planned for are held.
-    limits : mapping
-        Ranges to plan in, joint -> (lower, upper) [rad or m]; a world keeps to them by itself.
-    attached : tuple of HeldObject
-        What the robot holds, no two of one name; :func:`evenroad.robot.in_scene` takes over both.
     near_ends : frozenset of (str, str, float)
         Contacts, (link, cloud, distance), not tested with points within the distance [m] of the link's body at the
         start or a goal; see :func:`evenroad.robot.allowed_near_ends`.
+    setup : RobotSetup
+        All that the scene says of its robot, as one value; `said` replaces parts of it.
+    **said : mapping
+        ``states``: named configurations, joint -> value [rad or m], in which joints that are not planned for are held.
+        ``limits``: ranges to plan in, joint -> (lower, upper) [rad or m]; a world keeps to them by itself.
+        ``attached``: what the robot holds, a tuple of HeldObject, no two of one name;
+        :func:`evenroad.robot.in_scene` takes over both.  ``padding``: link -> by how much it is larger against
+        obstacles in worlds of this scene, at least, from 0 to 1 [m].
 
     Raises
     ------
@@ -67,10 +70,8 @@ class Scene(Changes):
     name: str
     obstacles: Sequence[Obstacle]
     allowed: frozenset[tuple[str, str]]
-    states: Mapping[str, Mapping[str, float]]
-    limits: Mapping[str, tuple[float, float]]
-    attached: tuple[HeldObject, ...]
     near_ends: frozenset[tuple[str, str, float]]
+    setup: RobotSetup
 
     def __init__(
         self,
@@ -78,14 +79,15 @@ class Scene(Changes):
         *,
         name: str = "scene",
         allowed: frozenset[tuple[str, str]] = frozenset(),
-        states: Mapping[str, Mapping[str, float]] | None = None,
-        limits: Mapping[str, tuple[float, float]] | None = None,
-        attached: tuple[HeldObject, ...] = (),
         near_ends: frozenset[tuple[str, str, float]] = frozenset(),
+        setup: RobotSetup | None = None,
+        **said: Unpack[Said],
     ) -> None:
-        values: dict[str, Any] = dict(allowed=allowed, attached=attached, near_ends=near_ends)
-        values |= {"states": {} if states is None else states, "limits": {} if limits is None else limits}
+        require_options("Scene", said, Said, ("obstacles", "name", "allowed", "near_ends", "setup"))
+        given: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
+        setup = replace(setup or RobotSetup(), **given)
         if isinstance(obstacles, Mapping):
+            values = {"allowed": allowed, "near_ends": near_ends, **vars(setup)}
             if more := sorted(key for key in values if values[key]):
                 raise InvalidValue(
                     f"a scene of a mapping has what the mapping says: put {', '.join(more)} into it, too"
@@ -97,8 +99,8 @@ class Scene(Changes):
             return
         known = obstacles if isinstance(obstacles, Obstacles) else None
         all_of_them = Obstacles(as_obstacles(obstacles, lambda name: False, name)) if known is None else known
-        set_fields(self, name=_named(name), obstacles=all_of_them, **values)
-        if attached:
+        set_fields(self, name=_named(name), obstacles=all_of_them, allowed=allowed, near_ends=near_ends, setup=setup)
+        if setup.attached:
             self._require_attached()
         if known is None:
             _require_different(self.name, all_of_them.names)
@@ -148,6 +150,26 @@ class Scene(Changes):
             raise InvalidValue(f"names must be {len(rows)}, one a box, got {len(texts)}")
         _require_different(_named(name), texts)
         return _scene(_NOTHING_ELSE, name=name, obstacles=Boxes(rows, texts), allowed=allowed)
+
+    @property
+    def states(self) -> Mapping[str, Mapping[str, float]]:
+        """Named configurations, joint -> value [rad or m]."""
+        return self.setup.states
+
+    @property
+    def limits(self) -> Mapping[str, tuple[float, float]]:
+        """Ranges to plan in, joint -> (lower, upper) [rad or m]."""
+        return self.setup.limits
+
+    @property
+    def attached(self) -> tuple[HeldObject, ...]:
+        """What the robot holds."""
+        return self.setup.attached
+
+    @property
+    def padding(self) -> Mapping[str, float]:
+        """Link -> by how much it is larger against obstacles, at least [m]."""
+        return self.setup.padding
 
     @property
     def table(self) -> Obstacles:
@@ -203,7 +225,7 @@ class Scene(Changes):
         for name, pose in poses.items():
             if not isinstance(pose, Pose):
                 raise InvalidValue(f"the pose of obstacle {name!r} must be a Pose, got {shown(pose)}")
-        return self._with_parts(self.table.moving(poses), self.allowed, self.near_ends)
+        return _scene(vars(self), obstacles=self.table.moving(poses), setup=self._setup_without(poses))
 
     def _named_new(self, bodies: Sequence[object]) -> tuple[Obstacle, ...]:
         """Return shapes and obstacles, also lists of such, as obstacles with names that this scene does not have.
@@ -221,22 +243,20 @@ class Scene(Changes):
         added = self._named_new(obstacles)
         if self.attached and any(each.name == one.name for each in self.attached for one in added):
             return replace(self, obstacles=self.table.adding(added))  # which names the two
-        return self._with_parts(self.table.adding(added), self.allowed.union(allowed), self.near_ends)
+        # Its parts fit each other: `replace` would look at them again.
+        return _scene(vars(self), obstacles=self.table.adding(added), allowed=self.allowed.union(allowed))
 
     def _without(self, names: Sequence[str]) -> Scene:
         self._require_known(names)
         allowed = frozenset([each for each in self.allowed if each[1] not in names])
         near_ends = frozenset([each for each in self.near_ends if each[1] not in names])
-        return self._with_parts(self.table.removing(names), allowed, near_ends)
+        parts = {"allowed": allowed, "near_ends": near_ends, "setup": self._setup_without(names)}
+        return _scene(vars(self), obstacles=self.table.removing(names), **parts)
 
-    def _with_parts(
-        self,
-        obstacles: Obstacles,
-        allowed: frozenset[tuple[str, str]],
-        near_ends: frozenset[tuple[str, str, float]],
-    ) -> Scene:
-        """Return a scene with other parts, which fit each other: `replace` would look at them again."""
-        return _scene(vars(self), obstacles=obstacles, allowed=allowed, near_ends=near_ends)
+    def _setup_without(self, names: Collection[str]) -> RobotSetup:
+        """Return what is said of the robot, without the frames of some obstacles."""
+        frames = self.setup.frames
+        return self.setup if frames is None else replace(self.setup, frames=frames.without(names))
 
     def with_clearance(self, clearance: Mapping[str, float]) -> Scene:
         """Return the scene with obstacles from which robots keep more away.
@@ -279,10 +299,12 @@ class Scene(Changes):
             content: tuple[str | float, ...] = (fingerprint_of(each.body),) if each.shape not in PRIMITIVES else ()
             content += (each.clearance,) if each.clearance else ()
             rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))  # -0.0 is 0.0
-        return fingerprint_of(rows, self.allowed, *sorted(self.near_ends))
+        frames = self.setup.frames
+        placed = () if frames is None else ({*frames.links.items()}, {*frames.joints.items()})
+        return fingerprint_of(rows, self.allowed, *sorted(self.near_ends), *placed)
 
 
-_NOTHING_ELSE: dict[str, Any] = {"states": {}, "limits": {}, "attached": (), "near_ends": frozenset()}
+_NOTHING_ELSE: dict[str, Any] = {"near_ends": frozenset(), "setup": NO_SETUP}
 
 
 def _scene(values: Mapping[str, Any], **more: object) -> Scene:

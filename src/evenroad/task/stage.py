@@ -99,7 +99,8 @@ class Stage:
         frame = pose_of(robot, self.q, link)
         body = replace(found[0].body, pose=frame.inverse() @ found[0].body.pose)
         held = HeldObject(step.object, body, link, touching)
-        attached = replace(scene.without(step.object), attached=(*scene.attached, held))
+        setup = replace(scene.setup, attached=(*scene.attached, held))
+        attached = replace(scene.without(step.object), setup=setup)
         depths = {**self.depths, step.object: step.depth}
         clearances = {**self.clearances, step.object: found[0].clearance}
         stage = replace(self, depths=depths, clearances=clearances)
@@ -121,7 +122,8 @@ class Stage:
         placed = replace(placed, clearance=self.clearances.get(step.object, 0.0))
         left = tuple(each for each in scene.attached if each.name != step.object)
         allowed = frozenset(each for each in scene.allowed if each[0] != step.object)
-        scene = replace(scene, obstacles=(*scene.obstacles, placed), attached=left, allowed=allowed)
+        setup = replace(scene.setup, attached=left)
+        scene = replace(scene, obstacles=(*scene.obstacles, placed), setup=setup, allowed=allowed)
         let_go = frozenset((link, step.object) for link in (held[step.object].link, *held[step.object].touches))
         # What it stood on is no matter any more: it is no body of the robot.
         others = frozenset(each for each in self.near_start if each[0] != step.object)
