@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import functools
 import importlib
 import inspect
 import io
@@ -91,6 +92,7 @@ NOT_NEEDED = ["ompl", "klampt", "mujoco"]
 """Packages of extras that modules of the reference import, and that need not be there."""
 
 
+@functools.cache
 def home_of(name: str) -> ModuleType:
     """Return a module of the reference, whether what it adapts is installed or not."""
     with stand_ins(NOT_NEEDED):
@@ -129,6 +131,7 @@ def public_names(module: ModuleType) -> list[str]:
     return [name for name in dict.fromkeys(names) if not name.startswith("_") and name not in hidden]
 
 
+@functools.cache
 def documented_name(name: str) -> str:
     """Return the name under which an object stands in the reference: that of the root, if it has one there."""
     module, _, last = name.rpartition(".")
@@ -137,7 +140,7 @@ def documented_name(name: str) -> str:
         if last in evenroad.__all__ and getattr(evenroad, last) is thing:
             return f"evenroad.{last}"
         for home in (home for _, homes in REFERENCE.values() for home in homes):
-            if getattr(home_of(home), last, None) is thing:
+            if _offers(home_of(home), last) and getattr(home_of(home), last) is thing:
                 return f"{home}.{last}"
     return name
 
@@ -146,7 +149,12 @@ def is_internal(target: str, around: str) -> bool:
     """Return whether a reference in a docstring leads to something that exists, but is for readers of the code."""
     if any(pydoc.locate(name) is not None for name in (target, f"{around}.{target}")):
         return True
-    return any(hasattr(each, target) for key, each in sys.modules.items() if key.startswith("evenroad"))
+    return any(_offers(each, target) for key, each in sys.modules.items() if key.startswith("evenroad"))
+
+
+def _offers(module: ModuleType, name: str) -> bool:
+    """Return whether a module has a name, without the search for similar names that an AttributeError of ours costs."""
+    return name in vars(module) or name in getattr(module, "__all__", ())
 
 
 def _reference() -> Iterator[tuple[str, str]]:

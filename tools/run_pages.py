@@ -111,8 +111,16 @@ INSTEAD = {
 
 SMALLER = {
     "world, runs = maze.world(), 100": "world, runs = maze.world(), 5",
+    # A cloud of 11 000 points: each clearance of a drawn state makes a surface of it.
+    "(6000, 3))": "(600, 3))",
+    "(3000, 3))": "(300, 3))",
+    "(2000, 3))": "(200, 3))",
+    # Each is smoothed until its time is over.
+    "(0.6, 1.5, 0.0), (4.4, 1.5, 0.0))": "(0.6, 1.5, 0.0), (4.4, 1.5, 0.0), seconds=1)",
+    "(0.6, 1.5, 0.0), (4.4, 1.5, 0.0), planner)": "(0.6, 1.5, 0.0), (4.4, 1.5, 0.0), planner, seconds=2)",
+    "--count 64 --rows 32": "--count 16 --rows 8 --jobs 1",
 }
-"""Python that takes long -> what is run in its place."""
+"""Part of a block or command that takes long -> what is run in its place."""
 
 
 if not example_robots():
@@ -179,6 +187,13 @@ def instead_of(command: str) -> Instead | None:
     return None
 
 
+def shortened(code: str) -> str:
+    """Return a block or command with what takes long made smaller."""
+    for long, short in SMALLER.items():
+        code = code.replace(long, short)
+    return code
+
+
 def prepare(page: Path, names: dict[str, object]) -> None:
     """Put into the current folder, and among the names, what a page takes for granted."""
     exec(compile(PREPARED.get(page.name, ""), f"before {page.name}", "exec"), names)
@@ -202,9 +217,7 @@ def run_page(page: Path) -> Iterator[tuple[Block, str]]:
     prepare(page, names)
     for block in blocks(page):
         if block.language == "python":
-            code = block.code
-            for long, short in SMALLER.items():
-                code = code.replace(long, short)
+            code = shortened(block.code)
             yield block, code
             exec(compile("\n" * block.line + code, str(page), "exec"), names)
         elif block.language == "yaml":
@@ -215,6 +228,7 @@ def run_page(page: Path) -> Iterator[tuple[Block, str]]:
                 instead = instead_of(command)
                 run = command if instead is None else instead.command
                 if run is not None:
+                    run = shortened(run)
                     yield block, run
                     answer = main(shlex.split(run)[1:])
                     # No path is an answer (1); a misspelt option would be 2.

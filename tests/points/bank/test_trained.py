@@ -25,7 +25,8 @@ def test_where_none_ships_a_set_is_annealed_as_good_as_its_neighbours():
     assert value(draw("hickernell", 32, d)) < value(points) < value(draw("hickernell", 16, d))
 
 
-def test_where_none_ships_the_network_of_the_studies_makes_one_as_good_as_an_annealed_one():
+def test_where_none_ships_the_network_of_the_studies_makes_one_as_good_as_an_annealed_one(monkeypatch):
+    monkeypatch.setattr("evenroad_studies.network.on_demand.STEPS", 300)
     n, d = 96, 2
     points = draw("mpmc", n, d, rng=3)
     assert points == draw("mpmc", n, d, rng=3)
