@@ -3,6 +3,7 @@ import re
 
 import numpy as np
 import pytest
+import trimesh
 
 from evenroad.collision.coal_world import original_shapes
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
@@ -197,6 +198,22 @@ def test_what_is_drawn_is_the_body_where_that_is_wanted(tmp_path):
     assert model.notes == ("what is drawn of a link is its body: y",)
     (box,) = [shape for shape in original_shapes(model.file, model.robot) if shape.link == "y"]
     assert (box.size, box.pose.xyz) == ((1.0, 2.0, 3.0), (0.0, 0.0, 1.0))
+
+
+def test_a_link_s_gltf_is_turned_only_where_that_is_wanted_and_then_as_one_of_a_scene(tmp_path):
+    corners = np.array([(0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.2, 0.0), (0.0, 0.0, 0.3)])
+    trimesh.Trimesh(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]).export(tmp_path / "part.glb")
+    geometry = "<geometry><mesh filename='part.glb' scale='1 2 3'/></geometry>"
+    part = f"<collision><origin xyz='0 0 1' rpy='0 0 {math.pi / 2}'/>{geometry}</collision>"
+    path = write(tmp_path, urdf(link("x", part), link("y"), joint("a", "x", "y")))
+    # By hand: y up becomes z up, then the scale, then a quarter turn about z, and 1 m up.
+    as_it_stands = {(0, 0, 1), (0, 0.1, 1), (-0.4, 0, 1), (0, 0, 1.9)}
+    turned = {(0, 0, 1), (0, 0.1, 1), (0, 0, 1.6), (0.6, 0, 1)}
+    for upright, expected in ((False, as_it_stands), (True, turned)):
+        model = load_model(path, upright_meshes=upright)
+        (mesh,) = [shape for shape in original_shapes(model.file, model.robot) if shape.link == "x"]
+        found = mesh.pose.apply(mesh.triangles.vertices).round(6) + 0.0
+        assert set(map(tuple, found.tolist())) == expected
 
 
 def test_a_robot_that_is_only_drawn_is_refused_with_what_would_help(tmp_path):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from evenroad.loading.description import RobotModel
 
 OF_ROBOTS: dict[str, tuple[str, ...]] = {
-    "the robot's files": ("srdf", "group", "bodies", "use_visuals", "package", "xacro", "padding")
+    "the robot's files": ("srdf", "group", "bodies", "use_visuals", "upright_meshes", "package", "xacro", "padding")
 }
 """Title of the group of options of a robot's file -> these options."""
 
@@ -144,6 +144,8 @@ class RobotOptions:
     of capsules and spheres."""
     use_visuals: bool = False
     """Use the visual geometry of links that have no collision geometry."""
+    upright_meshes: bool = False
+    """Turn the glTF meshes of links: their y axis, which is up, becomes z."""
     package: Repeatable[tuple[str, ...]] = ()
     """NAME=FOLDER: the folder of a ROS package with meshes; you can give several."""
     xacro: Repeatable[tuple[str, ...]] = ()
@@ -158,6 +160,7 @@ class RobotOptions:
             "group": ",".join(self.group) if self.group else None,
             "bodies": self.bodies,
             "use_visuals": self.use_visuals,
+            "upright_meshes": self.upright_meshes,
             "packages": _pairs("--package", "NAME=FOLDER", self.package),
             "arguments": _pairs("--xacro", "NAME=VALUE", self.xacro, may_be_empty=True),
             "progress": say_fitting,

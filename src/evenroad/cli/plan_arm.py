@@ -103,7 +103,7 @@ def _options(plan: PlanArm, request: Request, result: PlanResult) -> dict[str, A
         "roadmap": None if plan.roadmap is None else str(plan.roadmap),
         "srdf": None if plan.srdf is None else str(plan.srdf),
         "bodies": None if plan.bodies is None else str(plan.bodies),
-        **{name: made[name] for name in ("use_visuals", "packages", "arguments", "padding")},
+        **{name: made[name] for name in ("use_visuals", "upright_meshes", "packages", "arguments", "padding")},
         "joints": list(robot.group),
         "goal_names": list(request.goal_names),
         "held": held_values(robot),

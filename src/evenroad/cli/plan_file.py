@@ -26,6 +26,7 @@ FILES = {
     "srdf": str | None,
     "bodies": str | None,
     "use_visuals": bool | None,
+    "upright_meshes": bool | None,
     "packages": dict | None,
     "arguments": dict | None,
     "padding": float | int | dict | str | None,
@@ -119,7 +120,7 @@ def request_of(
     for name in FILES:
         options[name] = options.get(name) or query.get(name) or options.get(name)
     options["group"] = options.get("group") or ",".join(query["joints"])
-    options["use_visuals"] = bool(options["use_visuals"])
+    options |= {name: bool(options[name]) for name in ("use_visuals", "upright_meshes")}
     apart = {name: query[name] for name in ("resolution", "clearance") if isinstance(query.get(name), float | int)}
     return arm_request(arm, query["scene"], start, list(goals), Reading(held=query["held"]), **apart, **options)
 

@@ -100,6 +100,8 @@ class RunTask(RobotOptions):
 
 def run_task_of(record: Any, file: Path) -> RunTask:
     """Return the options of the record in a trajectory's file; BrokenFile where they are none."""
+    # Files of earlier versions have no such option.
+    record = {"upright_meshes": False, **record} if isinstance(record, dict) else record
     sound = isinstance(record, dict) and {*record} == {*_FIELDS}
     if not sound or not all(isinstance(record[name], kind) for name, kind in _FIELDS.items()):
         raise BrokenFile(f"{file} is a damaged trajectory: of the task that it was made for")
@@ -120,6 +122,7 @@ _FIELDS: dict[str, Any] = {
     "group": list,
     "bodies": str | None,
     "use_visuals": bool,
+    "upright_meshes": bool,
     "package": list,
     "xacro": list,
     "padding": list,

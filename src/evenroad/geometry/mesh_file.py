@@ -18,9 +18,12 @@ from evenroad._files import require_file
 from evenroad._npz import require_unpackable
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.geometry.mesh import TriangleMesh, merged
+from evenroad.geometry.pose import Pose
 
 GLTF = (".glb", ".gltf")
 """Suffixes of glTF, whose y axis is up, as its specification says."""
+Y_UP = Pose.from_rpy((0.0, 0.0, 0.0), (0.5 * math.pi, 0.0, 0.0))
+"""Pose of a glTF in a frame whose z axis is up."""
 
 
 def load_upright(path: Path) -> TriangleMesh:

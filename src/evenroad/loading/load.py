@@ -43,6 +43,7 @@ class ModelOptions(TypedDict, total=False):
     group: str | Sequence[str] | None
     bodies: PathLike | None
     use_visuals: bool
+    upright_meshes: bool
     packages: Mapping[str, PathLike]
     arguments: Mapping[str, str]
     progress: Callable[[int, int, str], None] | None
@@ -66,9 +67,9 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     source : str or path-like
         A URDF, xacro or MJCF; or, where there is no such file, ``ur5`` or ``arm7``.
     **options
-        ``srdf``, ``group``, ``bodies``, ``use_visuals``, ``packages``, ``arguments``, ``progress``: as
-        :func:`evenroad.robot.load_model` takes them, which also returns how the robot was made.  ``padding``: by how
-        much links are larger against obstacles [m], as :meth:`evenroad.robot.Robot.with_padding` takes it.
+        ``srdf``, ``group``, ``bodies``, ``use_visuals``, ``upright_meshes``, ``packages``, ``arguments``, ``progress``:
+        as :func:`evenroad.robot.load_model` takes them, which also returns how the robot was made.  ``padding``: by
+        how much links are larger against obstacles [m], as :meth:`evenroad.robot.Robot.with_padding` takes it.
 
     Returns
     -------
@@ -110,6 +111,7 @@ def load_model(
     group: str | Sequence[str] | None = None,
     bodies: PathLike | None = None,
     use_visuals: bool = False,
+    upright_meshes: bool = False,
     packages: Mapping[str, PathLike] | None = None,
     arguments: Mapping[str, str] | None = None,
     progress: Callable[[int, int, str], None] | None = None,
@@ -135,6 +137,9 @@ def load_model(
         do.  Or a YAML file of capsules and spheres, in place of shapes of the file (see :func:`read_bodies`).
     use_visuals : bool
         Links without collision geometry use their visuals.
+    upright_meshes : bool
+        The y axis of a link's glTF, which is up by the format's specification, becomes z.  By default meshes of links
+        are not turned, as in RViz.
     packages : mapping of str to path-like, optional
         Folders of ROS packages, beside those that are found.
     arguments : mapping of str to str, optional
@@ -153,6 +158,7 @@ def load_model(
         use_visuals,
         tuple((name, os.fspath(folder)) for name, folder in sorted((packages or {}).items())),
         tuple(sorted((arguments or {}).items())),
+        upright_meshes=upright_meshes,
     )
     srdf_path = own_srdf if srdf is None else Path(srdf)
     named = None if bodies is None else os.fspath(bodies)

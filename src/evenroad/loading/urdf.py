@@ -13,6 +13,7 @@ import numpy as np
 
 from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.geometry.mesh_file import GLTF, Y_UP
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
 from evenroad.loading.urdf_limits import soft_notes, with_limits_of
@@ -188,7 +189,11 @@ def _shape(link: str, collision: Element, file: RobotFile) -> Shape:
     pose, (shape,) = _pose(collision), collision.iterfind("geometry/*")
     if shape.tag == "mesh":
         x, y, z = np.broadcast_to(_numbers(shape, "scale", (1.0,)), 3).tolist()
-        return Mesh(find_mesh(shape.attrib["filename"], file, link), (x, y, z), pose=pose, link=link)
+        path = find_mesh(shape.attrib["filename"], file, link)
+        if file.upright_meshes and path.suffix.lower() in GLTF:
+            # Scales are along the axes of the link, as those of a mesh in a scene are along the scene's.
+            return Mesh(path, (x, z, y), pose=pose @ Y_UP, link=link)
+        return Mesh(path, (x, y, z), pose=pose, link=link)
     names = [name for name, _ in PRIMITIVES[shape.tag].dimensions]
     return shape_of(shape.tag, [size for name in names for size in _numbers(shape, name, (0.0,))], pose, link)
 

@@ -52,8 +52,8 @@ class RobotFile:
     """The file of a robot, and how it is to be read.
 
     With `use_visuals`, links without collision geometry get what is drawn of them; with `as_drawn` all links do, where
-    anything is.  `packages` are folders of packages, (name, folder), beside those that are found; `arguments` are those
-    of a xacro, (name, value).
+    anything is.  With `upright_meshes`, the y axis of a glTF becomes z.  `packages` are folders of packages, (name,
+    folder), beside those that are found; `arguments` are those of a xacro, (name, value).
     """
 
     path: Path
@@ -61,6 +61,7 @@ class RobotFile:
     packages: tuple[tuple[str, str], ...] = ()
     arguments: tuple[tuple[str, str], ...] = ()
     as_drawn: bool = False
+    upright_meshes: bool = False
 
 
 def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:

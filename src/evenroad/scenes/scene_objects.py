@@ -11,7 +11,7 @@ import numpy as np
 from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.mesh import convex_hull
-from evenroad.geometry.mesh_file import GLTF, load_objects
+from evenroad.geometry.mesh_file import GLTF, Y_UP, load_objects
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import WORLD, Mesh, Shape
 from evenroad.loading.urdf import read_urdf
@@ -23,8 +23,6 @@ ROBOT_FILES = (".urdf", ".xacro")
 """Suffixes of what has links and joints."""
 OBJECT_FILES = (*ROBOT_FILES, *GLTF)
 """Suffixes of files that are scenes of their own."""
-Y_UP = Pose.from_rpy((0.0, 0.0, 0.0), (0.5 * np.pi, 0.0, 0.0))
-"""The y axis of a glTF is up, as its specification says; here z is."""
 
 
 def objects_of(path: Path, joints: Mapping[str, float], *, convex: bool = False) -> dict[str, Shape]:
