@@ -154,7 +154,7 @@ class RobotOptions:
     """Extra distance of links to obstacles: METRES; LINK=METRES, you can give several; or MoveIt's YAML file."""
 
     def options(self) -> dict[str, Any]:
-        """Return the arguments of `padded_model`; fitting reports on standard error."""
+        """Return the options of `load_model`; fitting reports on standard error."""
         return {
             "srdf": self.srdf,
             "group": ",".join(self.group) if self.group else None,
@@ -169,9 +169,9 @@ class RobotOptions:
 
     def read_robot(self, source: str) -> RobotModel:
         """Return a robot and how it was made."""
-        from evenroad.loading.load import padded_model
+        from evenroad.loading.load import load_model
 
-        return padded_model(source, **self.options())
+        return load_model(source, **self.options())
 
     def _padding(self) -> float | dict[str, float] | str | None:
         """Return the argument `padding`."""

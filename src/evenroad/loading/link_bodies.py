@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from evenroad.geometry.fit import fit_capsules, union_volume
@@ -41,10 +41,10 @@ def capsules_of(
     return {link: found[link] for link in urdf.links if link in found}
 
 
-def pieces_of(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> dict[str, list[Piece]]:
-    """Return the shapes of every link with a body: the capsules given, or the shapes of the URDF."""
+def pieces_of(shapes: Iterable[Shape]) -> dict[str, list[Piece]]:
+    """Return shapes as convex pieces, by their links."""
     pieces: dict[str, list[Piece]] = {}
-    for shape in shapes_of(urdf, given):
+    for shape in shapes:
         pieces.setdefault(shape.link, []).append(piece_of(shape))
     return pieces
 

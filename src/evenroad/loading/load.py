@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypedDict, Unpack
 
@@ -36,7 +36,7 @@ SHAPES, CAPSULES = "shapes", "capsules"
 PathLike = str | os.PathLike[str]
 
 
-class ModelOptions(TypedDict, total=False):
+class RobotOptions(TypedDict, total=False):
     """Options of reading a robot; see :func:`load_model`."""
 
     srdf: PathLike | None
@@ -44,15 +44,21 @@ class ModelOptions(TypedDict, total=False):
     bodies: PathLike | None
     use_visuals: bool
     upright_meshes: bool
-    packages: Mapping[str, PathLike]
-    arguments: Mapping[str, str]
+    packages: Mapping[str, PathLike] | None
+    arguments: Mapping[str, str] | None
     progress: Callable[[int, int, str], None] | None
-
-
-class RobotOptions(ModelOptions, total=False):
-    """Options of a robot: those of reading it, and by how much its links are larger."""
-
     padding: Padding | None
+
+
+@dataclass(frozen=True)
+class _Request:
+    """Files of a robot, the group that is planned for, and whether shapes of the file decide contacts."""
+
+    file: RobotFile
+    srdf: Path | None
+    bodies: Path | None
+    group: str | tuple[str, ...] | None
+    with_shapes: bool
 
 
 @explains_calls
@@ -67,9 +73,7 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     source : str or path-like
         A URDF, xacro or MJCF; or, where there is no such file, ``ur5`` or ``arm7``.
     **options
-        ``srdf``, ``group``, ``bodies``, ``use_visuals``, ``upright_meshes``, ``packages``, ``arguments``, ``progress``:
-        as :func:`evenroad.robot.load_model` takes them, which also returns how the robot was made.  ``padding``: by
-        how much links are larger against obstacles [m], as :meth:`evenroad.robot.Robot.with_padding` takes it.
+        As :func:`evenroad.robot.load_model` takes them, which also returns how the robot was made.
 
     Returns
     -------
@@ -92,7 +96,8 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     >>> er.load_robot("ur5").joint_names[:2]
     ('shoulder_pan_joint', 'shoulder_lift_joint')
     """
-    model = padded_model(source, **options)
+    require_options("load_robot", options, RobotOptions)
+    model = load_model(source, **options)
     if model.always_touching:
         pairs = ", ".join(f"{first} and {second}" for first, second in model.always_touching)
         advice = "disable these pairs in the SRDF, or give smaller bodies"
@@ -104,18 +109,7 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
 
 
 @explains_calls
-def load_model(
-    source: PathLike,
-    *,
-    srdf: PathLike | None = None,
-    group: str | Sequence[str] | None = None,
-    bodies: PathLike | None = None,
-    use_visuals: bool = False,
-    upright_meshes: bool = False,
-    packages: Mapping[str, PathLike] | None = None,
-    arguments: Mapping[str, str] | None = None,
-    progress: Callable[[int, int, str], None] | None = None,
-) -> RobotModel:
+def load_model(source: PathLike, **options: Unpack[RobotOptions]) -> RobotModel:
     """Return a robot and how it was made from its files.
 
     The robot is kept in the user's cache, by the content of all files, meshes included.  A link without collision
@@ -147,51 +141,59 @@ def load_model(
     progress : callable, optional
         Called with step, steps and a text before each body is fitted; not at all for a robot from the cache.
 
-    Raises UnknownName if there is neither such a file nor such a robot, or a group, a joint or a link is not known;
-    BrokenFile if a file is missing, broken or lacks a piece, the links do not form a tree, a mesh is missing or empty,
-    or the robot has no body at all; InvalidValue if a number is not one, or out of its range; NotAvailable if an extra
-    is needed that is not installed.
+    padding : mapping of str to float, float, str or path-like, optional
+        By how much links are larger against obstacles [m], as :meth:`evenroad.robot.Robot.with_padding` takes it.
+
+    Raises UnknownName if there is neither such a file nor such a robot, or a group, joint, link or keyword is not
+    known; BrokenFile if a file is missing, broken or lacks a piece, the links do not form a tree, a mesh is missing or
+    empty, or the robot has no body at all; InvalidValue if a number is not one, or out of its range; NotAvailable if an
+    extra is needed that is not installed.
     """
+    require_options("load_model", options, RobotOptions)
+    request = _requested(source, options)
+    model = known(request) or _model_of(request, options.get("progress"))
+    padding = options.get("padding")
+    return model if padding is None else replace(model, robot=model.robot.with_padding(padding))
+
+
+def _requested(source: PathLike, options: RobotOptions) -> _Request:
     path, own_srdf = find_robot(source)
+    packages, arguments = options.get("packages") or {}, options.get("arguments") or {}
     file = RobotFile(
         path,
-        use_visuals,
-        tuple((name, os.fspath(folder)) for name, folder in sorted((packages or {}).items())),
-        tuple(sorted((arguments or {}).items())),
-        upright_meshes=upright_meshes,
+        options.get("use_visuals", False),
+        tuple((name, os.fspath(folder)) for name, folder in sorted(packages.items())),
+        tuple(sorted(arguments.items())),
+        upright_meshes=options.get("upright_meshes", False),
     )
-    srdf_path = own_srdf if srdf is None else Path(srdf)
+    srdf, bodies, group = options.get("srdf"), options.get("bodies"), options.get("group")
     named = None if bodies is None else os.fspath(bodies)
-    with_shapes = named != CAPSULES
-    bodies_path = None if named in (None, SHAPES, CAPSULES) else Path(named)
-    asked = file, srdf_path, bodies_path, str(group), with_shapes
-    model = known(asked)
-    if model is not None:
-        return model
-    before = stamps((path, srdf_path, bodies_path))
+    return _Request(
+        file,
+        own_srdf if srdf is None else Path(srdf),
+        None if named in (None, SHAPES, CAPSULES) else Path(named),
+        group if group is None or isinstance(group, str) else tuple(group),
+        named != CAPSULES,
+    )
+
+
+def _model_of(request: _Request, progress: Callable[[int, int, str], None] | None) -> RobotModel:
+    """Return a robot from the user's cache, or from its files."""
+    file, others = request.file, [("SRDF", request.srdf), ("file of bodies", request.bodies)]
+    before = stamps((file.path, request.srdf, request.bodies))
     urdf = read_robot(file)
     before |= stamps(shape.source for shape in urdf.shapes if isinstance(shape, Mesh))
-    others = [("SRDF", srdf_path), ("file of bodies", bodies_path), *([] if with_shapes else [(CAPSULES, None)])]
-    key = key_of(urdf, others, group)
+    others += [] if request.with_shapes else [(CAPSULES, None)]
+    key = key_of(urdf, others, request.group)
     model = cached(key)
     if model is None:
-        model = _build(file, urdf, srdf_path, bodies_path, group, progress, with_shapes)
+        model = _build(request, urdf, progress)
         # Files may have been saved while they were read: the robot may then mix two versions.
-        if key_of(urdf, others, group) == key:
+        if key_of(urdf, others, request.group) == key:
             keep(key, model)
     model = replace(model, file=file)
-    know(asked, before, model)
+    know(request, before, model)
     return model
-
-
-def padded_model(source: PathLike, *, padding: Padding | None = None, **options: Unpack[ModelOptions]) -> RobotModel:
-    """Return what :func:`load_model` does, with links that keep more away from obstacles.
-
-    Raises UnknownName for an option that neither has.
-    """
-    require_options("load_robot", options, RobotOptions)
-    model = load_model(source, **options)
-    return model if padding is None else replace(model, robot=model.robot.with_padding(padding))
 
 
 def read_robot(file: RobotFile) -> Urdf:
@@ -205,23 +207,17 @@ def read_robot(file: RobotFile) -> Urdf:
     return read_mjcf(file)
 
 
-def _build(
-    file: RobotFile,
-    urdf: Urdf,
-    srdf_path: Path | None,
-    bodies_path: Path | None,
-    group: str | Sequence[str] | None,
-    progress: Callable[[int, int, str], None] | None,
-    with_shapes: bool,
-) -> RobotModel:
-    urdf, srdf, chosen = _planned(urdf, srdf_path, group)
-    given = {} if bodies_path is None else read_bodies(bodies_path, urdf.links)
-    require_few_links(len(urdf.links), len({shape.link for shape in urdf.shapes}), file.path)
+def _build(request: _Request, urdf: Urdf, progress: Callable[[int, int, str], None] | None) -> RobotModel:
+    group, path = request.group, request.file.path
+    urdf, srdf, chosen = _planned(urdf, request.srdf, group)
+    given = {} if request.bodies is None else read_bodies(request.bodies, urdf.links)
+    require_few_links(len(urdf.links), len({shape.link for shape in urdf.shapes}), path)
     urdf = replace(urdf, shapes=opened(urdf.shapes))
+    shapes = shapes_of(urdf, given)
     capsules = capsules_of(urdf, given, progress)
     if not capsules:
         hint = "; --use-visuals takes what is drawn" if urdf.drawn_only else ""
-        raise BrokenFile(f"{file.path} has no collision geometry at all: the robot would never collide{hint}")
+        raise BrokenFile(f"{path} has no collision geometry at all: the robot would never collide{hint}")
     robot = Robot(
         urdf.name,
         urdf.links,
@@ -232,10 +228,10 @@ def _build(
         states=_states(urdf, srdf, chosen, group),
         planes=urdf.planes,
         # Capsules that the user gives replace a link's shapes as they are.
-        inner=inner_of(shapes_of(urdf, given)),
-        shapes=parts_of(shapes_of(urdf, given)) if with_shapes else (),
+        inner=inner_of(shapes),
+        shapes=parts_of(shapes) if request.with_shapes else (),
     )
-    robot, pairs = _with_pairs(robot, urdf, srdf, pieces_of(urdf, given))
+    robot, pairs = _with_pairs(robot, urdf, srdf, pieces_of(shapes))
     return RobotModel(
         robot,
         tuple(link_body(urdf, link, capsules[link], link in given) for link in capsules),

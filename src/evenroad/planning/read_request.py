@@ -15,7 +15,7 @@ from evenroad.collision.arm_world import ArmWorld
 from evenroad.collision.validate import MeshCheck, has_meshes, unseen_pairs, validate
 from evenroad.errors import InvalidValue, listed, near, shown
 from evenroad.geometry.pose import Pose
-from evenroad.loading.load import RobotOptions, padded_model
+from evenroad.loading.load import RobotOptions, load_model
 from evenroad.planning.problem import Planner
 from evenroad.planning.request import Goal, PathLike, Reading, Request
 from evenroad.planning.terminals import as_start_and_goals
@@ -131,7 +131,7 @@ def arm_request(
             if options:
                 raise InvalidValue(f"{', '.join(options)} must go with the file of a robot, not with a Robot")
         else:
-            model = padded_model(robot, **options)
+            model = load_model(robot, **options)
             source, robot = model.file, model.robot
         goals = _goal_list(goal, len(robot.group))
         texts = [target for target in (start, *goals) if isinstance(target, str)]
