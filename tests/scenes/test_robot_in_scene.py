@@ -2,6 +2,7 @@
 
 import math
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 import evenroad as er
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot import HeldObject, capsule_endpoints, in_scene
+from evenroad.robots.planes import Plane
 from evenroad.scenes.robot_in_scene import placed_scene
 from evenroad.scenes.robot_setup import LinkFrames, RobotSetup
 from tests.refused import refused
@@ -173,3 +175,15 @@ def test_padding_of_a_scene_is_checked_with_its_robot():
     assert in_scene(robot, both).padding == (("tool0", 0.01),)
     assert er.Scene(setup=both.setup) == both
     assert er.Scene(setup=both.setup, padding={}).attached == (crate,)
+
+
+def test_a_world_within_another_scene_keeps_to_all_that_this_says_of_the_robot(arm):
+    plane = Plane("floor", (0.0, 0.0, -0.5), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), ("base",))
+    robot = replace(arm, planes=(plane,))
+    frames = RobotSetup(frames=LinkFrames({"can": "upper"}, {"a": 0.3}), padding={"lower": 0.02})
+    scene = er.Scene([er.Sphere(0.1, xyz=(0.5, 0, 0), name="can")], setup=frames)
+    for given in (scene, replace(scene, setup=replace(scene.setup, padding={}))):
+        world, wanted = er.ArmWorld(robot).within(given), er.ArmWorld(robot, given)
+        assert world.scene == wanted.scene
+        assert world.scene.names == ("can", "floor")
+        assert world.robot == wanted.robot

@@ -163,6 +163,8 @@ def test_where_the_rules_differ_a_warning_and_a_note_say_so_until_one_is_chosen(
     assert load_map(path, rules="nav2").notes == grid.notes
     (note,) = load_map(path, rules="ros1").notes
     assert "3 pixels unknown (else occupied)" in note
+    planned = er.plan(path, (-0.96, 2.02), (-0.9, 2.03), radius=0.001, rules="nav2")
+    assert (planned.status, planned.notes) == ("solved", grid.notes)
     np.testing.assert_array_equal(load_map(path, rules="nav2").occupied, grid.occupied)
     with pytest.raises(UnknownName, match="'ros2'; did you mean 'ros1'"):
         load_map(path, rules="ros2")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -22,7 +22,7 @@ from evenroad.collision.coerce import as_robot, as_scene
 from evenroad.collision.distance import LEAST, MOST, WITH, Distance
 from evenroad.collision.native_scene import native_scene
 from evenroad.collision.numbered_scene import NumberedScene
-from evenroad.collision.prepared_robots import prepared
+from evenroad.collision.prepared_robots import Prepared, prepared
 from evenroad.collision.robot_tables import PADDING, RobotTables
 from evenroad.collision.units import scene_notes
 from evenroad.errors import InvalidValue
@@ -32,7 +32,7 @@ from evenroad.robots.robot import Robot
 from evenroad.scenes.changes import Changes
 from evenroad.scenes.obstacle import MOST_CLEARANCE
 from evenroad.scenes.robot_in_scene import scene_around, within_scene
-from evenroad.scenes.scene import Scene, limits_in_words, smaller_scene
+from evenroad.scenes.scene import Scene, limits_in_words, smaller_scene, without_limits
 from evenroad.scenes.states import as_configuration
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
@@ -43,8 +43,6 @@ from evenroad.world.clearance import largest_kept
 from evenroad.world.one_or_many import OneOrMany, is_one, one_or_many
 from evenroad.world.protocol import Apart
 
-_OF_ROBOT = ("robot", "resolution", "_space", "bounds", "robot_tables")
-"""Attributes that are the same in every scene."""
 VALIDATION_TOLERANCE = 1e-6
 """Distance from contact down to which `ArmWorld.validate` proves a motion free [m]; checks keep about twice that."""
 
@@ -71,13 +69,6 @@ class ArmWorld(Changes, OneOrMany):
     clearance : float
         Least distance from obstacles, >= 0 [m]: bodies are larger by it against obstacles, not against each other.
 
-    Attributes
-    ----------
-    bounds : float64 ndarray, shape (3, dim)
-        Low, high and period of each joint; a period of inf where it does not wrap.
-    robot_tables : RobotTables
-        What checks know of the robot, the same in every scene.
-
     Raises
     ------
     InvalidValue
@@ -96,9 +87,7 @@ class ArmWorld(Changes, OneOrMany):
     scene: Scene = field(default_factory=Scene)
     resolution: float = 0.05
     clearance: float = 0.0
-    _space: JointSpace = field(init=False, repr=False)
-    bounds: Floats = field(init=False, repr=False)
-    robot_tables: RobotTables = field(init=False, repr=False)
+    _prepared: Prepared = field(init=False)
     _since: tuple[ArmWorld, Mapping[str, None]] | None = field(init=False, default=None)
     """The world that this one was changed from, and the names of the obstacles that differ."""
 
@@ -108,25 +97,34 @@ class ArmWorld(Changes, OneOrMany):
         resolution = require_positive("resolution", self.resolution)
         robot = within_scene(as_robot(self.robot), scene)
         scene = scene_around(robot, scene)
-        set_fields(self, robot=robot, scene=scene, resolution=resolution, clearance=apart)
         for held in scene.attached:
             if held.name not in robot.holds:
                 raise InvalidValue(
                     f"scene {scene.name!r} attaches {held.name!r}, which the robot does not hold: give the world"
                     " in_scene(robot, scene)"
                 )
-        if self.scene.near_ends:
-            which = f"scene {self.scene.name!r} allows contacts near start and goals, which a world does not know"
+        if scene.near_ends:
+            which = f"scene {scene.name!r} allows contacts near start and goals, which a world does not know"
             raise InvalidValue(f"{which}: plan does, or give it allowed_near_ends(robot, scene, start_and_goals)")
-        made = prepared(self.robot)
-        require_few_segments(self.resolution, made.longest / self.resolution)
-        set_fields(self, _space=made.space, bounds=made.bounds, robot_tables=made.tables)
+        made = prepared(robot)
+        require_few_segments(resolution, made.longest / resolution)
+        set_fields(self, robot=robot, scene=scene, resolution=resolution, clearance=apart, _prepared=made)
         _ = self.native_scene  # at once: it refuses obstacles that are too far
 
     @property
     def space(self) -> JointSpace:
         """The ranges of the group's joints; continuous ones wrap."""
-        return self._space
+        return self._prepared.space
+
+    @property
+    def bounds(self) -> Floats:
+        """Low, high and period of each joint, (3, dim); a period of inf where it does not wrap."""
+        return self._prepared.bounds
+
+    @property
+    def robot_tables(self) -> RobotTables:
+        """What checks know of the robot, the same in every scene."""
+        return self._prepared.tables
 
     @property
     def excess(self) -> float:
@@ -147,7 +145,7 @@ class ArmWorld(Changes, OneOrMany):
     @once_property
     def native_scene(self) -> NativeScene:
         """The obstacles as native checks read them."""
-        made = prepared(self.robot)
+        made = self._prepared
         return native_scene(made.native, made.tables, self.robot.links, self.scene, self.clearance)
 
     @once_property
@@ -164,12 +162,12 @@ class ArmWorld(Changes, OneOrMany):
     def checker(self) -> Checker:
         """The native checks of this world."""
         touches_itself = self.robot_tables.fixed_contact is not None
-        robot = prepared(self.robot).native
+        robot = self._prepared.native
         return Checker(robot, self.native_scene, self.resolution, self.clearance, touches_itself)
 
-    def __getstate__(self) -> dict[str, Any]:
+    def __reduce__(self) -> tuple[type[ArmWorld], tuple[object, ...]]:
         """Return what a copy is made of: it makes checks of its own."""
-        return {each.name: getattr(self, each.name) for each in fields(self)} | {"_since": None}
+        return type(self), (self.robot, self.scene, self.resolution, self.clearance)
 
     def valid(self, q: Any) -> Any:
         """Return which configurations, (n, dim), are within the limits, up to 1e-5, and touch nothing: (n,).
@@ -184,7 +182,7 @@ class ArmWorld(Changes, OneOrMany):
     @one_or_many
     def _read_and_valid(self, q: Floats) -> Bools:
         """Return the same of what is no array of floats, or not such a one as it should be."""
-        return self.checker.valid(as_batch("q", q, self._space.dim))
+        return self.checker.valid(as_batch("q", q, self.dim))
 
     def motion_valid(self, a: Any, b: Any) -> Any:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
@@ -196,7 +194,7 @@ class ArmWorld(Changes, OneOrMany):
 
     @one_or_many
     def _read_and_motion_valid(self, a: Floats, b: Floats) -> Bools:
-        return self.checker.motion_valid(*as_batch_pair(a, b, self._space.dim))
+        return self.checker.motion_valid(*as_batch_pair(a, b, self.dim))
 
     @once_property
     def roomier(self) -> ArmWorld:
@@ -225,7 +223,7 @@ class ArmWorld(Changes, OneOrMany):
         The method is that of :mod:`evenroad.collision.certified`, without gaps.  Motions within some micrometres of
         contact, or that need more than 2^15 intervals, are refused, too.  Raises as `valid`.
         """
-        waypoints = as_batch("path", path, self._space.dim)
+        waypoints = as_batch("path", path, self.dim)
         return self.motion_certified(waypoints[:-1], waypoints[1:], VALIDATION_TOLERANCE)
 
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
@@ -233,7 +231,7 @@ class ArmWorld(Changes, OneOrMany):
 
         Motions nearer than about `tolerance` to contact are not proved, > 0 [m].  Raises as `motion_valid`.
         """
-        first, second = as_batch_pair(a, b, self._space.dim)
+        first, second = as_batch_pair(a, b, self.dim)
         return self.checker.motion_valid(first, second, require_positive("tolerance", tolerance))
 
     def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
@@ -242,7 +240,7 @@ class ArmWorld(Changes, OneOrMany):
         The first joints alone prove it, in tenths of a second, `quickly` in some milliseconds.  The proof holds for
         bodies inside the robot's true shapes, see :mod:`evenroad.infeasibility.proof`.
         """
-        terminals = as_batch("start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim)
+        terminals = as_batch("start and goals", np.concatenate([np.atleast_2d(start), goals]), self.dim)
         require_time_for("evenroad.infeasibility.proof")
         # Imported late: few plans need the proof.
         from evenroad.infeasibility.proof import apart
@@ -265,17 +263,13 @@ class ArmWorld(Changes, OneOrMany):
         Obstacles reach less far by what they are to `spare`, or farther where that is less than 0 [m].
         """
         # Ranges are those of the robot.
-        scene = (
-            smaller_scene(self.scene, spare)
-            if spare > 0.0
-            else replace(self.scene, setup=replace(self.scene.setup, limits={}))
-        )
+        scene = smaller_scene(self.scene, spare) if spare > 0.0 else without_limits(self.scene)
         return replace(self, robot=robot, scene=scene, clearance=self.clearance + max(-spare, 0.0)).valid
 
     @once_property
     def _measuring(self) -> Checker:
         """The native checks of this world as it is without a clearance, with the obstacles up to 1 m farther."""
-        made = prepared(self.robot)
+        made = self._prepared
         scene = native_scene(made.native, made.tables, self.robot.links, self.scene, MOST)
         return Checker(made.native, scene, self.resolution, 0.0, False)
 
@@ -390,20 +384,23 @@ class ArmWorld(Changes, OneOrMany):
         >>> er.ArmWorld("ur5", "box-reach").within(er.Scene()).scene.names
         ()
         """
-        world = self._copy(scene, self.clearance)
+        if scene.padding:
+            return replace(self, scene=without_limits(scene))
+        world = self._copy(scene_around(self.robot, scene), self.clearance)
         _ = world.native_scene  # at once: it refuses obstacles that are too far
         return world
 
     def _copy(self, scene: Scene, clearance: float, **more: object) -> ArmWorld:
         """Return a world of the same robot, of a scene and a clearance that fit it: `replace` would read all again."""
         world = object.__new__(type(self))
-        vars(world).update({name: getattr(self, name) for name in _OF_ROBOT}, scene=scene, clearance=clearance, **more)
+        same = {name: getattr(self, name) for name in ("robot", "resolution", "_prepared")}
+        vars(world).update(same, scene=scene, clearance=clearance, **more)
         return world
 
     def _changed(self, scene: Scene, gone: Collection[str], come: Collection[str]) -> ArmWorld:
         """Return the same world with a scene in which some obstacles are gone and others have come."""
-        robot, before = prepared(self.robot).native, self._numbered
-        numbered = before.changed(robot, self.robot_tables, scene, gone, come, self.clearance)
+        robot = self._prepared.native
+        numbered = self._numbered.changed(robot, self.robot_tables, scene, gone, come, self.clearance)
         if numbered is None:
             return self.within(scene)
         since, changed = (self, {}) if self._since is None else self._since
@@ -420,9 +417,9 @@ class ArmWorld(Changes, OneOrMany):
         """Return, in words, why one configuration, (dim,), is not free: a joint outside its limits, or which bodies
         touch.
         """
-        batch = as_batch("q", self._row(q)[np.newaxis], self._space.dim)
+        batch = as_batch("q", self._row(q)[np.newaxis], self.dim)
         # To itself: brings wrapping joints into their ranges.
-        row = self._space.interpolate(batch, batch, 0.0)[0]
+        row = self.space.interpolate(batch, batch, 0.0)[0]
         for name, value, low, high, period in zip(self.robot.group, row, *self.bounds, strict=True):
             if math.isinf(period) and not low - SLACK <= value <= high + SLACK:
                 beyond = max(low - value, value - high)

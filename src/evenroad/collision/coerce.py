@@ -12,14 +12,14 @@ from evenroad.scenes.scene import Scene
 
 def as_robot(robot: object) -> Robot:
     """Return a robot: itself, or that which ``load_robot`` loads.  InvalidValue for anything else."""
+    if isinstance(robot, Robot):
+        return robot
     if isinstance(robot, str | os.PathLike):
         # Imported late: reading files takes more than most worlds.
         from evenroad.loading.load import load_robot
 
-        robot = load_robot(robot)
-    require_robot(robot)
-    assert isinstance(robot, Robot)  # as require_robot has seen to
-    return robot
+        return load_robot(robot)
+    return require_robot(robot)
 
 
 def as_scene(scene: object) -> Scene:

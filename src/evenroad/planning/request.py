@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from evenroad._arrays import Floats
-from evenroad.collision.arm_world import ArmWorld
 from evenroad.geometry.pose import Pose
 from evenroad.loading.description import RobotModel
 from evenroad.loading.urdf_xml import RobotFile
@@ -66,7 +65,7 @@ class Request:
     def notes(self) -> tuple[str, ...]:
         """What was read otherwise than the files say, and what seems unusual in them."""
         of_robot = () if self.model is None else self.model.notes
-        return of_robot + self.world.notes if isinstance(self.world, ArmWorld) else of_robot
+        return of_robot + tuple(getattr(self.world, "notes", ()))
 
     @property
     def tip(self) -> str:

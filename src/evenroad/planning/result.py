@@ -125,8 +125,8 @@ class PlanResult:
     roadmap : SearchedGraph or None
         The searched graph; None if start or goal is invalid, and for a reused roadmap.
     notes : tuple of str
-        What was read of the robot otherwise than its files say, and what seems unusual in it or its scene, one line
-        each.
+        What was read of the robot or the map otherwise than its files may mean it, and what seems unusual in it or its
+        scene, one line each.
     world : World or None
         World of the query; None in a plan that was read from a file.
 

@@ -491,7 +491,8 @@ def _renamed(robot: Robot, prefix: str) -> Robot:
     )
 
 
-def require_robot(robot: object) -> None:
-    """Raise InvalidValue unless this is a Robot: names and files are read by ``load_robot``."""
-    if not isinstance(robot, Robot):
-        raise InvalidValue(f"robot must be a Robot, as load_robot(name or file) gives it, got {shown(robot)}")
+def require_robot(robot: object) -> Robot:
+    """Return a Robot, or raise InvalidValue: names and files are read by ``load_robot``."""
+    if isinstance(robot, Robot):
+        return robot
+    raise InvalidValue(f"robot must be a Robot, as load_robot(name or file) gives it, got {shown(robot)}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import lru_cache
 from typing import Any, Unpack
 
 import numpy.typing as npt
@@ -14,7 +15,7 @@ from evenroad._checks import counted, require_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
-from evenroad.geometry.shapes import PRIMITIVES
+from evenroad.geometry.shapes import PRIMITIVES, Box
 from evenroad.robots.held import HeldObject
 from evenroad.scenes.changes import Changes
 from evenroad.scenes.obstacle import MARGIN as MARGIN
@@ -145,11 +146,12 @@ class Scene(Changes):
         Scene('scene', 2 obstacles: box 0, box 1)
         """
         rows = box_rows(size, xyz, xyzw)
-        texts = tuple(names) if len(names) else tuple([f"box {i}" for i in range(len(rows))])
+        texts = tuple(names) if len(names) else _numbered(len(rows))
         if len(texts) != len(rows):
             raise InvalidValue(f"names must be {len(rows)}, one a box, got {len(texts)}")
-        _require_different(_named(name), texts)
-        return _scene(_NOTHING_ELSE, name=name, obstacles=Boxes(rows, texts), allowed=allowed)
+        if len(names):
+            _require_different(name, texts)
+        return _scene(_NOTHING_ELSE, name=_named(name), obstacles=Boxes(rows, texts), allowed=allowed)
 
     @property
     def states(self) -> Mapping[str, Mapping[str, float]]:
@@ -321,6 +323,17 @@ def smaller_scene(scene: Scene, by: float) -> Scene:
     names = tuple(name for name, is_left in zip(solid, left.tolist(), strict=True) if is_left)
     allowed = frozenset(each for each in scene.allowed if each[1] in names)
     return _scene(_NOTHING_ELSE, name=scene.name, obstacles=Boxes(rows, names), allowed=allowed)
+
+
+def without_limits(scene: Scene) -> Scene:
+    """Return a scene without ranges to plan in."""
+    return replace(scene, setup=replace(scene.setup, limits={}))
+
+
+@lru_cache(maxsize=8)
+def _numbered(count: int) -> tuple[str, ...]:
+    """Return the names of boxes that have none."""
+    return tuple([f"{Box.kind} {i}" for i in range(count)])
 
 
 def _named(name: object) -> str:

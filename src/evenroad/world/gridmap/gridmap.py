@@ -136,6 +136,11 @@ class DiskWorld(OneOrMany):
         """The map's rectangle, in map units."""
         return self.grid.space
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was read otherwise than the files of the map may mean it."""
+        return self.grid.notes
+
     def __repr__(self) -> str:
         rows, cols = self.grid.occupied.shape
         return f"DiskWorld(radius {self.radius:g}, {rows} x {cols} cells)"
