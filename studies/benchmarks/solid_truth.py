@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import ConvexHull
 from studies.benchmarks.rows import parser_of
-from tests.collision.solid_bodies import LONG, RADIUS, SOLIDS, Solid, at, ball_arm, distance, draw_scene
+from tests.collision.solid_bodies import LONG, RADIUS, SOLIDS, Solid, at, ball_arm, distance, places_of
 from tests.robots.surface_scenes import half_turned
 
 import evenroad as er
@@ -71,7 +71,7 @@ def boxes(rng: np.random.Generator, count: int) -> Row:
         solids = [each for each in plain if not any(lies_within(each, other) for other in plain if other is not each)]
     parts = [each.mesh(inverted=bool(rng.random() < 0.3)) for each in solids]
     mesh = half_turned(merged(tuple(parts))) if rng.random() < 0.2 else merged(tuple(parts))
-    places = draw_scene(solids, rng, count)
+    places = places_of(solids, rng, count)
     return judged("boxes in a mesh", er.ArmWorld(ball_arm(), er.Scene([Mesh(mesh)])), places, distance(solids, places))
 
 
@@ -82,7 +82,7 @@ def hull(rng: np.random.Generator, count: int) -> Row:
     size = np.exp(rng.uniform(np.log(0.1), np.log(8.0)))
     pose = random_pose(rng, rng.uniform(0.0, LONG + 0.5 * size))
     mesh = convex_hull(pose.apply(rng.uniform(-0.5, 0.5, (rng.integers(5, 60), 3)) * size * rng.uniform(0.2, 1.0, 3)))
-    places = draw_scene([Solid((size,) * 3, pose)], rng, count)
+    places = places_of([Solid((size,) * 3, pose)], rng, count)
     sides = ConvexHull(mesh.vertices).equations
     deep = (places @ sides[:, :3].T + sides[:, 3]).max(axis=1)
     points = coal.StdVec_Vec3s()
@@ -130,7 +130,7 @@ def rows(count: int) -> Iterator[Row]:
     rng = np.random.default_rng(0)
     with tempfile.TemporaryDirectory() as folder:
         for name, (make, solids) in SOLIDS.items():
-            places = draw_scene(solids, rng, count // (2 + sum(1 + bool(each.hollow) for each in solids)))
+            places = places_of(solids, rng, count // (2 + sum(1 + bool(each.hollow) for each in solids)))
             yield judged(name, er.ArmWorld(ball_arm(), make(Path(folder))), places, distance(solids, places))
     for drawn in (boxes, hull, behind_a_gap):
         found = [drawn(rng, count // DRAWN) for _ in range(DRAWN)]

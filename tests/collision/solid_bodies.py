@@ -219,8 +219,8 @@ SOLIDS = {
 """Name -> the scene, made in a folder, and the solids that it is."""
 
 
-def draw_scene(solids, rng, count):
-    """Drawn within the arm's reach: anywhere, at its end, and near the faces of solids, (n, 3)."""
+def places_of(solids, rng, count):
+    """Places within the arm's reach: anywhere, at its end, and near the faces of solids, (n, 3)."""
     ways = rng.normal(size=(count, 3))
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     drawn = [ways * LONG * rng.random((count, 1)) ** (1 / 3), ways * (LONG - 0.02 * rng.random((count, 1)) ** 4)]

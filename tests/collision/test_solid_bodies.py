@@ -17,7 +17,7 @@ from tests.collision.solid_bodies import (
     ball_arm,
     distance,
     doubled,
-    draw_scene,
+    places_of,
     with_collapsed,
     with_sheets,
 )
@@ -33,7 +33,7 @@ def case(request, tmp_path_factory):
     """A world with solids, places, and how far the ball is from the solids there."""
     make, solids = SOLIDS[request.param]
     world = er.ArmWorld(ARM, make(tmp_path_factory.mktemp("solid")))
-    places = draw_scene(solids, np.random.default_rng(0), 400)
+    places = places_of(solids, np.random.default_rng(0), 400)
     return world, places, distance(solids, places) - RADIUS
 
 
@@ -58,7 +58,7 @@ def test_the_distance_is_above_0_exactly_where_it_is_free(case):
 def sampled(name, folder, count=300, seed=1):
     """The scene of a solid, places around it, and their distances from it."""
     make, solids = SOLIDS[name]
-    places = draw_scene(solids, np.random.default_rng(seed), count)
+    places = places_of(solids, np.random.default_rng(seed), count)
     return make(folder), places, distance(solids, places)
 
 
@@ -112,7 +112,7 @@ def test_a_solid_that_comes_or_moves_is_solid():
 def test_open_sheets_within_a_block_open_no_place_in_it():
     make, solids = SOLIDS["a block, its face near"]
     mesh = with_sheets(make(None).obstacles[0].body.triangles)
-    places = draw_scene(solids, np.random.default_rng(3), 20_000)
+    places = places_of(solids, np.random.default_rng(3), 20_000)
     inside = distance(solids, places) < 0.0
     assert not er.ArmWorld(ARM, er.Scene([Mesh(mesh)])).valid(at(places[inside])).any()
 

@@ -93,7 +93,7 @@ def test_pieces_are_those_of_a_slow_recursion_and_cover_what_is_reached():
     for which in (False, True):
         expected = [piece for triangle in corners[first == which] for piece in slow_pieces(triangle, 0.9, 0.3)]
         assert sorted(pieces[of_first == which].tolist()) == sorted(expected)
-    # Drawn of the triangles within reach are in one of the pieces: areas tell.
+    # Places of the triangles within reach are in one of the pieces: areas tell.
     near = corners[(np.abs(corners) < 0.9).all(axis=(1, 2))]
     assert len(near) > 5
     area = lambda t: np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1).sum()  # noqa: E731
