@@ -101,7 +101,7 @@ INSTEAD = {
         "an hour",
     ),
     "evenroad view box-reach.json --gif *": Instead(None, "seconds of drawing: an example and tests/cli do"),
-    "evenroad view box-reach.json": Instead(None, "serves a page until it is stopped (extra [view])"),
+    "evenroad view box-reach.json": Instead(None, "serves a page until it is stopped"),
     "evenroad send box-reach.json --host *": Instead(None, "needs an arm: tests_peers has one on loopback"),
     "evenroad robot duo.urdf *": Instead(None, "a robot of two arms that does not ship"),
     "evenroad robot arm.urdf.xacro *": Instead(None, "needs a package of ROS"),

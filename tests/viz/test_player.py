@@ -26,7 +26,7 @@ def _data(text):
 
 def test_a_page_holds_the_joints_along_the_path_and_each_body_once(reach):
     data = _data(page_of(reach, file=RobotFile(find_robot("ur5")[0])))
-    first, last = ([joint["values"][i] for joint in data["joints"] if joint["values"]] for i in (0, -1))
+    first, last = ([values[i] for values in data["values"] if values] for i in (0, -1))
     robot = reach.world.robot
     expected = joint_values(robot, np.stack([reach.start, reach.goal]))
     moving = [joint.name for joint in robot.joints if joint.kind != "fixed"]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 import webbrowser
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
@@ -37,9 +36,8 @@ SECONDS = 0.5
 class View(RobotOptions):
     """Show a plan: the arm in its scene, or the disk on its map, along the path.
 
-    With the extra [view] this computer serves a page on which you move start, goal and obstacles of an arm; the path is
-    planned again as they move.  Ctrl-C ends it.  Otherwise a page is written that plays offline, and opened in the
-    browser.
+    This computer serves a page on which you move start, goal and obstacles of an arm; the path is planned again as they
+    move.  Ctrl-C ends it.  Of a disk a page is written that plays offline, and opened in the browser.
 
     Examples: evenroad view box-reach.json · evenroad view box-reach.json --html reach.html
     """
@@ -87,7 +85,7 @@ class View(RobotOptions):
         if self.html is not None:
             self._save_page(plan, self.html)
         if all(file is None for _, file, _ in named):
-            if arm and find_spec("viser") is not None:
+            if arm:
                 self._serve(plan)
             else:
                 page = Path(f"{self.world.stem}.html")

@@ -6,17 +6,18 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.collision.arm_world import ArmWorld
+from evenroad.geometry.pose import Pose
 from evenroad.robots.kinematics import link_poses
 
 _SOFTENED, _ROUNDS, _NEAR = 0.05, 12, 1e-3
 """Damping and number of steps, and the error that ends them [m, rad]."""
 
 
-def follow(world: ArmWorld, q: Floats, link: str, position: Floats, wxyz: Floats) -> Floats:
+def follow(world: ArmWorld, q: Floats, link: str, pose: Pose) -> Floats:
     """Return the configuration near `q`, (dim,), that moves a link nearest to a pose, by damped least squares."""
     robot, number = world.robot, world.robot.links.index(link)
     low, high, _ = world.bounds
-    target = matrix_of(wxyz)
+    position, target = np.array(pose.xyz), pose.rotation_matrix
     for _ in range(_ROUNDS):
         nearby = np.vstack([q, q + 1e-5 * np.eye(len(q))])
         poses = link_poses(robot, nearby)[:, number]
@@ -37,19 +38,3 @@ def _turn(rotations: Floats) -> Floats:
 
     vectors: Floats = Rotation.from_matrix(rotations).as_rotvec()
     return vectors
-
-
-def wxyz_of(rotation: Floats) -> Floats:
-    """Return the unit quaternion of a rotation, (3, 3)."""
-    from scipy.spatial.transform import Rotation
-
-    wxyz: Floats = Rotation.from_matrix(rotation).as_quat(scalar_first=True)
-    return wxyz
-
-
-def matrix_of(wxyz: Floats) -> Floats:
-    """Return the rotation, (3, 3), of a quaternion."""
-    from scipy.spatial.transform import Rotation
-
-    matrix: Floats = Rotation.from_quat(wxyz, scalar_first=True).as_matrix()
-    return matrix

@@ -7,26 +7,33 @@ import json
 import os
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_file, require_known
 from evenroad._files import atomic_write
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import NotAvailable
+from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.loading.urdf_xml import RobotFile
 from evenroad.planning.result import PlanResult
 from evenroad.robots.kinematics import joint_values, tip_links
+from evenroad.scenes.scene import Obstacle
 from evenroad.space.path import configuration_at
 from evenroad.viz.arm import chosen_camera, kept_distance
 from evenroad.viz.bodies import CAPSULES, COLLISION, VISUAL, indexed, obstacle_part, robot_sets
 from evenroad.viz.result import plot_map
 from evenroad.viz.stage import Part
-from evenroad.world import MeasuresPaths
+from evenroad.world import MeasuresPaths, World
 from evenroad.world.gridmap import DiskWorld
 
+Data: TypeAlias = "dict[str, object]"
+"""What a page shows, as JSON."""
+Timed: TypeAlias = tuple[Floats, Floats]
+"""Times from 0 on, (n,) [s], and the configurations at them, (n, dim)."""
 TEMPLATE = Path(__file__).parent / "player.html"
 SAMPLES = 240
 """Number of states of a path that has no times."""
@@ -41,7 +48,7 @@ def save_page(
     result: PlanResult,
     *,
     file: RobotFile | None = None,
-    timed: tuple[Floats, Floats] | None = None,
+    timed: Timed | None = None,
 ) -> None:
     """Write a page that plays a plan in any browser, without a network: one HTML file, atomically.
 
@@ -71,36 +78,42 @@ def save_page(
         opened.write(text.encode())
 
 
-def page_of(result: PlanResult, *, file: RobotFile | None = None, timed: tuple[Floats, Floats] | None = None) -> str:
+def page_of(result: PlanResult, *, file: RobotFile | None = None, timed: Timed | None = None) -> str:
     """Return the text of the page that :func:`save_page` writes."""
     world = result.world
     if not isinstance(world, ArmWorld | DiskWorld):
         raise NotAvailable("plans of arms and of disks on maps can be shown; this one has another world, or none")
     if result.path is None:
         raise NotAvailable(f"there is no path to play: {result.message}")
-    if timed is None:
-        times, states = np.linspace(0.0, SECONDS, SAMPLES), _evenly(result, world)
+    kept = kept_distance(result) if isinstance(world, ArmWorld) else ""
+    times, states = states_of(result, world, timed)
+    data: Data = {"title": f"{result.status}: {result.message}{kept}", "clearance": clearances(world, states)}
+    if isinstance(world, ArmWorld):
+        shown = arm_data(world, result, file) | values_of(world, times, states)
     else:
-        chosen = np.unique(np.linspace(0, len(timed[0]) - 1, _MOST).astype(int))
-        times, states = timed[0][chosen], timed[1][chosen]
-    data: dict[str, Any] = {
-        "title": f"{result.status}: {result.message}" + (kept_distance(result) if isinstance(world, ArmWorld) else ""),
-        "timed": timed is not None,
-        "times": _rounded(times, 4),
-        "clearance": clearances(world, states),
-    }
-    data |= _of_arm(world, result, states, file) if isinstance(world, ArmWorld) else _of_map(world, states)
+        shown = _map_data(world, states) | {"times": rounded(times, 4)}
+    return filled(data | shown | {"timed": timed is not None})
+
+
+def filled(data: Data) -> str:
+    """Return the text of a page that shows some data."""
     # No text of a plan ends the script that holds it.
     text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     return TEMPLATE.read_text(encoding="utf-8").replace("__DATA__", text)
 
 
-def _evenly(result: PlanResult, world: ArmWorld | DiskWorld) -> Floats:
-    assert result.path is not None
-    return configuration_at(result.path, world.space, np.linspace(0.0, 1.0, SAMPLES))
+def states_of(result: PlanResult, world: ArmWorld | DiskWorld, timed: Timed | None) -> Timed:
+    """Return times, (n,) [s], and configurations at them, (n, dim); without a path the arm stays at the start."""
+    if timed is not None:
+        chosen = np.unique(np.linspace(0, len(timed[0]) - 1, _MOST).astype(int))
+        return timed[0][chosen], timed[1][chosen]
+    if result.path is None:
+        return np.array([0.0, SECONDS]), np.stack([result.start, result.start])
+    shares = np.linspace(0.0, 1.0, SAMPLES)
+    return SECONDS * shares, configuration_at(result.path, world.space, shares)
 
 
-def clearances(world: Any, states: Floats) -> list[float] | None:
+def clearances(world: World, states: Floats) -> list[float] | None:
     """Return a lower bound of the distance from obstacles at each of some states, (n, dim), None if not known [m]."""
     if not isinstance(world, MeasuresPaths):
         return None
@@ -108,35 +121,41 @@ def clearances(world: Any, states: Floats) -> list[float] | None:
     if any(bound is None or not np.isfinite(bound) for bound in bounds):
         return None
     shares = np.linspace(0.0, 1.0, len(states)), np.linspace(0.0, 1.0, len(bounds))
-    return _rounded(np.interp(*shares, np.array(bounds, dtype=np.float64)), 4)
+    return rounded(np.interp(*shares, np.array(bounds, dtype=np.float64)), 4)
 
 
-def _of_arm(world: ArmWorld, result: PlanResult, states: Floats, file: RobotFile | None) -> dict[str, Any]:
+def values_of(world: ArmWorld, times: Floats, states: Floats) -> Data:
+    """Return times and the values of each joint at them, None for joints that are fixed."""
+    values = joint_values(world.robot, states)
+    joints = world.robot.joints
+    listed = [None if joint.kind == "fixed" else rounded(values[joint.name], 5) for joint in joints]
+    return {"times": rounded(times, 4), "values": listed}
+
+
+def arm_data(world: ArmWorld, result: PlanResult, file: RobotFile | None) -> Data:
+    """Return the joints and bodies of an arm in its scene, and the side that it is seen from."""
     robot = world.robot
-    values = joint_values(robot, states)
     number = {link: i for i, link in enumerate(robot.links)}
-    joints = []
-    for i, joint in enumerate(robot.joints):
-        limits = [each if np.isfinite(each) else np.pi * np.sign(each) for each in (joint.lower, joint.upper)]
-        joints.append({
+    joints = [
+        {
             "name": joint.name,
             "kind": joint.kind,
             "parent": number[joint.parent],
             "child": i + 1,
-            "origin": _rounded(joint.origin.matrix.T.reshape(-1), 9),
+            "origin": columns_of(joint.origin),
             "axis": list(joint.axis),
-            "limits": limits,
+            "limits": [each if np.isfinite(each) else np.pi * np.sign(each) for each in (joint.lower, joint.upper)],
             "planned": joint.name in robot.group,
             "mimic": joint.mimic and [joint.mimic.joint, joint.mimic.multiplier, joint.mimic.offset],
-            "values": _rounded(values[joint.name], 5) if joint.kind != "fixed" else None,
-        })  # fmt: skip
-    obstacles = [obstacle_part(each) for each in world.scene.obstacles]
+        }
+        for i, joint in enumerate(robot.joints)
+    ]
     sets = robot_sets(robot, file)
-    bodies = [_body(part, 0, "scene", name) for part, name in zip(obstacles, world.scene.names, strict=True)]
+    bodies = [obstacle_data(each) for each in world.scene.obstacles]
     for name, links in sets.items():
-        bodies += [_body(part, number[link], name, link) for link, part in links.items()]
-    tips = [number[tip] for tip in tip_links(robot)]
-    camera, _ = chosen_camera(result, world, sets[CAPSULES], obstacles)
+        bodies += [_body_data(part, number[link], name, link) for link, part in links.items()]
+    parts = [obstacle_part(each) for each in world.scene.obstacles]
+    camera, _ = chosen_camera(result, world, sets[CAPSULES], parts)
     x, y, _ = camera.eye - camera.look_at
     return {
         "kind": "arm",
@@ -144,14 +163,21 @@ def _of_arm(world: ArmWorld, result: PlanResult, states: Floats, file: RobotFile
         "name": robot.name,
         "joints": joints,
         "links": len(robot.links),
-        "tips": tips,
+        "tips": [number[tip] for tip in tip_links(robot)],
         "sets": [name for name in (VISUAL, COLLISION, CAPSULES) if name in sets],
         "bodies": bodies,
         "turn": round(float(np.arctan2(y, x)), 3),
     }
 
 
-def _body(part: Part, link: int, kind: str, name: str) -> dict[str, Any]:
+def obstacle_data(obstacle: Obstacle) -> Data:
+    """Return the body of an obstacle, in its own frame, and its pose."""
+    pose = columns_of(obstacle.body.pose)
+    return _body_data(obstacle_part(obstacle.at(IDENTITY)), 0, "scene", obstacle.name) | {"pose": pose}
+
+
+def _body_data(part: Part, link: int, kind: str, name: str) -> Data:
+    """Return a body that moves with a link: of a set of the robot's bodies, or of the scene."""
     corners, directions, triangles = indexed(part)
     normals = np.zeros((len(corners), 4), dtype=np.int8)
     normals[:, :3] = np.rint(127.0 * directions)
@@ -166,7 +192,7 @@ def _body(part: Part, link: int, kind: str, name: str) -> dict[str, Any]:
     }
 
 
-def _of_map(world: DiskWorld, states: Floats) -> dict[str, Any]:
+def _map_data(world: DiskWorld, states: Floats) -> Data:
     frame, picture = world.grid.frame, BytesIO()
     plot_map(world.grid).save(picture, format="png")
     return {
@@ -176,16 +202,22 @@ def _of_map(world: DiskWorld, states: Floats) -> dict[str, Any]:
         "picture": "data:image/png;base64," + base64.b64encode(picture.getvalue()).decode(),
         "size": [frame.cols, frame.rows],
         "radius": world.radius / frame.resolution,
-        "states": [_rounded(row, 3) for row in frame.to_pixels(states)],
+        "states": [rounded(row, 3) for row in frame.to_pixels(states)],
         "joints": [],
         "sets": [],
     }
 
 
-def _coded(array: Any) -> str:
+def columns_of(pose: Pose) -> list[float]:
+    """Return the transform of a pose column by column, as the page multiplies them."""
+    return rounded(pose.matrix.T.reshape(-1), 9)
+
+
+def _coded(array: npt.NDArray[np.generic]) -> str:
     return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode()
 
 
-def _rounded(values: Floats, digits: int) -> list[float]:
-    rounded: list[float] = np.round(values, digits).tolist()
-    return rounded
+def rounded(values: Floats, digits: int) -> list[float]:
+    """Return numbers with so many digits after the point, for JSON."""
+    listed: list[float] = np.round(values, digits).tolist()
+    return listed

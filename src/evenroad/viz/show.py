@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sys
 import webbrowser
+from importlib import import_module
 from typing import Any
 
-from evenroad._checks import require_extra
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.loading.cache import file_of
@@ -49,7 +49,7 @@ def show(what: PlanResult | GridMap | ArmWorld, q: Any = None, *, port: int = 0)
     UnknownName
         If `q` names a state or a joint that does not exist.
     NotAvailable
-        If its world cannot be drawn, viser is not installed, or there is no browser.
+        If its world cannot be drawn, the port is taken, or there is no browser.
 
     Examples
     --------
@@ -92,4 +92,4 @@ def _notebook() -> Any:
     shell = None if module is None else module.get_ipython()
     if type(shell).__name__ != "ZMQInteractiveShell":
         return None
-    return require_extra("IPython.display", "view", "a picture in a notebook")
+    return import_module("IPython.display")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from evenroad.viz.page_guard import PageGuard
+from evenroad.viz.page_server import PageGuard
 
 GUARD = PageGuard("127.0.0.1", "tok")
 OWN = "http://127.0.0.1:8080"
