@@ -218,6 +218,6 @@ def _coded(array: npt.NDArray[np.generic]) -> str:
 
 
 def rounded(values: Floats, digits: int) -> list[float]:
-    """Return numbers with so many digits after the point, for JSON."""
+    """Return numbers rounded to some digits after the point, for JSON."""
     listed: list[float] = np.round(values, digits).tolist()
     return listed
