@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Mesh, Shape, shape_of
 from evenroad.robots.held import HeldObject
+from evenroad.scenes.entry import Entry
 from evenroad.scenes.moveit_scene import SIZES, dimensions_of, pose_of
 
 ROOT = ""
@@ -23,16 +23,15 @@ PLANNING_FRAMES = (ROOT, "world")
 """Frames that are the robot's root link wherever a file does not say more."""
 _TYPES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone"}
 """Numbers of shape_msgs/SolidPrimitive."""
-_ADD, _REMOVE, _APPEND, _MOVE = "add", "remove", "append", "move"
-_OPERATIONS = {0: _ADD, 1: _REMOVE, 2: _APPEND, 3: _MOVE}
-"""Numbers of moveit_msgs/CollisionObject."""
+_ADD, _REMOVE, _APPEND, _MOVE = _OPERATIONS = ("add", "remove", "append", "move")
+"""Operations of moveit_msgs/CollisionObject, by their numbers."""
 
 
 class Frame(NamedTuple):
     """A frame by its pose in that of a link, ROOT for the root link."""
 
     link: str
-    pose: Pose
+    pose: Pose = IDENTITY
 
     def at(self, pose: Pose) -> Frame:
         """Return the frame that has this pose in this one."""
@@ -57,66 +56,67 @@ class Object:
         # A lone solid shape keeps the object's name beside meshes, too.
         names = [name] if len(solid) == 1 else [f"{name}/{i}" for i in range(len(solid))]
         names += [f"{name}/mesh{i}" for i in range(len(meshes))] if len(self.shapes) > 1 else [name] * len(meshes)
-        return {own: self._placed(each) for own, each in zip(names, (*solid, *meshes), strict=True)}
-
-    def _placed(self, shape: Shape) -> Shape:
-        return replace(shape, pose=self.frame.pose @ shape.pose)
+        bodies = [replace(each, pose=self.frame.pose @ each.pose) for each in (*solid, *meshes)]
+        return dict(zip(names, bodies, strict=True))
 
     def frames(self, name: str) -> Frames:
         """Return its frame and its subframes, as others name them."""
         return {name: self.frame} | {f"{name}/{sub}": self.frame.at(pose) for sub, pose in self.subframes.items()}
 
 
-def given_frames(document: Mapping[str, Any], path: Path) -> Frames:
+def given_frames(scene: Entry) -> Frames:
     """Return the frames that a file places in its planning frame, which is the robot's root link."""
-    root = Frame(ROOT, IDENTITY)
-    given = document.get("fixed_frame_transforms") or []
-    frames = dict.fromkeys((*PLANNING_FRAMES, *map(frame_id, given)), root)
+    given = scene.parts("fixed_frame_transforms")
+    frames = dict.fromkeys((*PLANNING_FRAMES, *map(header_frame, given)), Frame(ROOT))
     for each in given:
-        frames[str(each.get("child_frame_id"))] = root.at(transform_of(each.get("transform"), f"a frame of {path}"))
+        frames[str(each.get("child_frame_id"))] = Frame(ROOT, message_pose(each.part("transform")))
     return frames
 
 
-def transform_of(entry: Mapping[str, Any] | None, where: str) -> Pose:
-    """Return the pose of a geometry_msgs/Transform."""
-    said = entry or {}
-    return _pose({"position": said.get("translation"), "orientation": said.get("rotation")}, where)
-
-
-def frame_id(entry: Mapping[str, Any]) -> str:
+def header_frame(message: Entry) -> str:
     """Return the frame that the header of a message names."""
-    return str((entry.get("header") or {}).get("frame_id") or "")
+    return str(message.part("header").get("frame_id") or "")
 
 
-def objects_after_all(entries: list[Mapping[str, Any]], frames: Frames, path: Path) -> dict[str, Object]:
+def message_pose(message: Entry) -> Pose:
+    """Return a pose or a transform: rows of numbers, as lists or by their letters."""
+    rows = []
+    for letters, keys in (("xyz", ("translation", "position")), ("xyzw", ("rotation", "orientation"))):
+        key = next((key for key in keys if key in message), keys[1])
+        row = message.get(key)
+        row = [row.get(letter, 0.0) for letter in letters] if isinstance(row, Mapping) else row
+        rows.append(numbers(row, len(letters), f"{key} of {message.where}"))
+    return pose_of(rows[0], rows[1], message.where)
+
+
+def objects_after_all(messages: list[Entry], frames: Frames) -> dict[str, Object]:
     """Return the objects that are there after all operations, by their names.
 
     A frame that neither is one of `frames` nor belongs to an object before it is that of a link of this name.
     """
     objects: dict[str, Object] = {}
-    for each in entries:
-        name = _name_of(each, path)
-        where = f"object {name!r} in {path}"
-        operation = _operation(each, where)
+    for each in messages:
+        name = _name_of(each)
+        message = each.called(f"object {name!r} in {each.where}")
+        operation = _operation(message)
         if operation == _REMOVE:
             objects = {own: kept for own, kept in objects.items() if name not in ("", own)}
             continue
         known = frames | {own: frame for one, kept in objects.items() for own, frame in kept.frames(one).items()}
-        made = _object(each, known.get(frame_id(each)) or Frame(frame_id(each), IDENTITY), where)
+        made = _object(message, known.get(header_frame(each)) or Frame(header_frame(each)))
         if operation == _MOVE:
             if name not in objects or made.shapes:
-                raise InvalidValue(f"{where} is moved: it must be there before, and have a pose alone")
+                raise InvalidValue(f"{message.where} is moved: it must be there before, and have a pose alone")
             objects[name].frame = made.frame
         elif operation == _APPEND and name in objects:
             first = objects[name].frame
             if made.frame.link != first.link:
-                raise InvalidValue(
-                    f"{where} must have all its shapes in one frame, got {first.link!r} and {made.frame.link!r}"
-                )
+                both = f"{first.link!r} and {made.frame.link!r}"
+                raise InvalidValue(f"{message.where} must have all its shapes in one frame, got {both}")
             back = first.pose.inverse() @ made.frame.pose
             objects[name].shapes += [replace(shape, pose=back @ shape.pose) for shape in made.shapes]
         elif name in objects:
-            raise InvalidValue(f"objects in {path} must have names of their own, twice: {name!r}")
+            raise InvalidValue(f"objects in {each.where} must have names of their own, twice: {name!r}")
         else:
             objects[name] = made
     return objects
@@ -130,98 +130,88 @@ class AttachedObject(NamedTuple):
     frames: Frames
 
 
-def attached_object(entry: Mapping[str, Any], frames: Frames, path: Path) -> AttachedObject | None:
+def attached_object(message: Entry, frames: Frames) -> AttachedObject | None:
     """Return what a message attaches, None where it lets go."""
-    inside = entry.get("object") or {}
-    name, link = _name_of(inside, path), entry.get("link_name")
-    where = f"attached object {name!r} in {path}"
-    if _operation(inside, where) == _REMOVE:
+    inside, link = message.part("object"), message.get("link_name")
+    name = _name_of(inside)
+    inside = inside.called(f"attached object {name!r} in {message.where}")
+    if _operation(inside) == _REMOVE:
         return None
     if not isinstance(link, str) or not link:
-        raise InvalidValue(f"{where} must have the link_name of what carries it, got {shown(link)}")
-    touches = entry.get("touch_links") or []
-    if not isinstance(touches, list) or not all(isinstance(each, str) for each in touches):
-        raise InvalidValue(f"touch_links of {where} must be a list of links, got {shown(touches)}")
-    its = frame_id(inside) or link
-    made = _object(inside, Frame(link, IDENTITY) if its == link else frames.get(its) or Frame(its, IDENTITY), where)
-    bodies = made.named(name)
-    if not bodies:
-        raise InvalidValue(f"{where} has no shapes: write them, not its name alone")
-    held = tuple(HeldObject(own, body, link, tuple(touches)) for own, body in bodies.items())
+        raise InvalidValue(f"{inside.where} must have the link_name of what carries it, got {shown(link)}")
+    touches = message.called(inside.where).texts("touch_links", "links")
+    its = header_frame(inside) or link
+    made = _object(inside, Frame(link) if its == link else frames.get(its) or Frame(its))
+    if not made.shapes:
+        raise InvalidValue(f"{inside.where} has no shapes: write them, not its name alone")
+    held = tuple(HeldObject(own, body, link, touches) for own, body in made.named(name).items())
     return AttachedObject(held, made.frame.link, made.frames(name))
 
 
-def _name_of(entry: Mapping[str, Any], path: Path) -> str:
-    if "id" not in entry:
-        raise BrokenFile(f"every entry of collision_objects in {path} must have an 'id', got {shown(entry)}")
-    return str(entry["id"])
+def _name_of(message: Entry) -> str:
+    if message.get("id") is None:
+        raise BrokenFile(f"every object in {message.where} must have an 'id', got {shown(message.content)}")
+    return str(message.get("id"))
 
 
-def _operation(entry: Mapping[str, Any], where: str) -> str:
-    given = entry.get("operation", 0)
-    given = given.strip().lower() if isinstance(given, str) else _OPERATIONS.get(given, given)
-    if given not in _OPERATIONS.values():
-        raise UnknownName.among(f"operation of {where}:", given, _OPERATIONS.values())
-    return str(given)
+def _operation(message: Entry) -> str:
+    given = message.get("operation")
+    if isinstance(given, int | None) and 0 <= (given or 0) < len(_OPERATIONS):
+        return _OPERATIONS[given or 0]
+    if (name := str(given).strip().lower()) in _OPERATIONS:
+        return name
+    raise UnknownName.among(f"operation of {message.where}:", given, _OPERATIONS)
 
 
-def _object(entry: Mapping[str, Any], frame: Frame, where: str) -> Object:
-    """Return an object of a message whose header names this frame."""
-    if entry.get("planes"):
-        raise InvalidValue(f"{where} must consist of {', '.join(SIZES)} and meshes: it has a plane")
-    found = Object(frame.at(_pose(entry["pose"], where)) if entry.get("pose") else frame)
-    names = entry.get("subframe_names") or []
-    for subframe, pose in _with_poses(names, entry.get("subframe_poses"), "subframe", where):
-        found.subframes[str(subframe)] = _pose(pose, where)
-    for primitive, pose in _with_poses(entry.get("primitives"), entry.get("primitive_poses"), "primitive", where):
-        given = primitive.get("type")
-        kind = str(_TYPES.get(given, given)).lower()
-        size = numbers(primitive.get("dimensions"), dimensions_of(kind, where), f"dimensions of {where}")
+def _object(message: Entry, frame: Frame) -> Object:
+    """Return an object whose header names this frame."""
+    if message.get("planes"):
+        raise InvalidValue(f"{message.where} must consist of {', '.join(SIZES)} and meshes: it has a plane")
+    found = Object(frame.at(message_pose(message.part("pose"))) if message.get("pose") else frame)
+    names = message.entries("subframe_names")
+    found.subframes.update(zip(map(str, names), _poses(message, "subframe", len(names)), strict=True))
+    solids, meshes = message.parts("primitives"), message.parts("meshes")
+    for solid, pose in zip(solids, _poses(message, "primitive", len(solids)), strict=True):
+        given = solid.get("type")
+        kind = (_TYPES.get(given, "") if isinstance(given, int) else "") or str(given).lower()
+        count = dimensions_of(kind, message.where)
+        size = numbers(solid.get("dimensions"), count, f"dimensions of {message.where}")
         try:
             # Height and radius in messages, radius and length everywhere else.
-            found.shapes.append(shape_of(kind, size[::-1] if kind == "cylinder" else size, _pose(pose, where)))
+            found.shapes.append(shape_of(kind, size[::-1] if kind == "cylinder" else size, pose))
         except InvalidValue as error:
-            raise InvalidValue(f"{where}: {error}") from None
-    for mesh, pose in _with_poses(entry.get("meshes"), entry.get("mesh_poses"), "mesh", where):
-        found.shapes.append(Mesh(_mesh(mesh, where), pose=_pose(pose, where)))
+            raise InvalidValue(f"{message.where}: {error}") from None
+    for mesh, pose in zip(meshes, _poses(message, "mesh", len(meshes)), strict=True):
+        found.shapes.append(Mesh(_mesh(mesh.called(f"a mesh of {message.where}")), pose=pose))
     return found
 
 
-def _with_poses(things: Any, poses: Any, what: str, where: str) -> list[tuple[Any, Any]]:
-    """Return things with their poses; a single thing without one stands in the object's frame."""
-    things, poses = things or [], poses or []
-    if len(things) != len(poses):
-        raise BrokenFile(f"{where} must have a pose for each {what}, got {len(things)} and {len(poses)}")
-    return list(zip(things, poses, strict=True))
+def _poses(message: Entry, what: str, count: int) -> list[Pose]:
+    """Return the poses of things of a kind; BrokenFile unless there are that many."""
+    poses = message.parts(f"{what}_poses")
+    if len(poses) != count:
+        raise BrokenFile(f"{message.where} must have a pose for each {what}, got {count} and {len(poses)}")
+    return [message_pose(each) for each in poses]
 
 
-def _mesh(entry: object, where: str) -> TriangleMesh:
-    """Return a mesh of a message: vertices, and triangles by their ``vertex_indices``."""
-    where = f"a mesh of {where}"
-    parts = entry if isinstance(entry, dict) else {}
-    if not {"vertices", "triangles"} <= parts.keys():
-        raise InvalidValue(f"{where} must have vertices and triangles, got {shown(entry)}")
-    rows = [
-        [each[key] for key in "xyz"] if isinstance(each, dict) and {*"xyz"} <= each.keys() else each
-        for each in parts.get("vertices") or []
-    ]
-    corners = [each.get("vertex_indices") if isinstance(each, dict) else each for each in parts.get("triangles") or []]
-    vertices = np.array([numbers(row, 3, f"a vertex of {where}") for row in rows]).reshape(-1, 3)
-    triangles = np.array([numbers(row, 3, f"a triangle of {where}") for row in corners]).reshape(-1, 3)
+def _mesh(message: Entry) -> TriangleMesh:
+    """Return a mesh: vertices, and triangles by their ``vertex_indices``."""
+    if not {"vertices", "triangles"} <= message.content.keys():
+        raise InvalidValue(f"{message.where} must have vertices and triangles, got {shown(message.content)}")
+    vertices, triangles = (
+        np.array([numbers(_row(each), 3, f"{what} of {message.where}") for each in message.entries(key)]).reshape(-1, 3)
+        for key, what in (("vertices", "a vertex"), ("triangles", "a triangle"))
+    )
     if (broken := triangles != np.rint(triangles)).any():
-        raise InvalidValue(f"{where} must have whole vertex_indices, got {triangles[broken][0]:g}")
+        raise InvalidValue(f"{message.where} must have whole vertex_indices, got {triangles[broken][0]:g}")
     try:
         return TriangleMesh(vertices, triangles.astype(int))
     except InvalidValue as error:
-        raise InvalidValue(f"{where}: {error}") from None
+        raise InvalidValue(f"{message.where}: {error}") from None
 
 
-def _pose(entry: object, where: str) -> Pose:
-    """Return a pose of a message: position and orientation, as lists or by their letters."""
-    rows = []
-    for key, letters in (("position", "xyz"), ("orientation", "xyzw")):
-        row = entry.get(key) if isinstance(entry, dict) else None
-        if isinstance(row, dict):
-            row = [row.get(letter, 0.0) for letter in letters]
-        rows.append(numbers(row, len(letters), f"{key} of {where}"))
-    return pose_of(rows[0], rows[1], where)
+def _row(entry: object) -> object:
+    """Return a vertex or a triangle as a list of numbers."""
+    if not isinstance(entry, Mapping):
+        return entry
+    return entry["vertex_indices"] if "vertex_indices" in entry else [entry.get(letter) for letter in "xyz"]

@@ -12,20 +12,20 @@ from __future__ import annotations
 import warnings
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Any
 
 from evenroad._understood import Kind, require_understood
 from evenroad._yaml import numbers
 from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.geometry.pose import IDENTITY
 from evenroad.loading.bodies_file import padded
+from evenroad.scenes.entry import Entry
 from evenroad.scenes.planning_objects import (
     PLANNING_FRAMES,
     ROOT,
     attached_object,
     given_frames,
+    message_pose,
     objects_after_all,
-    transform_of,
 )
 from evenroad.scenes.robot_setup import LinkFrames, RobotSetup
 from evenroad.scenes.scene import Obstacle, Scene
@@ -83,7 +83,7 @@ _SCENE = Kind(
 )
 
 
-def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
+def read_planning_scene(document: Mapping[str, object], path: Path) -> Scene:
     """Return the scene of a planning scene that was read from YAML.
 
     Raises UnknownName for what a planning scene does not have, and a shape that is not read; BrokenFile for a part of
@@ -91,21 +91,15 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
     octomap that is not empty, and links that are scaled.  A frame that the file does not place is that of a link, or
     refused when the robot is known.
     """
-    where = f"the planning scene {path}"
-    _require_lists(document, _SCENE, where)
-    require_understood(document, _SCENE, where)
-    if document.get("is_diff") is True:
-        raise InvalidValue(f"{where} is a difference (is_diff: true) from another one: write the whole scene")
-    _require_plain_links(document, where)
-    world, state = document["world"], document.get("robot_state") or {}
-    if ((world.get("octomap") or {}).get("octomap") or {}).get("data"):
-        raise InvalidValue(f"{where} has an octomap: write it with octomap's tools and include it, include: FILE.bt")
-    frames = given_frames(document, path)
-    attached = [attached_object(each, frames, path) for each in state.get("attached_collision_objects") or []]
+    scene = Entry(document, f"the planning scene {path}")
+    require_understood(document, _SCENE, scene.where)
+    _require_honoured(scene)
+    frames, state = given_frames(scene), scene.part("robot_state")
+    attached = [attached_object(each, frames) for each in state.parts("attached_collision_objects")]
     held = [each for each in attached if each is not None]
     known = frames | {name: frame for each in held for name, frame in each.frames.items()}
-    objects = objects_after_all(world.get("collision_objects") or [], known, path)
-    _require_base_at_root(state, [name for name, each in objects.items() if each.frame.link == ROOT], where)
+    objects = objects_after_all(scene.part("world").parts("collision_objects"), known)
+    _require_base_at_root(state, [name for name, each in objects.items() if each.frame.link == ROOT])
     groups = {name: each.named(name) for name, each in objects.items()}
     links = {own: objects[name].frame.link for name, group in groups.items() for own in group}
     links = {own: link for own, link in links.items() if link != ROOT}
@@ -116,97 +110,84 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
     if unplaced and not are_links:
         alone = f"{path}: frame {unplaced.pop()!r} is taken as the robot's root link, unless a link has this name"
         warnings.warn(alone, stacklevel=4)
-    joints = _joints(state, where)
+    joints = _joints(state.part("joint_state"))
     return Scene(
         [Obstacle(own, body) for group in groups.values() for own, body in group.items()],
         name=str(document.get("name") or path.stem),
-        allowed=frozenset(_allowed(document.get("allowed_collision_matrix") or {}, groups, where)),
+        allowed=frozenset(_allowed(scene.part("allowed_collision_matrix"), groups)),
         setup=RobotSetup(
-            attached=bodies,
-            padding=_padding(document, where),
-            frames=LinkFrames(links, joints, are_links) if links else None,
+            attached=bodies, padding=_padding(scene), frames=LinkFrames(links, joints, are_links) if links else None
         ),
     )
 
 
-def _require_lists(document: Mapping[str, Any], kind: Kind, where: str) -> None:
-    """Raise BrokenFile where something that has parts is neither a mapping nor a list of mappings or numbers."""
-    waiting: list[tuple[Any, Kind]] = [(document, kind)]
-    while waiting:
-        value, kind = waiting.pop()
-        for name, inner in kind.parts.items():
-            part = value.get(name)
-            if part is None and name != "world":
-                continue
-            entries = part if isinstance(part, list) else [part]
-            if name in ("position", "orientation", "vertices", "triangles", "translation", "rotation"):
-                continue  # Numbers by their letters or as a list: their readers say what is wrong.
-            if name == "world" and not isinstance(part, Mapping):
-                raise BrokenFile(f"'world' in {where} must consist of 'key: value' entries, got {shown(part)}")
-            for each in entries:
-                if not isinstance(each, Mapping):
-                    raise BrokenFile(f"{name!r} in {where} must consist of 'key: value' entries, got {shown(each)}")
-                waiting.append((each, inner))
-
-
-def _require_plain_links(document: Mapping[str, Any], where: str) -> None:
-    """Raise InvalidValue where links are scaled: that depends on their shapes, which a scene does not have."""
-    for each in document.get("link_scale") or []:
+def _require_honoured(scene: Entry) -> None:
+    """Raise InvalidValue where a planning scene has what a scene cannot hold, and BrokenFile if it has no world."""
+    if not isinstance(scene.get("world"), Mapping):
+        raise BrokenFile(
+            f"'world' in {scene.where} must consist of 'key: value' entries, got {shown(scene.get('world'))}"
+        )
+    if scene.get("is_diff") is True:
+        raise InvalidValue(f"{scene.where} is a difference (is_diff: true) from another one: write the whole scene")
+    if scene.part("world").part("octomap").part("octomap").get("data"):
+        advice = "write it with octomap's tools and include it, include: FILE.bt"
+        raise InvalidValue(f"{scene.where} has an octomap: {advice}")
+    for each in scene.parts("link_scale"):
         link = each.get("link_name")
-        (scale,) = numbers(each.get("scale"), 1, f"scale of link {link!r} in {where}")
-        if scale != 1.0:
+        if (scale := each.number("scale", what=f"scale of link {link!r}")) != 1.0:
             raise InvalidValue(
-                f"{where} has link_scale {scale:g} of link {link!r}, which a scene does not hold; give it to the robot,"
-                f" load_robot(file, padding=FILE) or --padding FILE: default_robot_link_scale: {{{link}: {scale:g}}}"
+                f"{scene.where} has link_scale {scale:g} of link {link!r}, which a scene does not hold; give it to the"
+                " robot, load_robot(file, padding=FILE) or --padding FILE: default_robot_link_scale:"
+                f" {{{link}: {scale:g}}}"
             )
 
 
-def _padding(document: Mapping[str, Any], where: str) -> dict[str, float]:
+def _padding(scene: Entry) -> dict[str, float]:
     """Return by how much links are padded, link -> metres, of those that are."""
     padding = {}
-    for each in document.get("link_padding") or []:
-        what = f"padding of link {each.get('link_name')!r} in {where}"
-        (metres,) = numbers(each.get("padding"), 1, what)
-        if padded(f"the {what}", metres):
-            padding[str(each.get("link_name"))] = metres
-    return padding
+    for each in scene.parts("link_padding"):
+        link = str(each.get("link_name"))
+        what = f"padding of link {link!r}"
+        padding[link] = padded(f"the {what} in {scene.where}", each.number("padding", what=what))
+    return {link: metres for link, metres in padding.items() if metres}
 
 
-def _joints(state: Mapping[str, Any], where: str) -> dict[str, float]:
+def _joints(state: Entry) -> dict[str, float]:
     """Return where the robot stands, joint -> value."""
-    said = state.get("joint_state") or {}
-    names, position = said.get("name") or [], said.get("position") or []
-    values = numbers(position, len(names), f"the position of joint_state in {where}, one a name,")
+    names = state.entries("name")
+    values = numbers(
+        state.entries("position"), len(names), f"the position of joint_state in {state.where}, one a name,"
+    )
     return dict(zip(map(str, names), values, strict=True))
 
 
-def _require_base_at_root(state: Mapping[str, Any], objects: list[str], where: str) -> None:
+def _require_base_at_root(state: Entry, objects: list[str]) -> None:
     """Raise InvalidValue if the robot's base is away from the planning frame, and objects are in that."""
-    said = state.get("multi_dof_joint_state") or {}
-    names, transforms = said.get("joint_names") or [], said.get("transforms") or []
-    for name, each in zip(names, transforms, strict=False):
-        if objects and transform_of(each, f"joint {name!r} of {where}") != IDENTITY:
-            raise InvalidValue(
-                f"{where} has joint {name!r} away from the planning frame, which object {objects[0]!r} is in: write"
-                " objects in the frame of the robot's root link"
-            )
-
-
-def _allowed(matrix: Mapping[str, Any], groups: Mapping[str, Collection[str]], where: str) -> set[tuple[str, str]]:
-    """Return contacts of links and obstacles that a matrix allows; of two links the robot's own file says that."""
-    names, rows = matrix.get("entry_names") or [], matrix.get("entry_values") or []
-    enabled = [each.get("enabled") or [] for each in rows]
-    if [len(names)] * len(names) != [len(row) for row in enabled]:
-        raise BrokenFile(f"allowed_collision_matrix in {where} must have a row and a column for each of its names")
-    for name, value in zip(
-        matrix.get("default_entry_names") or [], matrix.get("default_entry_values") or [], strict=False
+    if objects and any(
+        message_pose(each) != IDENTITY for each in state.part("multi_dof_joint_state").parts("transforms")
     ):
-        if value and name in groups:
-            raise InvalidValue(f"{where} allows {name!r} to touch everything by default: name the links that may")
+        raise InvalidValue(
+            f"{state.where} has the robot's base away from the planning frame, which object {objects[0]!r} is in: write"
+            " objects in the frame of the root link"
+        )
+
+
+def _allowed(matrix: Entry, groups: Mapping[str, Collection[str]]) -> set[tuple[str, str]]:
+    """Return contacts of links and obstacles that a matrix allows; of two links the robot's own file says that."""
+    names, rows = matrix.entries("entry_names"), [each.entries("enabled") for each in matrix.parts("entry_values")]
+    if [len(names)] * len(names) != [len(row) for row in rows]:
+        raise BrokenFile(
+            f"allowed_collision_matrix in {matrix.where} must have a row and a column for each of its names"
+        )
+    by_default = zip(matrix.entries("default_entry_names"), matrix.entries("default_entry_values"), strict=False)
+    if open_ := [name for name, value in by_default if value and name in groups]:
+        raise InvalidValue(
+            f"{matrix.where} allows {open_[0]!r} to touch everything by default: name the links that may"
+        )
     return {
         (str(link), obstacle)
-        for i, link in enumerate(names)
-        for k, name in enumerate(names)
-        if enabled[i][k] is True and link not in groups and name in groups
+        for link, row in zip(names, rows, strict=True)
+        for name, enabled in zip(map(str, names), row, strict=True)
+        if enabled is True and link not in groups and name in groups
         for obstacle in groups[name]
     }

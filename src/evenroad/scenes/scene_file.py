@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from evenroad._call import explains_calls
-from evenroad._checks import as_file, require_known, require_positive
+from evenroad._checks import as_file, require_known
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.geometry.shapes import PRIMITIVES, PointCloud
 from evenroad.loading.find import DATA
 from evenroad.robots.held import HeldObject
+from evenroad.scenes.entry import Entry
 from evenroad.scenes.moveit_scene import read_scene_text
 from evenroad.scenes.planning_scene import read_planning_scene
 from evenroad.scenes.scan import allowed_within
 from evenroad.scenes.scene import Obstacle, Scene
-from evenroad.scenes.scene_entries import POSE, mapping_of, obstacle_of, obstacles_of, region_of
+from evenroad.scenes.scene_entries import POSE, obstacle_of, obstacles_of, region_of
 from evenroad.scenes.scene_objects import OBJECT_FILES, objects_of
 
 SCENES = ("box-reach", "box-reach-narrow", "empty", "shelf")
@@ -119,123 +119,132 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     return _of_document(document, path)
 
 
-def _of_document(document: dict[str, Any], path: Path) -> Scene:
+def _of_document(document: Mapping[str, object], path: Path) -> Scene:
     if "obstacles" not in document and "world" in document:
         return read_planning_scene(document, path)
     return _scene(document, path)
 
 
-def scene_of(document: Mapping[str, Any], name: str) -> Scene:
+def scene_of(document: Mapping[str, object], name: str) -> Scene:
     """Return the scene that a mapping describes as a file does; errors as :func:`load_scene`."""
     return _of_document({"name": name, **document}, Path("scene"))
 
 
-def _scene(document: dict[str, Any], path: Path) -> Scene:
+def _scene(document: Mapping[str, object], path: Path) -> Scene:
     require_keys(document, ("obstacles",), _SECTIONS, f"the scene {path}")
-    entries = _entries(document["obstacles"], path)
-    groups = {name: obstacles_of(name, entry, path) for name, entry in entries.items()}
+    root = Entry(document, str(path), path.parent)
+    groups = {name: obstacles_of(name, entry) for name, entry in _obstacle_entries(root)}
     obstacles = tuple(each for group in groups.values() for each in group)
     groups |= {each.name: (each,) for each in obstacles}
-    allowed: set[tuple[str, str]] = set()
-    parts: list[tuple[str, str, dict[str, Any]]] = []
-    for obstacle, links in mapping_of(document.get("allowed"), f"allowed in {path}").items():
-        require_known(f"obstacle in 'allowed' of {path}:", obstacle, groups)
-        if not isinstance(links, list) or not all(isinstance(link, str | dict) for link in links):
-            raise InvalidValue(f"allowed contacts of {obstacle!r} in {path} must be a list of links, got {links!r}")
-        allowed.update((link, each.name) for link in links if isinstance(link, str) for each in groups[obstacle])
-        parts += [_part(obstacle, each, path) for each in links if isinstance(each, dict)]
-    states: dict[str, dict[str, float]] = {}
-    for name, values in mapping_of(document.get("states"), f"states in {path}").items():
-        states[name] = {}
-        for joint, value in mapping_of(values, f"state {name!r} in {path}").items():
-            (states[name][joint],) = numbers(value, 1, f"joint {joint!r} of state {name!r} in {path}")
-    limits = {
-        joint: _range(value, f"limits of joint {joint!r} in {path}")
-        for joint, value in mapping_of(document.get("limits"), f"limits in {path}").items()
-    }
+    allowed, parts = _allowed(root, groups)
     attached = []
-    for name, entry in mapping_of(document.get("attach"), f"attach in {path}").items():
-        held, obstacles_touched = _attached(name, mapping_of(entry, f"attached {name!r} in {path}"), path, groups)
+    for name, entry in root.each("attach", "attached"):
+        held, touched = _attached(name, entry, groups)
         attached.append(held)
-        allowed.update((name, each.name) for obstacle in obstacles_touched for each in groups[obstacle])
-    name = str(document.get("name", path.stem))
+        allowed.update((name, each.name) for obstacle in touched for each in groups[obstacle])
     scene = Scene(
         obstacles,
-        name=name,
+        name=str(document.get("name", path.stem)),
         allowed=frozenset(allowed),
-        states=states,
-        limits=limits,
+        states={
+            name: {joint: state.number(joint, what=f"joint {joint!r}") for joint in state.content}
+            for name, state in root.each("states", "state")
+        },
+        limits={
+            joint: _range(value, f"limits of joint {joint!r} in {path}")
+            for joint, value in root.inside(document.get("limits"), f"limits in {path}").content.items()
+        },
         attached=tuple(attached),
     )
-    return _with_parts(scene, parts, path)
+    return _with_parts(scene, parts)
 
 
-def _entries(obstacles: object, path: Path) -> dict[str, dict[str, Any]]:
-    """Return name -> entry of the obstacles of a file: a mapping, or a list whose entries say their own names."""
+def _obstacle_entries(root: Entry) -> Iterator[tuple[str, Entry]]:
+    """Yield name and entry of the obstacles of a file: a mapping, or a list whose entries say their own names."""
+    obstacles = root.get("obstacles")
     if not isinstance(obstacles, list | tuple):
-        named = mapping_of(obstacles, f"obstacles in {path}")
-        return {name: _in_full(entry, f"obstacle {name!r} in {path}") for name, entry in named.items()}
-    entries: dict[str, dict[str, Any]] = {}
+        for name, entry in root.each("obstacles", "obstacle"):
+            yield name, _in_full(entry)
+        return
+    names = set()
     for i, each in enumerate(obstacles):
-        entry = _in_full(each, f"obstacle {i} in {path}")
+        entry = _in_full(root.inside(each, f"obstacle {i} in {root.where}"))
         kind = entry.get("shape") or Path(str(entry.get("include"))).stem
-        name = str(entry.pop("name", f"{kind} {i}"))
-        if name in entries:
-            raise InvalidValue(f"obstacles in {path} must have names of their own, twice: {name!r}")
-        entries[name] = entry
-    return entries
+        name = str(entry.get("name", f"{kind} {i}"))
+        if name in names:
+            raise InvalidValue(f"obstacles in {root.where} must have names of their own, twice: {name!r}")
+        names.add(name)
+        yield name, entry.without("name").called(f"obstacle {name!r} in {root.where}")
 
 
-def _in_full(value: object, where: str) -> dict[str, Any]:
+def _in_full(entry: Entry) -> Entry:
     """Return an entry as ``shape: box, size: ...``; ``box: {size: ...}`` and ``sphere: 0.1`` say the same."""
-    entry = mapping_of(value, where)
-    kinds = [key for key in entry if key in PRIMITIVES]
+    kinds = [key for key in entry.content if key in PRIMITIVES]
     if "shape" in entry or len(kinds) != 1:
         return entry
-    given, dimensions = entry.pop(kinds[0]), PRIMITIVES[kinds[0]].dimensions
+    (kind,) = kinds
+    given, dimensions, others = entry.get(kind), PRIMITIVES[kind].dimensions, entry.without(kind).content
     if not isinstance(given, Mapping) and len(dimensions) == 1:
         given = {dimensions[0][0]: given}
-    inside = mapping_of(given, f"{kinds[0]} of {where}")
-    if twice := sorted(inside.keys() & entry.keys()):
-        raise InvalidValue(f"{where} must say {twice[0]} once, beside its {kinds[0]} or in it")
-    return {"shape": kinds[0], **inside, **entry}
+    inside = entry.inside(given, f"{kind} of {entry.where}").content
+    if twice := sorted(inside.keys() & others.keys()):
+        raise InvalidValue(f"{entry.where} must say {twice[0]} once, beside its {kind} or in it")
+    return replace(entry, content={"shape": kind, **inside, **others})
 
 
-def _part(cloud: str, entry: dict[str, Any], path: Path) -> tuple[str, str, dict[str, Any]]:
-    """Return link and cloud of a contact that is allowed with a part of the cloud, and which part."""
-    where = f"what is allowed to touch {cloud!r} in {path}"
-    require_keys(entry, ("link",), ("near_ends", "within", "grow"), where)
-    if not isinstance(entry["link"], str) or ("near_ends" in entry) == ("within" in entry):
-        raise InvalidValue(f"{where} must have a link and one of near_ends and within, got {shown(entry)}")
+def _allowed(
+    root: Entry, groups: Mapping[str, Sequence[Obstacle]]
+) -> tuple[set[tuple[str, str]], list[tuple[str, Entry]]]:
+    """Return the contacts that are allowed, and those with a part of a cloud: which, and which part."""
+    allowed: set[tuple[str, str]] = set()
+    parts = []
+    for name, links in root.inside(root.get("allowed"), f"allowed in {root.where}").content.items():
+        require_known(f"obstacle in 'allowed' of {root.where}:", name, groups)
+        if not isinstance(links, list) or not all(isinstance(link, str | dict) for link in links):
+            raise InvalidValue(
+                f"allowed contacts of {name!r} in {root.where} must be a list of links, got {shown(links)}"
+            )
+        for link in links:
+            if isinstance(link, str):
+                allowed.update((link, each.name) for each in groups[name])
+            else:
+                parts.append((name, _part(root.inside(link, f"what is allowed to touch {name!r} in {root.where}"))))
+    return allowed, parts
+
+
+def _part(entry: Entry) -> Entry:
+    """Return the entry of a contact that is allowed with a part of a cloud, as it should be."""
+    entry.require(("link",), ("near_ends", "within", "grow"))
+    if not isinstance(entry.get("link"), str) or ("near_ends" in entry) == ("within" in entry):
+        raise InvalidValue(
+            f"{entry.where} must have a link and one of near_ends and within, got {shown(entry.content)}"
+        )
     if "near_ends" in entry and "grow" in entry:
-        raise InvalidValue(f"{where} must have grow with within alone: near_ends is a distance itself")
-    return entry["link"], cloud, entry
+        raise InvalidValue(f"{entry.where} must have grow with within alone: near_ends is a distance itself")
+    return entry
 
 
-def _with_parts(scene: Scene, parts: list[tuple[str, str, dict[str, Any]]], path: Path) -> Scene:
+def _with_parts(scene: Scene, parts: list[tuple[str, Entry]]) -> Scene:
     """Return a scene with contacts that are allowed with parts of clouds."""
     near = set()
-    for link, cloud, entry in parts:
-        where = f"what is allowed to touch {cloud!r} in {path}"
+    for cloud, entry in parts:
+        link = str(entry.get("link"))
         if not any(isinstance(each.body, PointCloud) for each in scene.obstacles if each.name.startswith(cloud)):
-            raise InvalidValue(f"{where} must be a link: a part can be allowed of a cloud alone")
+            raise InvalidValue(f"{entry.where} must be a link: a part can be allowed of a cloud alone")
         if "near_ends" in entry:
-            (distance,) = numbers(entry["near_ends"], 1, f"near_ends of {where}")
-            near.add((link, cloud, require_positive(f"near_ends of {where}", distance, or_zero=True)))
+            near.add((link, cloud, entry.length("near_ends", or_zero=True)))
         else:
-            scene = allowed_within(scene, link, cloud, *region_of(entry["within"], entry, f"within of {where}", path))
+            region = region_of(entry.inside(entry.get("within"), f"within of {entry.where}"))
+            scene = allowed_within(scene, link, cloud, region, entry.length("grow", 0.0, or_zero=True))
     return replace(scene, near_ends=frozenset(near))
 
 
-def _attached(name: str, entry: dict[str, Any], path: Path, obstacles: Collection[str]) -> tuple[HeldObject, list[str]]:
+def _attached(name: str, entry: Entry, obstacles: Collection[str]) -> tuple[HeldObject, list[str]]:
     """Return what is held, and the obstacles that it may touch."""
-    where = f"attached {name!r} in {path}"
-    link, touches = entry.pop("link", None), entry.pop("touches", [])
+    link, touches = entry.get("link"), entry.texts("touches", "links and obstacles")
     if not isinstance(link, str):
-        raise InvalidValue(f"{where} must have the link that carries it, got link: {link!r}")
-    if not isinstance(touches, list) or not all(isinstance(each, str) for each in touches):
-        raise InvalidValue(f"touches of {where} must be a list of links and obstacles, got {touches!r}")
-    body = obstacle_of(name, entry, path, where, (*POSE, "link", "touches")).body
+        raise InvalidValue(f"{entry.where} must have the link that carries it, got link: {link!r}")
+    body = obstacle_of(name, entry.without("link", "touches"), (*POSE, "link", "touches")).body
     links = tuple(each for each in touches if each not in obstacles)
     return HeldObject(name, body, link, links), [each for each in touches if each in obstacles]
 
