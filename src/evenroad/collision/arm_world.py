@@ -24,7 +24,7 @@ from evenroad.collision.native_scene import native_scene
 from evenroad.collision.numbered_scene import NumberedScene
 from evenroad.collision.prepared_robots import Prepared, prepared
 from evenroad.collision.robot_tables import PADDING, RobotTables
-from evenroad.collision.units import scene_notes
+from evenroad.collision.scene_notes import scene_notes
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PointCloud
@@ -155,7 +155,7 @@ class ArmWorld(Changes, OneOrMany):
 
     @once_property
     def notes(self) -> tuple[str, ...]:
-        """What is unusual in the sizes of obstacles, or in how far they are, in at most one line."""
+        """What is unusual in the sizes and meshes of obstacles, or in how far they are."""
         return scene_notes(self.scene, self.robot_tables.reach + self.clearance)
 
     @once_property

@@ -19,6 +19,10 @@ from evenroad.errors import InvalidValue
 
 _AS_LARGE = 1e-4
 """Largest share of its hull's volume by which a convex mesh differs from the hull."""
+_GAPS = 0.02
+"""Largest share of edges that a surface with gaps lacks; one that is meant to be open may lack as few."""
+_MISSING = 0.01
+"""Largest share of area that it lacks."""
 _MOST_HEIGHTS = 1_000_000
 """Largest number of heights of a map: its triangles then take 1 GB and some seconds."""
 _FLAT = 5e-7
@@ -98,6 +102,17 @@ class TriangleMesh:
         return np.where(turned[:, np.newaxis], self.triangles[:, ::-1], self.triangles)
 
     @cached_property
+    def is_nearly_closed(self) -> bool:
+        """Whether its open parts seem to be solids with gaps: they lack hardly any area, and few edges."""
+        is_open = ~self._closed[0]
+        a, b, c = self.vertices[self.triangles[is_open]].swapaxes(0, 1)
+        areas = np.cross(b - a, c - a)
+        # Areas of a closed surface add up to zero, each along its normal: few meshes need a look at their edges.
+        if not np.linalg.norm(areas.sum(axis=0)) <= _MISSING * np.linalg.norm(areas, axis=1).sum():
+            return False
+        return bool(is_open.any()) and 0.0 < float(np.mean(_times_of_edges(self, is_open) % 2)) <= _GAPS
+
+    @cached_property
     def outer(self) -> Floats:
         """The corners of the convex hull, (k, 3)."""
         return extreme(self.compact.vertices)
@@ -156,10 +171,8 @@ def scaled(mesh: TriangleMesh, factors: Sequence[float]) -> TriangleMesh:
 
 def volume_of(mesh: TriangleMesh) -> float:
     """Return the volume of a mesh; where it is not closed, that of its convex hull."""
-    sides = np.sort(mesh.welded[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    _, times = np.unique(sides[:, 0] * len(mesh.vertices) + sides[:, 1], return_counts=True)
     corners = mesh.vertices[mesh.triangles]
-    if (times == 2).all():
+    if (_times_of_edges(mesh) == 2).all():
         # Of a closed surface: tetrahedra from the origin to every triangle, with signs.
         return abs(float(np.linalg.det(corners).sum())) / 6.0
     from scipy.spatial import ConvexHull, QhullError
@@ -168,6 +181,13 @@ def volume_of(mesh: TriangleMesh) -> float:
         return float(ConvexHull(mesh.outer).volume)
     except QhullError:
         return 0.0
+
+
+def _times_of_edges(mesh: TriangleMesh, of: Bools | slice = slice(None)) -> Ints:
+    """Return to how many triangles, of some, each edge belongs."""
+    sides = np.sort(mesh.welded[of][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    times: Ints = np.unique(sides[:, 0] * len(mesh.vertices) + sides[:, 1], return_counts=True)[1]
+    return times
 
 
 def convex_hull(points: npt.ArrayLike, name: str = "hull", grown: float = 0.0) -> TriangleMesh:

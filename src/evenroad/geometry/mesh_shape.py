@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,7 +15,7 @@ import numpy as np
 from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import FARTHEST, as_batch, as_row, require_positive
-from evenroad.errors import InvalidValue, shown
+from evenroad.errors import InvalidValue, listed, shown
 from evenroad.geometry.cloud_file import load_cloud
 from evenroad.geometry.mesh import TriangleMesh, scaled, volume_of
 from evenroad.geometry.mesh_file import GLTF, load_mesh, load_upright
@@ -87,6 +87,16 @@ class Mesh(Shape):
         if isinstance(self.source, TriangleMesh):
             return f"{len(self.source.triangles)} triangles"
         return repr(str(self.source))
+
+
+def gap_notes(what: str, bodies: Iterable[tuple[str, Shape]]) -> tuple[str, ...]:
+    """Return a note about the meshes, by names of links or obstacles, that seem to be solids with gaps."""
+    named = [(name, body) for name, body in bodies if isinstance(body, Mesh)]
+    # A scale changes no gap, and makes another mesh.
+    meshes = [(name, body.source if isinstance(body.source, TriangleMesh) else body.triangles) for name, body in named]
+    names = listed(dict.fromkeys(name for name, mesh in meshes if mesh.is_nearly_closed))
+    said = "is closed but for small gaps, so that it is a surface with nothing inside"
+    return (f"the mesh of {what} {names} {said}: close it, or say that it is convex",) if names else ()
 
 
 def _surface(source: Any) -> Path | TriangleMesh:

@@ -13,6 +13,7 @@ from evenroad._call import explains_calls, require_options
 from evenroad.errors import BrokenFile
 from evenroad.geometry.hulls import Piece
 from evenroad.geometry.inner import inner_of
+from evenroad.geometry.mesh_shape import gap_notes
 from evenroad.geometry.parts import parts_of
 from evenroad.geometry.shapes import Mesh
 from evenroad.loading.bodies_file import read_bodies
@@ -245,6 +246,7 @@ def _build(request: _Request, urdf: Urdf, progress: Callable[[int, int, str], No
             *(() if srdf is None else srdf.notes),
             *group_notes(urdf, srdf, group),
             *size_notes(capsules, urdf.joints),
+            *gap_notes("link", ((shape.link, shape) for shape in urdf.shapes)),
             *map(_contained, pairs.contained),
         ),
     )

@@ -1,4 +1,4 @@
-"""Notes about scenes that seem to have another unit than metres."""
+"""Notes about scenes that seem to have another unit than metres, and about meshes with gaps."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import trimesh
 
 import evenroad as er
 from evenroad.geometry.shapes import Mesh, PointCloud
-from evenroad.robot import ArmWorld, Obstacle, load_robot, load_scene
+from evenroad.robot import ArmWorld, Obstacle, load_model, load_robot, load_scene
 from evenroad.robots.planes import Plane
 from tests.robots.urdf_texts import two_joints
 
@@ -68,3 +68,39 @@ def test_a_plan_hands_on_the_note_about_its_scene(robot, tmp_path):
     assert "'far'" in note
     world = ArmWorld(robot, load_scene(tmp_path / "far.yaml"))
     assert er.plan(world, [0.0, 0.0], [0.5, 0.5]).notes == (note,)
+
+
+def ball(without=0, apart=()):
+    """A ball of 1280 triangles around (0.5, 0, 0.5); without the first ones, and with corners that come apart there."""
+    made = trimesh.creation.icosphere(subdivisions=3, radius=0.2)
+    made.apply_translation((0.5, 0.0, 0.5))
+    vertices, faces = np.array(made.vertices), np.array(made.faces)[without:]
+    for row in apart:
+        vertices = np.concatenate([vertices, vertices[faces[row, :1]] + 1e-6])
+        faces[row, 0] = len(vertices) - 1
+    return er.geometry.TriangleMesh(vertices, faces, "ball")
+
+
+SHEET = er.geometry.mesh.height_map(np.add.outer(np.arange(150.0), np.sin(np.arange(150.0))) / 150.0, 0.01)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "has_gaps"),
+    [
+        (ball(), False),
+        (ball(without=2), True),
+        (ball(apart=(3, 500)), True),
+        # Half a ball, and a sheet whose rim is 1.3 % of its edges, are meant to be open.
+        (ball(without=640), False),
+        (SHEET, False),
+    ],
+    ids=["closed", "two triangles lost", "corners apart", "half", "sheet"],
+)
+def test_a_mesh_that_is_closed_but_for_small_gaps_is_a_note_of_scene_and_robot(robot, mesh, has_gaps, tmp_path):
+    for scale in (1.0, 0.5):
+        notes = ArmWorld(robot, er.Scene([Mesh(mesh, scale, name="crate")])).notes
+        assert [("gaps" in note, "obstacle crate" in note) for note in notes] == [(True, True)] * has_gaps
+    trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False).export(tmp_path / "body.obj")
+    file = tmp_path / "arm.urdf"
+    file.write_text(two_joints("<collision><geometry><mesh filename='body.obj'/></geometry></collision>"))
+    assert sum("gaps" in note and "link lower" in note for note in load_model(file).notes) == has_gaps

@@ -1,4 +1,4 @@
-"""Notes where a scene is so far from a robot, or of such sizes, that its file seems to have another unit."""
+"""Notes about scenes that seem to be in another unit, too far from the robot, or to have meshes with gaps."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.collision.native_surfaces import surface_of
+from evenroad.geometry.mesh_shape import gap_notes
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Sphere
 from evenroad.loading.units import EXPECTED, UNLIKE
 from evenroad.robots.planes import DEPTH, SIDE
@@ -18,12 +19,17 @@ _SPHERE, _CAPSULE = (list(PRIMITIVES).index(kind) for kind in (Sphere.kind, Caps
 
 
 def scene_notes(scene: Scene, reach: float) -> tuple[str, ...]:
-    """Return a note where a robot of this reach [m] comes to no obstacle of a scene, or one is huge or all are tiny.
+    """Return notes about a scene for a robot of this reach [m]: what has an odd size, and meshes with gaps.
 
     Obstacles of arrays and changed ones have none: they may be others for each plan, which would take a tenth longer.
     """
     if type(scene.table) is not Obstacles or not scene.obstacles:
         return ()
+    return _size_notes(scene, reach) + gap_notes("obstacle", ((each.name, each.body) for _, each in scene.surfaces))
+
+
+def _size_notes(scene: Scene, reach: float) -> tuple[str, ...]:
+    """Return a note where a robot comes to no obstacle of a scene, or one is huge or all are tiny."""
     rows, surfaces = scene.rows, scene.surfaces
     sides = _sides(rows)
     # A box around each is no farther away.
