@@ -21,7 +21,7 @@ from evenroad._checks import as_file, require_known
 from evenroad._files import atomic_write, read_json_file
 from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, InvalidValue
-from evenroad.planning.result import PlanResult, Status, make_result
+from evenroad.planning.result import PlanResult, Status
 from evenroad.points import Origin
 
 
@@ -199,12 +199,11 @@ def plan_of(record: Any, path: str | os.PathLike[str]) -> tuple[PlanResult, dict
         index = record["goal_index"]
         if index is not None and (type(index) is not int or not 0 <= index < len(goals)):
             raise ValueError(f"goal_index must be the number of a goal, got {index!r}")
-        result = make_result(
-            None,
-            start,
-            goals,
-            Status(record["status"]),
-            str(record["message"]),
+        result = PlanResult(
+            status=Status(record["status"]),
+            message=str(record["message"]),
+            start=start,
+            goals=goals,
             path=waypoints,
             origin=Origin(family="none", method="read from a file"),
             rule=str(record["rule"]),

@@ -24,7 +24,7 @@ from tests_peers.engines.surface import link_surfaces
 
 from evenroad._files import atomic_write
 from evenroad.planning import plan
-from evenroad.planning.read_request import arm_request
+from evenroad.planning.read_problem import arm_problem
 from evenroad.robot import Scene
 from evenroad.robots.kinematics import joint_values
 from evenroad.trajectory import Trajectory, limits_of, make_trajectory
@@ -163,7 +163,7 @@ def main() -> None:
     parser.add_argument("--margin", type=float, default=0.005, help="to keep from obstacles when planning [m]")
     parser.add_argument("--out", type=Path, default=Path("klampt_simulation"))
     asked = parser.parse_args()
-    query = arm_request("ur5", "box-reach", "home", "inside")
+    query = arm_problem("ur5", "box-reach", "home", "inside")
     arm = query.world
     world = KlamptWorld(arm.robot, arm.scene, resolution=0.05)
     # Motions are checked at states: what was found to be free of larger boxes is checked again among smaller ones.

@@ -27,12 +27,15 @@ from studies.benchmarks.rows import parser_of
 
 import evenroad as er
 from evenroad._native import planning
-from evenroad.planning import arm_trees, read_request
+from evenroad.planning import arm_trees
 from evenroad.planning.connector import Smooth
 from evenroad.planning.connectors import ARM_TREES
 from evenroad.planning.drivers import native_points
-from evenroad.planning.plan import Options, budget_of, finished, solve
-from evenroad.planning.request import Reading
+from evenroad.planning.finish import finished
+from evenroad.planning.plan import budget_of, solve
+from evenroad.planning.problem import Wanted
+from evenroad.planning.read_problem import read_problem
+from evenroad.planning.reading import Reading
 from evenroad.points.reversed_halton import ball_points, cube_points
 from evenroad.scenes.obstacle import Obstacle
 from evenroad_studies.arms.robots import ARMS, arm_named
@@ -97,9 +100,9 @@ def stages(robot: er.Robot) -> dict[str, float]:
     scene = er.Scene.of_boxes(size, xyz)
     world = er.ArmWorld(robot, scene)
     start, goal = free_motion(world)
-    request = read_request.read_request(world, start, goal, Reading())
-    options = Options(budget_of(None, None, None))
-    result = solve(request, None, options)
+    wanted = Wanted(budget=budget_of(None, None, None))
+    problem = read_problem(world, start, goal, Reading(), wanted)
+    result = solve(problem)
     dim = world.space.dim
     terminals = np.stack([start, goal])
     samples, steps = native_points(cube_points, dim), native_points(ball_points, dim)
@@ -114,12 +117,12 @@ def stages(robot: er.Robot) -> dict[str, float]:
         "scene of arrays": lambda: er.Scene.of_boxes(size, xyz),
         "world": lambda: er.ArmWorld(robot, scene),
         "er.plan": lambda: er.plan(world, start, goal),
-        "  read": lambda: read_request.read_request(world, start, goal, Reading()),
-        "  solve": lambda: solve(request, None, options),
+        "  read": lambda: read_problem(world, start, goal, Reading(), wanted),
+        "  solve": lambda: solve(problem),
         "    validity": lambda: world.valid(terminals),
-        "    trees": lambda: ARM_TREES.connect(world, request.start, request.goals, variant=0, most_motions=4_000),
+        "    trees": lambda: ARM_TREES.connect(world, problem.start, problem.goals, variant=0, most_motions=4_000),
         "      native": native,
-        "  finish": lambda: finished(request, result),
+        "  finish": lambda: finished(problem, result),
         "scene of arrays, world and er.plan": lambda: er.plan(
             er.ArmWorld(robot, er.Scene.of_boxes(size, xyz)), start, goal
         ),

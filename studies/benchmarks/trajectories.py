@@ -28,7 +28,7 @@ from evenroad.errors import NotAvailable
 from evenroad.loading.masses import Mass
 from evenroad.planning import plan
 from evenroad.planning.arm_trees import shorten
-from evenroad.planning.read_request import arm_request
+from evenroad.planning.read_problem import arm_problem
 from evenroad.robot import Scene
 from evenroad.trajectory import Dynamics, InMotion, Limits, TipLimits, arm_trajectory, limits_of
 from evenroad.trajectory.blends import rounded
@@ -189,7 +189,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--problems", type=int, default=40, help="of each kind")
     count = parser.parse_args().problems
-    query = arm_request("ur5", "box-reach", "home", "inside")
+    query = arm_problem("ur5", "box-reach", "home", "inside")
     scene_c = [("scene c", query.world, query.start, query.goals[0])]
     ten_waypoints()
     pool = Pool(arm_named("ur5"))

@@ -207,7 +207,7 @@ def test_padding_is_of_all_links_of_single_ones_or_of_a_file_and_the_plan_keeps_
         assert ("10 mm: tool0" if wanted == {"tool0": 0.01} else "4 mm: all") in shown
         again = read_plan(tmp_path / "a.json")
         assert not again.changed
-        assert again.request.world.robot.padding
+        assert again.problem.world.robot.padding
     code, _, err = run(*words, "--padding", "tool0=near")
     assert (code, "--padding must be numbers" in err) == (2, True)
     shown = answer(*words, "--padding", 0.3, code=1)[1]

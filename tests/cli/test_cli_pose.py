@@ -63,7 +63,7 @@ def test_what_is_wrong_with_a_goal_pose_or_a_path_is_said_in_one_line(refuse, op
     (("--frame", "hand"), "unknown link of 'ur5': 'hand'"), (("--frame", "wrist_1_link"), "must stand still"),
 ])  # fmt: skip
 def test_a_link_that_cannot_be_is_refused_before_a_world_is_made(refuse, monkeypatch, options, said):
-    monkeypatch.setattr("evenroad.planning.read_request.ArmWorld", lambda *_, **__: pytest.fail("a world was made"))
+    monkeypatch.setattr("evenroad.planning.read_problem.ArmWorld", lambda *_, **__: pytest.fail("a world was made"))
     assert said in refuse(*ON_UR5, *POSE, *options)
 
 

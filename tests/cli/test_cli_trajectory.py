@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from evenroad.collision.validate import MeshCheck
-from evenroad.planning.read_request import arm_request
+from evenroad.planning.read_problem import arm_problem
 from evenroad.robot import link_poses
 from evenroad.trajectory import limits_of, load_trajectory
 
@@ -29,7 +29,7 @@ def test_a_plan_gets_times_in_every_format(run, tmp_path):
 
 def test_what_is_driven_is_free_between_its_states_too(run):
     assert run(*REACH, "--trajectory", "t.json", "--deviation", "0.2")[0] == 0
-    query, made = arm_request("ur5", "box-reach", "home", "inside"), load_trajectory("t.json")
+    query, made = arm_problem("ur5", "box-reach", "home", "inside"), load_trajectory("t.json")
     shares = np.linspace(0.0, 1.0, 5)[:-1, None, None]
     between = made.positions[:-1] + shares * np.diff(made.positions, axis=0)
     assert query.world.valid(between.reshape(-1, 6)).all()
@@ -49,7 +49,7 @@ def test_the_tip_keeps_its_speed_and_acceleration(run):
     run(*REACH, "--trajectory", "free.json")
     assert run(*REACH, "--trajectory", "kept.json", "--tip-speed", "0.4", "--tip-acceleration", "1.5")[0] == 0
     free, kept = (load_trajectory(f"{name}.json") for name in ("free", "kept"))
-    robot = arm_request("ur5", "box-reach", "home", "inside").world.robot
+    robot = arm_problem("ur5", "box-reach", "home", "inside").world.robot
     ways = [
         np.linalg.norm(np.diff(link_poses(robot, each.positions)[:, -1, :3, 3], axis=0), axis=1) / each.times[1]
         for each in (free, kept)

@@ -70,7 +70,7 @@ def test_joints_that_were_held_are_where_the_plan_held_them(run, tmp_path):
     )
     assert code == 0, err
     query = View(world=tmp_path / "box-reach.json").plan_file()
-    held = held_values(query.request.world.robot)
+    held = held_values(query.problem.world.robot)
     assert held["shoulder_lift_joint"] == pytest.approx(-np.pi / 2)
 
 
@@ -89,7 +89,7 @@ def test_a_plan_knows_where_the_packages_of_its_robot_are(run, tmp_path):
     code, _, err = run("plan", "nothing.yaml", *made, "--start", "-0.5", "--goal", "0.5", "--no-picture")
     assert code == 0, err
     query = View(world=tmp_path / "nothing.json").plan_file()
-    assert "pole" in {capsule.link for capsule in query.request.world.robot.capsules}
+    assert "pole" in {capsule.link for capsule in query.problem.world.robot.capsules}
 
 
 def test_a_plan_along_a_roadmap_is_shown_with_its_arm(run, tmp_path):
@@ -101,5 +101,5 @@ def test_a_plan_along_a_roadmap_is_shown_with_its_arm(run, tmp_path):
     code, _, err = run("plan", "day.yaml", "--robot", "ur5", "--roadmap", "a.roadmap", *ends, "--no-picture")
     assert code == 0, err
     query = View(world=tmp_path / "day.json").plan_file()
-    assert {each.name for each in query.request.world.scene.obstacles} == {"ball"}
+    assert {each.name for each in query.problem.world.scene.obstacles} == {"ball"}
     assert query.result.solved

@@ -8,7 +8,7 @@ import pytest
 import evenroad as er
 from evenroad.cli import main
 from evenroad.collision.validate import MeshCheck
-from evenroad.planning.read_request import arm_request
+from evenroad.planning.read_problem import arm_problem
 from evenroad.roadmap import Budget
 from evenroad.robot import Obstacle, link_poses
 from tests.refused import refused
@@ -57,9 +57,7 @@ def test_meshes_have_the_last_word(tmp_path, monkeypatch):
     (tmp_path / "desk.yaml").write_text(
         "obstacles: {}\nstates:\n  home: {turn: 0, bend: 0, slide: 0}\n  away: {turn: 0.5, bend: 0.2, slide: 0.1}\n"
     )
-    monkeypatch.setattr(
-        "evenroad.planning.read_request.validate", lambda *_: MeshCheck("in collision", 7, "at (0, 0, 0)")
-    )
+    monkeypatch.setattr("evenroad.planning.finish.validate", lambda *_: MeshCheck("in collision", 7, "at (0, 0, 0)"))
     result = er.plan(tmp_path / "desk.yaml", "home", "away", er.PRM(64), robot=tmp_path / "arm.urdf")
     assert result.status == "mesh_collision"
     assert not result.solved
@@ -67,7 +65,7 @@ def test_meshes_have_the_last_word(tmp_path, monkeypatch):
 
 
 def test_without_points_trees_plan_and_the_path_is_proved():
-    query = arm_request("ur5", "box-reach", "home", "inside")
+    query = arm_problem("ur5", "box-reach", "home", "inside")
     result = er.plan("box-reach", "home", "inside", robot="ur5", certified=True)
     assert result.solved
     assert result.planner == "trees"
@@ -102,7 +100,7 @@ def test_more_rounds_never_give_a_longer_path_and_the_same_rounds_the_same():
     assert costs == sorted(costs, reverse=True)
     assert costs[-1] < 0.97 * first.cost
     assert np.array_equal(results[2].path, results[3].path)
-    world = arm_request("ur5", "box-reach", "home", "inside").world
+    world = arm_problem("ur5", "box-reach", "home", "inside").world
     assert world.validate(results[3].path).all()
 
 
@@ -118,18 +116,18 @@ def test_a_motion_that_cannot_be_proved_is_named(monkeypatch):
 
 def test_joint_values_within_five_decimals_of_a_limit_stay_what_they_are():
     robot = er.load_robot("ur5")
-    low, high = arm_request("ur5", "box-reach", "home", "inside").world.bounds[:2]
+    low, high = arm_problem("ur5", "box-reach", "home", "inside").world.bounds[:2]
     home = [er.load_scene("box-reach").states["home"][joint] for joint in robot.group]
     for limit, off in ((high[0], 9e-6), (low[0], -9e-6)):
         beyond = [limit + off, *home[1:]]
         for place in (beyond, ",".join(map(repr, map(float, beyond)))):
-            query = arm_request("ur5", "box-reach", place, place)
+            query = arm_problem("ur5", "box-reach", place, place)
             assert query.start.tolist() == query.goals[0].tolist() == beyond
-    query = arm_request("ur5", "box-reach", [high[0] + 2e-5, *home[1:]], "home")
+    query = arm_problem("ur5", "box-reach", [high[0] + 2e-5, *home[1:]], "home")
     assert query.start[0] == high[0] + 2e-5
     assert er.plan("box-reach", query.start, "home", robot="ur5").status == "start_outside_limits"
     with pytest.raises(er.errors.InvalidValue, match="outside the limits of scene 'box-reach'"):
-        arm_request("ur5", "box-reach", f"{float(high[0]) + 2e-5},0,0,0,0,0", "home")
+        arm_problem("ur5", "box-reach", f"{float(high[0]) + 2e-5},0,0,0,0,0", "home")
 
 
 def test_what_is_of_no_world_is_named():

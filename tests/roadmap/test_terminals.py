@@ -12,10 +12,10 @@ from evenroad.geometry.shapes import Capsule
 from evenroad.planning import Problem
 from evenroad.planning.connector import Connection
 from evenroad.planning.connectors import PlainTrees
-from evenroad.planning.request import Request
-from evenroad.planning.result import NO_POINTS, PlanResult, Status, led
+from evenroad.planning.make_result import led
+from evenroad.planning.result import NO_POINTS, PlanResult, Status
 from evenroad.planning.terminals import NEAR, SAME
-from evenroad.planning.tip_motion import TipMotion
+from evenroad.planning.tip_motion import plan_constrained
 from evenroad.planning.trees import solve_by
 from evenroad.roadmap import Budget
 from evenroad.robot import ArmWorld, CartesianLine, Joint, Robot, Scene
@@ -130,15 +130,15 @@ def test_what_lies_between_straight_lines_is_looked_at():
     world = ArmWorld(ur5(), TABLE)
     start, goal = [0.0, -1.5, 1.2, -1.0, -1.5, 0.0], [0.8, -1.4, 1.3, -1.2, -1.5, 0.3]
 
-    def plan(world, first, goals, shorten):
-        found = er.plan(world, first, goals, smooth=shorten)
+    def plan(part):
+        found = er.plan(part.world, part.start, part.goals, smooth=part.smooth)
         return PlanResult(**{**vars(found), "path": found.path[::-1] if astray else found.path})
 
-    asked = Request(world, np.array(start), np.array([goal]))
+    problem = Problem(world, np.array(start), np.array([goal]), constraints=CartesianLine(approach=0.03))
     astray = False
-    assert TipMotion(CartesianLine(approach=0.03)).plan(asked, plan, True).solved
+    assert plan_constrained(problem, plan).solved
     astray = True
-    refused(AssertionError, "does not start", TipMotion(CartesianLine(approach=0.03)).plan, asked, plan, True)
+    refused(AssertionError, "does not start", plan_constrained, problem, plan)
 
 
 def test_ends_of_joints_that_turn_for_ever_may_be_asked_for_after_any_turns():

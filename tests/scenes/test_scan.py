@@ -9,8 +9,8 @@ import evenroad as er
 from evenroad.cli import main
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.geometry import Box, Mesh, PointCloud, Pose, TriangleMesh
-from evenroad.planning.read_request import arm_request
-from evenroad.planning.request import Reading
+from evenroad.planning.read_problem import arm_problem
+from evenroad.planning.reading import Reading
 from evenroad.robot import (
     ArmWorld,
     Obstacle,
@@ -131,7 +131,7 @@ def test_a_cloud_of_the_robot_alone_leaves_nothing(ur5):
 )
 def test_where_a_robot_cannot_stand_it_has_seen_nothing(ur5, seen_at, error, says):
     scan = Scene((Obstacle("scan", PointCloud(table(10), 0.01), seen=Seen(seen_at)),), name="s")
-    refused(error, says, arm_request, ur5, scan, UPRIGHT, UPRIGHT, Reading())
+    refused(error, says, arm_problem, ur5, scan, UPRIGHT, UPRIGHT, Reading())
 
 
 def test_the_command_plans_above_a_scanned_table(tmp_path, monkeypatch, ur5, capsys):

@@ -4,7 +4,7 @@ import pytest
 import evenroad as er
 from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.planning.read_request import arm_request
+from evenroad.planning.read_problem import arm_problem
 from evenroad.poses.cartesian_line import CartesianLine
 from evenroad.scenes.scene import Scene
 from evenroad.trajectory import arm_trajectory
@@ -26,7 +26,7 @@ TURNING = """<robot name="turning">
 
 
 def free_world():
-    return arm_request("ur5", Scene((), name="nothing"), DOWN, DOWN).world
+    return arm_problem("ur5", Scene((), name="nothing"), DOWN, DOWN).world
 
 
 @pytest.mark.parametrize(("tilt", "kept"), [(0.04, True), (0.2, False)])
@@ -44,7 +44,7 @@ def test_what_is_driven_keeps_upright_as_the_path_was_asked_to(tilt, kept):
 def straight_path():
     result = er.plan("box-reach", "home", "inside", robot="ur5", constraints=STRAIGHT)
     assert result.solved
-    return arm_request("ur5", "box-reach", "home", "inside").world, result.path
+    return arm_problem("ur5", "box-reach", "home", "inside").world, result.path
 
 
 def test_what_is_driven_comes_straight(straight_path):
@@ -77,7 +77,7 @@ def test_a_joint_that_turns_for_ever_goes_the_short_way_as_its_path_does(tmp_pat
     at = 0.5 if blocked else 5.0
     scene.write_text(f"obstacles: {{post: {{shape: box, size: [0.1, 0.1, 0.5], xyz: [{at}, 0, 0]}}}}\n")
     result = er.plan(scene, [2.6], [-2.6], robot=file)
-    world = arm_request(file, scene, [2.6], [-2.6]).world
+    world = arm_problem(file, scene, [2.6], [-2.6]).world
     made = arm_trajectory(world, result.path)
     way = 2.0 * (np.pi - 2.6)
     assert made.positions[-1, 0] - made.positions[0, 0] == pytest.approx(way)

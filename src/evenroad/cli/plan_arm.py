@@ -26,9 +26,9 @@ from evenroad.cli.trajectory import limits_of_tip, require_trajectory_options, t
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.loading.find import find_robot
-from evenroad.planning.plan import Options, finished
-from evenroad.planning.read_request import arm_request
-from evenroad.planning.request import Goal, Reading, Request
+from evenroad.planning.problem import Problem, Wanted
+from evenroad.planning.read_problem import arm_problem
+from evenroad.planning.reading import Goal, Reading
 from evenroad.planning.result import PlanResult
 from evenroad.poses.constraint import Constraint, part_of
 from evenroad.poses.pose_goal import as_axis, as_numbers, pose_goal_of
@@ -50,53 +50,55 @@ def plan_arm(plan: PlanArm) -> int:
     kept = None if plan.roadmap is None else load_roadmap(plan.roadmap)
     if plan.via and (plan.roadmap is not None or plan.improve or wants_points(plan)):
         raise InvalidValue("--via goes without --roadmap, --improve and points")
+    wanted = Wanted(
+        budget=budget, smooth=not plan.raw, rng=plan.seed, certified=plan.certified, constraints=constraints
+    )
     with within(budget.seconds):
-        request = arm_request(
+        problem = arm_problem(
             plan.robot,
             scene,
             " ".join(plan.start),
             goals,
             Reading(plan.deg, plan.tip, plan.frame),
+            wanted,
             resolution=plan.resolution,
             clearance=plan.clearance,
             **plan.options(),
         )
-        world = request.world
-        planner = chosen_planner(plan, request) if kept is None else kept.within(world)
-        options = Options(budget, not plan.raw, plan.seed, plan.certified, constraints)
-        # Constraints have a world of their own kind, with its own planner.
-        by = None if not wants_points(plan) and kept is None and _keeps(constraints) else planner
         make, stopped = None, False
         if plan.via:
             from evenroad.cli.plan_via import plan_through
 
-            found, make = plan_through(plan, request, goals, constraints, options)
+            result, make = plan_through(plan, problem, goals)
         else:
-            found, stopped = solve_until_stopped(request, by, options)
-        result, meshes = finished(request, found, certified=plan.certified)
-    record = plan_record(result, _options(plan, request, result) | common_query(plan)) | {
-        "no_body": [] if request.model is None else list(request.model.bodiless),
-        "drawn_only": [] if request.model is None else list(request.model.drawn_only),
+            # Constraints have a world of their own kind, with its own planner.
+            own = kept is None and not wants_points(plan) and _keeps(constraints)
+            by = None if own else chosen_planner(plan, problem.world) if kept is None else kept
+            result, stopped = solve_until_stopped(problem, by)
+    model, world, meshes = problem.model, problem.arm, result.meshes
+    record = plan_record(result, _options(plan, problem, result) | common_query(plan)) | {
+        "no_body": [] if model is None else list(model.bodiless),
+        "drawn_only": [] if model is None else list(model.drawn_only),
         "made_of": made_of(world, robot=plan.robot, scene=str(plan.world)),
         "meshes": None if meshes is None else asdict(meshes),
     }
     source = {"plan": {name: record[name] for name in ("query", "made_of")}}
-    more_rows, record["trajectory"] = trajectory_rows(plan, request, result, constraints, make, source)
-    rows = [*_rows(request), *([] if meshes is None else [("second check", str(meshes))]), *more_rows]
+    more_rows, record["trajectory"] = trajectory_rows(plan, problem, result, constraints, make, source)
+    rows = [*_rows(problem), *([] if meshes is None else [("second check", str(meshes))]), *more_rows]
 
     def draw(file: Path) -> None:
         from evenroad.viz.arm import save_arm_picture
 
-        save_arm_picture(file, result, world, request.source)
+        save_arm_picture(file, result, world, problem.source)
 
     code = finish(files, result, record, world.robot.group, draw, rows)
     return interrupted() if stopped else code
 
 
-def _options(plan: PlanArm, request: Request, result: PlanResult) -> dict[str, Any]:
+def _options(plan: PlanArm, problem: Problem, result: PlanResult) -> dict[str, Any]:
     """Return the options for the record."""
-    world, robot, made = request.world, request.world.robot, plan.options()
-    assert request.given is not None
+    world, robot, made = problem.arm, problem.arm.robot, plan.options()
+    assert problem.given is not None
     return {
         "scene": str(plan.world),
         "robot": plan.robot,
@@ -105,20 +107,20 @@ def _options(plan: PlanArm, request: Request, result: PlanResult) -> dict[str, A
         "bodies": None if plan.bodies is None else str(plan.bodies),
         **{name: made[name] for name in ("use_visuals", "upright_meshes", "packages", "arguments", "padding")},
         "joints": list(robot.group),
-        "goal_names": list(request.goal_names),
+        "goal_names": list(problem.goal_names),
         "held": held_values(robot),
         "holds": list(robot.holds),
-        "goal_poses": request.given.records(world, None if result.path is None else result.path[-1]),
+        "goal_poses": problem.given.records(world, None if result.path is None else result.path[-1]),
         "resolution": world.resolution,
         "clearance": world.clearance,
         **{name: getattr(plan, name) for name in KEPT},
-        "tip": request.tip,
+        "tip": problem.tip,
     }
 
 
-def _rows(request: Request) -> list[tuple[str, str]]:
+def _rows(problem: Problem) -> list[tuple[str, str]]:
     """Return rows for the table: joints, held joints, goal poses, links without a body, and the checker."""
-    robot, given = request.world.robot, request.given
+    robot, given = problem.arm.robot, problem.given
     assert given is not None
     held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
     rows = [("joints", ", ".join(robot.group)), *([("held", held)] if held else [])]
@@ -127,7 +129,7 @@ def _rows(request: Request) -> list[tuple[str, str]]:
     for goal, reached in given.poses:
         postures = f"{reached.branches} postures, {reached.blocked} in collision ({reached.solver})"
         rows.append(("goal pose", f"{goal}: {postures}"))
-    rows += [] if request.model is None else bodiless_rows(request.model)
+    rows += [] if problem.model is None else bodiless_rows(problem.model)
     return [*rows, ("decided by", decided_by(robot))] if robot.shapes else rows
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from evenroad._time_limit import within
 from evenroad.cli import interrupted
 from evenroad.cli.plan import PlanDisk, wants_points
 from evenroad.cli.plan_parts import (
@@ -21,9 +22,9 @@ from evenroad.cli.plan_parts import (
 from evenroad.cli.sampler import chosen_rule
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
-from evenroad.planning.plan import Options, finished
-from evenroad.planning.read_request import read_request
-from evenroad.planning.request import Reading
+from evenroad.planning.problem import Wanted
+from evenroad.planning.read_problem import read_problem
+from evenroad.planning.reading import Reading
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.load import map_files
 
@@ -52,12 +53,11 @@ def plan_disk(plan: PlanDisk) -> int:
         # Points are drawn over the rectangle, most of which may be unknown.
         gridmap = gridmap.cropped()
     world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
-    request = read_request(world, start, goals, Reading())
     of_roadmap = dict(search="full", certify=plan.guarantees) if wants_points(plan) else {}
-    planner = chosen_planner(plan, request, **of_roadmap)
-    options = Options(budget, smooth=not plan.raw, certified=plan.certified)
-    found, stopped = solve_until_stopped(request, planner, options)
-    result, _ = finished(request, found, certified=plan.certified)
+    planner = chosen_planner(plan, world, **of_roadmap)
+    wanted = Wanted(budget=budget, smooth=not plan.raw, certified=plan.certified)
+    with within(budget.seconds):
+        result, stopped = solve_until_stopped(read_problem(world, start, goals, Reading(), wanted), planner)
     query = {
         "map": str(plan.world),
         "robot_radius": plan.robot_radius,

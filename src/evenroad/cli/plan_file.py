@@ -13,8 +13,9 @@ from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import KEPT, made_of
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import plan_of
-from evenroad.planning.read_request import arm_request
-from evenroad.planning.request import Reading, Request
+from evenroad.planning.problem import Problem
+from evenroad.planning.read_problem import arm_problem
+from evenroad.planning.reading import Reading
 from evenroad.planning.result import PlanResult
 from evenroad.poses.constraint import Constraint, with_tip
 from evenroad.space.path import continued
@@ -44,13 +45,13 @@ _MAP = {
 
 @dataclass(frozen=True)
 class PlanFile:
-    """A plan with its request, its times if it has any, and what else its file says.
+    """A plan with its problem, its times if it has any, and what else its file says.
 
     `changed` are the names of what changed in its world since; `whole` says whether the file is as it was written, and
     tells what it was made of; `stops` whether the arm stops at points on the way.
     """
 
-    request: Request
+    problem: Problem
     result: PlanResult
     trajectory: Trajectory | None = None
     changed: tuple[str, ...] = ()
@@ -75,21 +76,21 @@ def plan_file_of(record: Any, file: Path, robot: str | None = None, options: dic
             raise BrokenFile(f"{file} is a damaged plan: of its map, radius, clearance or unknown cells")
         grid = load_map(query["map"], unknown_is_free=query["unknown_is_free"], rules=query.get("rules"))
         world: Any = grid.world(query["robot_radius"], clearance=query["clearance"])
-        request = Request(world, result.start, result.goals)
+        problem = Problem(world, result.start, result.goals)
     else:
-        request = request_of(query, file, result.start, result.goals, robot, options)
+        problem = problem_of(query, file, result.start, result.goals, robot, options)
     path = result.path
     if path is not None:
         # Earlier versions began within one turn.
-        path = continued(path, request.world.space, result.start)
-    set_fields(result, world=request.world, path=path)
-    changed = changed_since(record.get("made_of"), request.world)
+        path = continued(path, problem.world.space, result.start)
+    set_fields(result, world=problem.world, path=path)
+    changed = changed_since(record.get("made_of"), problem.world)
     times = record.get("trajectory")
     has_states = isinstance(times, dict) and times.get("states") is not None
     trajectory = trajectory_of(times["states"], file) if has_states else None
     whole = has_digest(record, file) and changed is not None
     return PlanFile(
-        request, result, trajectory, changed or (), whole, constraints_in(query, file), bool(query.get("via"))
+        problem, result, trajectory, changed or (), whole, constraints_in(query, file), bool(query.get("via"))
     )
 
 
@@ -103,15 +104,15 @@ def changed_since(kept: Any, world: Any) -> tuple[str, ...] | None:
     return tuple(name for name, each in now.items() if kept[name].get("sha256") != each["sha256"])
 
 
-def request_of(
+def problem_of(
     query: dict[str, Any],
     file: Path,
     start: Floats,
     goals: Floats,
     robot: str | None = None,
     options: dict[str, Any] | None = None,
-) -> Request:
-    """Return the request of an arm's plan from its query, with this start, (dim,), and these goals, (g, dim)."""
+) -> Problem:
+    """Return the problem of an arm's plan from its query, with this start, (dim,), and these goals, (g, dim)."""
     options = dict(options or {})
     arm: Any = robot or query.get("robot")
     if not isinstance(arm, str) or not isinstance(query.get("scene"), str):
@@ -122,7 +123,7 @@ def request_of(
     options["group"] = options.get("group") or ",".join(query["joints"])
     options |= {name: bool(options[name]) for name in ("use_visuals", "upright_meshes")}
     apart = {name: query[name] for name in ("resolution", "clearance") if isinstance(query.get(name), float | int)}
-    return arm_request(arm, query["scene"], start, list(goals), Reading(held=query["held"]), **apart, **options)
+    return arm_problem(arm, query["scene"], start, list(goals), Reading(held=query["held"]), **apart, **options)
 
 
 def constraints_in(query: dict[str, Any], file: Path) -> Constraint | None:

@@ -14,14 +14,13 @@ from evenroad.cli.plan import PlanOptions, wants_points
 from evenroad.cli.sampler import chosen_rule, chosen_sampler, draw_points, require_seed
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
-from evenroad.planning.plan import Options, solve
+from evenroad.planning.plan import solve
 from evenroad.planning.prm import PRM
-from evenroad.planning.problem import Planner
-from evenroad.planning.request import Request
+from evenroad.planning.problem import Interrupted, Planner, Problem
 from evenroad.planning.result import PlanResult
 from evenroad.planning.trees import RRTConnect, default_planner
-from evenroad.roadmap import Budget
-from evenroad.world import NamesNearest
+from evenroad.roadmap import Budget, Roadmap
+from evenroad.world import NamesNearest, World
 
 DEFAULT_N = 512
 
@@ -45,11 +44,11 @@ KEPT = {
 """Options of what a path keeps on its way, as a plan records them, and their types there."""
 
 
-def chosen_planner(plan: PlanOptions, request: Request, **of_prm: Any) -> Planner:
+def chosen_planner(plan: PlanOptions, world: World, **of_prm: Any) -> Planner:
     """Return the planner of the options: a roadmap of points, else the default of the world."""
     if not wants_points(plan):
-        return default_planner(request.world, improve=plan.improve)
-    points = draw_points(plan, _n(plan), request.world.space.cube_dim)
+        return default_planner(world, improve=plan.improve)
+    points = draw_points(plan, _n(plan), world.space.cube_dim)
     return PRM(points, rule=chosen_rule(plan), **of_prm)
 
 
@@ -105,14 +104,12 @@ def made_of(world: Any, **names: str | None) -> dict[str, Any]:
     return {name: {"name": names.get(name), "sha256": value.fingerprint()} for name, value in values.items()}
 
 
-def solve_until_stopped(request: Request, planner: Planner | None, options: Options) -> tuple[PlanResult, bool]:
+def solve_until_stopped(problem: Problem, planner: Planner | Roadmap | None) -> tuple[PlanResult, bool]:
     """Return a plan, and whether Ctrl-C ended it early: of a path that becomes shorter the best one is kept."""
     try:
-        return solve(request, planner, options), False
-    except KeyboardInterrupt as stop:
-        if (best := getattr(stop, "best", None)) is None:
-            raise
-        return best, True
+        return solve(problem, planner), False
+    except Interrupted as stop:
+        return stop.best, True
 
 
 def finish(

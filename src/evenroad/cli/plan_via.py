@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import reduce
 from operator import and_
-from typing import Any
 
 import numpy as np
 
@@ -15,13 +14,15 @@ from evenroad.cli.plan import PlanArm
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.constraints.constrained_world import keeps_of
 from evenroad.errors import EvenroadError, InvalidValue
-from evenroad.planning.plan import Options
-from evenroad.planning.read_request import request_in
-from evenroad.planning.request import Goal, Reading, Request
-from evenroad.planning.result import PlanResult, make_result
+from evenroad.planning.finish import finished
+from evenroad.planning.make_result import make_result, solution
+from evenroad.planning.problem import Problem
+from evenroad.planning.read_problem import problem_in
+from evenroad.planning.reading import Goal, Reading
+from evenroad.planning.result import PlanResult
 from evenroad.planning.terminals import SAME
 from evenroad.poses.cartesian_line import CartesianLine
-from evenroad.poses.constraint import Constraint, part_of
+from evenroad.poses.constraint import part_of
 from evenroad.poses.pose_goal import pose_goal_of
 from evenroad.task import MoveTo, Task
 from evenroad.task.contact import depth_in
@@ -30,14 +31,14 @@ from evenroad.trajectory import Trajectory
 
 
 def plan_through(
-    plan: PlanArm, request: Request, goals: Sequence[Goal], constraints: Constraint | None, options: Options
+    plan: PlanArm, problem: Problem, goals: Sequence[Goal]
 ) -> tuple[PlanResult, Callable[..., Trajectory]]:
     """Return a plan through all points of ``--via``, and what makes its trajectory, which stops there.
 
     Postures at poses on the way are chosen for the whole plan.  Raises InvalidValue for a point in collision, or
     outside of the limits: which, where, and by how much.
     """
-    world = request.world
+    world, constraints = problem.world, problem.constraints
     assert isinstance(world, ArmWorld), "only arms have points on the way"
     reading = Reading(plan.deg, plan.tip, plan.frame)
     line = part_of(constraints, CartesianLine)
@@ -51,21 +52,21 @@ def plan_through(
     done = plan_task(
         Task(steps).steps,
         world,
-        request.start,
+        problem.start,
         reading,
-        seconds=options.budget.seconds,
-        smooth=options.smooth,
-        rng=options.rng,
+        seconds=problem.budget.seconds,
+        smooth=problem.smooth,
+        rng=problem.rng,
     )
     if not done.solved:
         step = done.step or 0
         which = f"via point {step + 1}" if step < len(plan.via) else "the goal"
         message = done.message.replace(f"step {step} of the task cannot be done", f"{which} cannot be reached")
-        return make_result(world, request.start, request.goals, done.status, message), done.trajectory
+        return finished(problem, make_result(problem, done.status, message)), done.trajectory
     path = done.path
     assert path is not None, "a solved task has a path"
-    rows = np.flatnonzero(world.space.distance(request.goals, np.broadcast_to(path[-1], request.goals.shape)) <= SAME)
-    known, row = (request.goals, int(rows[0])) if len(rows) else (path[-1:], 0)
+    rows = np.flatnonzero(world.space.distance(problem.goals, np.broadcast_to(path[-1], problem.goals.shape)) <= SAME)
+    known, row = (problem.goals, int(rows[0])) if len(rows) else (path[-1:], 0)
     order = ("resolution", "certified", "exact")
     proof = min((part.proof or "resolution" for part in done.parts), key=order.index)
     points = f"{len(plan.via)} point{'s' if len(plan.via) > 1 else ''} on the way"
@@ -73,12 +74,18 @@ def plan_through(
     deviation: dict[str, float] = {}
     for part in done.parts:
         deviation |= {name: max(off, deviation.get(name, 0.0)) for name, off in part.deviation.items()}
-    found: dict[str, Any] = dict(path=path, milestone_path=path, proof=proof, goal_index=row, deviation=deviation)
-    result = make_result(
-        world, request.start, known, done.status, message, planner="task", cost=done.cost, milestone_cost=done.cost,
-        timings=dict(done.timings), **found
-    )  # fmt: skip
-    return result, done.trajectory
+    result = solution(
+        replace(problem, goals=known),
+        path,
+        row,
+        cost=done.cost,
+        message=message,
+        planner="task",
+        proof=proof,
+        deviation=deviation,
+        timings=dict(done.timings),
+    )
+    return finished(problem, result), done.trajectory
 
 
 def _point(plan: PlanArm, world: ArmWorld, number: int, reading: Reading) -> Goal:
@@ -87,7 +94,7 @@ def _point(plan: PlanArm, world: ArmWorld, number: int, reading: Reading) -> Goa
     try:
         if ":" in text:
             return pose_goal_of(text, plan.tip, plan.frame, degrees=plan.deg)
-        q: Floats = request_in(world, text, text, reading).start
+        q: Floats = problem_in(world, text, text, reading).start
     except EvenroadError as error:
         raise type(error)(f"via point {number + 1}: {error}") from None
     if not world.valid(q):

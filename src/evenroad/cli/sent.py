@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from evenroad._seal import has_digest
-from evenroad.cli.plan_file import PlanFile, changed_since, constraints_in, plan_file_of, request_of
+from evenroad.cli.plan_file import PlanFile, changed_since, constraints_in, plan_file_of, problem_of
 from evenroad.cli.run import run_task_of
 from evenroad.cli.trajectory import require_meshes_free
 from evenroad.constraints.differential_drive import DifferentialDrive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
-from evenroad.planning.read_request import arm_request
-from evenroad.planning.request import Reading, Request
+from evenroad.planning.problem import Problem
+from evenroad.planning.read_problem import arm_problem
+from evenroad.planning.reading import Reading
 from evenroad.poses.constraint import Constraint, part_of
 from evenroad.trajectory import Trajectory, arm_trajectory, controller_joints, limits_of, proved_in
 from evenroad.trajectory.files import trajectory_of
@@ -36,13 +37,13 @@ def sent_plan(record: Any, file: Path, fastest: float) -> tuple[Trajectory, str]
     where it is not proved free; BrokenFile where it is damaged.
     """
     plan = plan_file_of(record, file)
-    if not hasattr(plan.request.world, "robot"):
+    if not hasattr(plan.problem.world, "robot"):
         raise NotAvailable(f"{file} is the plan of a disk on a map; plans of arms are sent")
     _require_unchanged(plan.changed, file)
     kept = plan.trajectory
     is_kept = kept is not None and bool((abs(kept.velocities) <= fastest).all())
     moves = kept if kept is not None and is_kept else _made(plan, file, fastest)
-    proved = _proved(moves, plan.request, plan.constraints, file, whole=plan.whole)
+    proved = _proved(moves, plan.problem, plan.constraints, file, whole=plan.whole)
     return proved, "of the plan" if is_kept else f"made for at most {fastest:g} rad/s"
 
 
@@ -59,8 +60,8 @@ def sent_trajectory(record: Any, file: Path, given: Given | None) -> Trajectory:
     if given is not None:
         robot, scene, options = given
         options["group"] = options["group"] or ",".join(trajectory.names)
-        request = arm_request(robot, scene, first, [last], Reading(held=trajectory.held), **options)
-        return _proved(trajectory, request, None, file, whole=whole)
+        problem = arm_problem(robot, scene, first, [last], Reading(held=trajectory.held), **options)
+        return _proved(trajectory, problem, None, file, whole=whole)
     source = trajectory.source.get("plan")
     if not isinstance(source, dict) or not isinstance(source.get("query"), dict):
         raise InvalidValue(
@@ -70,11 +71,11 @@ def sent_trajectory(record: Any, file: Path, given: Given | None) -> Trajectory:
         start, goals = (np.array(source["query"][name], dtype=np.float64) for name in ("start", "goals"))
     except (KeyError, TypeError, ValueError) as error:
         raise BrokenFile(f"{file} is a damaged trajectory: of the plan that it was made of: {error}") from error
-    request = request_of(source["query"], file, start, goals)
-    changed = changed_since(source.get("made_of"), request.world)
+    problem = problem_of(source["query"], file, start, goals)
+    changed = changed_since(source.get("made_of"), problem.world)
     _require_unchanged(changed or (), file)
     whole = whole and changed is not None
-    return _proved(trajectory, request, constraints_in(source["query"], file), file, whole=whole)
+    return _proved(trajectory, problem, constraints_in(source["query"], file), file, whole=whole)
 
 
 def _require_unchanged(changed: tuple[str, ...], file: Path) -> None:
@@ -83,14 +84,14 @@ def _require_unchanged(changed: tuple[str, ...], file: Path) -> None:
 
 
 def _proved(
-    trajectory: Trajectory, request: Request, constraints: Constraint | None, file: Path, *, whole: bool
+    trajectory: Trajectory, problem: Problem, constraints: Constraint | None, file: Path, *, whole: bool
 ) -> Trajectory:
-    """Return a trajectory from start to goal of a request with the proof of its world.
+    """Return a trajectory from start to goal of a problem with the proof of its world.
 
     Of a file that is not known to be as it was written, which is said, limits and the order of joints are those of the
     robot.
     """
-    world = request.world
+    world = problem.arm
     if not whole:
         limits, least = trajectory.limits, limits_of(world.robot)
         velocity, acceleration = (
@@ -101,12 +102,12 @@ def _proved(
         order = tuple(name for name in controller_joints(world.robot) if name in known)
         trajectory = replace(trajectory, limits=limits, controller=order)
     first, last = trajectory.positions[[0, -1]]
-    if np.abs(first - request.start).max() > _SAME:
+    if np.abs(first - problem.start).max() > _SAME:
         raise InvalidValue("the trajectory does not begin at the start of its plan: plan again")
-    if world.space.distance(np.broadcast_to(last, request.goals.shape), request.goals).min() > _SAME:
+    if world.space.distance(np.broadcast_to(last, problem.goals.shape), problem.goals).min() > _SAME:
         raise InvalidValue("the trajectory does not end at a goal of its plan: plan again")
     proved = proved_in(trajectory, world, constraints)
-    require_meshes_free(request, proved)
+    require_meshes_free(problem, proved)
     if not whole:
         text = "has no digest, or does not say of what it was made: only what is proved anew is known of it"
         print(f"evenroad: {file} {text}", file=sys.stderr)
@@ -115,7 +116,7 @@ def _proved(
 
 def _made(plan: PlanFile, file: Path, fastest: float) -> Trajectory:
     """Return a trajectory along the path of a plan that is not faster."""
-    world, path = plan.request.world, plan.result.path
+    world, path = plan.problem.arm, plan.result.path
     if not plan.result.solved or path is None:
         raise NotAvailable(f"{file} holds no path: {plan.result.message}")
     limits = limits_of(world.robot)

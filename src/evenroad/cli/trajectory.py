@@ -16,8 +16,8 @@ from evenroad._checks import require_known, require_positive
 from evenroad._files import require_writable_folder
 from evenroad.cli.plan import PlanArm
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.planning.read_request import mesh_check
-from evenroad.planning.request import Request
+from evenroad.planning.finish import mesh_check
+from evenroad.planning.problem import Problem
 from evenroad.planning.result import PlanResult
 from evenroad.poses.constraint import Constraint, part_of, with_tip
 from evenroad.poses.pose_goal import as_numbers
@@ -88,19 +88,19 @@ def _drives(constraints: Constraint) -> bool:
     return part_of(constraints, DifferentialDrive) is not None
 
 
-def _limits(plan: PlanArm, request: Request) -> Limits:
+def _limits(plan: PlanArm, problem: Problem) -> Limits:
     """Return the limits that the command says."""
     from evenroad.loading.find import find_robot
     from evenroad.poses.chain import default_tip
     from evenroad.trajectory import TipLimits, limits_of, load_dynamics
 
-    robot, limits = request.world.robot, limits_of(request.world.robot, plan.limits)
+    robot, limits = problem.arm.robot, limits_of(problem.arm.robot, plan.limits)
     if plan.torque:
         assert plan.robot is not None, "refused before"
         limits = replace(limits, torque=load_dynamics(robot, find_robot(plan.robot)[0]))
     if any(limits_of_tip(plan)):
         speed, push = (math.inf if most is None else most for most in limits_of_tip(plan))
-        limits = replace(limits, tip=TipLimits(robot, request.tip or default_tip(robot), speed, push))
+        limits = replace(limits, tip=TipLimits(robot, problem.tip or default_tip(robot), speed, push))
     return limits
 
 
@@ -121,7 +121,7 @@ def _velocity(robot: Robot, option: str, text: str | None) -> Floats | None:
 
 def trajectory_rows(
     plan: PlanArm,
-    request: Request,
+    problem: Problem,
     result: PlanResult,
     constraints: Constraint | None,
     make: Callable[..., Trajectory] | None,
@@ -140,9 +140,9 @@ def trajectory_rows(
     from evenroad.trajectory.files import save_trajectories, trajectory_record
 
     try:
-        options = _options(plan, request, constraints)
-        trajectory = _timed(plan, request, result.path, constraints, options) if make is None else make(**options)
-        require_meshes_free(request, trajectory)
+        options = _options(plan, problem, constraints)
+        trajectory = _timed(plan, problem, result.path, constraints, options) if make is None else make(**options)
+        require_meshes_free(problem, trajectory)
     except NotAvailable:
         _remove_earlier(plan)
         raise
@@ -159,13 +159,13 @@ def trajectory_rows(
     return [("trajectory", _about(trajectory)), *files], record
 
 
-def _options(plan: PlanArm, request: Request, constraints: Constraint | None) -> dict[str, Any]:
+def _options(plan: PlanArm, problem: Problem, constraints: Constraint | None) -> dict[str, Any]:
     """Return the arguments of what makes a trajectory."""
     is_default = plan.deviation == type(plan).__dataclass_fields__["deviation"].default
     # A rounded corner would take a base that cannot go sideways off its way.
     keeps_corners = is_default and constraints is not None and _drives(constraints)
     return {
-        "limits": _limits(plan, request),
+        "limits": _limits(plan, problem),
         "speed": plan.speed,
         "deviation": 0.0 if keeps_corners else plan.deviation,
         "step": plan.step,
@@ -173,26 +173,26 @@ def _options(plan: PlanArm, request: Request, constraints: Constraint | None) ->
 
 
 def _timed(
-    plan: PlanArm, request: Request, path: Floats, constraints: Constraint | None, options: dict[str, Any]
+    plan: PlanArm, problem: Problem, path: Floats, constraints: Constraint | None, options: dict[str, Any]
 ) -> Trajectory:
     """Return the trajectory along a path; NotAvailable where there is none that is free."""
     from evenroad.trajectory import InMotion, arm_trajectory
 
-    robot = request.world.robot
+    robot = problem.arm.robot
     start = _velocity(robot, "start-velocity", plan.start_velocity)
     goal = _velocity(robot, "goal-velocity", plan.goal_velocity)
     return arm_trajectory(
-        request.world,
+        problem.arm,
         InMotion(path, start, goal),
         rounded_by_controller=any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory),
-        constraints=with_tip(constraints, request.tip),
+        constraints=with_tip(constraints, problem.tip),
         **options,
     )
 
 
-def require_meshes_free(request: Request, trajectory: Trajectory) -> None:
+def require_meshes_free(problem: Problem, trajectory: Trajectory) -> None:
     """Raise NotAvailable if a trajectory is in collision with the robot's meshes."""
-    meshes = mesh_check(request, trajectory.positions)
+    meshes = mesh_check(problem, trajectory.positions)
     if meshes is not None and meshes.verdict == "in collision":
         raise NotAvailable(
             "the trajectory is free for the bodies of the plan, but not for the shapes that they stand for:"

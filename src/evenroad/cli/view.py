@@ -12,6 +12,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._files import require_writable_folder
+from evenroad._time_limit import within
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
 from evenroad.cli.plan_file import PlanFile, read_plan
@@ -19,12 +20,12 @@ from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.loading.find import find_robot
 from evenroad.loading.urdf_xml import RobotFile
-from evenroad.planning.plan import Options, solve
+from evenroad.planning.plan import solve
 from evenroad.planning.prm import PRM
-from evenroad.planning.read_request import arm_request
-from evenroad.planning.request import Reading, Request
+from evenroad.planning.problem import Problem
+from evenroad.planning.read_problem import arm_problem
+from evenroad.planning.reading import Reading
 from evenroad.planning.result import PlanResult
-from evenroad.poses.goals import Goals
 from evenroad.roadmap import Budget
 from evenroad.trajectory.corners import drivable
 
@@ -77,7 +78,7 @@ class View(RobotOptions):
             print(f"evenroad: the {' and '.join(plan.changed)} changed since this was planned", file=sys.stderr)
         if not _is_free(plan):
             print("evenroad: this is not proved free in its world as that is now", file=sys.stderr)
-        arm = isinstance(plan.request.world, ArmWorld)
+        arm = isinstance(plan.problem.world, ArmWorld)
         if self.png is not None:
             self._save_picture(plan, self.png)
         if self.gif is not None:
@@ -97,26 +98,29 @@ class View(RobotOptions):
         """Return the plan, or one that is made in the scene."""
         if self.world.suffix.lower() == ".json":
             plan = read_plan(self.world, self.robot, self.options())
-            return plan if self.n is None else replace(plan, result=self._planned(plan.request), trajectory=None)
+            return plan if self.n is None else replace(plan, result=self._planned(plan.problem), trajectory=None)
         if self.robot is None:
             raise InvalidValue("give --robot, the arm that moves in this scene, or a plan of evenroad plan")
         goal = self.start if self.goal is None else self.goal
-        request = arm_request(self.robot, self.world, self.start, goal, Reading(), **self.options())
-        return PlanFile(request, self._planned(request))
+        problem = arm_problem(self.robot, self.world, self.start, goal, Reading(), **self.options())
+        return PlanFile(problem, self._planned(problem))
 
     def _file(self, plan: PlanFile) -> RobotFile | None:
-        if plan.request.source is None and self.robot is not None:
+        if plan.problem.source is None and self.robot is not None:
             return RobotFile(find_robot(self.robot)[0])
-        return plan.request.source
+        return plan.problem.source
 
     def _save_picture(self, plan: PlanFile, path: Path) -> None:
         from evenroad.viz.arm import save_arm_picture
         from evenroad.viz.plan import save_plan_picture
 
-        if isinstance(plan.request.world, ArmWorld):
-            save_arm_picture(path, plan.result, plan.request.world, self._file(plan))
+        if isinstance(plan.problem.world, ArmWorld):
+            save_arm_picture(path, plan.result, plan.problem.world, self._file(plan))
         else:
-            save_plan_picture(path, plan.result, plan.request.world)
+            from evenroad.world.gridmap.gridmap import DiskWorld
+
+            assert isinstance(plan.problem.world, DiskWorld), "a plan is of an arm or of a disk"
+            save_plan_picture(path, plan.result, plan.problem.world)
         print(f"wrote {path}")
 
     def _save_gif(self, plan: PlanFile, arm: bool) -> None:
@@ -125,7 +129,7 @@ class View(RobotOptions):
         from evenroad.viz.arm import save_arm_gif
 
         assert self.gif is not None
-        save_arm_gif(self.gif, plan.result, plan.request.world, self._file(plan))
+        save_arm_gif(self.gif, plan.result, plan.problem.arm, self._file(plan))
         print(f"wrote {self.gif}")
 
     def _save_page(self, plan: PlanFile, path: Path) -> None:
@@ -137,13 +141,13 @@ class View(RobotOptions):
     def _serve(self, plan: PlanFile) -> None:
         from evenroad.viz.page import ArmPage
 
-        request = plan.request
+        problem = plan.problem
 
         def again(world: ArmWorld, start: Floats, goal: Floats) -> PlanResult:
             goals = goal[np.newaxis]
-            return self._planned(replace(request, world=world, start=start, goals=goals, given=Goals(goals, ("",))))
+            return self._planned(replace(problem, world=world, start=start, goals=goals, given=None))
 
-        page = ArmPage(request.world, plan.result, again, self._file(plan), timed=_times(plan), port=self.port)
+        page = ArmPage(problem.arm, plan.result, again, self._file(plan), timed=_times(plan), port=self.port)
         print(f"{page.address}   (Ctrl-C ends it)", flush=True)
         webbrowser.open(page.address)
         try:
@@ -151,15 +155,16 @@ class View(RobotOptions):
         finally:
             page.close()
 
-    def _planned(self, request: Request) -> PlanResult:
+    def _planned(self, problem: Problem) -> PlanResult:
         planner = None if self.n is None else PRM(self.n)
-        return solve(request, planner, Options(Budget(seconds=SECONDS)))
+        with within(SECONDS):
+            return solve(replace(problem, budget=Budget(seconds=SECONDS)), planner)
 
 
 def _is_free(plan: PlanFile) -> bool:
     """Return whether what is shown is proved free: a file says only that it once was."""
     shown = plan.result.path if plan.trajectory is None else plan.trajectory.positions
-    return shown is None or not plan.result.solved or bool(drivable(plan.request.world, shown)[0].all())
+    return shown is None or not plan.result.solved or bool(drivable(plan.problem.world, shown)[0].all())
 
 
 def _times(plan: PlanFile) -> tuple[Floats, Floats] | None:

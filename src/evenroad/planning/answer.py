@@ -13,18 +13,19 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._time_limit import BudgetSpent, is_limited, until, within
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.errors import EvenroadError
+from evenroad.errors import EvenroadError, InvalidValue
 from evenroad.planning.attempt import Attempt, Searched
 from evenroad.planning.connector import Connection
+from evenroad.planning.make_result import make_result, out_of_time, path_message, solution
 from evenroad.planning.problem import Problem
-from evenroad.planning.result import PlanResult, SearchedGraph, Status, make_result
+from evenroad.planning.result import PlanResult, SearchedGraph, Status
 from evenroad.planning.shortcut import shortcut
 from evenroad.roadmap.budget import BEFORE_REASONS
 from evenroad.roadmap.neighbours import flat_metric
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.space import Space
 from evenroad.space.path import path_length
-from evenroad.world import Explains, ExplainsStarts, ShowsApart, ValidatesPaths, World
+from evenroad.world import Explains, ExplainsStarts, ShowsApart, ValidatesPaths
 from evenroad.world.protocol import Apart
 
 Solver = TypeVar("Solver")
@@ -51,8 +52,8 @@ def refusal(attempt: Attempt) -> PlanResult | None:
     else:
         status, where = (Status.START_OUTSIDE_LIMITS, Status.GOAL_OUTSIDE_LIMITS)[row], "outside the limits"
     if row and len(terminals) > 2:
-        return _result(attempt, status, f"all {len(terminals) - 1} goals are {where}; the first{reason}")
-    return _result(attempt, status, f"the {('start', 'goal')[row]} is {where}{reason}")
+        return _failed(attempt, status, f"all {len(terminals) - 1} goals are {where}; the first{reason}")
+    return _failed(attempt, status, f"the {('start', 'goal')[row]} is {where}{reason}")
 
 
 def answer(
@@ -89,12 +90,12 @@ def answer(
     made = f"(n={points}, {attempt.rule})"
     if attempt.spent:
         limits = attempt.problem.budget.text(samples=attempt.grows)
-        failed = _result(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
+        failed = _failed(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
     else:
         # With ``complete`` only more points help.
         wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
         advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "") + _few_directions(attempt, points)
-        failed = _result(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
+        failed = _failed(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
     return replace(failed, counts=counts, roadmap=graph)
 
 
@@ -112,6 +113,8 @@ def in_its_time(
 
     @wraps(solve)
     def solved(planner: Solver, problem: Problem, *args: More.args, **more: More.kwargs) -> PlanResult:
+        if problem.constraints is not None:
+            raise InvalidValue("a planner knows no constraints: er.plan(..., constraints=...) divides such a problem")
         try:
             if is_limited():
                 # By the caller of the planner: the problem has what is left of that.
@@ -124,14 +127,6 @@ def in_its_time(
     return solved
 
 
-def out_of_time(problem: Problem) -> PlanResult:
-    """Return the result of a query whose time was over before a search."""
-    message = (
-        f"no path within {problem.budget.text(samples=False)}: the time was over before a search was; give it more"
-    )
-    return make_result(problem.world, problem.start, problem.goals, Status.BUDGET_SPENT, message)
-
-
 def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
     """Return the result of a connector that found no path within the budget."""
     cut = ", and there was no time for a proof that there is none" if attempt.proof_cut else ""
@@ -139,7 +134,7 @@ def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
         f"no path within {attempt.problem.budget.text(samples=False)}: {connection.nodes} nodes were grown and"
         f" {connection.motions} motions checked{cut}; give it more time"
     )
-    return replace(_result(attempt, Status.BUDGET_SPENT, message), counts=_counts_of(attempt, connection))
+    return _failed(attempt, Status.BUDGET_SPENT, message, counts=_counts_of(attempt, connection))
 
 
 def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None:
@@ -158,7 +153,7 @@ def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None
     if found is None:
         return None
     status = Status.NOT_CONNECTED if found.proved else Status.BUDGET_SPENT
-    return _result(attempt, status, found.message)
+    return _failed(attempt, status, found.message)
 
 
 def apart_in(problem: Problem, *, quickly: bool = False) -> Apart | None:
@@ -204,27 +199,18 @@ def _with_path(
             if path is not raw:
                 measure = world.space.distance if cost is None else cost
                 length = float(np.sum(measure(path[:-1], path[1:])))
-    return _result(
-        attempt,
-        Status.SOLVED,
-        path_message(path, length, goal, len(problem.goals), "length" if cost is None else "cost", is_cut=is_cut),
-        goal_index=goal,
-        path=path,
-        milestone_path=raw,
-        proof=proof_of(world),
+    named = "length" if cost is None else "cost"
+    return solution(
+        problem,
+        path,
+        goal,
+        raw=raw,
         cost=length,
-        milestone_cost=raw_cost,
+        raw_cost=raw_cost,
+        message=path_message(path, length, goal, len(problem.goals), named, is_cut=is_cut),
         counts=counts,
+        **_made_by(attempt),
     )
-
-
-def path_message(
-    path: Floats, cost: float, goal: int, goals: int, named: str = "length", *, is_cut: bool = False
-) -> str:
-    """Return what a result says about its path; `is_cut` says that there was no time to smooth it to the end."""
-    to = f" to goal {goal}" if goals > 1 else ""
-    cut = ", not smoothed to the end: the time was spent" if is_cut else ""
-    return f"path of {named} {cost:.6g} with {len(path)} waypoints{to}{cut}"
 
 
 def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tuple[str, str]:
@@ -287,16 +273,19 @@ def _axis_scales(space: Space) -> Floats | None:
     return np.asarray(4.0 * np.linalg.norm(metric.scale * (corners[1:] - corners[0]), axis=1))
 
 
-def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> PlanResult:
-    problem = attempt.problem
-    more.update(
+def _failed(attempt: Attempt, status: Status, message: str, **more: object) -> PlanResult:
+    return make_result(attempt.problem, status, message, **_made_by(attempt), **more)
+
+
+def _made_by(attempt: Attempt) -> dict[str, Any]:
+    """Return the attributes of a result that say who searched, on which points, and for how long."""
+    return dict(
         origin=attempt.origin,
         rule=attempt.rule,
         links=attempt.links,
         planner=attempt.planner,
         timings=attempt.watch.seconds,
     )
-    return make_result(problem.world, problem.start, problem.goals, status, message, **more)
 
 
 def _searched_graph(states: EdgeStates, terminals: int) -> SearchedGraph:
@@ -305,34 +294,3 @@ def _searched_graph(states: EdgeStates, terminals: int) -> SearchedGraph:
     number = np.cumsum(kept, dtype=np.int32) - 1
     edges = states.edges[states.edge_states == FREE]
     return SearchedGraph(states.configurations[kept], number[edges].astype(np.int32), int(kept.sum()) - terminals)
-
-
-def proof_of(world: World) -> str:
-    """Return what a check of this world shows: ``exact``, ``certified``, or ``resolution`` if it does not say."""
-    # `isinstance` would take as long as some checks.
-    return str(getattr(world, "proof", "resolution"))
-
-
-def require_certified(world: World, result: PlanResult) -> PlanResult:
-    """Return the plan if a separate check proves all motions of its path free, else ``not_certified``.
-
-    The message then names the first motion that is not proved; the path stays in the result.
-    """
-    if result.path is None or result.proof == "exact":
-        return result
-    if not (isinstance(world, ValidatesPaths) and world.proof == "certified"):
-        message = "the path is free at the states tested; motions of this world cannot be proved free"
-        return replace(result, status=Status.NOT_CERTIFIED, message=message)
-    try:
-        failed = np.flatnonzero(~world.validate(result.path))
-    except BudgetSpent:
-        message = f"{result.message}; there was no time to prove it once more"
-        return replace(result, status=Status.NOT_CERTIFIED, message=message)
-    if not len(failed):
-        return replace(result, proof="certified")
-    first, last = ("(" + ", ".join(f"{x:.6g}" for x in result.path[failed[0] + i]) + ")" for i in (0, 1))
-    message = (
-        f"motion {failed[0] + 1} of {len(result.path) - 1} is not proved free, from {first} to {last}:"
-        " it may touch, or pass too near to contact for a proof"
-    )
-    return replace(result, status=Status.NOT_CERTIFIED, message=message, proof="resolution")

@@ -17,7 +17,7 @@ from evenroad.errors import InvalidValue
 from evenroad.planning.answer import answer, in_its_time, refusal
 from evenroad.planning.attempt import Attempt, Searched
 from evenroad.planning.connectors import connector_of
-from evenroad.planning.problem import Problem
+from evenroad.planning.problem import Interrupted, Problem
 from evenroad.planning.result import PlanResult, Stage
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.edges import LINKS, EdgeCost, require_links
@@ -121,14 +121,6 @@ class GrowingPRM:
                 raise
             raise Interrupted(growth.result(points.n)) from None
         return growth.result(points.n)
-
-
-class Interrupted(KeyboardInterrupt):
-    """A Ctrl-C while a path became shorter: `best` is the shortest result so far."""
-
-    def __init__(self, best: PlanResult) -> None:
-        super().__init__()
-        self.best = best
 
 
 class _Growth:

@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 
 from evenroad._time_limit import BudgetSpent, until
-from evenroad.planning.answer import connected, path_message
+from evenroad.planning.answer import connected
 from evenroad.planning.attempt import NO_LIMIT, Attempt
 from evenroad.planning.connector import Connector
 from evenroad.planning.connectors import ArmTrees
-from evenroad.planning.growing import GrowingPRM, Interrupted
-from evenroad.planning.result import PlanResult, Stage, led
+from evenroad.planning.growing import GrowingPRM
+from evenroad.planning.make_result import led, path_message
+from evenroad.planning.problem import Interrupted
+from evenroad.planning.result import PlanResult, Stage
 from evenroad.roadmap.budget import BEFORE_REASONS
 from evenroad.space.path import path_length
 

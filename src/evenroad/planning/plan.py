@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad._shared import once
 from evenroad._time_limit import BudgetSpent, within
-from evenroad.collision.arm_world import ArmWorld
-from evenroad.collision.validate import MeshCheck
 from evenroad.errors import InvalidValue, shown
-from evenroad.planning.answer import apart_in, out_of_time, require_certified
 from evenroad.planning.connector import Smooth
 from evenroad.planning.diagnose import with_reasons
+from evenroad.planning.finish import finished
+from evenroad.planning.make_result import out_of_time, unreached
 from evenroad.planning.prm import FMT, PRM
-from evenroad.planning.problem import Planner, Problem
-from evenroad.planning.read_request import mesh_check, read_request
-from evenroad.planning.request import Goal, Reading, Request, unreached
-from evenroad.planning.result import PlanResult, Status
+from evenroad.planning.problem import Interrupted, Planner, Problem, Wanted
+from evenroad.planning.read_problem import read_problem
+from evenroad.planning.reading import Goal, Reading
+from evenroad.planning.result import PlanResult
 from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.planning.world_roadmap import WorldRoadmap
 from evenroad.points.pointset import PointSet
@@ -29,27 +26,12 @@ from evenroad.poses.constraint import Constraint
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.roadmap import Roadmap
 from evenroad.robots.robot import ConfigurationLike
-from evenroad.scenes.scan import allowed_everywhere
 from evenroad.world import World
-
-if TYPE_CHECKING:
-    from evenroad.planning.tip_motion import TipMotion
 
 PLANNERS: dict[str, Callable[[], Planner]] = {"rrtconnect": RRTConnect, "prm": PRM, "fmt": FMT}
 """Planners by name."""
 
 _PLAIN = Reading()
-
-
-@dataclass(frozen=True)
-class Options:
-    """The options of a path that hold for every planner; see :func:`plan`."""
-
-    budget: Budget = field(default_factory=lambda: Budget(seconds=RRTConnect.seconds))
-    smooth: Smooth = True
-    rng: RngLike = 0
-    certified: bool = False
-    constraints: Constraint | None = None
 
 
 def plan(
@@ -131,16 +113,49 @@ def plan(
     >>> er.plan("box-reach", "home", "inside", robot="ur5").status
     <Status.SOLVED: 'solved'>
     """
-    given = None if planner is None else _as_planner(planner)
+    by = None if planner is None else _as_planner(planner)
+    budget = budget_of(by, seconds, limits)
     reading = Reading(degrees, tip, frame) if degrees or tip or frame else _PLAIN
-    options = Options(budget_of(given, seconds, limits), smooth, rng, certified, constraints)
-    with within(options.budget.seconds):
-        request = read_request(world, start, goal, reading, given, **of_world)
+    wanted: Wanted = {
+        "budget": budget,
+        "smooth": smooth,
+        "rng": rng,
+        "certified": certified,
+        "constraints": constraints,
+    }
+    with within(budget.seconds):
+        return solve(read_problem(world, start, goal, reading, wanted, **of_world), by)
+
+
+def solve(problem: Problem, planner: Planner | Roadmap | None = None) -> PlanResult:
+    """Return the finished result of a problem, by a planner or its world's default, in the time of this thread."""
+    stopped = False
+
+    def plan_once(part: Problem) -> PlanResult:
+        nonlocal stopped
         try:
-            by = None if given is None else _within(given, request.world)
-        except BudgetSpent:
-            return _out_of_time(request, options)
-        return finished(request, _solved(request, by, options), certified=certified)[0]
+            found = (default_planner(part.world) if by is None else by).solve(part)
+        except Interrupted as stop:
+            found, stopped = stop.best, True
+        return found if found.solved else with_reasons(part.world, found)
+
+    try:
+        by = None if planner is None else _within(planner, problem.world)
+        if (found := unreached(problem)) is None:
+            found = plan_once(problem) if problem.constraints is None else _constrained(problem, plan_once)
+    except BudgetSpent:
+        found = out_of_time(problem)
+    result = finished(problem, found)
+    if stopped:
+        raise Interrupted(result)
+    return result
+
+
+def _constrained(problem: Problem, plan_once: Callable[[Problem], PlanResult]) -> PlanResult:
+    # Imported late: most plans have no constraints.
+    from evenroad.planning.tip_motion import plan_constrained
+
+    return plan_constrained(problem, plan_once)
 
 
 def _as_planner(planner: object) -> Planner | Roadmap:
@@ -192,118 +207,3 @@ def budget_of(
 def _default_budget(seconds: float) -> Budget:
     """Return the budget of a planner that is given no limits."""
     return Budget(seconds=seconds)
-
-
-def solve(request: Request, planner: Planner | None, options: Options) -> PlanResult:
-    """Plan a request; the path is free in its world."""
-    with within(options.budget.seconds):
-        return _solved(request, planner, options)
-
-
-def _solved(request: Request, planner: Planner | None, options: Options) -> PlanResult:
-    given, motion = request.given, None if options.constraints is None else _motion_of(options.constraints)
-    if (result := unreached(request)) is not None:
-        return result
-    if given is not None and motion is not None and motion.line is not None:
-        # Lines to other postures may lead elsewhere: nothing is proved about poses.
-        given = replace(given, poses=(), whole=False)
-    stopped = False
-
-    def plan_once(world: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
-        problem = Problem(
-            world,
-            start,
-            goals,
-            budget=options.budget,
-            smooth=smooth,
-            rng=options.rng,
-            given=given,
-        )
-        nonlocal stopped
-        try:
-            found = (default_planner(world) if planner is None else planner).solve(problem)
-        except KeyboardInterrupt as stop:
-            if (best := getattr(stop, "best", None)) is None:
-                raise
-            found, stopped = best, True
-        return found if found.solved else with_reasons(world, found)
-
-    try:
-        if motion is None:
-            found = plan_once(request.world, request.start, request.goals, options.smooth)
-        else:
-            found = motion.plan(request, plan_once, options.smooth)
-    except BudgetSpent:
-        found = _out_of_time(request, options)
-    if stopped:
-        # Imported late: few plans become shorter until somebody stops them.
-        from evenroad.planning.growing import Interrupted
-
-        raise Interrupted(found)
-    return found
-
-
-def _out_of_time(request: Request, options: Options) -> PlanResult:
-    return out_of_time(Problem(request.world, request.start, request.goals, budget=options.budget))
-
-
-def _motion_of(constraints: Constraint) -> TipMotion:
-    # Imported late: most plans have no constraints.
-    from evenroad.planning.tip_motion import TipMotion
-
-    return TipMotion.of(constraints)
-
-
-def finished(request: Request, result: PlanResult, *, certified: bool = False) -> tuple[PlanResult, MeshCheck | None]:
-    """Return a plan with the name of its goal and its status after the last checks, and the check of the meshes.
-
-    Meshes of the robot's URDF are checked where it has some or where capsules always touch.  Their check is None where
-    there is no path or nothing to check.
-    """
-    given, world = request.given, request.world
-    if request.notes:
-        result = replace(result, notes=request.notes)
-    if given is not None and given.poses and not given.unreached:
-        result = replace(result, timings={"goals": given.seconds, **result.timings})
-    if not result.solved and "points" in result.counts:
-        result = _with_proof(request, result)
-    name = "" if result.goal_index is None or not request.goal_names else request.goal_names[result.goal_index]
-    if name and len(request.goals) > 1:
-        to = f"to goal {result.goal_index}"
-        result = replace(result, message=result.message.replace(to, f"{to} ({name})", 1))
-    if (
-        result.path is not None
-        and isinstance(world, ArmWorld)
-        and (pairs := allowed_everywhere(world.robot, world.scene))
-    ):
-        untested = ", ".join(f"{link!r} against the whole cloud {cloud!r}" for link, cloud in pairs)
-        result = replace(result, message=f"{result.message}; not tested, as the scene allows: {untested}")
-    if certified:
-        result = require_certified(world, result)
-    if result.path is None or not result.solved:
-        return result, None
-    try:
-        meshes = mesh_check(request, result.path)
-    except BudgetSpent:
-        message = f"{result.message}, but there was no time to check it with the meshes of the robot's file"
-        return replace(result, status=Status.BUDGET_SPENT, message=message), MeshCheck("not checked", message="no time")
-    if meshes is None or meshes.verdict != "in collision":
-        return result, meshes
-    message = (
-        "the path is free for the bodies of the plan, but not for the shapes that they stand for: in collision"
-        f" {meshes.message}"
-    )
-    return replace(result, status=Status.MESH_COLLISION, message=message), meshes
-
-
-def _with_proof(request: Request, result: PlanResult) -> PlanResult:
-    """Return a result of points without a path, with the proof that more points would not find one."""
-    if result.status is not Status.NOT_CONNECTED:
-        return result
-    try:
-        found = apart_in(Problem(request.world, request.start, request.goals, given=request.given))
-    except BudgetSpent:
-        return replace(result, message=f"{result.message}; there was no time for a proof that there is no path")
-    if found is None or not found.proved:
-        return result
-    return replace(result, message=f"{found.message}; {result.message.partition(': try')[0]}")

@@ -4,19 +4,33 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import Protocol, runtime_checkable
+from typing import Protocol, TypedDict, runtime_checkable
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.loading.description import RobotModel
+from evenroad.loading.urdf_xml import RobotFile
 from evenroad.planning.connector import Smooth, require_smooth
 from evenroad.planning.result import PlanResult
+from evenroad.poses.constraint import Constraint
 from evenroad.poses.goals import Goals
 from evenroad.roadmap.budget import Budget
 from evenroad.world import World
 
 _USUAL = Budget()
+
+
+class Wanted(TypedDict, total=False):
+    """What is wanted of a path: attributes of a :class:`Problem`."""
+
+    budget: Budget
+    smooth: Smooth
+    rng: RngLike
+    certified: bool
+    constraints: Constraint | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,8 +49,14 @@ class Problem:
         Whether the path is made shorter once it is found; "quick": by straight shortcuts alone.
     rng : int, SeedSequence or Generator
         Seed of what a planner draws.
+    certified : bool
+        Whether every motion is to be proved free; :func:`evenroad.plan` checks it once more.
+    constraints : Constraint, optional
+        What the path of an arm keeps; :func:`evenroad.plan` divides such a problem into others without constraints.
     given : Goals, optional
-        What the goals of an arm were made of.
+        What the goals of an arm were made of, where that is more than one configuration: names, and poses.
+    model : RobotModel, optional
+        How the arm was read from its file.
     """
 
     world: World
@@ -46,7 +66,10 @@ class Problem:
     budget: Budget = _USUAL
     smooth: Smooth = True
     rng: RngLike = 0
+    certified: bool = False
+    constraints: Constraint | None = None
     given: Goals | None = None
+    model: RobotModel | None = None
 
     def __post_init__(self) -> None:
         require_smooth(self.smooth)
@@ -60,10 +83,45 @@ class Problem:
         terminals.setflags(write=False)
         return terminals
 
+    @property
+    def arm(self) -> ArmWorld:
+        """The world, which is that of an arm."""
+        assert isinstance(self.world, ArmWorld), "only of an arm's problem"
+        return self.world
+
+    @property
+    def source(self) -> RobotFile | None:
+        """The file of the arm."""
+        return None if self.model is None else self.model.file
+
+    @property
+    def goal_names(self) -> tuple[str, ...]:
+        """The texts by which the caller named the goals, or nothing."""
+        return () if self.given is None else self.given.names
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was read otherwise than the files say, and what seems unusual in them."""
+        of_robot = () if self.model is None else self.model.notes
+        return of_robot + tuple(getattr(self.world, "notes", ()))
+
+    @property
+    def tip(self) -> str:
+        """The link that goal poses place, or nothing."""
+        return self.given.poses[0][0].tip if self.given is not None and self.given.poses else ""
+
 
 @runtime_checkable
 class Planner(Protocol):
     """Solves problems; a frozen value that says how."""
 
     def solve(self, problem: Problem) -> PlanResult:
-        """Return a path, or why there is none."""
+        """Return a path, or why there is none; after a Ctrl-C raise Interrupted, if there is a path."""
+
+
+class Interrupted(KeyboardInterrupt):
+    """A Ctrl-C while a path became shorter: `best` is the shortest result so far."""
+
+    def __init__(self, best: PlanResult) -> None:
+        super().__init__()
+        self.best = best

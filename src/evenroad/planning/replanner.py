@@ -18,21 +18,21 @@ from evenroad._shared import OwnLock, once
 from evenroad.collision.arm_world import VALIDATION_TOLERANCE, ArmWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
-from evenroad.planning.answer import path_message, refusal
+from evenroad.planning.answer import refusal
 from evenroad.planning.arm_trees import checks_of
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.connectors import drivers_of
+from evenroad.planning.make_result import make_result, solution, unreached
 from evenroad.planning.problem import Problem
-from evenroad.planning.read_request import reaching, request_in
-from evenroad.planning.request import Reading, unreached
-from evenroad.planning.result import PlanResult, Status, make_result
+from evenroad.planning.read_problem import problem_in, reaching
+from evenroad.planning.reading import Reading
+from evenroad.planning.result import PlanResult, Status
 from evenroad.planning.trees import variant_of
 from evenroad.points.reversed_halton import PAIRS, share_pairs
 from evenroad.robots.robot import ConfigurationLike
 from evenroad.scenes.obstacle import Bodies
 from evenroad.scenes.scene import Scene
 from evenroad.scenes.states import as_configuration
-from evenroad.space.path import path_length
 
 VARIANTS = 8
 """Number of even sequences that updates without a path take in turn."""
@@ -107,7 +107,7 @@ class Replanner:
         middle = world.space.from_cube(np.full((1, world.dim), 0.5))[0]
         # In an empty scene: a posture that is blocked now may be free at a later update.
         empty = replace(world.scene, obstacles=(), allowed=frozenset())
-        self._request = request_in(world.within(empty), middle, goal, Reading(tip=tip, frame=frame))
+        self._problem = problem_in(world.within(empty), middle, goal, Reading(tip=tip, frame=frame))
         variant = variant_of(rng)
         self._variant, self._drivers = variant, [drivers_of(world.dim, variant)]
         self._last: tuple[Floats, int] | None = None
@@ -116,7 +116,7 @@ class Replanner:
         self._lock = OwnLock()
 
     def __repr__(self) -> str:
-        return f"Replanner({self.world!r}, {counted(len(self._request.goals), 'goal')})"
+        return f"Replanner({self.world!r}, {counted(len(self._problem.goals), 'goal')})"
 
     def update(
         self,
@@ -197,13 +197,13 @@ class Replanner:
 
     def _planned(self, start: Floats, began: float) -> PlanResult:
         """Return a new path from where the arm is, to the nearest of the goals that was not tried just before."""
-        world, request = self.world, replace(self._request, world=self.world, start=start)
-        if (result := unreached(request)) is not None:
+        world, problem = self.world, replace(self._problem, world=self.world, start=start)
+        if (result := unreached(problem)) is not None:
             return result
-        goals = request.goals
+        goals = problem.goals
         (free,) = np.nonzero(world.valid(goals))
         if not len(free) or not world.valid(start):
-            found = refusal(Attempt(Problem(world, start, goals), "trees"))
+            found = refusal(Attempt(problem, "trees"))
             assert found is not None
             return found
         order = free[np.argsort(world.space.distance(np.broadcast_to(start, goals[free].shape), goals[free]))]
@@ -214,16 +214,8 @@ class Replanner:
         if answered.ended != "solved":
             self._failures += 1
             message = f"no path within {motions} motions; the next update grows other trees"
-            return make_result(
-                world,
-                start,
-                goals,
-                Status.BUDGET_SPENT,
-                message,
-                planner="trees",
-                counts=counts,
-                timings={"search": now() - began},
-            )
+            timings = {"search": now() - began}
+            return make_result(problem, Status.BUDGET_SPENT, message, planner="trees", counts=counts, timings=timings)
         self._failures = 0
         path, counts["shortcut_motions"] = self._shortened(answered.path)
         return self._result(start, path, goal, "trees", counts, began)
@@ -239,25 +231,10 @@ class Replanner:
         self, start: Floats, path: Floats, goal: int, planner: str, counts: dict[str, int], began: float
     ) -> PlanResult:
         """Return the result with a path that is proved."""
-        world, goals = self.world, self._request.goals
-        self._last, length = (path, goal), path_length(path, world.space)
+        self._last = path, goal
         path.setflags(write=False)
-        return make_result(
-            world,
-            start,
-            goals,
-            Status.SOLVED,
-            path_message(path, length, goal, len(goals)),
-            planner=planner,
-            goal_index=goal,
-            path=path,
-            milestone_path=path,
-            proof=world.proof,
-            cost=length,
-            milestone_cost=length,
-            counts=counts,
-            timings={"search": now() - began},
-        )
+        problem = Problem(self.world, start, self._problem.goals)
+        return solution(problem, path, goal, planner=planner, counts=counts, timings={"search": now() - began})
 
 
 @once

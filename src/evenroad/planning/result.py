@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import MISSING, dataclass, field, fields, replace
+from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 from typing import Any
@@ -12,9 +12,9 @@ import numpy as np
 
 from evenroad._arrays import Floats, Ints32
 from evenroad._call import explains_calls
+from evenroad.collision.validate import MeshCheck
 from evenroad.errors import InvalidValue
 from evenroad.planning.result_html import as_html
-from evenroad.planning.terminals import from_start_to_goal, turns, turns_at_end
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.certificate import Certificate
 from evenroad.space.path import path_length, resample
@@ -124,6 +124,9 @@ class PlanResult:
         `complete`, no path has a clearance of its `dispersion`.
     roadmap : SearchedGraph or None
         The searched graph; None if start or goal is invalid, and for a reused roadmap.
+    meshes : MeshCheck or None
+        What the meshes of the arm's file say about the path, where it has some; not in a plan that was read from a
+        file.
     notes : tuple of str
         What was read of the robot or the map otherwise than its files may mean it, and what seems unusual in it or its
         scene, one line each.
@@ -159,6 +162,7 @@ class PlanResult:
     stages: tuple[Stage, ...] = ()
     certificate: Certificate | None = None
     roadmap: SearchedGraph | None = None
+    meshes: MeshCheck | None = None
     notes: tuple[str, ...] = ()
     world: World | None = field(default=None, repr=False)
 
@@ -432,40 +436,3 @@ class PlanResult:
             rows |= {"cost": f"{self.cost:.6g}", "proved": self._proved}
         rows["time"] = f"{1e3 * self.seconds:.1f} ms"
         return as_html(rows, self.path)
-
-
-def make_result(
-    world: World | None, start: Floats, goals: Floats, status: Status, message: str, **more: Any
-) -> PlanResult:
-    """Return the result of a query: every result is made here, and a path leads from its start to its goal.
-
-    `more` are attributes of the result; by default there are no points, no rule and no planner.
-    """
-    # Written as they are: one field after the other, as a frozen class writes them, would take twice as long.
-    result = object.__new__(PlanResult)
-    vars(result).update(_DEFAULTS, counts={}, timings={}, deviation={})
-    vars(result).update(more, status=status, message=message, start=start, goals=goals, world=world)
-    return result if world is None else led(world, result)
-
-
-_DEFAULTS = {each.name: each.default for each in fields(PlanResult) if each.default is not MISSING}
-_DEFAULTS |= {"origin": NO_POINTS, "rule": "none", "planner": "none"}
-
-
-def led(world: World, result: PlanResult) -> PlanResult:
-    """Return a result whose paths lead from its start, by its very numbers, to its goal.
-
-    Its message says where coordinates that repeat end at other numbers than the goal's.  AssertionError where a path
-    does not lead there, which is a bug of evenroad: no robot must drive such a path.
-    """
-    given, milestones, space = result.path, result.milestone_path, world.space
-    path = None if given is None else from_start_to_goal(space, given, result.start, result.goal)
-    raw = path
-    if milestones is not given and milestones is not None:
-        raw = from_start_to_goal(space, milestones, result.start, result.goal)
-    said = "" if path is None or not turns(space) else turns_at_end(world, path, result.goal)
-    if said and said not in result.message:
-        result = replace(result, message=result.message + said)
-    if path is given and (raw is milestones or milestones is None):
-        return result
-    return replace(result, path=path, milestone_path=None if milestones is None else raw)

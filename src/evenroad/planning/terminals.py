@@ -53,6 +53,14 @@ def turns(space: Space) -> bool:
     return flat is None or flat.wraps
 
 
+def joins(path: Floats, raw: Floats | None, start: Floats, goal: Floats) -> bool:
+    """Return whether a path, and its `raw` one, lead from the very numbers of the start to those of the goal."""
+    first, last = start.tolist(), goal.tolist()
+    if path[0].tolist() != first or path[-1].tolist() != last:
+        return False
+    return raw is None or raw is path or (raw[0].tolist() == first and raw[-1].tolist() == last)
+
+
 def from_start_to_goal(space: Space, path: Floats, start: Floats, goal: Floats) -> Floats:
     """Return a path, (p, dim), from the very numbers of its start to its goal, both (dim,).
 
@@ -60,8 +68,7 @@ def from_start_to_goal(space: Space, path: Floats, start: Floats, goal: Floats) 
     of the goal.  AssertionError for a path that leads elsewhere.
     """
     on = continued(path, space, start) if turns(space) else path
-    # Most are equal numbers, which is ten times as fast to test.
-    if on[0].tolist() != start.tolist() or on[-1].tolist() != goal.tolist():
+    if not joins(on, None, start, goal):
         _require_near("start", max(_gap(space, on[0], start), _gap_in_numbers(space, on[0], start)), SAME, start)
         _require_near("end", _gap(space, on[-1], goal), NEAR, goal)
         is_there = np.abs(on[-1] - goal) <= SAME * np.maximum(1.0, np.abs(goal))

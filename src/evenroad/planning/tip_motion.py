@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,15 +14,15 @@ from evenroad._time_limit import BudgetSpent
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.constraints.constrained_world import KeptWorld, keeps_of, kept_line, kept_world
 from evenroad.constraints.differential_drive import DifferentialDrive, driven_world
-from evenroad.constraints.keep import Keep
 from evenroad.errors import InvalidValue
 from evenroad.planning.connector import Smooth
-from evenroad.planning.request import Request, refused
-from evenroad.planning.result import PlanResult, Status, led, make_result
+from evenroad.planning.make_result import led, make_result, solution
+from evenroad.planning.problem import Problem
+from evenroad.planning.result import PlanResult, Status
 from evenroad.poses.cartesian_line import CartesianLine, line_from
 from evenroad.poses.cartesian_path import Followed
 from evenroad.poses.chain import Chain, chain_of, default_tip
-from evenroad.poses.constraint import Constraint, part_of
+from evenroad.poses.constraint import part_of
 from evenroad.space.path import path_length
 from evenroad.world import World
 
@@ -32,70 +32,63 @@ LINES = 16
 _TRIED = 0, 1, 4, 16
 """Numbers of nearest goals to which one motion is tried, all of a number together, before trees grow."""
 
-PlanOnce = Callable[[World, Floats, Floats, Smooth], PlanResult]
-"""A function that plans in a world from a start, (dim,), to goals, (g, dim), and shortens the path or not."""
+PlanOnce = Callable[[Problem], PlanResult]
+"""A function that plans without constraints."""
 
 
-def _chain(request: Request, tip: str) -> Chain:
+def plan_constrained(problem: Problem, plan_once: PlanOnce) -> PlanResult:
+    """Plan under the constraints of a problem by `plan_once`; the result has bounds on the largest deviations.
+
+    Lines come first: the plan leads from the end of the line at the start to the beginnings of the lines to goals.
+    """
+    world, constraints = problem.world, problem.constraints
+    line, keeps, drive = (
+        part_of(constraints, CartesianLine),
+        keeps_of(constraints),
+        part_of(constraints, DifferentialDrive),
+    )
+    if not isinstance(world, ArmWorld):
+        raise InvalidValue(f"constraints are those of an arm, got {world!r}")
+    problem = replace(problem, constraints=None)
+    if drive is None and not keeps:
+        return _between_lines(problem, line, plan_once, world)
+    if drive is not None:
+        if keeps or line is not None:
+            raise InvalidValue("a base that cannot go sideways goes without other constraints")
+        kept: KeptWorld = driven_world(world, drive)
+    else:
+        kept = kept_world(world, keeps, problem.start, problem.tip)
+        if (refusal := _off(problem, kept)) is not None:
+            return refusal
+
+    def plan_kept(part: Problem) -> PlanResult:
+        inside = replace(part, world=kept)
+        found = _walked(inside, kept)
+        return _through(kept, plan_once(replace(inside, smooth=False)), part.smooth) if found is None else found
+
+    return _between_lines(problem, line, plan_kept, kept)
+
+
+def _chain(problem: Problem, world: ArmWorld, tip: str) -> Chain:
     """Return the chain of a link: the named one, else that of the goal poses, else the last one."""
-    robot = request.world.robot
-    return chain_of(robot, tip or request.tip or default_tip(robot))
+    return chain_of(world.robot, tip or problem.tip or default_tip(world.robot))
 
 
-@dataclass(frozen=True)
-class TipMotion:
-    """How an arm moves under constraints of its tip: along Cartesian lines, with an orientation, or both."""
-
-    line: CartesianLine | None = None
-    keeps: tuple[Keep, ...] = ()
-    drive: DifferentialDrive | None = None
-
-    @classmethod
-    def of(cls, constraints: Constraint | None) -> TipMotion:
-        """Return the motion under these constraints; InvalidValue for what is no constraint."""
-        return cls(part_of(constraints, CartesianLine), keeps_of(constraints), part_of(constraints, DifferentialDrive))
-
-    def plan(self, request: Request, plan_once: PlanOnce, smooth: Smooth) -> PlanResult:
-        """Plan with `plan_once` under the constraints.
-
-        Lines come first: the plan leads from the end of the line at the start to the beginnings of the lines to goals.
-        The result has the largest deviations: bounds on them.
-        """
-        world = request.world
-        if not isinstance(world, ArmWorld):
-            raise InvalidValue(f"constraints are those of an arm, got {world!r}")
-        if self.drive is None and not self.keeps:
-            return _between_lines(request, self.line, plan_once, world, smooth)
-        if self.drive is not None:
-            if self.keeps or self.line is not None:
-                raise InvalidValue("a base that cannot go sideways goes without other constraints")
-            kept: KeptWorld = driven_world(world, self.drive)
-        else:
-            kept = kept_world(world, self.keeps, request.start, request.tip)
-            if (refusal := _off(request, kept)) is not None:
-                return refusal
-
-        def plan_kept(_: World, start: Floats, goals: Floats, smooth: Smooth) -> PlanResult:
-            found = _walked(kept, start, goals)
-            return _through(kept, plan_once(kept, start, goals, False), smooth) if found is None else found
-
-        return _between_lines(request, self.line, plan_kept, kept, smooth)
-
-
-def _off(request: Request, world: KeptWorld) -> PlanResult | None:
+def _off(problem: Problem, world: KeptWorld) -> PlanResult | None:
     """Return a result if the start, or every goal, is off the constraints."""
-    start, goals = world.shares(request.start[np.newaxis])[0], world.shares(request.goals)
+    start, goals = world.shares(problem.start[np.newaxis])[0], world.shares(problem.goals)
     if start.max() > 1.0:
-        return refused(request, Status.START_INVALID, f"at the start {world.exceeded(start)}")
+        return make_result(problem, Status.START_INVALID, f"at the start {world.exceeded(start)}")
     if goals.max(axis=1).min() > 1.0:
         best = goals[int(goals.max(axis=1).argmin())]
         which = "the goal" if len(goals) == 1 else f"every one of {len(goals)} goals; at the nearest"
-        return refused(request, Status.GOAL_INVALID, f"at {which} {world.exceeded(best)}")
+        return make_result(problem, Status.GOAL_INVALID, f"at {which} {world.exceeded(best)}")
     return None
 
 
-def _walked(world: KeptWorld, start: Floats, goals: Floats) -> PlanResult | None:
+def _walked(problem: Problem, world: KeptWorld) -> PlanResult | None:
     """Return the plan along one motion to one of the nearest goals; None where there is none."""
+    start, goals = problem.start, problem.goals
     if not world.valid(start[np.newaxis])[0]:
         return None
     away = world.space.distance(np.broadcast_to(start, goals.shape), goals)
@@ -106,9 +99,7 @@ def _walked(world: KeptWorld, start: Floats, goals: Floats) -> PlanResult | None
         row, path = world.first_along(np.repeat(start[np.newaxis], len(some), axis=0), goals[some])
         if row >= 0:
             # One motion is as short as can be.
-            goal, cost = int(some[row]), path_length(path, world.space)
-            found = dict(goal_index=goal, path=path, milestone_path=path, proof=world.proof, planner="trees")
-            result = make_result(world, start, goals, Status.SOLVED, "", cost=cost, milestone_cost=cost, **found)
+            result = solution(problem, path, int(some[row]), planner="trees")
             return _with_path(world, result, path, path, world.deviation(world.largest(path)))
     return None
 
@@ -125,29 +116,36 @@ def _through(world: KeptWorld, result: PlanResult, shorten: Smooth) -> PlanResul
 
 
 def _between_lines(
-    request: Request, straight: CartesianLine | None, plan: PlanOnce, within: World, shorten: Smooth
+    problem: Problem, straight: CartesianLine | None, plan: PlanOnce, within: ArmWorld | KeptWorld
 ) -> PlanResult:
     """Plan between the lines that leave the start and lead to goals."""
     if straight is None:
-        return plan(request.world, request.start, request.goals, shorten)
-    chain = _chain(request, straight.tip)
-    free = within.valid(np.concatenate([request.start[np.newaxis], request.goals]))
+        return plan(problem)
+    world, start, goals = problem.world, problem.start, problem.goals
+    assert isinstance(world, ArmWorld), "only arms have constraints"
+    if problem.given is not None:
+        # Other lines may lead to other postures: nothing is proved about poses.
+        between = replace(problem, given=replace(problem.given, poses=(), whole=False))
+    else:
+        between = problem
+    free = within.valid(problem.start_and_goals)
     if not free[0] or not free[1:].any():
         # The planner says what blocks.
-        return plan(request.world, request.start, request.goals, shorten)
-    leaving = Followed(request.start[np.newaxis])
+        return plan(between)
+    chain = _chain(problem, world, straight.tip)
+    leaving = Followed(start[np.newaxis])
     if straight.retreat:
-        leaving = _line(within, request.world, chain, straight, request.start, straight.retreat)
+        leaving = _line(within, world, chain, straight, start, straight.retreat)
         if leaving.why:
-            return refused(request, Status.NOT_CONNECTED, f"no straight line from the start: {leaving.why}")
+            return make_result(problem, Status.NOT_CONNECTED, f"no straight line from the start: {leaving.why}")
     rows = np.flatnonzero(free[1:])
-    first, why = np.broadcast_to(leaving.path[-1], request.goals[rows].shape), ""
-    rows = rows[np.argsort(request.world.space.distance(first, request.goals[rows]), kind="stable")]
+    first, why = np.broadcast_to(leaving.path[-1], goals[rows].shape), ""
+    rows = rows[np.argsort(world.space.distance(first, goals[rows]), kind="stable")]
     coming: dict[int, Followed] = {}
     for row in rows.tolist():
-        line = Followed(request.goals[row : row + 1])
+        line = Followed(goals[row : row + 1])
         if straight.approach:
-            line = _line(within, request.world, chain, straight, request.goals[row], straight.approach)
+            line = _line(within, world, chain, straight, goals[row], straight.approach)
         if line.why:
             why = why or line.why
             continue
@@ -156,10 +154,10 @@ def _between_lines(
             break
     if not coming:
         every = "the goal" if len(rows) == 1 else f"any of {len(rows)} goals; to the nearest"
-        return refused(request, Status.NOT_CONNECTED, f"no straight line to {every}: {why}")
+        return make_result(problem, Status.NOT_CONNECTED, f"no straight line to {every}: {why}")
     beginnings = np.array([line.path[-1] for line in coming.values()])
-    result = plan(request.world, leaving.path[-1], beginnings, shorten)
-    result = replace(result, start=request.start, goals=request.goals)
+    result = plan(replace(between, start=leaving.path[-1], goals=beginnings))
+    result = replace(result, start=start, goals=goals)
     if result.path is None or result.goal_index is None:
         return replace(result, message=f"between the straight lines: {result.message}")
     row, last = list(coming.items())[result.goal_index]
@@ -170,7 +168,7 @@ def _between_lines(
     deviation = result.deviation | {"line_m": off["off_m"], "line_rad": off["off_rad"]}
     if isinstance(within, KeptWorld):
         deviation |= within.deviation(within.largest(whole[0]))
-    return _with_path(request.world, result, whole[0], whole[1], deviation)
+    return _with_path(world, result, whole[0], whole[1], deviation)
 
 
 def _line(within: World, world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float) -> Followed:

@@ -16,12 +16,13 @@ from evenroad._native.planning import Answer
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad._time_limit import seconds_left
 from evenroad.errors import InvalidValue
-from evenroad.planning.answer import connected, gave_up, in_its_time, path_message, proof_of, refusal, shown_apart
+from evenroad.planning.answer import connected, gave_up, in_its_time, refusal, shown_apart
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.connector import Connection, Connector
 from evenroad.planning.connectors import ARM_TREES, CELLS, RESTART, ArmTrees, connector_of, trees_for
+from evenroad.planning.make_result import path_message, solution
 from evenroad.planning.problem import Planner, Problem
-from evenroad.planning.result import PlanResult, Status, make_result
+from evenroad.planning.result import PlanResult
 from evenroad.roadmap.budget import BEFORE_PROOF
 from evenroad.space.path import path_length
 
@@ -204,32 +205,22 @@ def _answer(problem: Problem, connector: ArmTrees, variant: int) -> Answer:
 
 def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult:
     """Return the result of an answer with a path."""
-    world, start, goals = problem.world, problem.start, problem.goals
+    world, path = problem.world, found.path
     nodes, configurations, motions, smoothing = found.counts
-    path = raw = found.path
-    length = raw_length = _length(path, found.length, world)
-    if smoothing:
-        raw = found.raw
-        raw_length = _length(raw, found.raw_length, world)
-    counts = {"nodes": nodes, "configurations_checked": configurations, "edges_checked": motions}
     search, shortcut = found.seconds
+    counts = {"nodes": nodes, "configurations_checked": configurations, "edges_checked": motions}
     timings = {"search": search}
     if problem.smooth:
-        counts["shortcut_motions"] = smoothing
-        timings["shortcut"] = shortcut
-    return make_result(
-        world,
-        start,
-        goals,
-        Status.SOLVED,
-        path_message(path, length, 0, 1, is_cut=found.is_cut),
-        planner=connector.planner,
-        goal_index=0,
-        path=path,
-        milestone_path=raw,
-        proof=proof_of(world),
+        counts["shortcut_motions"], timings["shortcut"] = smoothing, shortcut
+    length = _length(path, found.length, world)
+    return solution(
+        problem,
+        path,
+        raw=found.raw if smoothing else None,
         cost=length,
-        milestone_cost=raw_length,
+        raw_cost=_length(found.raw, found.raw_length, world) if smoothing else None,
+        message=path_message(path, length, 0, 1, is_cut=found.is_cut),
+        planner=connector.planner,
         counts=counts,
         timings=timings,
     )

@@ -9,7 +9,7 @@ from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
 from evenroad.geometry.curve import Curve, circle, polyline, spline
 from evenroad.geometry.pose import Pose
-from evenroad.planning.request import Reading
+from evenroad.planning.reading import Reading
 from evenroad.poses.cartesian_path import Follower
 from evenroad.poses.chain import chain_of, default_tip, frame_pose
 from evenroad.poses.pose_goal import as_pose_goal

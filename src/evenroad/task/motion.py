@@ -12,8 +12,9 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.constraints.constrained_world import keeps_of, kept_line, kept_world
-from evenroad.planning.request import Request, refused, unreached
-from evenroad.planning.result import PlanResult, Status, led, make_result
+from evenroad.planning.make_result import led, make_result, solution, unreached
+from evenroad.planning.problem import Problem
+from evenroad.planning.result import PlanResult, Status
 from evenroad.poses.cartesian_line import CartesianLine, line_from
 from evenroad.poses.cartesian_path import Followed
 from evenroad.poses.chain import chain_of, default_tip
@@ -21,8 +22,8 @@ from evenroad.poses.constraint import Constraint, with_tip
 from evenroad.space.path import continued, path_length
 from evenroad.task.steps import MoveTo
 
-PlanBetween = Callable[[Request, Constraint | None], PlanResult]
-"""A function that plans a request without lines, from its start to its goals in its world."""
+PlanBetween = Callable[[Problem, Constraint | None], PlanResult]
+"""A function that plans a problem without lines, from its start to its goals in its world."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +67,7 @@ class Leg:
 
     end: Floats
     before: tuple[PlanResult, ...] = ()
-    between: Request | None = None
+    between: Problem | None = None
     after: tuple[PlanResult, ...] = ()
     motion: Motion = field(default_factory=lambda: Motion(()))
     planned: Motion | None = None
@@ -100,48 +101,48 @@ class Leg:
 
 
 def choices(
-    request: Request, worlds: tuple[ArmWorld, ArmWorld], step: MoveTo, tip: str, *, last: bool
+    problem: Problem, worlds: tuple[ArmWorld, ArmWorld], step: MoveTo, tip: str, *, last: bool
 ) -> Iterator[Leg | PlanResult]:
     """Yield the choices of a motion to goals, the nearest first but one for each pose before a second for any, or why
     there is none.
 
-    The line from the start and the path between the lines are in two `worlds`, lines to goals in that of the request.
+    The line from the start and the path between the lines are in two `worlds`, lines to goals in that of the problem.
     They are lines of `tip`; default: that of the goals, or the last link.  Nothing depends on where the `last` motion
     of a task ends: without lines its choice is left to the planner.
     """
     at_start, between = worlds
-    if (result := unreached(request)) is not None:
+    if (result := unreached(problem)) is not None:
         yield result
         return
-    tip = request.tip or tip
-    straight = step.line(tip or default_tip(request.world.robot)) if step.approach or step.retreat else None
+    tip = problem.tip or tip
+    straight = step.line(tip or default_tip(problem.arm.robot)) if step.approach or step.retreat else None
     if step.constraints is not None:
         # The path between lines has no goal pose to take a tip from.
-        last_link = tip or default_tip(request.world.robot)
+        last_link = tip or default_tip(problem.arm.robot)
         step = replace(step, constraints=with_tip(step.constraints, last_link))
     if straight is None and last:
-        yield Leg(request.goals[0], (), replace(request, world=between), (), Motion((), None, step.constraints))
+        yield Leg(problem.goals[0], (), replace(problem, world=between), (), Motion((), None, step.constraints))
         return
-    leaving = Followed(request.start[np.newaxis])
+    leaving = Followed(problem.start[np.newaxis])
     if straight is not None:
-        leaving = _line(at_start, request, step, straight, request.start, straight.retreat)
+        leaving = _line(at_start, problem, step, straight, problem.start, straight.retreat)
         if leaving.why:
-            yield refused(request, Status.NOT_CONNECTED, f"no straight line from the start: {leaving.why}")
+            yield make_result(problem, Status.NOT_CONNECTED, f"no straight line from the start: {leaving.why}")
             return
     before, why, any_ = _along(at_start, leaving), "", False
-    for row in _in_turn(request, leaving.path[-1]):
-        coming = Followed(request.goals[row : row + 1])
+    for row in _in_turn(problem, leaving.path[-1]):
+        coming = Followed(problem.goals[row : row + 1])
         if straight is not None:
-            coming = _line(request.world, request, step, straight, request.goals[row], straight.approach)
+            coming = _line(problem.arm, problem, step, straight, problem.goals[row], straight.approach)
         why = why or coming.why
         if coming.why:
             continue
         any_ = True
-        middle = replace(request, world=between, start=leaving.path[-1], goals=coming.path[-1:], given=None)
-        after = _along(request.world, coming, turned=True)
-        yield Leg(request.goals[row], before, middle, after, Motion((), row, step.constraints))
+        middle = replace(problem, world=between, start=leaving.path[-1], goals=coming.path[-1:], given=None)
+        after = _along(problem.arm, coming, turned=True)
+        yield Leg(problem.goals[row], before, middle, after, Motion((), row, step.constraints))
     if not any_:
-        yield refused(request, Status.NOT_CONNECTED, f"no straight line to a goal: {why}")
+        yield make_result(problem, Status.NOT_CONNECTED, f"no straight line to a goal: {why}")
 
 
 def along(world: ArmWorld, followed: Followed, motion: Motion) -> Leg:
@@ -161,11 +162,11 @@ def _turned(part: PlanResult, at: Floats) -> PlanResult:
     return led(part.world, replace(part, start=path[0], goals=part.goals + (path[0] - part.start), path=path))
 
 
-def _in_turn(request: Request, first: Floats) -> list[int]:
+def _in_turn(problem: Problem, first: Floats) -> list[int]:
     """Return the rows of goals, the nearest first: the best one of each pose, then the second one, and so on."""
-    goals = request.goals
-    away = request.world.space.distance(np.broadcast_to(first, goals.shape), goals)
-    poses = [] if request.given is None else [len(reached.configurations) for _, reached in request.given.poses]
+    goals = problem.goals
+    away = problem.world.space.distance(np.broadcast_to(first, goals.shape), goals)
+    poses = [] if problem.given is None else [len(reached.configurations) for _, reached in problem.given.poses]
     of_pose = np.arange(len(goals)) if sum(poses) != len(goals) else np.repeat(np.arange(len(poses)), poses)
     order = np.argsort(away, kind="stable")
     rank, seen = np.zeros(len(goals), dtype=np.int64), dict.fromkeys(of_pose.tolist(), 0)
@@ -176,7 +177,7 @@ def _in_turn(request: Request, first: Floats) -> list[int]:
 
 
 def _line(
-    world: ArmWorld, request: Request, step: MoveTo, straight: CartesianLine, q: Floats, length: float
+    world: ArmWorld, problem: Problem, step: MoveTo, straight: CartesianLine, q: Floats, length: float
 ) -> Followed:
     """Return the straight line from a configuration, which keeps the constraints of the step."""
     if not world.valid(q):
@@ -185,7 +186,7 @@ def _line(
     if length:
         line = line_from(world, chain_of(world.robot, straight.tip), straight, q, length)
     keeps = keeps_of(step.constraints)
-    return line if line.why or not keeps else kept_line(kept_world(world, keeps, request.start, ""), line)
+    return line if line.why or not keeps else kept_line(kept_world(world, keeps, problem.start, ""), line)
 
 
 def _along(world: ArmWorld, line: Followed, *, turned: bool = False) -> tuple[PlanResult, ...]:
@@ -198,10 +199,6 @@ def _along(world: ArmWorld, line: Followed, *, turned: bool = False) -> tuple[Pl
 def _part(world: ArmWorld, line: Followed, kind: str) -> PlanResult:
     """Return the plan of a line or a curve, whose motions are proved."""
     path, cost = line.path, path_length(line.path, world.space)
-    found = dict(goal_index=0, path=path, milestone_path=path, proof=world.proof)
-    off = {f"{kind}_m": line.off_m, f"{kind}_rad": line.off_rad}
     message = f"{'straight line' if kind == 'line' else 'curve'} of length {cost:.6g}"
-    return make_result(
-        world, path[0], path[-1:], Status.SOLVED, message, planner=kind, cost=cost, milestone_cost=cost,
-        deviation=off, **found
-    )  # fmt: skip
+    off = {f"{kind}_m": line.off_m, f"{kind}_rad": line.off_rad}
+    return solution(Problem(world, path[0], path[-1:]), path, cost=cost, message=message, planner=kind, deviation=off)

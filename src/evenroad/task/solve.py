@@ -10,14 +10,16 @@ from time import perf_counter as now
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._rng import RngLike
-from evenroad._time_limit import BudgetSpent, Deadline, look_at_clock, off_the_clock, until
+from evenroad._time_limit import BudgetSpent, Deadline, look_at_clock, off_the_clock, until, within
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.planning.connector import Smooth
-from evenroad.planning.plan import Options, budget_of, finished, solve
-from evenroad.planning.read_request import request_in
-from evenroad.planning.request import Reading, Request
-from evenroad.planning.result import PlanResult, Status, make_result
+from evenroad.planning.make_result import make_result
+from evenroad.planning.plan import budget_of, solve
+from evenroad.planning.problem import Problem
+from evenroad.planning.read_problem import problem_in
+from evenroad.planning.reading import Reading
+from evenroad.planning.result import PlanResult, Status
 from evenroad.poses.chain import default_tip
 from evenroad.poses.constraint import Constraint
 from evenroad.poses.posture_layers import follow
@@ -118,10 +120,10 @@ class _Search:
     def _goals(self, number: int, stage: Stage, step: MoveTo, last: bool) -> Iterator[Leg | PlanResult]:
         # Each line has contacts of its own: what is lifted from a table may not end inside it.
         worlds = stage.with_contacts(stage.near_start), stage.world
-        request = request_in(self._near_goal(number, stage), stage.q, step.goal, self.reading)
+        problem = problem_in(self._near_goal(number, stage), stage.q, step.goal, self.reading)
         # Lines are those of the goal's tip, else of the link that took something last.
         taken = [each.link for each in self.steps[:number] if isinstance(each, Attach) and each.link]
-        return choices(request, worlds, step, self.reading.tip or (taken[-1] if taken else ""), last=last)
+        return choices(problem, worlds, step, self.reading.tip or (taken[-1] if taken else ""), last=last)
 
     def _curve(self, number: int, stage: Stage, step: AlongCurve) -> Iterator[Leg | PlanResult]:
         world = self._near_goal(number, stage, stage.near_start)
@@ -135,7 +137,7 @@ class _Search:
             done = replace(done, why=afterwards.explain(done.path[-1]))
         if done.why:
             message = f"{done.share:.1%} of the curve can be followed: then {done.why}"
-            yield make_result(world, stage.q, stage.q[None], Status.NOT_CONNECTED, message)
+            yield make_result(Problem(world, stage.q, stage.q[None]), Status.NOT_CONNECTED, message)
             return
         yield along(world, done, Motion((), 0, speed=step.speed, tip=follower.chain.tip))
 
@@ -173,17 +175,18 @@ def plan_task(
         _ = world.checker
     deadline = Deadline.after(budget.seconds)
 
-    def plan_between(request: Request, constraints: Constraint | None) -> PlanResult:
+    def plan_between(problem: Problem, constraints: Constraint | None) -> PlanResult:
         # Half of what is left, so that another choice has time, too.
         rest = budget if budget.seconds is None else replace(budget, seconds=max(0.5 * deadline.left, 1e-3))
-        return finished(request, solve(request, None, Options(rest, smooth, rng, constraints=constraints)))[0]
+        with within(rest.seconds):
+            return solve(replace(problem, budget=rest, smooth=smooth, rng=rng, constraints=constraints))
 
     search = _Search(steps, reading, deadline)
     motions, cut = None, False
     try:
         with until(deadline):
-            begin = request_in(world, start, start, reading)
-            first = _Branch(Stage(begin.world, begin.start, begin.world.robot), 0)
+            begin = problem_in(world, start, start, reading)
+            first = _Branch(Stage(begin.arm, begin.start, begin.arm.robot), 0)
             motions = _motions(search, first, plan_between)
     except BudgetSpent:
         cut = True

@@ -10,7 +10,7 @@ from evenroad._arrays import set_fields
 from evenroad._call import explains_calls
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, shown
-from evenroad.planning.request import Reading
+from evenroad.planning.reading import Reading
 from evenroad.task.result import TaskResult
 from evenroad.task.steps import Move, Step
 

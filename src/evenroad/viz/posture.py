@@ -8,7 +8,9 @@ from PIL import Image
 from evenroad._arrays import Floats
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.loading.cache import file_of
-from evenroad.planning.result import Status, make_result
+from evenroad.planning.make_result import make_result
+from evenroad.planning.problem import Problem
+from evenroad.planning.result import Status
 from evenroad.scenes.states import named_states
 from evenroad.viz import style
 from evenroad.viz.arm import SIZE, ArmScene, with_contact
@@ -21,7 +23,7 @@ def draw_arm_world(world: ArmWorld, q: object = None) -> Image.Image:
     The links and obstacles that touch are red.  The title says what touches, or what is nearest and how far.
     """
     row = at_home(world) if q is None else world._row(q)
-    standing = make_result(world, row, row[np.newaxis], Status.NOT_CONNECTED, "")
+    standing = make_result(Problem(world, row, row[np.newaxis]), Status.NOT_CONNECTED, "")
     scene = ArmScene.of(standing, world, file_of(world.robot), SIZE)
     free = bool(world.valid(row))
     picture = (scene if free else with_contact(scene, row)).picture(row)

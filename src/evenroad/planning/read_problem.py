@@ -1,4 +1,4 @@
-"""Reading what ``er.plan`` is given: worlds, maps, scenes and robots, as values, by name or as files."""
+"""Reading a problem from what ``er.plan`` is given: worlds, maps, scenes and robots, as values, names or files."""
 
 from __future__ import annotations
 
@@ -12,16 +12,14 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._time_limit import off_the_clock
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.collision.validate import MeshCheck, has_meshes, unseen_pairs, validate
 from evenroad.errors import InvalidValue, listed, near, shown
 from evenroad.geometry.pose import Pose
 from evenroad.loading.load import RobotOptions, load_model
-from evenroad.planning.problem import Planner
-from evenroad.planning.request import Goal, PathLike, Reading, Request
+from evenroad.planning.problem import Problem, Wanted
+from evenroad.planning.reading import Goal, PathLike, Reading
 from evenroad.planning.terminals import as_start_and_goals
 from evenroad.poses.goals import Goals, goals_of, require_tips
 from evenroad.poses.pose_goal import PoseGoal
-from evenroad.roadmap.roadmap import Roadmap
 from evenroad.robots.robot import ConfigurationLike, Robot
 from evenroad.robots.variants import standing_at, with_group
 from evenroad.scenes.robot_in_scene import in_scene, placed_scene
@@ -33,24 +31,25 @@ from evenroad.scenes.states import as_configuration, at_states, configuration
 if TYPE_CHECKING:
     from evenroad.world import GridMap
 
+_ANY_PATH: Wanted = {}
 OF_MAP = ("radius", "clearance", "unknown_is_free", "rules")
 OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
 
 
-def read_request(
+def read_problem(
     world: Any,
     start: ConfigurationLike,
     goal: Goal | Sequence[Goal],
     reading: Reading,
-    planner: Planner | Roadmap | None = None,
+    wanted: Wanted = _ANY_PATH,
     **of_world: Any,
-) -> Request:
-    """Return world, start and goals, as far as they can be read; parameters and errors as :func:`evenroad.plan`."""
+) -> Problem:
+    """Return the problem of going from start to goal in a world; parameters and errors as :func:`evenroad.plan`."""
     if isinstance(world, ArmWorld) and not of_world:
         if "checker" not in vars(world):
             with off_the_clock():
                 _ = world.checker
-        return request_in(world, start, goal, reading)
+        return problem_in(world, start, goal, reading, wanted)
     if isinstance(world, str | os.PathLike):
         # The radius distinguishes a map from a scene, whose names and suffixes are the same.
         if "radius" in of_world:
@@ -73,7 +72,7 @@ def read_request(
         _require_known(of_world, OF_SCENE, "a scene")
         if "robot" not in of_world:
             raise InvalidValue("a scene goes with robot=, the arm that moves in it: a name, a file or a Robot")
-        return arm_request(of_world.pop("robot"), world, start, goal, reading, **of_world)
+        return arm_problem(of_world.pop("robot"), world, start, goal, reading, wanted, **of_world)
     if of_world:
         unknown = f"unknown keyword of plan in {shown(world)}: {next(iter(of_world))!r}"
         name = next(iter(of_world))
@@ -86,7 +85,7 @@ def read_request(
             "world must be a World, a GridMap with radius=, or a Scene with robot=; or the name or file of one, got"
             f" {shown(world)}"
         )
-    return Request(world, *as_start_and_goals(start, goal, world.space))  # type: ignore[arg-type]
+    return Problem(world, *as_start_and_goals(start, goal, world.space), **wanted)  # type: ignore[arg-type]
 
 
 def _is_map(world: object) -> TypeGuard[GridMap]:
@@ -109,30 +108,31 @@ RESOLUTION = 0.05
 """Largest step of a motion check when none is given [rad]."""
 
 
-def arm_request(
+def arm_problem(
     robot: PathLike | Robot,
     scene: PathLike | Scene,
     start: ConfigurationLike,
     goal: Goal | Sequence[Goal],
     reading: Reading = Reading(),
+    wanted: Wanted = _ANY_PATH,
     *,
     resolution: float = RESOLUTION,
     clearance: float = 0.0,
     **options: Unpack[RobotOptions],
-) -> Request:
-    """Read robot, scene and configurations into one request; parameters and errors as :func:`evenroad.plan`.
+) -> Problem:
+    """Return the problem of an arm in a scene; parameters and errors as :func:`evenroad.plan`.
 
     Joints outside the group keep the values of `reading.held`, else those of the named states of start and goal.
     """
     with off_the_clock():
         scene = scene if isinstance(scene, Scene) else load_scene(scene)
-        source, model = None, None
+        model = None
         if isinstance(robot, Robot):
             if options:
                 raise InvalidValue(f"{', '.join(options)} must go with the file of a robot, not with a Robot")
         else:
             model = load_model(robot, **options)
-            source, robot = model.file, model.robot
+            robot = model.robot
         goals = _goal_list(goal, len(robot.group))
         texts = [target for target in (start, *goals) if isinstance(target, str)]
         scene = placed_scene(robot, scene)
@@ -151,37 +151,33 @@ def arm_request(
         start_and_goals = np.concatenate([first[np.newaxis], given.configurations])
         world = replace(world, scene=allowed_near_ends(robot, scene, start_and_goals))
         given = replace(given, whole=not given.poses)
-    return Request(world, first, given.configurations, given, source, model)
+    return Problem(world, first, given.configurations, given=given, model=model, **wanted)
 
 
-def request_in(world: ArmWorld, start: ConfigurationLike, goal: Goal | Sequence[Goal], reading: Reading) -> Request:
-    """Read start and goals of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
+def problem_in(
+    world: ArmWorld,
+    start: ConfigurationLike,
+    goal: Goal | Sequence[Goal],
+    reading: Reading,
+    wanted: Wanted = _ANY_PATH,
+) -> Problem:
+    """Return the problem of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
     goals = _goal_list(goal, world.dim)
     first = _configuration(world.robot, world.scene, "start", start, reading)
     world = reaching(world, first)
-    if len(goals) == 1 and type(goals[0]) is np.ndarray:
-        # Most goals: read at once, as `goals_of` would.
-        given = Goals(_configuration(world.robot, world.scene, "goal", goals[0], reading)[np.newaxis], ("",))
-    else:
-        given = _goals_in(world, first, goals, reading)
-    return Request(world, first, given.configurations, given)
+    if len(goals) == 1 and not isinstance(goals[0], str | Pose | PoseGoal):
+        # Most goals: numbers have no name, and no other posture is meant.
+        return Problem(
+            world, first, as_configuration(world.robot, goals[0], world.scene, name="goal")[np.newaxis], **wanted
+        )
+    given = _goals_in(world, first, goals, reading)
+    return Problem(world, first, given.configurations, given=given, **wanted)
 
 
 def reaching(world: ArmWorld, start: Floats) -> ArmWorld:
     """Return a world whose arm can stand at the start, (dim,), beyond soft limits: itself where it does not."""
     robot = standing_at(world.robot, start)
     return world if robot is world.robot else replace(world, robot=robot)
-
-
-def mesh_check(request: Request, path: Floats) -> MeshCheck | None:
-    """Check a path, (p, dim), with the meshes of the robot's file; None where there are none to check."""
-    world, source, model = request.world, request.source, request.model
-    if source is None or model is None:
-        return None
-    unseen = unseen_pairs(model)
-    if not (has_meshes(model) or unseen):
-        return None
-    return validate(source, world.robot, world.scene, path, world.resolution, unseen)
 
 
 def _goals_in(world: ArmWorld, start: Floats, goals: list[Goal], reading: Reading) -> Goals:
