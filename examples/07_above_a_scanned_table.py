@@ -4,7 +4,7 @@ import numpy as np
 
 import evenroad as er
 from evenroad.geometry import PointCloud
-from evenroad.planning.read_request import arm_request
+from evenroad.planning.read_problem import arm_problem
 from evenroad.robot import Obstacle, Scene, Seen, capsule_endpoints, load_robot
 
 robot, home = load_robot("ur5"), "0,-1.57,0,-1.57,0,0"
@@ -44,7 +44,7 @@ points = (eye + depth[:, None] * rays)[depth < 3.0]
 scan = Obstacle("scan", PointCloud(points, radius=0.008), seen=Seen(home))
 scene = Scene((scan,), name="scanned table")
 start, goal = "-1.2,-0.9,1.3,-1.9,-1.57,0", "0.75,-0.8,1.2,-1.9,-1.57,0"
-query = arm_request("ur5", scene, start, goal)
+query = arm_problem("ur5", scene, start, goal)
 print(f"{len(points)} points, {len(query.world.scene.obstacles[0].body.points)} of them not the arm's own")
 result = er.plan(scene, start, goal, robot="ur5")
 print(result.message, "proof:", result.proof)

@@ -11,7 +11,7 @@ from typing import Any
 from messages import Make, planning_scene, standing
 
 import evenroad as er
-from evenroad.planning.read_request import arm_request
+from evenroad.planning.read_problem import arm_problem
 from evenroad.robot import Robot
 from evenroad.trajectory import arm_trajectory
 from evenroad.trajectory.files import joint_trajectory
@@ -24,7 +24,7 @@ def answer(make: Make, message: Any, robot: Robot, goal: str, speed: float = 1.0
     result = er.plan(scene, start, goal, robot=robot)
     if result.path is None or not result.solved:
         return None, result.message
-    world = arm_request(robot, scene, start, goal).world
+    world = arm_problem(robot, scene, start, goal).world
     return joint_trajectory(arm_trajectory(world, result.path, speed=speed), make), result.message
 
 
