@@ -39,9 +39,9 @@ $(VENV)/.native: $(KERNEL) | $(VENV)/.tools
 	$(BIN)/python tools/build_backend.py
 	@touch $@
 
-# Of both packages only where they are is installed: the kernel is built by the rule above, at the same time.
-$(VENV)/.core: pyproject.toml studies/pyproject.toml constraints.txt | $(VENV)/.tools
-	$(PIP) -C kernel=no --no-build-isolation -e . -e ./studies
+# Of the packages only where they are is installed: the kernel is built by the rule above, at the same time.
+$(VENV)/.core: pyproject.toml studies/pyproject.toml checker/pyproject.toml constraints.txt | $(VENV)/.tools
+	$(PIP) -C kernel=no --no-build-isolation -e . -e ./studies -e ./checker
 	@touch $@
 
 $(VENV)/.dev: $(VENV)/.core

@@ -6,6 +6,7 @@ The parts of that module are modules here, e.g. `evenroad._native.points`.  Thei
 from __future__ import annotations
 
 import sys
+from types import ModuleType
 
 from evenroad._native.variants import load
 
@@ -13,15 +14,6 @@ kernel = load()
 VARIANT: str = kernel.VARIANT
 """The instruction set of the loaded module."""
 
-picture = kernel.picture
-planning = kernel.planning
-points = kernel.points
-roadmap = kernel.roadmap
-robot = kernel.robot
-space = kernel.space
-time_limit = kernel.time_limit
-trajectory = kernel.trajectory
-world = kernel.world
-
-for _part in (picture, planning, points, roadmap, robot, space, time_limit, trajectory, world):
-    sys.modules[f"{__name__}.{_part.__name__.rpartition('.')[2]}"] = _part
+for _name, _part in vars(kernel).items():
+    if isinstance(_part, ModuleType):
+        globals()[_name] = sys.modules[f"{__name__}.{_name}"] = _part

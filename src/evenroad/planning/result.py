@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from evenroad.roadmap.certificate import Certificate
 from evenroad.space.path import path_length, resample
 from evenroad.world import BoundsLengths, MeasuresPaths, NamesNearest, World
 
+_File: TypeAlias = str | os.PathLike[str]
 NO_POINTS = Origin(family="none", method="no points")
 """Origin of a result whose planner draws no points."""
 
@@ -410,6 +411,34 @@ class PlanResult:
 
         path, world = self._required("driven")
         return trajectory_of(world, path, limits, speed=speed, **options)
+
+    def certify(self, file: _File, *, robot: _File, scene: _File, srdf: _File | None = None, **packages: _File) -> None:
+        """Write a certificate: a proof that the path is free, which ``evenroad-verify`` checks without evenroad.
+
+        Parameters
+        ----------
+        file, robot, scene, srdf : str or path-like
+            Where to write it; the URDF, the scene's file and the SRDF of the plan's world, or names of shipped ones.
+        **packages : path-like
+            Folders of ROS packages with meshes, by their names, beside those that are found.
+
+        Raises
+        ------
+        NotAvailable, InvalidValue
+            If robot or scene are what no certificate speaks of (no URDF, or a cloud); if there is no path, or no proof.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import evenroad as er
+        >>> result = er.plan(er.ArmWorld("ur5", "box-reach"), "home", "inside")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     result.certify(f"{folder}/reach.cert", robot="ur5", scene="box-reach")
+        """
+        from evenroad.certificates.certify import Sources, certify
+
+        path, world = self._required("certified")
+        certify(world, path, Sources.named(robot, scene, srdf, packages), file)
 
     def _required(self, how: str) -> tuple[Floats, World]:
         """Return path and world, or raise InvalidValue that names the missing one."""

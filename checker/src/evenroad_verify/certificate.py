@@ -1,0 +1,104 @@
+"""The file: a header of text, waypoints, answers and directions, as docs/certificates.md has it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad_verify.errors import BadInput, Floats, demand, number
+
+MAGIC = b"evenroad certificate 1\n"
+MOST_MOTIONS = 1 << 20
+FARTHEST = 1000.0
+"""Largest value of a joint [rad or m]."""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What a file claims and its answers.
+
+    `curves`, (motions, 3, joints), are the control points of each motion; `answers` are one number for each task, and
+    `directions`, (d, 3), those of the answers that have one.
+    """
+
+    inputs: str
+    joints: tuple[str, ...]
+    curves: Floats
+    answers: npt.NDArray[np.uint8]
+    directions: Floats
+    held: dict[str, float] = field(default_factory=dict)
+    clearance: float = 0.0
+    padding: dict[str, float] = field(default_factory=dict)
+
+
+def read_certificate(data: bytes) -> Certificate:
+    """Return the certificate that some bytes are; Refused for any others."""
+    demand(data.startswith(MAGIC), "this is no certificate of version 1")
+    text, _, body = data[len(MAGIC) :].partition(b"\n\n")
+    said: dict[str, list[str]] = {}
+    try:
+        for line in text.decode("utf-8").split("\n"):
+            key, _, value = line.partition(" ")
+            said.setdefault(key, []).append(value)
+        return _certificate(said, body)
+    except (UnicodeDecodeError, BadInput, ValueError) as error:
+        demand(False, f"its header is broken: {error}")
+        raise
+
+
+def _certificate(said: dict[str, list[str]], body: bytes) -> Certificate:
+    once = ("inputs", "degree", "motions", "answers", "directions")
+    for key in once:
+        demand(len(said.get(key, ())) == 1, f"its header must have one line {key!r}")
+    demand(said.keys() <= {*once, "joint", "held", "clearance", "padding"}, "its header has lines that are not known")
+    joints, clearance = said.get("joint", []), said.get("clearance", ["0"])
+    demand(joints and len(set(joints)) == len(joints) and len(clearance) == 1, "its header has a line twice, or none")
+    degree, motions, answers, directions = (_count(said[key][0]) for key in once[1:])
+    demand(degree in (1, 2) and 0 < motions < MOST_MOTIONS, "it has no path, or too long a one")
+    sizes = [8 * (degree * motions + 1) * len(joints), (answers + 2) // 3, 12 * directions]
+    demand(len(body) == sum(sizes), "its length is not what its header says")
+    points = np.frombuffer(body[: sizes[0]], "<f8").reshape(-1, len(joints))
+    demand(np.isfinite(points).all() and np.abs(points).max() <= FARTHEST, "a waypoint is no number, or too large")
+    first, last = points[:-degree:degree], points[degree::degree]
+    middle = points[1::2] if degree == 2 else 0.5 * (first + last)
+    given = np.frombuffer(body[sizes[0] + sizes[1] :], "<f4").reshape(-1, 3).astype(float)
+    demand(np.isfinite(given).all() and not (np.abs(given) > 2.0).any(), "a direction is no number, or too long")
+    return Certificate(
+        inputs=said["inputs"][0],
+        joints=tuple(joints),
+        curves=np.stack([first, middle, last], axis=1),
+        answers=_unpacked(body[sizes[0] : sizes[0] + sizes[1]], answers),
+        directions=given,
+        held=_named(said.get("held", [])),
+        clearance=_length(clearance[0]),
+        padding={link: _length(value) for link, value in _named(said.get("padding", [])).items()},
+    )
+
+
+def _count(text: str) -> int:
+    demand(text.isascii() and text.isdigit() and len(text) < 10, f"not a count: {text[:20]!r}")
+    return int(text)
+
+
+def _length(value: Any) -> float:
+    demand(0.0 <= number(value) <= 1.0, f"a clearance must be 0 to 1 m, got {value}")
+    return number(value)
+
+
+def _named(lines: list[str]) -> dict[str, float]:
+    """Return name -> value of lines ``VALUE NAME``."""
+    pairs = [line.partition(" ") for line in lines]
+    demand(len({name for _, _, name in pairs}) == len(pairs), "its header has a name twice")
+    return {name: number(value) for value, _, name in pairs}
+
+
+def _unpacked(data: bytes, count: int) -> npt.NDArray[np.uint8]:
+    """Return `count` answers of 0 to 5, of which a byte holds three."""
+    packed = np.frombuffer(data, np.uint8)
+    demand(not (packed > 215).any(), "an answer is unknown")
+    digits = np.stack([packed % 6, packed // 6 % 6, packed // 36], axis=1).reshape(-1)
+    demand(not digits[count:].any(), "there are answers without a task")
+    return digits[:count]

@@ -1,0 +1,166 @@
+"""The claim: which bodies are proved apart, and which are not spoken of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+
+from evenroad_verify.certificate import Certificate
+from evenroad_verify.errors import Pose, demand, require
+from evenroad_verify.files import Files
+from evenroad_verify.frames import Frames, frames_of
+from evenroad_verify.nodes import Nodes
+from evenroad_verify.robot import Robot, read_robot
+from evenroad_verify.scene import GROUND, Scene, read_scene
+from evenroad_verify.shapes import Shape
+
+Places: TypeAlias = dict[str, tuple[int, Pose]]
+BEYOND = 1e-5
+"""By how much a waypoint may exceed a limit, as planners do by rounding [rad or m]."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two nodes that are proved to keep more than a distance [m]; `names` are their bodies."""
+
+    first: int
+    second: int
+    keep: float
+    names: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What the files say, whose digest is `digest`."""
+
+    robot: Robot
+    scene: Scene
+    digest: str
+
+
+@dataclass(frozen=True)
+class Claim:
+    """Frames that move, nodes, and pairs of nodes; `silent` are lines about what is not claimed."""
+
+    frames: Frames
+    nodes: Nodes
+    pairs: tuple[Pair, ...]
+    silent: tuple[str, ...]
+
+
+def read_inputs(robot: Path, scene: Path, srdf: Path | None, packages: dict[str, Path]) -> Inputs:
+    """Return what the files of a robot and a scene say; BadInput where one cannot be read."""
+    files = Files()
+    read = read_robot(files, robot, srdf, packages), read_scene(files, scene)
+    return Inputs(*read, files.digest)
+
+
+def claim_of(inputs: Inputs, certificate: Certificate) -> Claim:
+    """Return what a certificate must prove about its inputs."""
+    robot, scene = inputs.robot, inputs.scene
+    frames, nodes, bodies = frames_of(robot, certificate), Nodes(), dict[str, list[Shape]]()
+    place = dict(frames.place)
+    for link in robot.links:
+        if link in robot.shapes:
+            bodies[link] = [shape.at(place[link][1]) for shape in robot.shapes[link]]
+    for held in scene.held:
+        require(held.link in place and held.name not in place, f"{held.name} is held by no link, or has a link's name")
+        place[held.name] = place[held.link]
+        bodies[held.name] = [shape.at(place[held.link][1]) for shape in held.shapes]
+    demand(certificate.padding.keys() <= bodies.keys(), "a link is padded that has no shape")
+    _require_limits(frames, scene, certificate)
+    around, silent = (
+        _around(frames, nodes, bodies, place, scene, certificate),
+        _silent(robot, scene, bodies, place, certificate),
+    )
+    whole = {name: nodes.whole(place[name][0], shapes) for name, shapes in bodies.items()}
+    touching = _disabled(robot, scene, bodies)
+    names = list(bodies)
+    among = [
+        Pair(whole[first], whole[second], 0.0, (first, second))
+        for i, first in enumerate(names)
+        for second in names[i + 1 :]
+        if place[first][0] != place[second][0] and frozenset((first, second)) not in touching
+    ]
+    return Claim(frames, nodes, (*around, *among), silent)
+
+
+def _around(
+    frames: Frames, nodes: Nodes, bodies: dict[str, list[Shape]], place: Places, scene: Scene, certificate: Certificate
+) -> list[Pair]:
+    """Return pairs of bodies and obstacles: bodies of a frame with the same allowances are one node."""
+    groups: dict[tuple[int, frozenset[str], float], list[str]] = {}
+    for name in bodies:
+        frame = place[name][0]
+        touched = frozenset(obstacle for obstacle, body in scene.allowed if body == name)
+        groups.setdefault((frame, touched, certificate.padding.get(name, 0.0)), []).append(name)
+    pairs, obstacles = [], dict[frozenset[str], int]()
+    for (frame, touched, padding), names in groups.items():
+        others = [each for each in scene.obstacles if each.name not in touched]
+        if frame == 0 or not others:
+            continue
+        if touched not in obstacles:
+            obstacles[touched] = nodes.whole(0, [shape for each in others for shape in each.shapes])
+        node = nodes.whole(frame, [shape for name in names for shape in bodies[name]])
+        keep = certificate.clearance + padding
+        pairs.append(Pair(node, obstacles[touched], keep, (" and ".join(names), "the obstacles")))
+    _, out = frames.far(certificate.curves)
+    reach = max((out[nodes.frame[node]] + nodes.reach[node] for pair in pairs for node in (pair.first,)), default=0.0)
+    demand(
+        all(each.above == 0.0 or reach + each.above < GROUND for each in scene.obstacles),
+        "the robot reaches beyond a plane",
+    )
+    return pairs
+
+
+def _disabled(robot: Robot, scene: Scene, bodies: dict[str, list[Shape]]) -> set[frozenset[str]]:
+    """Return pairs that may touch: those of the SRDF or, without any there, neighbours; and what a held body may."""
+    touching = {frozenset((held.name, link)) for held in scene.held for link in (held.link, *held.touches)}
+    if robot.disabled is not None:
+        return touching | robot.disabled
+    above = {joint.child: joint for joint in robot.joints}
+    for name in robot.links:
+        link, moving = name, 0
+        while link in above:
+            moving += above[link].kind != "fixed"
+            link = above[link].parent
+            if link in robot.shapes:
+                touching |= {frozenset((name, link))} if moving == 1 else set()
+                break
+    return touching
+
+
+def _require_limits(frames: Frames, scene: Scene, certificate: Certificate) -> None:
+    """Raise Refused if a control point leaves the limits of a joint, or those of the scene."""
+    values = frames.factor * certificate.curves[:, :, frames.column] + frames.offset
+    for k, joint in enumerate(frames.joints):
+        within = values[:, :, k].min() >= joint.lower - BEYOND and values[:, :, k].max() <= joint.upper + BEYOND
+        demand(within or joint.upper - joint.lower > 1000.0, f"{joint.name} leaves its limits")
+    for column, name in enumerate(certificate.joints):
+        low, high = scene.limits.get(name, (-np.inf, np.inf))
+        some = certificate.curves[:, :, column]
+        demand(some.min() >= low - BEYOND and some.max() <= high + BEYOND, f"{name} leaves the limits of the scene")
+
+
+def _silent(
+    robot: Robot, scene: Scene, bodies: dict[str, list[Shape]], place: Places, certificate: Certificate
+) -> tuple[str, ...]:
+    """Return lines about what is not claimed."""
+    disabled = robot.disabled
+    held = ", ".join(f"{name} {value:g}" for name, value in certificate.held.items())
+    lines = {
+        "links without collision shapes": ", ".join(link for link in robot.links if link not in bodies),
+        "links that no joint of the path moves, with obstacles": ", ".join(
+            name for name in bodies if place[name][0] == 0
+        ),
+        "pairs of links": f"{len(disabled)} that the SRDF disables"
+        if disabled is not None
+        else "neighbours, as no SRDF disables any",
+        "allowed contacts": ", ".join(f"{obstacle} with {link}" for obstacle, link in sorted(scene.allowed)),
+        "that other joints are where they are held": held or "at 0",
+        "that the robot is built, calibrated, placed and controlled as the files say": "and when it is where",
+    }
+    return tuple(f"{key}: {value}" for key, value in lines.items() if value)

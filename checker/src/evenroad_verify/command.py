@@ -1,0 +1,97 @@
+"""The command ``evenroad-verify``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from evenroad_verify.certificate import Certificate, read_certificate
+from evenroad_verify.claim import Claim, Inputs, claim_of, read_inputs
+from evenroad_verify.errors import BadInput, Refused, demand
+from evenroad_verify.proof import prove
+from evenroad_verify.solids import require_outside
+
+ACCEPTED, REFUSED, BAD_INPUT = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class Proved:
+    """An accepted certificate, what it claims, and the least gap of its answers beyond what is kept [m]."""
+
+    certificate: Certificate
+    claim: Claim
+    least: float
+    opened: int
+
+
+def verify(certificate: bytes, inputs: Inputs) -> Proved:
+    """Return what a certificate proves about a robot in a scene; Refused, with the reason, if it does not."""
+    read = read_certificate(certificate)
+    demand(read.inputs == inputs.digest, "robot, SRDF, scene or meshes are not the files that it was written for")
+    with np.errstate(all="ignore"):
+        claim = claim_of(inputs, read)
+        least, tasks = prove(claim, read, inputs.robot.depth)
+        return Proved(read, claim, least, require_outside(claim, read, tasks))
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Check a certificate; return 0 if it is accepted, 1 if it is refused, 2 if an input cannot be read."""
+    parser = argparse.ArgumentParser(prog="evenroad-verify", description="Check that a path is proved free of contact.")
+    parser.add_argument("certificate", type=Path, help="the certificate")
+    parser.add_argument("robot", type=Path, help="the robot's URDF")
+    parser.add_argument("scene", type=Path, help="the scene, a YAML of evenroad")
+    parser.add_argument("srdf", type=Path, nargs="?", help="the robot's SRDF, if the certificate was written with one")
+    parser.add_argument("--package", action="append", default=[], help="NAME=FOLDER of a ROS package with meshes")
+    parser.add_argument("--path", type=Path, help="a CSV of waypoints, which must be those of the certificate")
+    asked = parser.parse_args(words)
+    packages = {name: Path(folder) for name, _, folder in (each.partition("=") for each in asked.package)}
+    try:
+        data = asked.certificate.read_bytes()
+        proved = verify(data, read_inputs(asked.robot, asked.scene, asked.srdf, packages))
+        if asked.path is not None:
+            _require_same_path(proved.certificate, asked.path)
+    except Refused as error:
+        print(f"REFUSED: {error}")
+        return REFUSED
+    except (BadInput, OSError, RecursionError) as error:
+        print(f"evenroad-verify: {error}", file=sys.stderr)
+        return BAD_INPUT
+    print("\n".join(_lines(proved)))
+    return ACCEPTED
+
+
+def _require_same_path(certificate: Certificate, path: Path) -> None:
+    """Raise Refused unless the waypoints of a CSV, whose first row names the joints, are those of the certificate."""
+    rows = [line.split(",") for line in path.read_text("utf-8").split()]
+    demand(rows and tuple(rows[0]) == certificate.joints, f"{path} has other joints than the certificate")
+    points = np.concatenate([certificate.curves[:, 0], certificate.curves[-1:, 2]])
+    try:
+        same = np.array(rows[1:], float)
+    except ValueError as error:
+        raise BadInput(f"{path}: {error}") from None
+    demand(same.shape == points.shape and (same == points).all(), f"{path} has other waypoints than the certificate")
+
+
+def _lines(proved: Proved) -> list[str]:
+    """Return what is printed of an accepted certificate."""
+    read, claim = proved.certificate, proved.claim
+    straight = np.abs(read.curves[:, 1] - 0.5 * (read.curves[:, 0] + read.curves[:, 2])).max() < 1e-12
+    kept = f", {read.clearance:g} m from all obstacles" if read.clearance else ""
+    for link, metres in read.padding.items():
+        kept += f", {link} {metres:g} m more"
+    lines = [f"PROVED: {len(read.curves)} {'straight motions' if straight else 'curves'} touch nothing{kept}"]
+    for name, first, last in zip(read.joints, read.curves[0, 0], read.curves[-1, 2], strict=True):
+        lines.append(f"  {name}: from {first:.6g} to {last:.6g}")
+    lines.append(f"  smallest gap of a step of the proof: {proved.least:.3g} m")
+    lines.append(f"pairs proved apart ({len(claim.pairs)}):")
+    lines += [f"  {first} - {second}" for first, second in (pair.names for pair in claim.pairs)]
+    lines.append("not claimed:")
+    lines += [f"  {line}" for line in claim.silent]
+    if proved.opened:
+        lines.append(f"  what is inside of surfaces with holes: {proved.opened}")
+    return lines

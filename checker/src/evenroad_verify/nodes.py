@@ -1,0 +1,90 @@
+"""Nodes: sets of shapes of one frame, which a certificate may halve."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evenroad_verify.errors import Floats, Ints, demand
+from evenroad_verify.shapes import Shape
+
+Part = tuple[Shape, Ints]
+"""A shape and the rows of its elements."""
+_MOST = 4_000_000
+"""Products that are held at once."""
+
+
+class Nodes:
+    """A growing table of nodes, each with its frame, its parts and a box around these."""
+
+    def __init__(self) -> None:
+        self.frame: list[int] = []
+        self.reach: list[float] = []
+        self.centre: list[Floats] = []
+        self.box: list[Floats] = []
+        self.parts: list[list[Part]] = []
+        self._halves: dict[int, tuple[int, int]] = {}
+        self._corners: dict[int, list[tuple[Shape, Floats]]] = {}
+
+    def whole(self, frame: int, shapes: list[Shape]) -> int:
+        """Add a node of whole shapes; return its number."""
+        return self._add(frame, [(shape, np.arange(len(shape.corners))) for shape in shapes])
+
+    def _add(self, frame: int, parts: list[Part]) -> int:
+        low, high, reach = np.full(3, np.inf), np.full(3, -np.inf), 0.0
+        for shape, rows in parts:
+            points = shape.corners[rows].reshape(-1, 3)
+            wide = shape.radius + shape.disc * np.sqrt(np.maximum(0.0, 1.0 - shape.axis**2))
+            low, high = np.minimum(low, points.min(0) - wide), np.maximum(high, points.max(0) + wide)
+            reach = max(reach, float(np.linalg.norm(points, axis=1).max()) + shape.radius + shape.disc)
+        centre, box = 0.5 * (low + high), 0.5 * (high - low)[:, None] * np.eye(3)
+        if len(parts) == 1 and parts[0][0].is_box:
+            corner, radius = parts[0][0].corners[0], parts[0][0].radius
+            edges = 0.5 * np.stack([corner[4] - corner[0], corner[2] - corner[0], corner[1] - corner[0]])
+            length = np.linalg.norm(edges, axis=1, keepdims=True)
+            centre, box = 0.5 * (corner[0] + corner[7]), edges * (1.0 + radius / np.maximum(length, 1e-12))
+        self.frame.append(frame)
+        self.reach.append(reach)
+        self.centre.append(centre)
+        self.box.append(box)
+        self.parts.append(parts)
+        return len(self.frame) - 1
+
+    def halves(self, node: int) -> tuple[int, int]:
+        """Return the numbers of a node's two halves; Refused where it is a single element."""
+        if node not in self._halves:
+            middles = np.concatenate([shape.corners[rows].mean(1) for shape, rows in self.parts[node]])
+            demand(len(middles) > 1, "a single element is halved")
+            # Rounded to 2^-20 m: programs that differ in a last bit order the elements alike.
+            along = np.rint(2.0**20 * middles[:, np.ptp(middles, axis=0).argmax()])
+            is_first = np.zeros(len(along), bool)
+            is_first[np.argsort(along, kind="stable")[: len(along) // 2]] = True
+            sides: tuple[list[Part], list[Part]] = ([], [])
+            start = 0
+            for shape, rows in self.parts[node]:
+                chosen = is_first[start : start + len(rows)]
+                start += len(rows)
+                for side, some in zip(sides, (rows[chosen], rows[~chosen]), strict=True):
+                    side.extend([(shape, some)] if len(some) else [])
+            self._halves[node] = self._add(self.frame[node], sides[0]), self._add(self.frame[node], sides[1])
+        return self._halves[node]
+
+    def supports(self, node: int, along: Floats) -> Floats:
+        """Return how far a node reaches along functionals, (m, 3), of its frame: (m,)."""
+        if node not in self._corners:
+            self._corners[node] = [(shape, _distinct(shape.corners[rows])) for shape, rows in self.parts[node]]
+        most = np.full(len(along), -np.inf)
+        for shape, points in self._corners[node]:
+            step = max(1, _MOST // len(points))
+            far = np.concatenate([(points @ along[i : i + step].T).max(0) for i in range(0, len(along), step)])
+            far += shape.radius * np.linalg.norm(along, axis=1)
+            if shape.disc:
+                across = along - np.outer(along @ shape.axis, shape.axis)
+                far += shape.disc * np.linalg.norm(across, axis=1)
+            most = np.maximum(most, far)
+        return most
+
+
+def _distinct(corners: Floats) -> Floats:
+    """Return the corners that differ, (m, 3)."""
+    rows = np.ascontiguousarray(corners).reshape(-1, 3)
+    return rows[np.unique(rows.view([("", float)] * 3), return_index=True)[1]]

@@ -1,0 +1,158 @@
+"""The proof: tasks that the checker makes, and the answers of the certificate to them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evenroad_verify.certificate import Certificate
+from evenroad_verify.claim import Claim
+from evenroad_verify.errors import Bools, Floats, Ints, demand
+from evenroad_verify.nodes import Nodes
+
+HALVE_TIME, HALVE_FIRST, HALVE_SECOND, CENTRES, BOXES, CORNERS = range(6)
+LEAST = 1e-9
+"""What a computed gap must exceed, beyond the distance that is to be kept [m]."""
+ROUNDING = 2.0**-46
+"""Times the joints of a chain, reach and the largest joint value, a bound of the error of a computed gap."""
+FINEST = 40
+"""Number of times that a motion may be halved."""
+MOTION, NUMBER, LEVEL, FIRST, SECOND, PAIR = range(6)
+"""Columns of tasks: a stretch is the part `NUMBER` of the 2^LEVEL parts of a motion."""
+_AT_ONCE = 1 << 14
+
+
+def prove(claim: Claim, certificate: Certificate, depth: int) -> tuple[float, Ints]:
+    """Return the least gap of all answers [m] and the answered tasks; Refused where a task is not proved."""
+    tasks, answers = expand(claim, certificate)
+    given = np.cumsum(answers > CENTRES) - 1
+    demand(int((answers > CENTRES).sum()) == len(certificate.directions), "directions are missing or left over")
+    far, out = claim.frames.far(certificate.curves)
+    reach = (
+        np.array(claim.nodes.reach)[tasks[:, FIRST : SECOND + 1]]
+        + out[np.array(claim.nodes.frame)[tasks[:, FIRST : SECOND + 1]]]
+    )
+    largest = 1.0 + np.abs(certificate.curves).max() * max(1.0, float(np.abs(claim.frames.factor).max()))
+    demand(ROUNDING * depth * reach.max(initial=0.0) * largest < LEAST, "the robot is too large for double precision")
+    keep, least = np.array([pair.keep for pair in claim.pairs]), np.inf
+    motions = Motions(claim, certificate.curves, far)
+    for start in range(0, len(tasks), _AT_ONCE):
+        some = slice(start, start + _AT_ONCE)
+        directions = (
+            certificate.directions[given[some]] if len(certificate.directions) else np.zeros((len(tasks[some]), 3))
+        )
+        gap = motions.gaps(tasks[some], answers[some], directions) - keep[tasks[some, PAIR]]
+        worst = int(gap.argmin())
+        if not gap[worst] > LEAST:  # nor if it is no number
+            first, second = claim.pairs[tasks[start + worst, PAIR]].names
+            demand(False, f"motion {tasks[start + worst, MOTION]}: {first} and {second} are not proved apart")
+        least = min(least, float(gap[worst]))
+    return least, tasks
+
+
+def expand(claim: Claim, certificate: Certificate) -> tuple[Ints, Ints]:
+    """Return the tasks that are answered by a direction, one row each, and these answers."""
+    pairs = np.array([(pair.first, pair.second) for pair in claim.pairs], np.int64).reshape(-1, 2)
+    motion, pair = np.divmod(np.arange(len(certificate.curves) * len(pairs)), max(1, len(pairs)))
+    zero = np.zeros_like(motion)
+    tasks = np.stack([motion, zero, zero, *pairs[pair].T, pair], axis=1)
+    taken, proved, how = 0, [tasks[:0]], [motion[:0]]
+    while len(tasks):
+        demand(taken + len(tasks) <= len(certificate.answers), "a task has no answer")
+        answer = certificate.answers[taken : taken + len(tasks)].astype(np.int64)
+        taken += len(tasks)
+        proved.append(tasks[answer >= CENTRES])
+        how.append(answer[answer >= CENTRES])
+        halved = answer < CENTRES
+        tasks = _halved(claim.nodes, tasks[halved], answer[halved])
+    demand(taken == len(certificate.answers), "there are answers without a task")
+    return np.concatenate(proved), np.concatenate(how)
+
+
+def _halved(nodes: Nodes, tasks: Ints, answer: Ints) -> Ints:
+    """Return the two halves of each task, one after the other."""
+    side, by = np.tile([0, 1], len(tasks)), np.repeat(answer, 2)
+    new = np.repeat(tasks, 2, axis=0)
+    in_time = by == HALVE_TIME
+    new[in_time, NUMBER] = 2 * new[in_time, NUMBER] + side[in_time]
+    new[in_time, LEVEL] += 1
+    demand(new[:, LEVEL].max(initial=0) <= FINEST, "a motion is halved too often")
+    for which, column in ((HALVE_FIRST, FIRST), (HALVE_SECOND, SECOND)):
+        rows = np.flatnonzero(by == which)
+        node, where = np.unique(new[rows, column], return_inverse=True)
+        halves = np.array([nodes.halves(int(each)) for each in node], np.int64).reshape(-1, 2)
+        new[rows, column] = halves[where, side[rows]]
+    return new
+
+
+class Motions:
+    """How nodes move along the curves of a certificate."""
+
+    def __init__(self, claim: Claim, curves: Floats, far: Floats) -> None:
+        self._frames, self._nodes, self._curves, self._far = claim.frames, claim.nodes, curves, far
+        self._slides, self._carries = claim.frames.slides, claim.frames.carries
+
+    def gaps(self, tasks: Ints, answers: Ints, given: Floats) -> Floats:
+        """Return by how much the directions of tasks separate their nodes throughout their stretches [m]."""
+        nodes, half = self._nodes, 0.5 ** (tasks[:, LEVEL] + 1.0)
+        key, at = np.unique(_middles(tasks), return_inverse=True)
+        rate, bend, rotation, origin, turning, along = self._middle_states(key)
+        fastest, bend = np.abs(rate)[at] + half[:, None] * bend[at], bend[at]
+        frame, centre = (
+            np.array(nodes.frame)[tasks[:, FIRST : SECOND + 1]],
+            np.array(nodes.centre)[tasks[:, FIRST : SECOND + 1]],
+        )
+        box, reach = (
+            np.array(nodes.box)[tasks[:, FIRST : SECOND + 1]],
+            np.array(nodes.reach)[tasks[:, FIRST : SECOND + 1]],
+        )
+        turns, origins = rotation[at[:, None], frame], origin[at[:, None], frame]
+        middles = origins + np.einsum("nsij,nsj->nsi", turns, centre)
+        direction = np.where((answers == CENTRES)[:, None], middles[:, 1] - middles[:, 0], given)
+        length = np.linalg.norm(direction, axis=1)
+        demand((length > 1e-6).all(), "a direction has no length")
+        direction = direction / length[:, None]
+        ends, stray, by_corners = np.zeros((2, len(tasks))), np.zeros(len(tasks)), np.flatnonzero(answers == CORNERS)
+        for s, sign in enumerate((1.0, -1.0)):
+            moves = self._carries[frame[:, s]] & ~self._carries[frame[:, 1 - s]]
+            stray += self._stray(moves, fastest, bend, self._far[frame[:, s]] + reach[:, s, None])
+            spin, shift = (np.einsum("nk,nkc->nc", moves, each[at]) for each in (turning, along))
+            for e, time in enumerate((half, -half)):
+                f = sign * (direction + time[:, None] * np.cross(direction, spin))
+                local = np.einsum("nij,ni->nj", turns[:, s], f)
+                far = np.einsum("nc,nc->n", local, centre[:, s]) + np.abs(
+                    np.einsum("nij,nj->ni", box[:, s], local)
+                ).sum(1)
+                self._reach_by_corners(tasks[:, FIRST + s], by_corners, local, far)
+                ends[e] += far + np.einsum("nc,nc->n", f, origins[:, s])
+                ends[e] += sign * time * np.einsum("nc,nc->n", direction, shift)
+        return np.asarray(-ends.max(0) - 0.5 * half**2 * stray)
+
+    def _middle_states(self, key: Ints) -> tuple[Floats, ...]:
+        """Return rates and bends of joints, poses of frames, and how joints turn and shift the root's frame."""
+        frames, share = self._frames, ((key & ((1 << FINEST + 1) - 1)) / 2.0 ** (FINEST + 1))[:, None]
+        first, middle, last = np.moveaxis(self._curves[key >> FINEST + 1], 1, 0)
+        q = (1 - share) ** 2 * first + 2 * share * (1 - share) * middle + share**2 * last
+        rate = (2 * (1 - share) * (middle - first) + 2 * share * (last - middle))[:, frames.column] * frames.factor
+        bend = np.abs(2 * (last - 2 * middle + first))[:, frames.column] * np.abs(frames.factor)
+        rotation, origin, axes = frames.at(q)
+        turning = np.where(self._slides[:, None], 0.0, rate[:, :, None] * axes)
+        along = np.where(self._slides[:, None], rate[:, :, None] * axes, np.cross(origin[:, 1:], turning))
+        return rate, bend, rotation, origin, turning, along
+
+    def _stray(self, moves: Bools, fastest: Floats, bend: Floats, lever: Floats) -> Floats:
+        """Return a bound of the acceleration of a node's points, (n,)."""
+        turns = moves * fastest * ~self._slides
+        before = np.cumsum(turns, axis=1) - turns
+        return np.asarray((moves * np.where(self._slides, 1.0, lever) * (fastest * (2 * before + turns) + bend)).sum(1))
+
+    def _reach_by_corners(self, node: Ints, rows: Ints, local: Floats, far: Floats) -> None:
+        """Write how far nodes reach by their corners, in the rows that are answered so."""
+        rows = rows[np.argsort(node[rows], kind="stable")]
+        for some in np.split(rows, np.flatnonzero(np.diff(node[rows])) + 1):
+            if len(some):
+                far[some] = self._nodes.supports(int(node[some[0]]), local[some])
+
+
+def _middles(tasks: Ints) -> Ints:
+    """Return one number for the motion and the middle of each stretch."""
+    return np.asarray(tasks[:, MOTION] << FINEST + 1 | (2 * tasks[:, NUMBER] + 1) << FINEST - tasks[:, LEVEL])

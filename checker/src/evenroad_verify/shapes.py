@@ -1,0 +1,86 @@
+"""Shapes: sets of convex elements, each the hull of some corners, around which a ball or a disc is moved."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from evenroad_verify.errors import Floats, Pose, number, numbers, require
+
+DIMENSIONS = {
+    "box": {"size": 3},
+    "sphere": {"radius": 1},
+    "cylinder": {"radius": 1, "length": 1},
+    "capsule": {"radius": 1, "length": 1},
+}
+WIDEST = 1000.0
+"""How far from its frame a shape may reach [m]."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Convex elements of one kind.
+
+    `corners`, (n, c, 3), are those of n elements in the frame of their body, each with a ball of `radius` and a disc of
+    radius `disc` about `axis` around it.  A `surface` is made of triangles.
+    """
+
+    corners: Floats
+    radius: float = 0.0
+    disc: float = 0.0
+    axis: Floats = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
+    surface: bool = False
+    is_box: bool = False
+
+    def __post_init__(self) -> None:
+        require(len(self.corners) and np.abs(self.corners).max() < WIDEST, f"a shape is empty or beyond {WIDEST:g} m")
+
+    def at(self, pose: Pose) -> Shape:
+        """Return the shape moved by a pose."""
+        rotation, shift = pose
+        return replace(self, corners=self.corners @ rotation.T + shift, axis=rotation @ self.axis)
+
+
+def rotation_about(axis: Floats, angles: Floats) -> Floats:
+    """Return rotations about a unit axis by some angles, (n, 3, 3)."""
+    x, y, z = axis
+    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.asarray(np.eye(3) + np.sin(angles)[:, None, None] * k + (1 - np.cos(angles))[:, None, None] * (k @ k))
+
+
+def pose_of(xyz: Floats, rpy: Floats) -> Pose:
+    """Return a pose whose rotation is Rz(yaw) Ry(pitch) Rx(roll)."""
+    x, y, z = (rotation_about(axis, rpy[i : i + 1])[0] for i, axis in enumerate(np.eye(3)))
+    return z @ y @ x, xyz
+
+
+def times(first: Pose, second: Pose) -> Pose:
+    """Return the product of two poses."""
+    return first[0] @ second[0], first[0] @ second[1] + first[1]
+
+
+def primitive(kind: str, entry: Mapping[str, object]) -> Shape | None:
+    """Return a box, sphere, cylinder or capsule about the origin by its dimensions; None where all of these are 0."""
+    sizes = []
+    for key, count in DIMENSIONS[kind].items():
+        require(key in entry, f"a {kind} lacks its {key}")
+        value = entry[key]
+        sizes += list(numbers(value, 3)) if count == 3 else [number(value)]
+    require(min(sizes) >= 0.0, f"a {kind} has a negative size")
+    if max(sizes) == 0.0 or (kind == "capsule" and sizes[0] == 0.0):
+        return None
+    if kind == "box":
+        signs = np.stack(np.meshgrid(*[[-0.5, 0.5]] * 3, indexing="ij"), axis=-1).reshape(1, 8, 3)
+        return Shape(signs * np.array(sizes), is_box=True)
+    if kind == "sphere":
+        return Shape(np.zeros((1, 1, 3)), radius=sizes[0])
+    ends = sizes[1] * np.array([[[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]])
+    return Shape(ends, disc=sizes[0]) if kind == "cylinder" else Shape(ends, radius=sizes[0])
+
+
+def surface(triangles: Floats, at: Pose, scale: Floats) -> Shape:
+    """Return triangles, (n, 3, 3), of a file, placed by `at` and then scaled."""
+    require(np.isfinite(triangles).all(), "a mesh has a corner that is no number")
+    return Shape((triangles @ at[0].T + at[1]) * scale, surface=True)

@@ -1,0 +1,105 @@
+"""Solids: two surfaces that never touch may still lie one inside of the other, which one state shows or excludes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evenroad_verify.certificate import Certificate
+from evenroad_verify.claim import Claim
+from evenroad_verify.errors import Bools, Floats, Ints, demand
+from evenroad_verify.proof import FIRST, PAIR, SECOND
+from evenroad_verify.shapes import Shape
+
+_WAYS = np.array(
+    [[0.5377, 0.7211, 0.4369], [-0.3313, 0.6007, 0.7276], [0.7603, -0.3571, 0.5427], [0.2287, 0.3359, -0.9137]]
+)
+"""Directions of rays: the next one is tried where a ray comes too near to an edge."""
+_NEAR = 1e-9
+_MOST = 1_000_000
+
+
+def require_outside(claim: Claim, certificate: Certificate, tasks: Ints) -> int:
+    """Raise Refused where a part of a body is inside of a closed surface; return the number of open surfaces met.
+
+    Nothing moves into a closed surface, or out of it, without touching it.  So the first state decides for all.  A pair
+    that is apart as wholes at any time is not nested then.
+    """
+    whole = np.array([(pair.first, pair.second) for pair in claim.pairs], np.int64).reshape(-1, 2)
+    apart = set(tasks[(tasks[:, FIRST : SECOND + 1] == whole[tasks[:, PAIR]]).all(axis=1), PAIR].tolist())
+    rotation, origin, _ = claim.frames.at(certificate.curves[:1, 0])
+    pieces, opened = dict[int, list[tuple[Floats, bool]]](), set()
+    for number in sorted(set(range(len(claim.pairs))) - apart):
+        pair = claim.pairs[number]
+        for inner, outer in ((pair.first, pair.second), (pair.second, pair.first)):
+            frame, other = claim.nodes.frame[inner], claim.nodes.frame[outer]
+            solids = [solid for shape, _ in claim.nodes.parts[outer] for solid in _pieces(shape, pieces)]
+            opened |= {id(triangles) for triangles, closed in solids if not closed}
+            points = np.array(
+                [solid[0, 0] for shape, _ in claim.nodes.parts[inner] for solid in _points(shape, pieces)]
+            )
+            points = points @ rotation[0, frame].T + origin[0, frame]
+            points = (points - origin[0, other]) @ rotation[0, other]
+            inside = any(_inside(points, triangles) for triangles, closed in solids if closed)
+            demand(not inside, f"{pair.names[0]} and {pair.names[1]} are one inside of the other")
+    return len(opened)
+
+
+def _points(shape: Shape, pieces: dict[int, list[tuple[Floats, bool]]]) -> list[Floats]:
+    """Return corners of which the first one is a point of each connected piece of a shape."""
+    return [piece for piece, _ in _pieces(shape, pieces)] if shape.surface else [shape.corners]
+
+
+def _pieces(shape: Shape, known: dict[int, list[tuple[Floats, bool]]]) -> list[tuple[Floats, bool]]:
+    """Return the connected pieces of a surface, each with whether it is closed: every edge is in an even number."""
+    if not shape.surface:
+        return []
+    if id(shape) not in known:
+        triangles = shape.corners
+        _, corner = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
+        corner = corner.reshape(-1, 3)
+        label = np.arange(corner.max() + 1)
+        while True:
+            least = label[corner].min(axis=1)
+            new = label.copy()
+            np.minimum.at(new, corner.ravel(), np.repeat(least, 3))
+            new = new[new]
+            if (new == label).all():
+                break
+            label = new
+        edges = np.sort(corner[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        edge, count = np.unique(edges[edges[:, 0] != edges[:, 1]], axis=0, return_counts=True)
+        open_ones = set(label[edge[count % 2 == 1, 0]].tolist())
+        of = label[corner[:, 0]]
+        known[id(shape)] = [(triangles[of == each], int(each) not in open_ones) for each in np.unique(of)]
+    return known[id(shape)]
+
+
+def _inside(points: Floats, triangles: Floats) -> bool:
+    """Return whether any of some points is inside of a closed surface, by the parity of the crossings of a ray."""
+    low, high = triangles.min((0, 1)), triangles.max((0, 1))
+    points = points[((points >= low) & (points <= high)).all(axis=1)]
+    step = max(1, _MOST // len(triangles))
+    return any(_odd(points[i : i + step], triangles).any() for i in range(0, len(points), step))
+
+
+def _odd(points: Floats, triangles: Floats) -> Bools:
+    """Return which rays from points, (n, 3), cross the triangles an odd number of times."""
+    odd, left = np.zeros(len(points), bool), np.arange(len(points))
+    for way in _WAYS / np.linalg.norm(_WAYS, axis=1, keepdims=True):
+        corners = triangles[None] - points[left, None, None]
+        # Six times the volumes of the ray's unit and two corners: all of one sign where the ray meets the triangle.
+        volume = np.stack([np.cross(corners[:, :, i], corners[:, :, (i + 1) % 3]) @ way for i in range(3)], axis=2)
+        scale = np.linalg.norm(corners, axis=3).max(axis=2) ** 2
+        unclear = (np.abs(volume) <= _NEAR * scale[..., None]).any(axis=2)
+        meets = (volume > 0).all(axis=2) | (volume < 0).all(axis=2)
+        normal = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
+        before = (normal * corners[:, :, 0]).sum(axis=2) * (normal @ way) > 0
+        # A ray that clearly passes a triangle by is clear, however near it comes to the lines of other edges.
+        passes = (volume > _NEAR * scale[..., None]).any(axis=2) & (volume < -_NEAR * scale[..., None]).any(axis=2)
+        clear = ~(unclear & ~passes).any(axis=1)
+        odd[left[clear]] = (meets & before).sum(axis=1)[clear] % 2 == 1
+        left = left[~clear]
+        if not len(left):
+            return odd
+    demand(False, "no ray shows whether a body is inside of another one")
+    raise AssertionError

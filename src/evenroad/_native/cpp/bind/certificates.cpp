@@ -1,0 +1,134 @@
+// evenroad._native.certificates: writing a certificate.
+#include "bind/arrays.hpp"
+#include "certificates/writer.hpp"
+
+namespace evenroad::bind {
+
+using namespace nb::literals;
+
+namespace {
+
+using Numbers = Array<const std::int64_t, 1>;
+using namespace certificates;
+
+std::size_t size_at(std::span<const std::int64_t> values, std::size_t at) {
+  return static_cast<std::size_t>(values[at]);
+}
+
+/// The arrays of all shapes, kept as long as the nodes that look at them.
+struct ShapeTables {
+  ShapeTables(nb::handle points, nb::handle corners, nb::handle sizes, nb::handle numbers)
+      : points(points, "points"), corners(corners, "corners"), sizes(sizes, "sizes"), numbers(numbers, "numbers") {}
+
+  std::vector<Elements> shapes() const {
+    const std::size_t count = sizes.shape(0);
+    points.of_shape({points.shape(0), 3}), sizes.of_shape({count, 5}), numbers.of_shape({count, 4});
+    std::vector<Elements> shapes;
+    std::size_t point = 0, corner = 0;
+    for (std::size_t i = 0; i < count; i++) {
+      const auto row = numbers.matrix()[i];
+      const auto size = sizes.matrix()[i];
+      for (const std::int64_t each : row) require(each >= 0, "numbers must be >= 0");
+      const std::size_t elements = size_at(row, 1), each = size_at(row, 2);
+      require(elements > 0 && each > 0, "numbers must name elements with corners");
+      require(size_at(row, 0) <= points.shape(0) - point && each <= (corners.size() - corner) / elements,
+              "numbers must be of as many points and corners as there are");
+      Elements& shape = shapes.emplace_back();
+      shape.points = points.span().subspan(3 * point, 3 * size_at(row, 0));
+      shape.corners = corners.span().subspan(corner, elements * each);
+      require_below(shape.corners, size_at(row, 0), "corners");
+      point += size_at(row, 0), corner += elements * each;
+      shape.count = elements, shape.radius = size[0], shape.disc = size[1];
+      shape.is_box = row[3] != 0 && elements == 1 && each == 8;
+      for (int axis = 0; axis < 3; axis++) {
+        shape.axis[axis] = size[2 + static_cast<std::size_t>(axis)];
+      }
+    }
+    return shapes;
+  }
+
+  FloatRows points;
+  Numbers corners;
+  FloatRows sizes;
+  Array<const std::int64_t, 2> numbers;
+};
+
+/// The arrays of the joints that move frames.
+struct JointTables {
+  JointTables(nb::handle links, nb::handle poses, nb::handle rules, std::size_t joints)
+      : links(links, "links"), poses(poses, "poses"), rules(rules, "rules") {
+    const std::size_t count = this->links.shape(0);
+    this->links.of_shape({count, 3}), this->poses.of_shape({count, 15}), this->rules.of_shape({count, 2});
+    for (std::size_t k = 0; k < count; k++) {
+      const auto row = this->links.matrix()[k];
+      require_below(row[0], k + 1, "parents");
+      require_below(row[1], joints, "columns");
+      parent.push_back(row[0]), column.push_back(row[1]), slides.push_back(row[2] != 0);
+      const auto pose = this->poses.matrix()[k];
+      turn.insert(turn.end(), pose.begin(), pose.begin() + 9);
+      shift.insert(shift.end(), pose.begin() + 9, pose.begin() + 12);
+      axis.insert(axis.end(), pose.begin() + 12, pose.end());
+      factor.push_back(this->rules.matrix()(k, 0)), offset.push_back(this->rules.matrix()(k, 1));
+    }
+  }
+
+  Frames frames() const { return {parent, column, turn, shift, axis, factor, offset, slides}; }
+
+  Array<const std::int64_t, 2> links;
+  FloatRows poses, rules;
+  std::vector<std::int64_t> parent, column;
+  std::vector<double> turn, shift, axis, factor, offset;
+  std::vector<std::uint8_t> slides;
+};
+
+nb::object write_answers(nb::handle shapes, nb::handle joints, nb::handle nodes, nb::handle pairs, nb::handle curves,
+                         std::int64_t most) {
+  const nb::tuple of_shapes = value_of<nb::tuple>(shapes, "shapes"), of_joints = value_of<nb::tuple>(joints, "joints");
+  const nb::tuple of_nodes = value_of<nb::tuple>(nodes, "nodes"), of_pairs = value_of<nb::tuple>(pairs, "pairs");
+  require(of_shapes.size() == 4 && of_joints.size() == 3 && of_nodes.size() == 2 && of_pairs.size() == 2,
+          "shapes, joints, nodes and pairs must be tuples of 4, 3, 2 and 2 arrays");
+  const Array<const double, 3> points(curves, "curves");
+  points.of_shape({points.shape(0), 3, points.shape(2)});
+  require(points.shape(0) < (std::size_t{1} << 20) && points.shape(2) > 0, "curves must be fewer than 2^20");
+  require_below(most, std::size_t{1} << 24, "most");
+  const ShapeTables tables(of_shapes[0], of_shapes[1], of_shapes[2], of_shapes[3]);
+  const JointTables moving(of_joints[0], of_joints[1], of_joints[2], points.shape(2));
+  const Array<const std::int64_t, 2> rows(of_nodes[0], "nodes"), both(of_pairs[0], "pairs");
+  const Numbers members(of_nodes[1], "members");
+  const Floats keep(of_pairs[1], "keep");
+  rows.of_shape({rows.shape(0), 3}), both.of_shape({keep.size(), 2});
+  require_below(members.span(), tables.sizes.shape(0), "members");
+  require_below(both.span(), rows.shape(0), "pairs");
+  Nodes all(tables.shapes());
+  for (std::size_t i = 0; i < rows.shape(0); i++) {
+    const auto row = rows.matrix()[i];
+    require_below(row[0], moving.parent.size() + 1, "frames");
+    require(row[1] >= 0 && row[2] > row[1] && size_at(row, 2) <= members.size(), "nodes must have shapes");
+    all.add_whole(row[0], members.span().subspan(size_at(row, 1), size_at(row, 2) - size_at(row, 1)));
+  }
+  std::vector<Pair> every;
+  for (std::size_t i = 0; i < keep.size(); i++)
+    every.push_back({both.matrix()(i, 0), both.matrix()(i, 1), keep.span()[i]});
+  Written written;
+  try {
+    written = without_gil([&] {
+      Motions motions(moving.frames(), {points.span(), points.shape(2)});
+      return write(all, motions, points.shape(0), every, static_cast<std::size_t>(most));
+    });
+  } catch (const TooLong&) {
+    return nb::none();
+  }
+  const Touch touch = written.touch;
+  return nb::make_tuple(as_row(std::move(written.answers)), as_rows(std::move(written.directions), 3), touch.motion,
+                        touch.share, touch.pair, touch.gap);
+}
+
+}  // namespace
+
+void add_certificates(nb::module_& module) {
+  nb::module_ part = module.def_submodule("certificates", "Writing a certificate.");
+  part.def("write_answers", &write_answers, "shapes"_a.none(), "joints"_a.none(), "nodes"_a.none(), "pairs"_a.none(),
+           "curves"_a.none(), "most"_a);
+}
+
+}  // namespace evenroad::bind

@@ -1,0 +1,147 @@
+// Velocities of nodes in the middle of a stretch, bounds of their accelerations, and gaps along a direction.
+#include "certificates/motions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evenroad::certificates {
+
+namespace {
+
+constexpr std::size_t MOST_STATES = 1 << 14;
+
+Vector applied(const Turn& turn, const Vector& v) { return {dot(turn[0], v), dot(turn[1], v), dot(turn[2], v)}; }
+
+Turn product(const Turn& a, const Turn& b) {
+  Turn c{};
+  for (int row = 0; row < 3; row++)
+    c[static_cast<std::size_t>(row)] = b[0] * a[static_cast<std::size_t>(row)][0] +
+                                       b[1] * a[static_cast<std::size_t>(row)][1] +
+                                       b[2] * a[static_cast<std::size_t>(row)][2];
+  return c;
+}
+
+/// Rodrigues' formula: I + sin K + (1 - cos) K^2.
+Turn rotation_about(const Vector& axis, double angle) {
+  const double s = std::sin(angle), half = std::sin(0.5 * angle), c = 2.0 * half * half;
+  const auto [x, y, z] = axis.at;
+  return {Vector{1.0 - c * (y * y + z * z), c * x * y - s * z, c * x * z + s * y},
+          Vector{c * x * y + s * z, 1.0 - c * (x * x + z * z), c * y * z - s * x},
+          Vector{c * x * z - s * y, c * y * z + s * x, 1.0 - c * (x * x + y * y)}};
+}
+
+Vector row_of(std::span<const double> values, std::size_t row) {
+  return {values[3 * row], values[3 * row + 1], values[3 * row + 2]};
+}
+
+}  // namespace
+
+Vector placed(const Moving& moving, const Vector& own) { return applied(moving.turn, own) + moving.origin; }
+
+Vector middle_of(const Nodes& nodes, const Moving& moving) { return placed(moving, nodes[moving.node].centre); }
+
+Vector as_seen(const Moving& moving, const Vector& functional) {
+  const Turn& turn = moving.turn;
+  return turn[0] * functional[0] + turn[1] * functional[1] + turn[2] * functional[2];
+}
+
+Motions::Motions(const Frames& frames, const Curves& curves) : frames_(frames), curves_(curves), chains_(1) {
+  for (std::size_t k = 0; k < frames.count(); k++) {
+    chains_.push_back(chains_[static_cast<std::size_t>(frames.parent[k])]);
+    chains_.back().push_back(k);
+    double most = 0.0;
+    for (std::size_t curve = 0; curve < curves.count(); curve++) {
+      for (std::size_t control = 0; control < 3; control++) {
+        const double q = curves.at(curve, control)[static_cast<std::size_t>(frames.column[k])];
+        most = std::max(most, std::abs(frames.factor[k] * q + frames.offset[k]));
+      }
+    }
+    slide_.push_back(frames.slides[k] != 0 ? most : 0.0);
+  }
+}
+
+const Motions::State& Motions::state(const Task& task) {
+  // One number for each motion and middle.
+  const std::uint64_t key = static_cast<std::uint64_t>(task.motion) << 41 |
+                            static_cast<std::uint64_t>(2 * task.number + 1) << (40 - task.level);
+  if (const auto found = states_.find(key); found != states_.end()) return found->second;
+  if (states_.size() >= MOST_STATES) states_.clear();
+  State& state = states_[key];
+  const double s = (2.0 * static_cast<double>(task.number) + 1.0) * task.half();
+  const auto motion = static_cast<std::size_t>(task.motion);
+  const auto first = curves_.at(motion, 0), middle = curves_.at(motion, 1), last = curves_.at(motion, 2);
+  state.turn.push_back({Vector{1.0, 0.0, 0.0}, Vector{0.0, 1.0, 0.0}, Vector{0.0, 0.0, 1.0}});
+  state.origin.push_back({});
+  for (std::size_t k = 0; k < frames_.count(); k++) {
+    const auto c = static_cast<std::size_t>(frames_.column[k]), parent = static_cast<std::size_t>(frames_.parent[k]);
+    const double q = (1 - s) * (1 - s) * first[c] + 2 * s * (1 - s) * middle[c] + s * s * last[c];
+    const double rate = (2 * (1 - s) * (middle[c] - first[c]) + 2 * s * (last[c] - middle[c])) * frames_.factor[k];
+    const double value = frames_.factor[k] * q + frames_.offset[k];
+    const Turn at{row_of(frames_.turn, 3 * k), row_of(frames_.turn, 3 * k + 1), row_of(frames_.turn, 3 * k + 2)};
+    const Turn before = product(state.turn[parent], at);
+    const Vector own = row_of(frames_.axis, k), axis = applied(before, own);
+    Vector origin = state.origin[parent] + applied(state.turn[parent], row_of(frames_.shift, k));
+    if (frames_.slides[k] != 0) origin = origin + axis * value;
+    state.rate.push_back(rate);
+    state.bend.push_back(std::abs(2 * (last[c] - 2 * middle[c] + first[c])) * std::abs(frames_.factor[k]));
+    state.turning.push_back(frames_.slides[k] != 0 ? Vector{} : axis * rate);
+    state.along.push_back(frames_.slides[k] != 0 ? axis * rate : cross(origin, state.turning.back()));
+    state.turn.push_back(frames_.slides[k] != 0 ? before : product(before, rotation_about(own, value)));
+    state.origin.push_back(origin);
+  }
+  return state;
+}
+
+Moved Motions::moved(const Nodes& nodes, const Task& task) {
+  const State& at = state(task);
+  Moved moved;
+  moved.half = task.half();
+  const std::int64_t both[2] = {task.first, task.second};
+  for (int side = 0; side < 2; side++) {
+    Moving& moving = moved.nodes[side];
+    const Node &node = nodes[both[side]], &other = nodes[both[1 - side]];
+    const auto &chain = chains_[static_cast<std::size_t>(node.frame)],
+               &its = chains_[static_cast<std::size_t>(other.frame)];
+    moving.node = both[side];
+    moving.turn = at.turn[static_cast<std::size_t>(node.frame)],
+    moving.origin = at.origin[static_cast<std::size_t>(node.frame)];
+    std::size_t shared = 0;
+    while (shared < chain.size() && shared < its.size() && chain[shared] == its[shared]) shared++;
+    // From the last joint back: how far the node is from each one.
+    double lever = node.reach, below = 0.0;
+    std::vector<double> levers(chain.size());
+    for (std::size_t i = chain.size(); i-- > shared;) {
+      const std::size_t k = chain[i];
+      lever += slide_[k];
+      levers[i] = lever;
+      lever += std::sqrt(squared_length(row_of(frames_.shift, k)));
+    }
+    for (std::size_t i = shared; i < chain.size(); i++) {
+      const std::size_t k = chain[i];
+      const bool slides = frames_.slides[k] != 0;
+      const double fastest = std::abs(at.rate[k]) + moved.half * at.bend[k], turns = slides ? 0.0 : fastest;
+      moved.stray += (slides ? 1.0 : levers[i]) * (fastest * (2.0 * below + turns) + at.bend[k]);
+      below += turns;
+      moving.spin = moving.spin + at.turning[k], moving.drift = moving.drift + at.along[k];
+    }
+  }
+  return moved;
+}
+
+double gap(const Nodes& nodes, const Moved& moved, const Vector& direction, By by) {
+  double extremes[2] = {0.0, 0.0};
+  for (int side = 0; side < 2; side++) {
+    const Moving& moving = moved.nodes[side];
+    const double sign = side == 0 ? 1.0 : -1.0;
+    const Vector across = cross(direction, moving.spin);
+    for (int end = 0; end < 2; end++) {
+      const double time = end == 0 ? moved.half : -moved.half;
+      const Vector functional = (direction + across * time) * sign, own = as_seen(moving, functional);
+      extremes[end] += by == By::BOXES ? nodes.box_reach(moving.node, own) : dot(own, nodes.farthest(moving.node, own));
+      extremes[end] += dot(functional, moving.origin) + sign * time * dot(direction, moving.drift);
+    }
+  }
+  return -std::max(extremes[0], extremes[1]) - 0.5 * moved.half * moved.half * moved.stray;
+}
+
+}  // namespace evenroad::certificates

@@ -1,0 +1,92 @@
+// How the nodes of a certificate move along curves, and by how much a direction separates two of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "certificates/nodes.hpp"
+
+namespace evenroad::certificates {
+
+/// A rotation by its rows.
+using Turn = std::array<Vector, 3>;
+
+/// The joints that move frames: joint k moves frame k + 1, whose parent comes before it.
+struct Frames {
+  std::span<const std::int64_t> parent, column;
+  std::span<const double> turn, shift, axis, factor, offset;
+  std::span<const std::uint8_t> slides;
+  std::size_t count() const { return parent.size(); }
+};
+
+/// Curves of degree 2, each by its three control points, (curves, 3, joints).
+struct Curves {
+  std::span<const double> points;
+  std::size_t joints = 0;
+  std::size_t count() const { return points.size() / (3 * joints); }
+  std::span<const double> at(std::size_t curve, std::size_t control) const {
+    return points.subspan((3 * curve + control) * joints, joints);
+  }
+};
+
+/// A pair of nodes during a part of a motion: the part `number` of 2^level.
+struct Task {
+  std::int64_t motion = 0, number = 0, level = 0, first = 0, second = 0, pair = 0;
+  double half() const { return 1.0 / static_cast<double>(std::uint64_t{2} << level); }
+  double begin() const { return static_cast<double>(motion) + 2.0 * static_cast<double>(number) * half(); }
+  double middle() const { return begin() + half(); }
+};
+
+/// One of the two nodes of a task in the middle of its stretch, and how it moves against the other one.
+struct Moving {
+  std::int64_t node = 0;
+  Turn turn{};
+  Vector origin{}, spin{}, drift{};
+};
+
+/// What is known of a task: its two nodes, half of its length, and how far they stray from their first order.
+struct Moved {
+  Moving nodes[2];
+  double half = 0.0, stray = 0.0;
+};
+
+/// Return a place of a node's frame in the root's frame.
+Vector placed(const Moving& moving, const Vector& own);
+
+/// Return the middle of a node's box in the root's frame.
+Vector middle_of(const Nodes& nodes, const Moving& moving);
+
+/// Return a functional of the root's frame as one of the node's own frame.
+Vector as_seen(const Moving& moving, const Vector& functional);
+
+class Motions {
+ public:
+  Motions(const Frames& frames, const Curves& curves);
+
+  Moved moved(const Nodes& nodes, const Task& task);
+
+ private:
+  struct State {
+    std::vector<Turn> turn;
+    std::vector<Vector> origin, turning, along;
+    std::vector<double> rate, bend;
+  };
+
+  const State& state(const Task& task);
+
+  Frames frames_;
+  Curves curves_;
+  std::vector<std::vector<std::size_t>> chains_;  // joints above each frame, from the root
+  std::vector<double> slide_;                     // how far each joint slides at most
+  std::unordered_map<std::uint64_t, State> states_;
+};
+
+enum class By { BOXES, CORNERS };
+
+/// Return by how much a unit direction separates the nodes of a task all the time, beyond what they stray.
+double gap(const Nodes& nodes, const Moved& moved, const Vector& direction, By by);
+
+}  // namespace evenroad::certificates

@@ -1,0 +1,162 @@
+// Nodes of a certificate, and their halves.
+#include "certificates/nodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace evenroad::certificates {
+
+namespace {
+
+constexpr double PER_METRE = 1048576.0;  // steps to which the middles of elements are rounded
+
+Vector vector_at(std::span<const double> values, std::int64_t row) {
+  const std::size_t at = 3 * static_cast<std::size_t>(row);
+  return {values[at], values[at + 1], values[at + 2]};
+}
+
+/// Return the axis along which some places reach farthest, the first of several.
+int widest_axis(const std::vector<Vector>& points) {
+  int widest = 0;
+  double most = -1.0;
+  for (int axis = 0; axis < 3; axis++) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vector& each : points) low = std::min(low, each[axis]), high = std::max(high, each[axis]);
+    if (high - low > most) most = high - low, widest = axis;
+  }
+  return widest;
+}
+
+}  // namespace
+
+void Nodes::add_whole(std::int64_t frame, std::span<const std::int64_t> shapes) {
+  std::vector<Part> parts;
+  for (const std::int64_t shape : shapes) {
+    Part& part = parts.emplace_back();
+    part.shape = static_cast<std::size_t>(shape);
+    part.rows.resize(shapes_[part.shape].count);
+    std::iota(part.rows.begin(), part.rows.end(), std::int64_t{0});
+  }
+  add(frame, std::move(parts));
+}
+
+std::int64_t Nodes::add(std::int64_t frame, std::vector<Part>&& parts) {
+  Node& node = nodes_.emplace_back();
+  node.frame = frame;
+  constexpr double FAR = std::numeric_limits<double>::infinity();
+  Vector low{FAR, FAR, FAR}, high{-FAR, -FAR, -FAR};
+  for (Part& part : parts) {
+    const Elements& shape = shapes_[part.shape];
+    const std::size_t each = shape.corners.size() / shape.count;
+    for (const std::int64_t row : part.rows) {
+      const auto from = shape.corners.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * each);
+      part.points.insert(part.points.end(), from, from + static_cast<std::ptrdiff_t>(each));
+    }
+    std::sort(part.points.begin(), part.points.end());
+    part.points.erase(std::unique(part.points.begin(), part.points.end()), part.points.end());
+    node.elements += part.rows.size(), node.corners += part.points.size();
+    for (const std::int64_t point : part.points) {
+      const Vector at = vector_at(shape.points, point);
+      node.reach = std::max(node.reach, std::sqrt(squared_length(at)) + shape.radius + shape.disc);
+      for (int axis = 0; axis < 3; axis++) {
+        const double aside = 1.0 - shape.axis[axis] * shape.axis[axis];
+        const double wide = shape.radius + shape.disc * std::sqrt(std::max(0.0, aside));
+        low[axis] = std::min(low[axis], at[axis] - wide), high[axis] = std::max(high[axis], at[axis] + wide);
+      }
+    }
+  }
+  node.centre = (low + high) * 0.5;
+  for (int axis = 0; axis < 3; axis++) node.box[axis][axis] = 0.5 * (high[axis] - low[axis]);
+  if (parts.size() == 1 && shapes_[parts[0].shape].is_box) {
+    const Elements& shape = shapes_[parts[0].shape];
+    const auto corner = [&](int number) {
+      return vector_at(shape.points, shape.corners[static_cast<std::size_t>(number)]);
+    };
+    node.centre = (corner(0) + corner(7)) * 0.5;
+    for (int axis = 0; axis < 3; axis++) {
+      const Vector edge = (corner(4 >> axis) - corner(0)) * 0.5;
+      node.box[axis] = edge * (1.0 + shape.radius / std::max(std::sqrt(squared_length(edge)), 1e-12));
+    }
+  }
+  node.parts = std::move(parts);
+  return static_cast<std::int64_t>(nodes_.size()) - 1;
+}
+
+Vector Nodes::middle(std::size_t shape, std::int64_t row) const {
+  const Elements& elements = shapes_[shape];
+  const std::size_t each = elements.corners.size() / elements.count;
+  Vector sum{};
+  for (std::size_t i = 0; i < each; i++) {
+    sum = sum + vector_at(elements.points, elements.corners[static_cast<std::size_t>(row) * each + i]);
+  }
+  for (double& value : sum.at) value /= static_cast<double>(each);
+  return sum;
+}
+
+std::int64_t Nodes::half(std::int64_t number, int side) {
+  if (nodes_[static_cast<std::size_t>(number)].halves[0] < 0) {
+    const Node& node = (*this)[number];
+    const std::int64_t frame = node.frame;
+    std::vector<Vector> middles;
+    for (const Part& part : node.parts) {
+      for (const std::int64_t row : part.rows) middles.push_back(middle(part.shape, row));
+    }
+    // Rounded: programs that differ in a last bit order the elements alike.  Ties are in the order of the file.
+    std::vector<double> along;
+    const int axis = widest_axis(middles);
+    for (const Vector& each : middles) along.push_back(std::rint(PER_METRE * each[axis]));
+    std::vector<std::size_t> order(along.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return along[a] < along[b]; });
+    std::vector<char> is_first(order.size());
+    for (std::size_t i = 0; i < order.size() / 2; i++) is_first[order[i]] = 1;
+    std::vector<Part> sides[2];
+    std::size_t element = 0;
+    for (const Part& part : node.parts) {
+      Part split[2] = {{part.shape, {}, {}}, {part.shape, {}, {}}};
+      for (const std::int64_t row : part.rows) split[is_first[element++] != 0 ? 0 : 1].rows.push_back(row);
+      for (int each = 0; each < 2; each++) {
+        if (!split[each].rows.empty()) sides[each].push_back(std::move(split[each]));
+      }
+    }
+    for (int each = 0; each < 2; each++) {
+      const std::int64_t added = add(frame, std::move(sides[each]));
+      nodes_[static_cast<std::size_t>(number)].halves[each] = added;
+    }
+  }
+  return nodes_[static_cast<std::size_t>(number)].halves[side];
+}
+
+Vector Nodes::farthest(std::int64_t number, const Vector& along) const {
+  const double size = std::sqrt(squared_length(along));
+  double best = -std::numeric_limits<double>::infinity();
+  Vector found{};
+  for (const Part& part : (*this)[number].parts) {
+    const Elements& shape = shapes_[part.shape];
+    double far = -std::numeric_limits<double>::infinity();
+    Vector here{};
+    for (const std::int64_t point : part.points) {
+      const Vector at = vector_at(shape.points, point);
+      const double reached = dot(at, along);
+      if (reached > far) far = reached, here = at;
+    }
+    const Vector across = along - shape.axis * dot(along, shape.axis);
+    const double aside = std::sqrt(squared_length(across));
+    far += shape.radius * size + shape.disc * aside;
+    if (!(far > best)) continue;
+    best = far;
+    found = here + along * (shape.radius / size);
+    if (shape.disc > 0.0 && aside > 1e-12 * size) found = found + across * (shape.disc / aside);
+  }
+  return found;
+}
+
+double Nodes::box_reach(std::int64_t number, const Vector& along) const {
+  const Node& node = (*this)[number];
+  return dot(along, node.centre) + std::abs(dot(along, node.box[0])) + std::abs(dot(along, node.box[1])) +
+         std::abs(dot(along, node.box[2]));
+}
+
+}  // namespace evenroad::certificates

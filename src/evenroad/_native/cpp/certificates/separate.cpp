@@ -1,0 +1,73 @@
+// GJK (Gilbert, Johnson, Keerthi 1988) between two nodes at both ends of a stretch.
+#include "certificates/separate.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace evenroad::certificates {
+
+namespace {
+
+constexpr int MOST_ROUNDS = 60;
+constexpr double NOTHING = 1e-11;  // length of a vector without a direction [m]
+
+Vector farthest_by(const Nodes& nodes, const Moving& moving, const Vector& own, By by) {
+  if (by == By::CORNERS) return nodes.farthest(moving.node, own);
+  const Node& node = nodes[moving.node];
+  Vector point = node.centre;
+  for (const Vector& half : node.box) point = point + half * (dot(half, own) < 0.0 ? -1.0 : 1.0);
+  return point;
+}
+
+/// Return the place of the second node less that of the first one that is least along a direction.
+Vector least_along(const Nodes& nodes, const Moved& moved, const Vector& direction, By by, When when) {
+  double least = std::numeric_limits<double>::infinity();
+  Vector found{};
+  for (int end = 0; end < (when == When::BOTH ? 2 : 1); end++) {
+    const double time = when == When::MIDDLE ? 0.0 : end == 0 ? moved.half : -moved.half;
+    Vector apart{};
+    for (int side = 0; side < 2; side++) {
+      const Moving& moving = moved.nodes[side];
+      const double sign = side == 0 ? 1.0 : -1.0;
+      const Vector functional = (direction + cross(direction, moving.spin) * time) * sign;
+      const Vector own = farthest_by(nodes, moving, as_seen(moving, functional), by);
+      Vector point = placed(moving, own);
+      point = point + (moving.drift + cross(moving.spin, point)) * time;
+      apart = apart - point * sign;
+    }
+    const double along = dot(apart, direction);
+    if (along < least) least = along, found = apart;
+  }
+  return found;
+}
+
+bool has(const robot::Simplex& simplex, const Vector& point) {
+  for (int i = 0; i < simplex.size; i++) {
+    if (squared_length(simplex.corners[i] - point) == 0.0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Separation separate(const Nodes& nodes, const Moved& moved, const Vector& first, By by, When when, double enough) {
+  Separation best{{1.0, 0.0, 0.0}, -std::numeric_limits<double>::infinity()};
+  robot::Simplex simplex;
+  Vector v = first;
+  if (!(squared_length(v) > NOTHING * NOTHING)) v = {1e-9, 1e-9, 1e-9};
+  for (int round = 0; round < MOST_ROUNDS; round++) {
+    const double size = std::sqrt(squared_length(v));
+    if (size < NOTHING) break;
+    const Vector unit = v * (1.0 / size), point = least_along(nodes, moved, unit, by, when);
+    const double gap = dot(point, unit);
+    if (gap > best.gap) best = {unit, gap};
+    if (best.gap > enough || simplex.size == 4 || has(simplex, point)) break;
+    if (simplex.size > 0 && size - gap < 1e-10 + 1e-7 * size) break;
+    simplex.corners[simplex.size++] = point;
+    robot::nearest(simplex, v);
+    if (simplex.size == 0) break;
+  }
+  return best;
+}
+
+}  // namespace evenroad::certificates

@@ -1,0 +1,19 @@
+// The direction along which two nodes of a certificate are farthest apart.
+#pragma once
+
+#include "certificates/motions.hpp"
+
+namespace evenroad::certificates {
+
+struct Separation {
+  Vector direction{};  // of length 1, from the first node to the second
+  double gap = 0.0;    // along it, to the first order: of what moves, at both ends of the stretch
+};
+
+enum class When { BOTH, MIDDLE };
+
+/// Search the direction from a first one, until the gap is `enough`: by GJK between the second set less the first one,
+/// which is the hull of what both nodes are at the ends of the stretch.
+Separation separate(const Nodes& nodes, const Moved& moved, const Vector& first, By by, When when, double enough);
+
+}  // namespace evenroad::certificates

@@ -1,0 +1,135 @@
+// Answers tasks in the order in which they come up, as docs/certificates.md says.
+#include "certificates/writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "certificates/separate.hpp"
+#include "common/time_limit.hpp"
+
+namespace evenroad::certificates {
+
+namespace {
+
+enum Answer : std::uint8_t { HALVE_TIME, HALVE_FIRST, HALVE_SECOND, BY_CENTRES, BY_BOXES, BY_CORNERS };
+
+constexpr double LEAST = 1e-9;     // what a checker demands of a gap [m]
+constexpr double SPARE = 2e-9;     // what a gap has over [m]
+constexpr double AMPLE = 1e-6;     // with so much over, no better direction is searched [m]
+constexpr double TOUCHING = 1e-7;  // nearer single elements touch [m]
+constexpr std::int64_t DEEPEST = 26;
+constexpr std::size_t MANY = 2000;  // with more corners, a node is halved before these are looked at
+
+double length(const Vector& v) { return std::sqrt(squared_length(v)); }
+
+double size_of(const Node& node) {
+  return std::sqrt(squared_length(node.box[0]) + squared_length(node.box[1]) + squared_length(node.box[2]));
+}
+
+class Writer {
+ public:
+  Writer(Nodes& nodes, Motions& motions, std::span<const Pair> pairs)
+      : nodes_(nodes), motions_(motions), pairs_(pairs) {}
+
+  Written written;
+
+  /// Answer one task.
+  Answer answer(const Task& task) {
+    const Moved moved = motions_.moved(nodes_, task);
+    const double keep = pairs_[static_cast<std::size_t>(task.pair)].keep;
+    const double enough = keep + LEAST + SPARE, strayed = 0.5 * moved.half * moved.half * moved.stray;
+    const Vector between = middle_of(nodes_, moved.nodes[1]) - middle_of(nodes_, moved.nodes[0]);
+    const double distance = length(between);
+    if (distance > 1e-3 && gap(nodes_, moved, between * (1.0 / distance), By::BOXES) > enough) return BY_CENTRES;
+    const Node &first = nodes_[task.first], &second = nodes_[task.second];
+    const bool many = std::max(first.corners, second.corners) > MANY;
+    const By by = many ? By::BOXES : By::CORNERS;
+    const Separation best = separate(nodes_, moved, between, by, When::BOTH, enough + strayed + AMPLE);
+    if (best.gap > 0.0) {
+      if (const auto answer = by_direction(moved, best.direction, enough, by)) return *answer;
+    }
+    if (many) return first.corners > MANY ? HALVE_FIRST : HALVE_SECOND;
+    const double still = separate(nodes_, moved, between, by, When::MIDDLE, 1e9).gap - keep;
+    const double travel = still - (best.gap - keep);
+    const bool both = first.elements == 1 && second.elements == 1;
+    const Answer halve = first.elements == 1                ? HALVE_SECOND
+                         : second.elements == 1             ? HALVE_FIRST
+                         : size_of(first) < size_of(second) ? HALVE_SECOND
+                                                            : HALVE_FIRST;
+    // What is no number touches, too.
+    if (both && (!(still >= TOUCHING) || task.level >= DEEPEST)) {
+      note(task, still);
+      return HALVE_TIME;
+    }
+    const double largest = std::max(size_of(first), size_of(second));
+    const bool by_parts =
+        !(still >= SPARE) || (travel > 8.0 * still && largest > 4.0 * travel) || task.level >= DEEPEST;
+    return by_parts && !both ? halve : HALVE_TIME;
+  }
+
+  /// Return whether a task matters: what begins after a touch does not.
+  bool matters(const Task& task) const { return touched_ < 0.0 || task.begin() < touched_; }
+
+  void push_halves(std::vector<Task>& tasks, const Task& task, Answer answer) {
+    for (int side = 0; side < 2; side++) {
+      Task half = task;
+      if (answer == HALVE_TIME) half.number = 2 * task.number + side, half.level++;
+      if (answer == HALVE_FIRST) half.first = nodes_.half(task.first, side);
+      if (answer == HALVE_SECOND) half.second = nodes_.half(task.second, side);
+      if (half.level <= DEEPEST) tasks.push_back(half);
+    }
+  }
+
+ private:
+  std::optional<Answer> by_direction(const Moved& moved, const Vector& direction, double enough, By by) {
+    // A checker reads it in single precision, and makes it one of length 1.
+    float stored[3];
+    Vector read{};
+    for (int axis = 0; axis < 3; axis++) stored[axis] = static_cast<float>(direction[axis]), read[axis] = stored[axis];
+    read = read * (1.0 / length(read));
+    std::optional<Answer> answer;
+    if (gap(nodes_, moved, read, By::BOXES) > enough) answer = BY_BOXES;
+    if (!answer && by == By::CORNERS && gap(nodes_, moved, read, By::CORNERS) > enough) answer = BY_CORNERS;
+    if (answer) written.directions.insert(written.directions.end(), stored, stored + 3);
+    return answer;
+  }
+
+  void note(const Task& task, double still) {
+    const double when = task.middle();
+    if (touched_ >= 0.0 && touched_ <= when) return;
+    touched_ = when;
+    written.touch = {task.motion, task.pair, when - static_cast<double>(task.motion), still};
+  }
+
+  Nodes& nodes_;
+  Motions& motions_;
+  std::span<const Pair> pairs_;
+  double touched_ = -1.0;  // where on the path, in motions
+};
+
+}  // namespace
+
+Written write(Nodes& nodes, Motions& motions, std::size_t curves, std::span<const Pair> pairs, std::size_t most) {
+  Writer writer(nodes, motions, pairs);
+  ClockWatch clock(64);
+  std::vector<Task> tasks;
+  for (std::size_t motion = 0; motion < curves; motion++) {
+    for (std::size_t pair = 0; pair < pairs.size(); pair++) {
+      tasks.push_back({static_cast<std::int64_t>(motion), 0, 0, pairs[pair].first, pairs[pair].second,
+                       static_cast<std::int64_t>(pair)});
+    }
+  }
+  for (std::size_t next = 0; next < tasks.size(); next++) {
+    clock.look();
+    if (tasks.size() > most) throw TooLong();
+    const Task task = tasks[next];
+    if (!writer.matters(task)) continue;
+    const Answer answer = writer.answer(task);
+    writer.written.answers.push_back(answer);
+    if (answer <= HALVE_SECOND) writer.push_halves(tasks, task, answer);
+  }
+  return std::move(writer.written);
+}
+
+}  // namespace evenroad::certificates

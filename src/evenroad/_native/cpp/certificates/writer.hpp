@@ -1,0 +1,37 @@
+// The answers of a certificate: for each pair of bodies and each motion, why they never touch; or where they first do.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "certificates/motions.hpp"
+
+namespace evenroad::certificates {
+
+/// Two nodes, and the distance that they are to keep [m].
+struct Pair {
+  std::int64_t first = 0, second = 0;
+  double keep = 0.0;
+};
+
+/// The first place of the path at which a pair is not proved apart.
+struct Touch {
+  std::int64_t motion = 0, pair = -1;
+  double share = 0.0;  // of the motion
+  double gap = 0.0;    // in that state, beyond what is to be kept; of what is in contact < 0
+};
+
+/// What a certificate holds; without a certificate `touch.pair` is >= 0.
+struct Written {
+  std::vector<std::uint8_t> answers;
+  std::vector<float> directions;
+  Touch touch;
+};
+
+/// Write the answers to at most `most` tasks; TooLong where there are more.
+Written write(Nodes& nodes, Motions& motions, std::size_t curves, std::span<const Pair> pairs, std::size_t most);
+
+struct TooLong {};
+
+}  // namespace evenroad::certificates

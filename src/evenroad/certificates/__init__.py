@@ -1,0 +1,3 @@
+"""Certificates: a proof that a path is free, in a file that another program checks."""
+
+from __future__ import annotations

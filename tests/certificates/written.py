@@ -1,0 +1,81 @@
+"""Certificates of the shipped robots, written once, and the same files with something changed."""
+
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
+
+import numpy as np
+
+import evenroad as er
+from evenroad.certificates.certify import Sources, certify
+from evenroad_verify.certificate import MAGIC
+from evenroad_verify.claim import Inputs, read_inputs
+from evenroad_verify.command import verify
+from evenroad_verify.errors import Refused
+
+
+class Written:
+    """A plan, its files and its certificate."""
+
+    def __init__(self, robot, scene, start, goal, clearance=0.0):
+        self.world = er.ArmWorld(robot, scene, clearance=clearance)
+        self.path = er.plan(self.world, start, goal).path
+        self.sources = Sources.named(robot, scene, None, None)
+        self.file = Path(mkdtemp()) / "plan.cert"
+        certify(self.world, self.path, self.sources, self.file)
+        self.data = self.file.read_bytes()
+
+    @property
+    def words(self):
+        """What is typed to check it."""
+        files = (self.file, self.sources.robot, self.sources.scene, self.sources.srdf)
+        return [str(each) for each in files if each is not None]
+
+    def inputs(self, scene=None, robot=None):
+        """Return the inputs, perhaps with other files in place of its own."""
+        return read_inputs(robot or self.sources.robot, scene or self.sources.scene, self.sources.srdf, {})
+
+
+@cache
+def box_reach():
+    return Written("ur5", "box-reach", "home", "inside")
+
+
+@cache
+def shelf():
+    goal = er.PoseGoal(er.Pose((0.62, -0.22, 0.25), rpy=(0, 1.5708, 0)), free_axis="z")
+    return Written("ur5", "shelf", "home", goal)
+
+
+def accepts(data, inputs: Inputs):
+    """Return whether a certificate is accepted."""
+    try:
+        verify(data, inputs)
+    except Refused:
+        return False
+    return True
+
+
+def parts_of(data):
+    """Return the header's lines, the waypoints, the packed answers and the directions, which may be changed."""
+    text, _, body = data[len(MAGIC) :].partition(b"\n\n")
+    lines = text.decode().split("\n")
+    said = dict(line.split(" ", 1) for line in lines)
+    joints = sum(line.startswith("joint ") for line in lines)
+    points = 8 * (int(said["motions"]) * int(said["degree"]) + 1) * joints
+    packed = (int(said["answers"]) + 2) // 3
+    waypoints = np.frombuffer(body[:points], "<f8").reshape(-1, joints).copy()
+    directions = np.frombuffer(body[points + packed :], "<f4").reshape(-1, 3).copy()
+    return lines, waypoints, bytearray(body[points : points + packed]), directions
+
+
+def joined(lines, waypoints, packed, directions):
+    """Return the file of such parts."""
+    head = MAGIC + "\n".join(lines).encode() + b"\n\n"
+    return head + waypoints.astype("<f8").tobytes() + bytes(packed) + directions.astype("<f4").tobytes()
+
+
+def with_digest(data, inputs: Inputs):
+    """Return a certificate as if it was written for these inputs."""
+    lines, *rest = parts_of(data)
+    return joined([f"inputs {inputs.digest}" if line.startswith("inputs ") else line for line in lines], *rest)
