@@ -5,20 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import groupby
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_extra
-from evenroad.adapters._ompl_states import format_of
+from evenroad.adapters._ompl_states import Ompl, format_of
 from evenroad.errors import InvalidValue
 from evenroad.space import SO3, BoxSpace, Circle, JointSpace, Product, Rectangle, Space
 
 ob = require_extra("ompl.base", "ompl", "evenroad.adapters.ompl")
 
 
-def ompl_space(space: Space) -> Any:
+def ompl_space(space: Space) -> Ompl:
     """Return OMPL's state space of one of ours.
 
     ``SE2`` and ``SE3`` become OMPL's own.  Joints that wrap become circles, other joints real vectors.  A map's
@@ -67,7 +66,7 @@ def ompl_space(space: Space) -> Any:
     )
 
 
-def space_of(space: Any) -> Space:
+def space_of(space: Ompl) -> Space:
     """Return our space of one of OMPL's: real vectors, SO2, SO3, SE2, SE3, or a compound of these.
 
     The metric is OMPL's.  Raises InvalidValue for another, or for real vectors without bounds.
@@ -84,20 +83,20 @@ def space_of(space: Any) -> Space:
     return Product(parts, tuple(space.getSubspaceWeights()), "sum")
 
 
-def _compound(parts: Sequence[Any], weights: Sequence[float]) -> Any:
+def _compound(parts: Sequence[Ompl], weights: Sequence[float]) -> Ompl:
     space = ob.CompoundStateSpace()
     for part, weight in zip(parts, weights, strict=True):
         space.addSubspace(part, weight)
     return space
 
 
-def _real(low: npt.ArrayLike, high: npt.ArrayLike) -> Any:
+def _real(low: npt.ArrayLike, high: npt.ArrayLike) -> Ompl:
     space = ob.RealVectorStateSpace(len(np.asarray(low)))
     space.setBounds(_bounds(low, high))
     return space
 
 
-def _bounds(low: npt.ArrayLike, high: npt.ArrayLike) -> Any:
+def _bounds(low: npt.ArrayLike, high: npt.ArrayLike) -> Ompl:
     rows = np.array([low, high], dtype=np.float64)
     bounds = ob.RealVectorBounds(rows.shape[1])
     for k, (least, most) in enumerate(rows.T.tolist()):

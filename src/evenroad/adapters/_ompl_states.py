@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 from evenroad._checks import require_extra
 from evenroad.errors import InvalidValue
 
 ob = require_extra("ompl.base", "ompl", "evenroad.adapters.ompl")
 
-Numbers = Sequence[float]
+Ompl: TypeAlias = Any
+"""A value of OMPL, whose bindings have no types."""
+Numbers: TypeAlias = Sequence[float]
 
 
 @dataclass(frozen=True)
@@ -20,11 +22,11 @@ class StateFormat:
     """Dimension of a state of one OMPL space, and functions that read and write its numbers in our order."""
 
     dim: int
-    read: Callable[[Any], list[float]]
-    write: Callable[[Any, Numbers], None]
+    read: Callable[[Ompl], list[float]]
+    write: Callable[[Ompl, Numbers], None]
 
 
-def format_of(space: Any) -> StateFormat:
+def format_of(space: Ompl) -> StateFormat:
     """Return the format of states of an OMPL space, or raise InvalidValue for an unknown one."""
     make = _FORMATS.get(type(space).__name__)
     if make is None:
@@ -33,57 +35,57 @@ def format_of(space: Any) -> StateFormat:
     return make(space)
 
 
-def _real_vector(space: Any) -> StateFormat:
+def _real_vector(space: Ompl) -> StateFormat:
     dim = space.getDimension()
 
-    def write(state: Any, q: Numbers) -> None:
+    def write(state: Ompl, q: Numbers) -> None:
         state[0:dim] = q
 
     return StateFormat(dim, lambda state: list(state[0:dim]), write)
 
 
-def _circle(space: Any) -> StateFormat:
-    def write(state: Any, q: Numbers) -> None:
+def _circle(space: Ompl) -> StateFormat:
+    def write(state: Ompl, q: Numbers) -> None:
         state.value = _turned(q[0])
 
     return StateFormat(1, lambda state: [state.value], write)
 
 
-def _rotation(space: Any) -> StateFormat:
-    def write(state: Any, q: Numbers) -> None:
+def _rotation(space: Ompl) -> StateFormat:
+    def write(state: Ompl, q: Numbers) -> None:
         state.w, state.x, state.y, state.z = q
 
     return StateFormat(4, lambda state: [state.w, state.x, state.y, state.z], write)
 
 
-def _plane_pose(space: Any) -> StateFormat:
-    def write(state: Any, q: Numbers) -> None:
+def _plane_pose(space: Ompl) -> StateFormat:
+    def write(state: Ompl, q: Numbers) -> None:
         state.setXY(q[0], q[1])
         state.setYaw(_turned(q[2]))
 
     return StateFormat(3, lambda state: [state.getX(), state.getY(), state.getYaw()], write)
 
 
-def _pose(space: Any) -> StateFormat:
+def _pose(space: Ompl) -> StateFormat:
     rotation = _rotation(space)
 
-    def read(state: Any) -> list[float]:
+    def read(state: Ompl) -> list[float]:
         return [state.getX(), state.getY(), state.getZ(), *rotation.read(state.rotation())]
 
-    def write(state: Any, q: Numbers) -> None:
+    def write(state: Ompl, q: Numbers) -> None:
         state.setXYZ(*q[:3])
         rotation.write(state.rotation(), q[3:])
 
     return StateFormat(7, read, write)
 
 
-def _compound(space: Any) -> StateFormat:
+def _compound(space: Ompl) -> StateFormat:
     parts = [format_of(space.getSubspace(i)) for i in range(space.getSubspaceCount())]
 
-    def read(state: Any) -> list[float]:
+    def read(state: Ompl) -> list[float]:
         return [number for i, part in enumerate(parts) for number in part.read(state[i])]
 
-    def write(state: Any, q: Numbers) -> None:
+    def write(state: Ompl, q: Numbers) -> None:
         at = 0
         for i, part in enumerate(parts):
             part.write(state[i], q[at : at + part.dim])
@@ -92,7 +94,7 @@ def _compound(space: Any) -> StateFormat:
     return StateFormat(sum(part.dim for part in parts), read, write)
 
 
-_FORMATS: dict[str, Callable[[Any], StateFormat]] = {
+_FORMATS: dict[str, Callable[[Ompl], StateFormat]] = {
     "RealVectorStateSpace": _real_vector,
     "SO2StateSpace": _circle,
     "SO3StateSpace": _rotation,

@@ -6,9 +6,9 @@ A configuration in Klamp't has one number per link, ours one per planned joint.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -29,6 +29,9 @@ klampt = require_extra("klampt", "klampt", "evenroad.adapters.klampt")
 _collide = require_extra("klampt.model.collide", "klampt", "evenroad.adapters.klampt")
 _cspace = require_extra("klampt.plan.cspace", "klampt", "evenroad.adapters.klampt")
 _motions = require_extra("klampt.model.trajectory", "klampt", "evenroad.adapters.klampt")
+
+Klampt: TypeAlias = Any
+"""A value of Klamp't, which has no types."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,15 +60,15 @@ class KlamptWorld(TestedAtStates):
         If there is no such robot or link.
     """
 
-    model: Any
+    model: Klampt
     robot: int | str = 0
     links: Sequence[str] | None = None
     resolution: float = 0.05
     space: JointSpace = field(init=False)
-    _robot: Any = field(init=False, repr=False)
+    _robot: Klampt = field(init=False, repr=False)
     _columns: list[int] = field(init=False, repr=False)
     _held: list[float] = field(init=False, repr=False)
-    _pairs: list[tuple[Any, Any]] = field(init=False, repr=False)
+    _pairs: list[tuple[Klampt, Klampt]] = field(init=False, repr=False)
     _states: FunctionWorld = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -152,7 +155,7 @@ def plan_on_points(
         space.close()
 
 
-def cspace_of(world: World, points: PointSet | npt.ArrayLike) -> Any:
+def cspace_of(world: World, points: PointSet | npt.ArrayLike) -> Klampt:
     """Return our world as a ``klampt.plan.cspace.CSpace``, for ``MotionPlan``; ``close()`` it afterwards.
 
     Checks, metric and motions are ours; samples are the points in order.  A planner that samples more of them raises
@@ -161,7 +164,7 @@ def cspace_of(world: World, points: PointSet | npt.ArrayLike) -> Any:
     return _OurSpace(world, points)
 
 
-def klampt_motion(robot: Any, motion: Trajectory | npt.ArrayLike, of: Robot | Sequence[str]) -> Any:
+def klampt_motion(robot: Klampt, motion: Trajectory | npt.ArrayLike, of: Robot | Sequence[str]) -> Klampt:
     """Return a motion of ours as a ``klampt.model.trajectory.RobotTrajectory``.
 
     Parameters
@@ -185,13 +188,13 @@ def klampt_motion(robot: Any, motion: Trajectory | npt.ArrayLike, of: Robot | Se
     return _motions.RobotTrajectory(robot, times, rows.tolist())
 
 
-def motion_of(motion: Any, of: Robot | Sequence[str]) -> tuple[Floats, Floats]:
+def motion_of(motion: Klampt, of: Robot | Sequence[str]) -> tuple[Floats, Floats]:
     """Return the times, (p,), and our configurations, (p, dim), of a ``RobotTrajectory``; `of` as before."""
     rows = np.array(motion.milestones, dtype=np.float64)
     return np.array(motion.times, dtype=np.float64), rows[:, _columns_of(motion.robot, _moved(of))]
 
 
-class _OurSpace(_cspace.CSpace):  # type: ignore[name-defined]
+class _OurSpace(_cspace.CSpace):  # type: ignore[misc, name-defined, unused-ignore]
     """A CSpace of our world."""
 
     def __init__(self, world: World, points: PointSet | npt.ArrayLike) -> None:
@@ -199,7 +202,8 @@ class _OurSpace(_cspace.CSpace):  # type: ignore[name-defined]
         space = world.space
         given = space.from_cube(points.points) if isinstance(points, PointSet) else points
         configurations = as_batch("points", given, space.dim)
-        self.world, self._rest = world, iter(configurations.tolist())
+        self.world = world
+        self._rest: Iterator[list[float]] = iter(configurations.tolist())
         # Klamp't takes the number of dimensions from the bounds.
         self.bound = [(0.0, 1.0)] * space.dim
 
@@ -230,14 +234,14 @@ def _moved(of: Robot | Sequence[str]) -> Sequence[str]:
     return [child[name] for name in of.group]
 
 
-def _columns_of(robot: Any, links: Sequence[str]) -> list[int]:
+def _columns_of(robot: Klampt, links: Sequence[str]) -> list[int]:
     numbers = {robot.link(i).getName(): i for i in range(robot.numLinks())}
     for link in links:
         require_known("link of Klamp't's robot", link, numbers)
     return [numbers[link] for link in links]
 
 
-def _driven(robot: Any) -> tuple[str, ...]:
+def _driven(robot: Klampt) -> tuple[str, ...]:
     """Return the links that a driver moves alone, in Klamp't's order."""
     drivers = [robot.driver(i) for i in range(robot.numDrivers())]
     for driver in drivers:
@@ -248,7 +252,7 @@ def _driven(robot: Any) -> tuple[str, ...]:
     return tuple(robot.link(driver.getAffectedLink()).getName() for driver in drivers)
 
 
-def _space_of(robot: Any, columns: Sequence[int]) -> JointSpace:
+def _space_of(robot: Klampt, columns: Sequence[int]) -> JointSpace:
     low, high = (np.array(row)[list(columns)] for row in robot.getJointLimits())
     wrapping = [robot.getJointType(i) == "spin" for i in columns]
     low, high = np.where(wrapping, -math.pi, low), np.where(wrapping, math.pi, high)
@@ -259,5 +263,5 @@ def _space_of(robot: Any, columns: Sequence[int]) -> JointSpace:
     return JointSpace(tuple(low.tolist()), tuple(high.tolist()), tuple(wrapping))
 
 
-def _is_part(body: Any, robot: Any) -> bool:
+def _is_part(body: Klampt, robot: Klampt) -> bool:
     return isinstance(body, klampt.RobotModelLink) and body.robot().index == robot.index

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,10 @@ from evenroad.trajectory import Trajectory
 from evenroad.world.function import FunctionWorld, TestedAtStates
 
 mujoco = require_extra("mujoco", "mjcf", "evenroad.adapters.mujoco")
+
+MjModel: TypeAlias = Any
+MjData: TypeAlias = Any
+"""Values of MuJoCo, whose types need the extra."""
 
 _STIFF = 40.0
 """Natural frequency of the servo that drives a joint, critically damped [1/s]."""
@@ -61,7 +65,7 @@ class MujocoWorld(TestedAtStates):
     True
     """
 
-    model: Any
+    model: MjModel
     joints: Sequence[str] | None = None
     resolution: float = 0.05
     qpos: npt.ArrayLike | None = None
@@ -123,7 +127,7 @@ class MujocoWorld(TestedAtStates):
         data = mujoco.MjData(self.model)
         return np.array([not self._touching(data, row) for row in q], dtype=np.bool_)
 
-    def _touching(self, data: Any, row: Floats) -> list[tuple[int, int]]:
+    def _touching(self, data: MjData, row: Floats) -> list[tuple[int, int]]:
         data.qpos[:] = self.qpos
         data.qpos[self._columns] = row
         mujoco.mj_kinematics(self.model, data)
@@ -189,7 +193,7 @@ def drive(world: MujocoWorld, trajectory: Trajectory) -> Driven:
     return Driven(positions, error, tuple(sorted(contacts)))
 
 
-def _forces(model: Any, data: Any, dofs: Sequence[int], accelerations: Floats) -> Floats:
+def _forces(model: MjModel, data: MjData, dofs: Sequence[int], accelerations: Floats) -> Floats:
     """Return the forces of joints that give them accelerations, against gravity and inertia, without contacts."""
     mujoco.mj_fwdPosition(model, data)
     mujoco.mj_fwdVelocity(model, data)
@@ -201,7 +205,7 @@ def _forces(model: Any, data: Any, dofs: Sequence[int], accelerations: Floats) -
     return total
 
 
-def touching_pairs(model: Any, data: Any, moved: Bools) -> list[tuple[int, int]]:
+def touching_pairs(model: MjModel, data: MjData, moved: Bools) -> list[tuple[int, int]]:
     """Return the pairs of geoms that overlap, at least one of which a planned joint moves."""
     contacts = data.contact
     pairs = zip(contacts.geom1.tolist(), contacts.geom2.tolist(), (contacts.dist < 0.0).tolist(), strict=True)
@@ -209,6 +213,6 @@ def touching_pairs(model: Any, data: Any, moved: Bools) -> list[tuple[int, int]]
     return [(one, other) for one, other, overlap in pairs if overlap and (moved[body[one]] or moved[body[other]])]
 
 
-def _name_of(model: Any, geom: int) -> str:
+def _name_of(model: MjModel, geom: int) -> str:
     own = model.geom(geom).name
     return str(own or f"{model.body(model.geom_bodyid[geom]).name or 'world'} (geom {geom})")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +20,7 @@ from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import as_batch, require_extra, require_positive
 from evenroad.adapters._ompl_spaces import ompl_space as ompl_space
 from evenroad.adapters._ompl_spaces import space_of as space_of
-from evenroad.adapters._ompl_states import StateFormat, format_of
+from evenroad.adapters._ompl_states import Ompl, StateFormat, format_of
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet
 from evenroad.space import Space
@@ -33,7 +33,7 @@ ob = require_extra("ompl.base", "ompl", "evenroad.adapters.ompl")
 og = require_extra("ompl.geometric", "ompl", "evenroad.adapters.ompl")
 
 
-def space_information(world: World) -> Any:
+def space_information(world: World) -> Ompl:
     """Return OMPL's SpaceInformation of our world, set up: the world checks its states and motions.
 
     Motions are free as its `motion_valid` says: on maps exactly, of an arm at states close together.  Those of
@@ -43,7 +43,7 @@ def space_information(world: World) -> Any:
     return _Information(world)
 
 
-def give_points(information: Any, points: PointSet | npt.ArrayLike) -> GivenStates:
+def give_points(information: Ompl, points: PointSet | npt.ArrayLike) -> GivenStates:
     """Make OMPL's PRM, PRM* and other planners that sample valid states take ours in order, and return the sampler.
 
     Parameters
@@ -70,7 +70,7 @@ def give_points(information: Any, points: PointSet | npt.ArrayLike) -> GivenStat
     return sampler
 
 
-def solve(planner: Any, start: npt.ArrayLike, goals: npt.ArrayLike, seconds: float = 10.0) -> Floats | None:
+def solve(planner: Ompl, start: npt.ArrayLike, goals: npt.ArrayLike, seconds: float = 10.0) -> Floats | None:
     """Return the path, (p, dim), of a planner of OMPL from the start, (dim,), to a goal, (dim,) or (g, dim); or None.
 
     Parameters
@@ -105,11 +105,11 @@ def solve(planner: Any, start: npt.ArrayLike, goals: npt.ArrayLike, seconds: flo
 
 
 def plan_on_points(
-    information: Any,
+    information: Ompl,
     start: npt.ArrayLike,
     goals: npt.ArrayLike,
     points: PointSet | npt.ArrayLike,
-    planner: Any = None,
+    planner: Ompl = None,
 ) -> Floats | None:
     """Grow OMPL's PRM on start, goals and the points alone, and return its shortest path, (p, dim), or None.
 
@@ -139,7 +139,7 @@ def plan_on_points(
     return _shortest(space, data, format_of(information.getStateSpace()), terminals)
 
 
-def ompl_path(information: Any, path: npt.ArrayLike) -> Any:
+def ompl_path(information: Ompl, path: npt.ArrayLike) -> Ompl:
     """Return waypoints, (p, dim), as an ``ompl.geometric.PathGeometric``."""
     space = information.getStateSpace()
     write = format_of(space).write
@@ -151,7 +151,7 @@ def ompl_path(information: Any, path: npt.ArrayLike) -> Any:
     return result
 
 
-def path_of(information: Any, path: Any) -> Floats:
+def path_of(information: Ompl, path: Ompl) -> Floats:
     """Return the waypoints, (p, dim), of an ``ompl.geometric.PathGeometric``; SE(3) as x, y, z, qw, qx, qy, qz."""
     read = format_of(information.getStateSpace()).read
     return np.array([read(state) for state in path.getStates()])
@@ -168,7 +168,7 @@ class OmplWorld:
     proof: ClassVar[str] = "resolution"
     """The proof of motions: nothing more is known of OMPL's validators."""
 
-    information: Any
+    information: Ompl
     space: Space = field(init=False)
     _format: StateFormat = field(init=False, repr=False)
 
@@ -202,10 +202,10 @@ class OmplWorld:
         return free
 
 
-class GivenStates(ob.ValidStateSampler):  # type: ignore[name-defined]
+class GivenStates(ob.ValidStateSampler):  # type: ignore[misc, name-defined, unused-ignore]
     """Returns free configurations, (n, dim), in order, until they are `used_up`."""
 
-    def __init__(self, information: Any, configurations: Floats) -> None:
+    def __init__(self, information: Ompl, configurations: Floats) -> None:
         super().__init__(information)
         self._configurations, self._next = configurations.tolist(), 0
         self._write = format_of(information.getStateSpace()).write
@@ -215,7 +215,7 @@ class GivenStates(ob.ValidStateSampler):  # type: ignore[name-defined]
         """Whether all have been returned."""
         return self._next >= len(self._configurations)
 
-    def sample(self, state: Any) -> bool:
+    def sample(self, state: Ompl) -> bool:
         """Write the next one into an OMPL state, or return False."""
         if self.used_up:
             return False
@@ -223,12 +223,12 @@ class GivenStates(ob.ValidStateSampler):  # type: ignore[name-defined]
         self._next += 1
         return True
 
-    def sampleNear(self, state: Any, near: Any, distance: float) -> bool:
+    def sampleNear(self, state: Ompl, near: Ompl, distance: float) -> bool:
         """Return False: a set of points cannot be sampled near a state."""
         return False
 
 
-class _Information(ob.SpaceInformation):  # type: ignore[name-defined]
+class _Information(ob.SpaceInformation):  # type: ignore[misc, name-defined, unused-ignore]
     """A SpaceInformation with the world it was made of."""
 
     def __init__(self, world: World) -> None:
@@ -241,14 +241,14 @@ class _Information(ob.SpaceInformation):  # type: ignore[name-defined]
         self.setup()
 
 
-class _Motions(ob.MotionValidator):  # type: ignore[name-defined]
+class _Motions(ob.MotionValidator):  # type: ignore[misc, name-defined, unused-ignore]
     """Checks motions in a world."""
 
-    def __init__(self, information: Any, world: World, read: Callable[[Any], list[float]]) -> None:
+    def __init__(self, information: Ompl, world: World, read: Callable[[Ompl], list[float]]) -> None:
         super().__init__(information)
         self._world, self._read = world, read
 
-    def checkMotion(self, a: Any, b: Any, *_: Any) -> bool:
+    def checkMotion(self, a: Ompl, b: Ompl, *_: Ompl) -> bool:
         endpoints = np.array([self._read(a), self._read(b)])
         return bool(self._world.motion_valid(endpoints[:1], endpoints[1:])[0])
 
@@ -261,7 +261,7 @@ def _as_goals(goals: npt.ArrayLike, dim: int) -> Floats:
     return as_batch("goals", rows, dim)
 
 
-def _shortest(space: Space, data: Any, states: StateFormat, terminals: Floats) -> Floats | None:
+def _shortest(space: Space, data: Ompl, states: StateFormat, terminals: Floats) -> Floats | None:
     """Return the shortest path over OMPL's roadmap from the start to a goal, the rows of `terminals`, or None."""
     configurations = [tuple(states.read(data.getVertex(v).getState())) for v in range(data.numVertices())]
     scratch = data.getSpaceInformation().allocState()

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +21,9 @@ from evenroad.geometry.pose import Pose
 from evenroad.planning.plan import plan
 from evenroad.planning.result import PlanResult
 from evenroad.poses.pose_goal import PoseGoal
+
+Environment: TypeAlias = Any
+"""An environment of another library, or a value of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,11 +49,11 @@ class SimulatedArm:
     names: tuple[str, ...]
     positions: Callable[[], Floats]
     base: Callable[[], Pose]
-    step: Callable[[Floats], Any]
+    step: Callable[[Floats], object]
     period: float
 
 
-def maniskill(env: Any, joints: Sequence[str] | None = None) -> SimulatedArm:
+def maniskill(env: Environment, joints: Sequence[str] | None = None) -> SimulatedArm:
     """Return the arm of a ManiSkill environment, made with ``control_mode="pd_joint_pos"`` and one scene.
 
     Parameters
@@ -85,7 +88,7 @@ def maniskill(env: Any, joints: Sequence[str] | None = None) -> SimulatedArm:
     )
 
 
-def robosuite(env: Any, robot: int = 0) -> SimulatedArm:
+def robosuite(env: Environment, robot: int = 0) -> SimulatedArm:
     """Return an arm of a robosuite environment whose controller is ``JOINT_POSITION`` with ``input_type: absolute``.
 
     Joints have no prefix here: ``joint1`` of ``robot0_joint1``.
@@ -169,7 +172,7 @@ def plan_to_pose(
 
 def drive(
     arm: SimulatedArm, result: PlanResult, gripper: npt.ArrayLike = (), *, settle: int = 5, **options: Any
-) -> tuple[float, Any]:
+) -> tuple[float, object]:
     """Step an environment along a plan; return how far off a joint was at the end, and what the last step returned.
 
     Parameters
@@ -193,7 +196,7 @@ def drive(
     columns = [trajectory.names.index(name) if name in trajectory.names else -1 for name in arm.names]
     standing = arm.positions()
     count = math.ceil(trajectory.duration / arm.period)
-    answer: Any = None
+    answer: object = None
     for time in [
         *np.minimum(arm.period * np.arange(1, count + 1), trajectory.duration),
         *[trajectory.duration] * settle,
@@ -214,7 +217,7 @@ def _chosen(joints: Sequence[str] | None, active: Sequence[str]) -> tuple[str, .
     return tuple(name for name in active if "finger" not in name and "gripper" not in name)
 
 
-def _row(values: Any, length: int) -> Floats:
+def _row(values: Environment, length: int) -> Floats:
     """Return numbers of one scene, (length,), of a tensor of any device with an axis for scenes or without."""
     plain = values.cpu() if hasattr(values, "cpu") else values
     row = np.array(plain, dtype=np.float64)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,18 @@ _STOPPINGS = 6
 """Number of times that corners become stops: each moves the times at which states are checked."""
 TRIES = _HALVINGS + _STOPPINGS
 
-_STATES = ("positions", "velocities", "accelerations")
+
+class TimedStates(NamedTuple):
+    """States of a robot at even times, with the proof of its motions and their measures, as of :class:`Trajectory`."""
+
+    times: Floats
+    positions: Floats
+    velocities: Floats
+    accelerations: Floats
+    deviation: float
+    stops: int
+    highest: dict[str, float]
+    proof: str
 
 
 def require_steps(steps: int, duration: float, step: float) -> None:
@@ -61,8 +72,8 @@ def less_at(cuts: Floats, corners: Floats, before: Floats, after: Floats, tried:
 
 
 def with_rests(
-    make: Callable[[Floats, Floats], dict[str, Any]], world: World | None, waypoints: Floats, cuts: Floats, refusal: str
-) -> dict[str, Any]:
+    make: Callable[[Floats, Floats], TimedStates], world: World | None, waypoints: Floats, cuts: Floats, refusal: str
+) -> TimedStates:
     """Return what `make` does of waypoints and cuts, made for each part of a path between two stops on its own.
 
     So a state lies at each stop, where else the motion from the state before to that after it cuts the corner.  Stops
@@ -76,16 +87,21 @@ def with_rests(
         parts = [make(waypoints[i : j + 1], cuts[i : j + 1]) for i, j in pairwise(stops)]
     except NotAvailable as error:
         raise NotAvailable(refusal) from error
-    joined = {name: np.concatenate([each[name][k > 0 :] for k, each in enumerate(parts)]) for name in _STATES}
-    lasts = np.cumsum([len(each["times"]) - 1 for each in parts])
-    joined["positions"][[0, *lasts]] = waypoints[stops]
-    free, proof = drivable(world, joined["positions"])
+    positions, velocities, accelerations = (
+        np.concatenate([rows[k > 0 :] for k, rows in enumerate(of_parts)])
+        for of_parts in zip(*(part[1:4] for part in parts), strict=True)
+    )
+    positions[[0, *np.cumsum([len(part.times) - 1 for part in parts])]] = waypoints[stops]
+    free, proof = drivable(world, positions)
     if not free.all():
         raise NotAvailable(refusal)
-    return joined | {
-        "times": parts[0]["times"][1] * np.arange(len(joined["positions"])),
-        "deviation": max(each["deviation"] for each in parts),
-        "stops": sum(each["stops"] for each in parts) + len(parts) - 1,
-        "highest": {name: max(each["highest"][name] for each in parts) for name in parts[0]["highest"]},
-        "proof": proof,
-    }
+    return TimedStates(
+        parts[0].times[1] * np.arange(len(positions), dtype=np.float64),
+        positions,
+        velocities,
+        accelerations,
+        max(part.deviation for part in parts),
+        sum(part.stops for part in parts) + len(parts) - 1,
+        {name: max(part.highest[name] for part in parts) for name in parts[0].highest},
+        proof,
+    )

@@ -7,9 +7,9 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import as_batch, as_row, require_known, require_positive
@@ -62,7 +62,7 @@ class Dynamics:
         more = Mass(link, require_positive("mass", mass), (at[0], at[1], at[2]))
         return replace(self, masses=(*self.masses, more))
 
-    def torques(self, q: Any, velocity: Any, acceleration: Any) -> Floats:
+    def torques(self, q: npt.ArrayLike, velocity: npt.ArrayLike, acceleration: npt.ArrayLike) -> Floats:
         """Return the torques that joints need at configurations for velocities and accelerations, (n, dim) each.
 
         Forces are summed up from the tips to the root (Newton and Euler; Luh, Walker and Paul 1980).
@@ -75,14 +75,15 @@ class Dynamics:
         dim = len(self.robot.group)
         given = (("q", q), ("velocity", velocity), ("acceleration", acceleration))
         here, rates, pushes = (as_batch(name, each, dim) for name, each in given)
-        return self.native.torques(here, rates, pushes)
+        torques: Floats = self.native.torques(here, rates, pushes)
+        return torques
 
     @once_property
     def native(self) -> TorqueLimits:
         """The limits of the native kernel."""
         return TorqueLimits(native_links(self.robot, self.masses), np.array(self.efforts), np.array(self.gravity))
 
-    def __getstate__(self) -> dict[str, Any]:
+    def __getstate__(self) -> dict[str, object]:
         return state_without(self, ["native"])
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -66,10 +67,15 @@ class InMotion:
         return np.ascontiguousarray(waypoints), (speeds[0], speeds[1])
 
 
-def _velocity(name: str, given: Any, limits: Limits) -> Floats:
+def _velocity(name: str, given: npt.ArrayLike | None, limits: Limits) -> Floats:
     """Return a velocity within limits, zero for None."""
     dim = len(limits.velocity)
-    row = np.zeros(dim) if given is None else np.array(as_row(f"the velocity at the {name}", given, dim))
+    # What is no row of numbers is refused there.
+    row = (
+        np.zeros(dim)
+        if given is None
+        else np.array(as_row(f"the velocity at the {name}", cast("Sequence[float]", given), dim))
+    )
     shares = np.abs(row) / np.array(limits.velocity)
     if shares.max() > 1.0:
         joint = int(shares.argmax())

@@ -7,7 +7,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,9 +23,14 @@ from evenroad.space.joints import SLACK
 from evenroad.trajectory.dynamics import Dynamics, native_links
 from evenroad.trajectory.limits_file import LimitsFile, read_limits
 
+if TYPE_CHECKING:
+    from evenroad._native.trajectory import Within
+
 SECONDS_TO_FULL_SPEED = 0.5
 """Default time from rest to full speed [s]: URDF has no acceleration."""
 
+_ANY_SPEED = 1e300
+"""Square of a speed that nothing reaches."""
 _KINDS = ("velocity", "acceleration", "jerk")
 _OPTIONAL = ("jerk", "deceleration")
 
@@ -65,7 +70,7 @@ class TipLimits:
         moving, dim = native_links(self.robot), len(self.robot.group)
         return NativeTip(moving, dim, fixed.frame - 1, fixed.translation, self.speed, self.acceleration)
 
-    def __getstate__(self) -> dict[str, Any]:
+    def __getstate__(self) -> dict[str, object]:
         return state_without(self, ["native"])
 
 
@@ -184,6 +189,14 @@ class Limits:
             None if self.torque is None else self.torque.native,
             None if self.tip is None else self.tip.native,
         )
+
+    def along(self, start: float, goal: float, share: float) -> Within:
+        """Return limits of the motion along a path that begins and ends at these speeds, for the native kernel.
+
+        They are the square of the largest speed, and a `share` of the limits of torques and of a tip.
+        """
+        highest = _ANY_SPEED if self.along_path is None else self.along_path**2
+        return highest, start, goal, self.further, share
 
     def too_heavy(self, q: Floats) -> NotAvailable:
         """Return the error of a path, (n, dim), along which torques cannot hold the robot, or hardly."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from evenroad._checks import require_known, require_positive
 from evenroad._understood import Kind, require_understood
@@ -71,14 +70,14 @@ def read_limits(path: Path, joints: Collection[str]) -> LimitsFile:
     return LimitsFile(rates, positions, scaling)
 
 
-def _is_limited(kind: str, row: dict[str, Any], where: str) -> bool:
+def _is_limited(kind: str, row: dict[str, object], where: str) -> bool:
     switch = row.get(f"has_{kind}_limits", True)
     if not isinstance(switch, bool):
         raise InvalidValue(f"has_{kind}_limits of {where} must be true or false, got {switch!r}")
     return switch and f"max_{kind}" in row
 
 
-def _rate(kind: str, row: dict[str, Any], where: str) -> float:
+def _rate(kind: str, row: dict[str, object], where: str) -> float:
     value = row[f"max_{kind}"]
     # Pilz's planner wants decelerations below 0.
     if kind == "deceleration" and isinstance(value, int | float) and not isinstance(value, bool):
@@ -86,7 +85,7 @@ def _rate(kind: str, row: dict[str, Any], where: str) -> float:
     return require_positive(f"max_{kind} of {where}", value)
 
 
-def _positions(row: dict[str, Any], where: str) -> tuple[float, float]:
+def _positions(row: dict[str, object], where: str) -> tuple[float, float]:
     pair = [-float("inf"), float("inf")]
     for kind, switch in enumerate(("position", "soft")):
         for end, names in enumerate(_POSITION):

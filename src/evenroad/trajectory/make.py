@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,7 @@ from evenroad._checks import as_batch, require_positive
 from evenroad._native.trajectory import bends_of, distances_to, largest_share
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory.blends import RoundedPath, rounded
-from evenroad.trajectory.corners import TRIES, drivable, less_at, require_steps, with_rests
+from evenroad.trajectory.corners import TRIES, TimedStates, drivable, less_at, require_steps, with_rests
 from evenroad.trajectory.in_motion import FARTHER, InMotion
 from evenroad.trajectory.limits import Limits
 from evenroad.trajectory.timed import TooFast, timed_path
@@ -106,14 +106,20 @@ def make_trajectory(
     if len(joints) != waypoints.shape[1]:
         raise InvalidValue(f"names must be {waypoints.shape[1]}, one a joint, got {len(joints)}")
     limits.require_positions(waypoints, joints)
-    said: dict[str, Any] = {
-        "names": joints,
-        "limits": limits,
-        "held": dict(held or {}),
-        "controller": tuple(controller),
-    }
+
+    def trajectory(waypoints: Floats, states: TimedStates) -> Trajectory:
+        return Trajectory(
+            names=joints,
+            limits=full,
+            waypoints=waypoints,
+            held=dict(held or {}),
+            controller=tuple(controller),
+            **states._asdict(),
+        )
+
+    full = limits
     if len(waypoints) < 2:
-        return Trajectory(**said, **_standing(world, waypoints[0]))
+        return trajectory(np.array([waypoints[0], waypoints[0]]), _standing(world, waypoints[0]))
     limits = limits if limits.jerk is None else limits.symmetric()
     window = 0.0 if limits.jerk is None else float(np.max(2.0 * np.divide(limits.acceleration, limits.jerk)))
     for farther in FARTHER:
@@ -122,31 +128,26 @@ def make_trajectory(
             break
         cuts = np.full(len(led), deviation)
         try:
-            return Trajectory(waypoints=led, **said, **timed_path(world, led, limits, cuts, step, speeds))
+            return trajectory(led, timed_path(world, led, limits, cuts, step, speeds))
         except TooFast:
             if limits.is_plain or farther == FARTHER[-1]:
                 raise
-
-    def averaged(part: Floats, cuts: Floats) -> dict[str, Any]:
-        return _averaged_path(world, part, limits, cuts, (window, step, deviation))
-
-    return Trajectory(waypoints=waypoints, **said, **averaged(waypoints, np.full(len(waypoints), deviation)))
+    cuts = np.full(len(waypoints), deviation)
+    return trajectory(waypoints, _averaged_path(world, waypoints, limits, cuts, (window, step, deviation)))
 
 
-def _standing(world: World | None, q: Floats) -> dict[str, Any]:
-    """Return the one state of a robot that stays at a configuration, (dim,), and what `timed_path` says besides."""
-    still, there = np.zeros((1, len(q))), np.array([q, q])
-    free, proof = drivable(world, there)
+def _standing(world: World | None, q: Floats) -> TimedStates:
+    """Return the one state of a robot that stays at a configuration, (dim,)."""
+    free, proof = drivable(world, np.array([q, q]))
     if not free.all():
         raise NotAvailable("the robot is not proved free where it stands")
-    states = {"positions": there[:1], "velocities": still, "accelerations": still}
-    said = {"deviation": 0.0, "stops": 0, "highest": {"velocity": 0.0, "acceleration": 0.0}, "proof": proof}
-    return {"times": np.zeros(1), "waypoints": there} | states | said
+    still = np.zeros((1, len(q)))
+    return TimedStates(np.zeros(1), q[np.newaxis], still, still, 0.0, 0, {"velocity": 0.0, "acceleration": 0.0}, proof)
 
 
 def _averaged_path(
     world: World | None, waypoints: Floats, limits: Limits, cuts: Floats, numbers: tuple[float, float, float]
-) -> dict[str, Any]:
+) -> TimedStates:
     """Return states, proof and measures as `timed_path` does, of a motion that is averaged over a window.
 
     The numbers are this window and a step [s], and the largest distance from the path.
@@ -162,16 +163,8 @@ def _averaged_path(
             free, proof = drivable(world, driven.positions)
         bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[driven.off > deviation + 1e-6]])
         if len(bad) == 0:
-            return {
-                "times": fine[::_FINER],
-                "positions": driven.positions,
-                "velocities": driven.velocities,
-                "accelerations": driven.accelerations,
-                "deviation": float(np.max(driven.off)),
-                "stops": len(curve.stops),
-                "highest": driven.highest,
-                "proof": proof,
-            }
+            off = float(np.max(driven.off))
+            return TimedStates(fine[::_FINER], *driven[:3], off, len(curve.stops), driven.highest, proof)
         if len(curve.corners) == 0:
             break
         before, after = (law.length_at(bad + later - 0.5 * window) for later in (0.0, step))

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._native.trajectory import timed
 from evenroad.errors import NotAvailable
-from evenroad.trajectory.corners import MOST_STATES, TRIES, drivable, less_at, require_steps, with_rests
+from evenroad.trajectory.corners import MOST_STATES, TRIES, TimedStates, drivable, less_at, require_steps, with_rests
 from evenroad.trajectory.limits import Limits, named_shares
 from evenroad.world import World
-
-_ANY_SPEED = 1e300
-"""Square of a speed that nothing reaches."""
 
 
 class TooFast(NotAvailable):
@@ -29,13 +25,12 @@ def timed_path(
     cuts: Floats,
     step: float,
     speeds: tuple[float, float] = (0.0, 0.0),
-) -> dict[str, Any]:
+) -> TimedStates:
     """Return states, proof and measures of the fastest trajectory, with corners within `cuts`, (p,), or less.
 
     It has these speeds along the path at start and goal.  Raises as :func:`evenroad.trajectory.make_trajectory`.
     """
-    highest = _ANY_SPEED if limits.along_path is None else limits.along_path**2
-    within = highest, *speeds, limits.further, 1.0
+    within = limits.along(*speeds, 1.0)
     for tried in range(TRIES):
         outcome, states, lengths, corners, stops, duration, deviation, used, further, is_slower_at_start, cuts = timed(
             waypoints, cuts, limits.most, within, (step, MOST_STATES)
@@ -45,19 +40,10 @@ def timed_path(
             require_steps(MOST_STATES + 1, duration, step)
         if outcome != "made":
             raise _refused(outcome, waypoints, limits, shares, "start" if is_slower_at_start else "goal")
-        positions, velocities, accelerations = states
-        free, proof = drivable(world, positions)
+        free, proof = drivable(world, states[0])
         if free.all():
-            return {
-                "times": (duration / (len(positions) - 1) if any(speeds) else step) * np.arange(len(positions)),
-                "positions": positions,
-                "velocities": velocities,
-                "accelerations": accelerations,
-                "deviation": deviation,
-                "stops": stops,
-                "highest": shares,
-                "proof": proof,
-            }
+            times: Floats = (duration / len(free) if any(speeds) else step) * np.arange(len(free) + 1, dtype=np.float64)
+            return TimedStates(times, *states, deviation, stops, shares, proof)
         if len(corners) == 0:
             break
         cuts = less_at(cuts, corners, lengths[:-1][~free], lengths[1:][~free], tried)

@@ -16,10 +16,6 @@ _WITHIN = 1.0 - 1e-3
 """Share of the limits used: between two grid points there may be a little more."""
 
 
-_ANY_SPEED = 1e300
-"""Square of a speed that nothing reaches."""
-
-
 @dataclass(frozen=True, eq=False)
 class TimeLaw:
     """Length along a path as a function of time; the acceleration along it is constant between `times`, (m,)."""
@@ -34,10 +30,6 @@ class TimeLaw:
     def duration(self) -> float:
         """Duration [s]."""
         return float(self.times[-1])
-
-    def is_slower_than(self, speeds: tuple[float, float]) -> bool:
-        """Return whether it has less than these speeds at start or goal."""
-        return any(own < (1.0 - 1e-9) * speed for own, speed in zip(self.speeds[[0, -1]], speeds, strict=True))
 
     def length_at(self, t: Floats) -> Floats:
         """Return the lengths along the path at times, (n,) [s]."""
@@ -72,17 +64,14 @@ class TimeLaw:
         return largest_shares(self.path.columns, self.columns, limits.most, samples)
 
 
-def fastest(path: RoundedPath, limits: Limits, speeds: tuple[float, float] = (0.0, 0.0), share: float = 1.0) -> TimeLaw:
-    """Return the fastest law with these speeds along the path at start and goal (the two passes of Pham and Pham 2018,
-    TOPP-RA, algorithm 1).
+def fastest(path: RoundedPath, limits: Limits, share: float = 1.0) -> TimeLaw:
+    """Return the fastest law from rest to rest (the two passes of Pham and Pham 2018, TOPP-RA, algorithm 1).
 
-    About 400 intervals make a whole path.  Of limits of a tip and of torques a share is used.  The law is slower at the
-    start where these limits do not let it be as fast.
+    A whole path has about 400 intervals.  The law uses a share of the limits of a tip and of torques.
     """
     velocity, faster, slower = limits.most
     most = velocity, _WITHIN * faster, _WITHIN * slower
-    highest = _ANY_SPEED if limits.along_path is None else limits.along_path**2
-    found = native_fastest(path.columns, path.stops, most, (highest, *speeds, limits.further, _WITHIN * share))
+    found = native_fastest(path.columns, path.stops, most, limits.along(0.0, 0.0, _WITHIN * share))
     if found is None:
         steady = TimeLaw(path, path.starts, path.starts, np.ones(len(path.starts)), np.zeros(len(path.bend)))
         raise limits.too_heavy(steady.at(np.linspace(0.0, path.length, 600))[0])

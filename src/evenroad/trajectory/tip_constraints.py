@@ -9,7 +9,8 @@ import numpy as np
 from evenroad._arrays import Bools, Floats
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.constraints.constrained_world import KeptWorld, keeps_of, kept_world
-from evenroad.poses.cartesian_line import STEP, CartesianLine, between, line_at, misses
+from evenroad.geometry.curve import STEP
+from evenroad.poses.cartesian_line import CartesianLine, between, line_at, misses
 from evenroad.poses.chain import Chain, chain_of, default_tip
 from evenroad.poses.constraint import Constraint, part_of
 from evenroad.space import Space
@@ -42,11 +43,13 @@ class ConstrainedWorld:
 
     def valid(self, q: Floats) -> Bools:
         """As the world's."""
-        return self.world.valid(q)
+        free: Bools = self.world.valid(q)
+        return free
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """As the world's."""
-        return self.world.motion_valid(a, b)
+        free: Bools = self.world.motion_valid(a, b)
+        return free
 
     def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free and keep the constraints: (p - 1,)."""
