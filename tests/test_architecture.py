@@ -36,7 +36,7 @@ MAY_IMPORT = {
     "constraints": BASE | {*VALUES, *OF_ARMS},
     "roadmap": BASE | {"points", "space", "world"},
     "planning": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap"},
-    "trajectory": BASE | {"space", "world", *OF_ARMS, "constraints"},
+    "trajectory": BASE | {"space", "geometry", "world", *OF_ARMS, "constraints"},
     "certificates": BASE | {*VALUES, *OF_ARMS},
     "task": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory"},
     "datasets": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
