@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from itertools import count
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -132,8 +131,10 @@ class ArmTrees:
         # Where a world is new, one with more room takes as long as a short plan.
         if smoothing == "apart" and found.ended == "solved" and found.counts[0] > 2:
             # Where there is no time to make the world with more room the path stays as trees found it.
-            with suppress(BudgetSpent):
+            try:
                 found.smooth_apart(inside.checker, inside.roomier.checker, by)
+            except BudgetSpent:
+                return found
         return found
 
     def improver(

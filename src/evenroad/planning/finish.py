@@ -26,12 +26,13 @@ def finished(problem: Problem, result: PlanResult) -> PlanResult:
         result = replace(result, timings={"goals": given.seconds, **result.timings})
     if result.path is None:
         return _with_proof(problem, result)
-    message = _with_name(problem, result) + _not_tested(problem)
-    if message != result.message:
-        result = replace(result, message=message)
+    if given is not None and len(problem.goals) > 1:
+        result = _with_name(given.names, result)
+    if untested := _not_tested(problem):
+        result = replace(result, message=f"{result.message}; not tested, as the scene allows: {untested}")
     if problem.certified:
         result = _certified(problem, result)
-    return _with_meshes(problem, result) if result.solved else result
+    return result if problem.model is None or not result.solved else _with_meshes(problem, result)
 
 
 def mesh_check(problem: Problem, path: Floats) -> MeshCheck | None:
@@ -58,12 +59,12 @@ def _with_proof(problem: Problem, result: PlanResult) -> PlanResult:
     return replace(result, message=f"{found.message}; {result.message.partition(': try')[0]}")
 
 
-def _with_name(problem: Problem, result: PlanResult) -> str:
-    """Return the message of a result, with the name of the goal where there are several."""
-    if result.goal_index is None or len(problem.goals) == 1 or not problem.goal_names:
-        return result.message
-    to, name = f"to goal {result.goal_index}", problem.goal_names[result.goal_index]
-    return result.message.replace(to, f"{to} ({name})", 1) if name else result.message
+def _with_name(names: tuple[str, ...], result: PlanResult) -> PlanResult:
+    """Return a result whose message has the name of its goal, if that has one."""
+    if result.goal_index is None or not names or not (name := names[result.goal_index]):
+        return result
+    to = f"to goal {result.goal_index}"
+    return replace(result, message=result.message.replace(to, f"{to} ({name})", 1))
 
 
 def _not_tested(problem: Problem) -> str:
@@ -71,8 +72,7 @@ def _not_tested(problem: Problem) -> str:
     world = problem.world
     if not isinstance(world, ArmWorld) or not (pairs := allowed_everywhere(world.robot, world.scene)):
         return ""
-    untested = ", ".join(f"{link!r} against the whole cloud {cloud!r}" for link, cloud in pairs)
-    return f"; not tested, as the scene allows: {untested}"
+    return ", ".join(f"{link!r} against the whole cloud {cloud!r}" for link, cloud in pairs)
 
 
 def _certified(problem: Problem, result: PlanResult) -> PlanResult:

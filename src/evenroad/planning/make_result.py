@@ -20,11 +20,7 @@ def make_result(problem: Problem, status: Status, message: str, **more: object) 
 
     `more` are attributes of the result; by default there is no path, and there are no points, no rule and no planner.
     """
-    # Written as they are: one field after the other, as a frozen class writes them, would take twice as long.
-    result = object.__new__(PlanResult)
-    vars(result).update(_DEFAULTS, counts={}, timings={}, deviation={}, status=status, message=message)
-    vars(result).update(more, start=problem.start, goals=problem.goals, world=problem.world)
-    return led(problem.world, result)
+    return _made(problem, {"status": status, "message": message, **more})
 
 
 def solution(
@@ -49,18 +45,29 @@ def solution(
         raw, raw_cost = path, cost
     elif raw_cost is None:
         raw_cost = path_length(raw, world.space)
-    return make_result(
+    return _made(
         problem,
-        Status.SOLVED,
-        message or path_message(path, cost, goal, len(problem.goals)),
-        goal_index=goal,
-        path=path,
-        milestone_path=raw,
-        proof=proof or proof_of(world),
-        cost=cost,
-        milestone_cost=raw_cost,
-        **more,
+        {
+            "status": Status.SOLVED,
+            "message": message or path_message(path, cost, goal, len(problem.goals)),
+            "goal_index": goal,
+            "path": path,
+            "milestone_path": raw,
+            "proof": proof or proof_of(world),
+            "cost": cost,
+            "milestone_cost": raw_cost,
+            **more,
+        },
     )
+
+
+def _made(problem: Problem, attributes: dict[str, object]) -> PlanResult:
+    # Written as they are: one field after the other, as a frozen class writes them, would take twice as long.
+    result = object.__new__(PlanResult)
+    world = problem.world
+    vars(result).update(_DEFAULTS, counts={}, timings={}, deviation={}, start=problem.start, goals=problem.goals)
+    vars(result).update(attributes, world=world)
+    return led(world, result)
 
 
 def unreached(problem: Problem) -> PlanResult | None:

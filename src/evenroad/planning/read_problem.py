@@ -26,12 +26,14 @@ from evenroad.scenes.robot_in_scene import in_scene, placed_scene
 from evenroad.scenes.scan import allowed_near_ends, open_everywhere, scene_seen_by
 from evenroad.scenes.scene import Scene
 from evenroad.scenes.scene_file import load_scene
-from evenroad.scenes.states import as_configuration, at_states, configuration
+from evenroad.scenes.states import as_configuration, at_states
 
 if TYPE_CHECKING:
     from evenroad.world import GridMap
 
 _ANY_PATH: Wanted = {}
+_NAMED = str, Pose, PoseGoal
+"""Types of goals that have a text."""
 OF_MAP = ("radius", "clearance", "unknown_is_free", "rules")
 OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
 
@@ -140,7 +142,7 @@ def arm_problem(
         if reading.held:
             robot = with_group(robot, robot.group, {**robot.held, **reading.held})
         scene = scene_seen_by(robot, scene)
-        first = _configuration(robot, scene, "start", start, reading)
+        first = as_configuration(robot, start, scene, name="start", degrees=reading.degrees)
         _refuse_what_is_none(robot, scene, goals, reading)
         robot = standing_at(robot, first)
         # Where a goal pose is not reached, contacts near the endpoints stay allowed.
@@ -162,14 +164,14 @@ def problem_in(
     wanted: Wanted = _ANY_PATH,
 ) -> Problem:
     """Return the problem of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
-    goals = _goal_list(goal, world.dim)
-    first = _configuration(world.robot, world.scene, "start", start, reading)
+    robot, scene = world.robot, world.scene
+    goals = _goal_list(goal, len(robot.group))
+    first = as_configuration(robot, start, scene, name="start", degrees=reading.degrees)
     world = reaching(world, first)
-    if len(goals) == 1 and not isinstance(goals[0], str | Pose | PoseGoal):
+    if len(goals) == 1 and not isinstance(goals[0], _NAMED):
         # Most goals: numbers have no name, and no other posture is meant.
-        return Problem(
-            world, first, as_configuration(world.robot, goals[0], world.scene, name="goal")[np.newaxis], **wanted
-        )
+        last = as_configuration(robot, goals[0], scene, name="goal")
+        return Problem(world, first, last.reshape(1, -1), **wanted)
     given = _goals_in(world, first, goals, reading)
     return Problem(world, first, given.configurations, given=given, **wanted)
 
@@ -182,7 +184,7 @@ def reaching(world: ArmWorld, start: Floats) -> ArmWorld:
 
 def _goals_in(world: ArmWorld, start: Floats, goals: list[Goal], reading: Reading) -> Goals:
     def read(target: ConfigurationLike) -> Floats:
-        return _configuration(world.robot, world.scene, "goal", target, reading)
+        return as_configuration(world.robot, target, world.scene, name="goal", degrees=reading.degrees)
 
     return goals_of(world, start, goals, read, reading.tip, reading.frame)
 
@@ -191,7 +193,7 @@ def _refuse_what_is_none(robot: Robot, scene: Scene, goals: list[Goal], reading:
     """Refuse values that are neither a configuration nor a pose, before a world is compiled."""
     for target in goals:
         if not isinstance(target, Pose | PoseGoal):
-            _configuration(robot, scene, "goal", target, reading)
+            as_configuration(robot, target, scene, name="goal", degrees=reading.degrees)
     require_tips(robot, goals, reading.tip, reading.frame)
 
 
@@ -208,10 +210,3 @@ def _goal_list(goal: Goal | Sequence[Goal], dim: int) -> list[Goal]:
     ):
         return [goal]  # type: ignore[list-item]
     return [each for part in goal for each in (_goal_list(part, dim) if isinstance(part, np.ndarray) else [part])]
-
-
-def _configuration(robot: Robot, scene: Scene, name: str, target: ConfigurationLike, reading: Reading) -> Floats:
-    """Return a configuration, (dim,), from a text, joint values or numbers; `name` names it in errors."""
-    if isinstance(target, str):
-        return configuration(robot, target, scene, degrees=reading.degrees)
-    return as_configuration(robot, target, scene, name=name)

@@ -124,7 +124,9 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
     return q
 
 
-def as_configuration(robot: Robot, q: ConfigurationLike, scene: Scene | None = None, *, name: str = "q") -> Floats:
+def as_configuration(
+    robot: Robot, q: ConfigurationLike, scene: Scene | None = None, *, name: str = "q", degrees: bool = False
+) -> Floats:
     """Return a configuration, (dim,) [rad or m], from a text, a mapping or numbers; `name` names it in errors.
 
     Parameters
@@ -132,6 +134,8 @@ def as_configuration(robot: Robot, q: ConfigurationLike, scene: Scene | None = N
     q : array_like, shape (dim,), mapping or str
         Numbers in the order of the group; or joint -> value, where joints that are left out are at 0, or the nearest to
         it within limits; or a text as :func:`configuration` takes it.
+    degrees : bool
+        Angles in a text are degrees.
 
     Raises as :func:`configuration` of texts; InvalidValue for another number of finite numbers, and for a joint
     outside of the group elsewhere than where the robot holds it; UnknownName for a joint that is not there.  Numbers
@@ -139,7 +143,7 @@ def as_configuration(robot: Robot, q: ConfigurationLike, scene: Scene | None = N
     """
     require_robot(robot)
     if isinstance(q, str):
-        return configuration(robot, q, scene)
+        return configuration(robot, q, scene, degrees=degrees)
     if not isinstance(q, np.ndarray) and isinstance(q, Mapping):
         neutral = {joint.name: joint.neutral for joint in robot.joints if joint.name in robot.group}
         return _in_order(robot, name, {**neutral, **{str(joint): _number(name, q, joint) for joint in q}})
