@@ -7,7 +7,7 @@ import os
 from collections.abc import Collection, Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from types import ModuleType
 
 import numpy as np
 
@@ -92,7 +92,7 @@ def as_file(what: str, path: object, instead: str = "") -> Path:
     return Path(path)
 
 
-def require_extra(module: str, extra: str, what: str) -> Any:
+def require_extra(module: str, extra: str, what: str) -> ModuleType:
     """Return an optional module, e.g. ``coal`` of the extra ``mesh``, or raise NotAvailable: `what` needs it."""
     try:
         return import_module(module)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterable
 from functools import cached_property, wraps
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar, overload
 
 Made = TypeVar("Made")
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -33,12 +33,17 @@ def once(function: Callable[..., Made]) -> Callable[..., Made]:
 class once_property(cached_property[Made]):
     """A cached property with the same value in all threads."""
 
-    def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
+    @overload
+    def __get__(self, instance: None, owner: type | None = None) -> Self: ...
+    @overload
+    def __get__(self, instance: object, owner: type | None = None) -> Made: ...
+    def __get__(self, instance: object, owner: type | None = None) -> Self | Made:
         """Return the value of an instance, or the property itself of a class."""
         if instance is None:
             return self
         assert self.attrname is not None
-        return instance.__dict__.setdefault(self.attrname, self.func(instance))
+        made: Made = vars(instance).setdefault(self.attrname, self.func(instance))
+        return made
 
 
 def state_without(value: object, made: Iterable[str]) -> dict[str, Any]:

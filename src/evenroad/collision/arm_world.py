@@ -19,7 +19,7 @@ from evenroad._native.robot import Scene as NativeScene
 from evenroad._shared import once_property
 from evenroad._time_limit import require_time_for
 from evenroad.collision.coerce import as_robot, as_scene
-from evenroad.collision.distance import LEAST, MOST, WITH, Distance
+from evenroad.collision.distance import LEAST, MOST, WITH, Distance, Pair
 from evenroad.collision.native_scene import native_scene
 from evenroad.collision.numbered_scene import NumberedScene
 from evenroad.collision.prepared_robots import Prepared, prepared
@@ -326,18 +326,15 @@ class ArmWorld(Changes, OneOrMany):
         metres = np.where(bare.valid(batch), np.maximum(metres, LEAST), 0.0)
         return Distance(float(metres[0]), pairs[0]) if is_one(q) else Distance(metres, pairs)
 
-    def _distances(self, q: Floats, *, to_itself: bool = True) -> Distance:
+    def _distances(self, q: Floats, *, to_itself: bool = True) -> tuple[Floats, list[Pair | None]]:
         """Return the distances of configurations, (n, dim); without `to_itself` those from obstacles alone."""
         metres, nearest = self._measuring.distances(q, MOST, to_itself)
-        return Distance(
-            metres, [self._names(WITH[kind], *of, anew=True) if kind else None for kind, *of in nearest.tolist()]
-        )
+        return metres, [self._names(WITH[kind], *of, anew=True) if kind else None for kind, *of in nearest.tolist()]
 
     def nearest_along(self, path: Floats) -> tuple[str, str] | None:
         """Return the link and the obstacle that come nearest to each other along a path, (p, dim); None beyond 1 m."""
         metres, pairs = self._unpadded._distances(resample(path, self.space, self.resolution / 4.0)[0], to_itself=False)
-        pair: tuple[str, str] | None = pairs[int(metres.argmin())]
-        return pair
+        return pairs[int(metres.argmin())]
 
     def path_clearance(self, path: Floats) -> float | None:
         """Return the distance from obstacles that a path, (p, dim), is proved to keep, to 0.1 mm; None if none [m].

@@ -50,7 +50,8 @@ class CertifiedWorld:
 
     def valid(self, q: Floats) -> Bools:
         """Check configurations, (n, dim), in the wrapped world: (n,)."""
-        return self.world.valid(q)
+        free: Bools = self.world.valid(q)
+        return free
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,)."""

@@ -8,7 +8,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import product
-from typing import Any, NamedTuple
+from types import ModuleType
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -28,6 +29,8 @@ from evenroad.scenes.scene import Scene
 from evenroad.space import JointSpace
 from evenroad.world.function import FunctionWorld, TestedAtStates
 
+Solid: TypeAlias = Any
+"""A shape of coal's, which has no types."""
 _ROUNDING = 1e-9
 """Added to boxes: more than double precision loses on a robot of many metres [m]."""
 
@@ -74,9 +77,9 @@ class CoalWorld(EngineWorld):
     :class:`EngineWorld`.
     """
 
-    _coal: Any = field(init=False, repr=False)
-    _solids: list[Any] = field(init=False, repr=False)
-    _obstacles: list[tuple[Any, Any]] = field(init=False, repr=False)
+    _coal: ModuleType = field(init=False, repr=False)
+    _solids: list[Solid] = field(init=False, repr=False)
+    _obstacles: list[tuple[Solid, object]] = field(init=False, repr=False)
     _tests: list[tuple[int, int, bool]] = field(init=False, repr=False)
     _boxes: _Boxes = field(init=False, repr=False)
 
@@ -150,7 +153,7 @@ class CoalWorld(EngineWorld):
         centres = placed[..., :3, 3] + (turns @ boxes.middle[:, np.newaxis, :, np.newaxis])[..., 0]
         reach = np.linalg.norm(boxes.half, axis=1)
         apart = centres[boxes.second] - centres[boxes.first]
-        near = (apart**2).sum(axis=2) <= ((reach[boxes.first] + reach[boxes.second]) ** 2)[:, np.newaxis]
+        near: Bools = (apart**2).sum(axis=2) <= ((reach[boxes.first] + reach[boxes.second]) ** 2)[:, np.newaxis]
         test, row = np.nonzero(near)
         one, other = boxes.first[test], boxes.second[test]
         by, first, second = apart[test, row][:, np.newaxis], turns[one, row], turns[other, row]
@@ -201,11 +204,11 @@ def tests_of(robot: Robot, scene: Scene, shapes: Sequence[Shape]) -> list[tuple[
     return tests
 
 
-def _transform(coal: Any, pose: Floats) -> Any:
+def _transform(coal: ModuleType, pose: Floats) -> object:
     return coal.Transform3s(np.ascontiguousarray(pose[:3, :3]), pose[:3, 3].copy())
 
 
-def coal_shape(coal: Any, shape: Shape) -> Any:
+def coal_shape(coal: ModuleType, shape: Shape) -> Solid:
     """Return a shape in its own frame: round ones and boxes exactly, meshes triangle by triangle.
 
     A mesh stays what it is: where it is not convex, what coal builds with ``buildConvexRepresentation`` lets
@@ -229,12 +232,12 @@ def with_contacts(request: Any) -> Any:
     return request
 
 
-def require_coal() -> Any:
+def require_coal() -> ModuleType:
     """Return the module coal; NotAvailable if it is not installed."""
     return require_extra("coal", "mesh", "checking meshes")
 
 
-def tree_of(coal: Any, mesh: TriangleMesh) -> Any:
+def tree_of(coal: ModuleType, mesh: TriangleMesh) -> Solid:
     """Return coal's tree of oriented boxes over the triangles of a mesh; its surface as it is, nothing made convex.
 
     Raises BrokenFile if coal leaves triangles out.

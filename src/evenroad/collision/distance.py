@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+from evenroad._arrays import Floats
+
+Pair = tuple[str, str]
 
 
 class Distance(NamedTuple):
@@ -17,8 +21,8 @@ class Distance(NamedTuple):
         Which two: a link and an obstacle, or two links; None where nothing is nearer than 1 m.
     """
 
-    metres: Any
-    pair: Any
+    metres: float | Floats
+    pair: Pair | list[Pair | None] | None
 
 
 MOST = 1.0

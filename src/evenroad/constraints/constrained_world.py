@@ -176,7 +176,8 @@ class KeptWorld:
 
     def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), are free and keep the constraints: (n,)."""
-        return self.world.valid(q) & (self.shares(as_batch("q", q, self.space.dim)) <= 1.0).all(axis=1)
+        free: Bools = self.world.valid(q) & (self.shares(as_batch("q", q, self.space.dim)) <= 1.0).all(axis=1)
+        return free
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from rows of `a` to those of `b`, (m, dim) arrays, are free and keep them: (m,)."""
@@ -242,7 +243,7 @@ class KeptWorld:
 
     def largest(self, path: Floats) -> Floats:
         """Return bounds on the residuals along a path, (p, dim), as shares of limits: (c,)."""
-        return self.bounds(path).max(axis=0)
+        return np.asarray(self.bounds(path).max(axis=0))
 
     def deviation(self, largest: Floats) -> dict[str, float]:
         """Return by how much each constraint is off where residuals are such shares of limits, (c,)."""

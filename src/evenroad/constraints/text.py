@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
 
 from evenroad.constraints.differential_drive import DifferentialDrive
 from evenroad.constraints.linked import KeepJoints, KeepOnCircle, KeepTogether
@@ -25,6 +24,7 @@ KINDS: dict[str, tuple[Callable[..., Constraint], tuple[str, ...], int, tuple[st
 }
 """First word -> the constraint, what its next words are, how many of these it needs, and what it has by name."""
 
+_Value = str | float | tuple[float, ...]
 _POINTS = ("through", "low", "high", "centre")
 _NAMES = ("tip", "first", "second", "x", "y", "heading")
 
@@ -60,7 +60,7 @@ def constraint_of(text: str, *, degrees: bool = False) -> Constraint:
     if kind not in KINDS:
         raise UnknownName.among("constraint", kind, [*KINDS, "joints"])
     make, names, needed, options = KINDS[kind]
-    values: dict[str, Any] = {}
+    values: dict[str, _Value] = {}
     for word in given:
         name, equals, value = word.partition("=")
         if not equals:
@@ -81,7 +81,7 @@ def constraints_of(texts: Sequence[str], *, degrees: bool = False) -> list[Const
     return [constraint_of(text, degrees=degrees) for text in texts]
 
 
-def _value(kind: str, name: str, text: str, degrees: bool) -> Any:
+def _value(kind: str, name: str, text: str, degrees: bool) -> _Value:
     if name in _NAMES:
         return text
     if name in _POINTS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, cast
+from typing import ClassVar, cast
 
 import numpy as np
 
@@ -79,7 +79,7 @@ class FunctionWorld(OneOrMany):
     """The proof of a motion: a function says nothing of what lies between two states."""
 
     space: Space
-    is_valid: Callable[[Floats], Any]
+    is_valid: Callable[[Floats], object]
     resolution: float | Sequence[float] | None = None
     vectorised: bool | None = None
     name: str | None = None
@@ -238,7 +238,7 @@ class TestedAtStates(OneOrMany):
         return self._states.motion_valid(a, b)
 
 
-def _as_space(space: Any) -> Space:
+def _as_space(space: object) -> Space:
     """Return a space, or the box of bounds (low, high), one pair a coordinate."""
     if hasattr(space, "from_cube"):
         return cast(Space, space)

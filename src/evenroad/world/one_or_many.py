@@ -105,7 +105,7 @@ class OneOrMany:
         """
         raise NotImplementedError
 
-    def _row(self, q: Any) -> Floats:
+    def _row(self, q: object) -> Floats:
         """Return one configuration as numbers, (dim,)."""
         try:
             return np.asarray(q, dtype=np.float64)
@@ -118,7 +118,7 @@ def one_or_many(check: Check) -> Check:
     check = explains_calls(check)
 
     @wraps(check)
-    def checked(self: OneOrMany, *q: Any, **named: Any) -> Any:
+    def checked(self: OneOrMany, *q: object, **named: object) -> object:
         if not (q and all(map(is_one, q))):
             return check(self, *q, **named)
         rows = [self._row(each)[np.newaxis] for each in q]
@@ -127,7 +127,7 @@ def one_or_many(check: Check) -> Check:
     return checked  # type: ignore[return-value]
 
 
-def is_one(q: Any) -> bool:
+def is_one(q: object) -> bool:
     """Return whether this is one configuration, and not many."""
     if isinstance(q, np.ndarray):
         return q.ndim == 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch
 from evenroad.world.gridmap.frame import MapFrame
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 
 @explains_calls
@@ -74,7 +77,7 @@ class CellGrid:
         corners = self.space.from_cube(np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]))
         return corners.min(axis=0), corners.max(axis=0)
 
-    def plot(self, path: str | os.PathLike[str] | None = None) -> Any:
+    def plot(self, path: str | os.PathLike[str] | None = None) -> Image.Image:
         """Return a picture of the map, of a pixel a cell or more.
 
         Parameters
@@ -134,7 +137,7 @@ class CellGrid:
         [True, False]
         """
         column, row = self.frame.to_pixels(as_batch("q", q, 2)).T
-        return (column >= 0.0) & (column <= self.frame.cols) & (row >= 0.0) & (row <= self.frame.rows)
+        return np.asarray((column >= 0.0) & (column <= self.frame.cols) & (row >= 0.0) & (row <= self.frame.rows))
 
     def cropped(self) -> Self:
         """Return the map without rows and columns beyond its outermost free cells, in the same position.

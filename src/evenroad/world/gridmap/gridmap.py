@@ -6,7 +6,7 @@ import hashlib
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -127,7 +127,7 @@ class DiskWorld(OneOrMany):
         radius = require_positive("radius", self.radius)
         set_fields(self, radius=radius, disk=_disk_on(self.grid, radius))
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[type[DiskWorld], tuple[object, ...]]:
         """Return what a copy is made of, here or in another process: it makes its own tables."""
         return type(self), (self.grid, self.radius, self.margin)
 
@@ -314,7 +314,7 @@ class DiskWorld(OneOrMany):
 
     def _pixels(self, q: Floats) -> Floats:
         """Return the pixel coordinates (column, row) of one map point."""
-        return self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2))[0]
+        return np.ravel(self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2)))
 
 
 def _disk_on(grid: GridMap, radius: float) -> Disk:

@@ -23,6 +23,7 @@ LARGEST_IMAGE = 100_000_000
 """Largest number of pixels of a map: 10 000 x 10 000.  Where a disk plans all over it, its world takes 0.1 GB."""
 DARK = 128.0
 """Luminance, of 255, below which a bare image's cell is an obstacle."""
+Pixels = npt.NDArray[np.uint8 | np.uint16]
 _FORMATS = ("PNG", "PPM", "BMP")
 """Formats that are read; PPM is Pillow's name for the family of PGM."""
 _KINDS = ("a PNG image", "a PGM image", "a BMP image")
@@ -97,12 +98,12 @@ def _in_known_mode(image: Image.Image) -> Image.Image:
     raise ValueError(f"pixels of kind {image.mode} are not supported")
 
 
-def in_eight_bits(levels: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint8]:
+def in_eight_bits(levels: Pixels) -> npt.NDArray[np.uint8]:
     """Return levels of 16 bits as the nearest of 8 bits."""
     return ((levels.astype(np.uint32) + 128) // 257).astype(np.uint8)
 
 
-def _luminance(image: Image.Image) -> tuple[npt.NDArray[np.uint8 | np.uint16], int]:
+def _luminance(image: Image.Image) -> tuple[Pixels, int]:
     """Return the luminance of each pixel, (rows, cols), and the value that white has."""
     if image.mode == "I;16":
         return np.asarray(image), 65535

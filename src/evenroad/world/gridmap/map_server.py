@@ -6,7 +6,7 @@ import os
 import warnings
 from collections import Counter
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,7 @@ from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import InvalidValue, near, shown
 from evenroad.world.gridmap.frame import MapFrame
 from evenroad.world.gridmap.gridmap import GridMap
-from evenroad.world.gridmap.images import in_eight_bits, open_image
+from evenroad.world.gridmap.images import Pixels, in_eight_bits, open_image
 
 SUFFIXES = (".yaml", ".yml")
 """Suffixes of the files of map_server."""
@@ -131,7 +131,7 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
 class Levels(NamedTuple):
     """What some rules look at: the level of each pixel, (rows, cols), what each level means, and hidden pixels."""
 
-    of_pixels: npt.NDArray[np.integer[Any]]
+    of_pixels: Pixels
     table: Kinds
     hidden: Bools | None = None
     """Pixels that are unknown whatever their level is."""
@@ -163,11 +163,10 @@ def _read_pixels(image: Image.Image, meta: RosMapMeta, rules: str) -> tuple[Kind
     return found, f"the rules of map_server changed in April 2025: by rules={rules!r} {said}; known: {', '.join(RULES)}"
 
 
-def _nav2(pixels: npt.NDArray[Any], image: Image.Image, meta: RosMapMeta) -> Levels:
-    if image.mode == "I;16":
-        levels = in_eight_bits(pixels)
-    else:
-        levels = pixels if image.mode == "L" else np.asarray(image.convert("RGB").convert("L"))
+def _nav2(pixels: Pixels, image: Image.Image, meta: RosMapMeta) -> Levels:
+    levels: Pixels = in_eight_bits(pixels) if image.mode == "I;16" else pixels
+    if image.mode not in ("I;16", "L"):
+        levels = np.asarray(image.convert("RGB").convert("L"))
     grey = np.arange(256, dtype=np.float32)
     if meta.mode == "raw":
         percent = np.where(grey <= 100.0, grey / 100.0, np.nan)
@@ -185,7 +184,7 @@ def _nav2(pixels: npt.NDArray[Any], image: Image.Image, meta: RosMapMeta) -> Lev
     return Levels(levels, _between(is_free, is_occupied), hidden)
 
 
-def _ros1(pixels: npt.NDArray[Any], image: Image.Image, meta: RosMapMeta) -> Levels:
+def _ros1(pixels: Pixels, image: Image.Image, meta: RosMapMeta) -> Levels:
     levels, white = pixels, 65535 if image.mode == "I;16" else 255
     if pixels.ndim == 3:
         channels = 4 if image.mode == "RGBA" and meta.mode == "trinary" else 3
