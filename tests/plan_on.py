@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 
 from evenroad.planning import FMT, PRM, GrowingPRM, Problem
+from evenroad.planning.planners.trees import default_planner
 from evenroad.planning.terminals import as_start_and_goals
-from evenroad.planning.trees import default_planner
 from evenroad.roadmap import Budget
 
 

@@ -14,7 +14,7 @@ from evenroad.constraints.constrained_world import kept_world
 from evenroad.geometry import Mesh, PointCloud, TriangleMesh
 from evenroad.planning import GrowingPRM
 from evenroad.planning.connectors import ARM_TREES
-from evenroad.planning.trees import default_planner
+from evenroad.planning.planners.trees import default_planner
 from evenroad.points.measures import MEASURES
 from evenroad.roadmap import Budget, KNearest
 from evenroad.roadmap.build import roadmap_of_points

@@ -9,9 +9,9 @@ import pytest
 import evenroad as er
 from evenroad._time_limit import BudgetSpent, Deadline, look_at_clock, off_the_clock, within
 from evenroad.constraints import KeepUpright
-from evenroad.planning.growing import GrowingPRM
+from evenroad.planning.planners.growing import GrowingPRM
+from evenroad.planning.planners.trees import GridSearch
 from evenroad.planning.result import Status
-from evenroad.planning.trees import GridSearch
 from evenroad.roadmap.budget import Budget
 from evenroad.task import MoveTo, Task
 

@@ -33,8 +33,8 @@ from studies.benchmarks.two_arms import robot_of as two_arms
 
 import evenroad as er
 from evenroad.constraints import KeepUpright
-from evenroad.planning.growing import GrowingPRM
-from evenroad.planning.trees import GridSearch
+from evenroad.planning.planners.growing import GrowingPRM
+from evenroad.planning.planners.trees import GridSearch
 from evenroad.robots.kinematics import link_poses
 from evenroad_studies.arms.robots import arm_named
 

@@ -81,7 +81,7 @@ def test_a_plan_of_an_arm_loads_what_it_needs_alone(tmp_path):
     """Half of a plan's time is loading: what is loaded for nothing is felt."""
     unneeded = {
         *("scipy", "email", "asyncio", "zipfile", "tempfile", "PIL.JpegImagePlugin"),
-        *("evenroad.constraints.keep", "evenroad.world.gridmap.gridmap", "evenroad.planning.growing"),
+        *("evenroad.constraints.keep", "evenroad.world.gridmap.gridmap", "evenroad.planning.planners.growing"),
         *(
             "evenroad.infeasibility.proof",
             "evenroad.loading.mjcf",

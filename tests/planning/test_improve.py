@@ -9,7 +9,7 @@ from evenroad.errors import InvalidValue
 from evenroad.planning import GrowingPRM, Problem, RRTConnect, plan
 from evenroad.planning.attempt import NO_LIMIT
 from evenroad.planning.connector import Connection, Search
-from evenroad.planning.trees import default_planner, solve_by
+from evenroad.planning.planners.trees import default_planner, solve_by
 from evenroad.roadmap import Budget
 from evenroad.space import SE2, SE3, BoxSpace
 from evenroad.world import FunctionWorld, GridMap

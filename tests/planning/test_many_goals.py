@@ -49,7 +49,7 @@ def test_a_nearest_goal_that_is_not_reached_soon_gives_way_to_all(monkeypatch):
     world = ArmWorld(load_robot("arm7"), random_scene(2, count=6, spread=0.9, clear=0.35))
     start, *goals = free(world, 7, 2)
     goals = np.array([goal for goal in goals if not world.motion_valid(start[None], goal[None])[0]])
-    monkeypatch.setattr(import_module("evenroad.planning.trees"), "TO_NEAREST", 1)
+    monkeypatch.setattr(import_module("evenroad.planning.planners.trees"), "TO_NEAREST", 1)
     result = plan(world, start, goals, smooth="quick")
     alone = connect(world, start, goals, most_motions=10**6, seconds=20)
     assert (result.solved, result.goal_index) == (True, alone.goal)

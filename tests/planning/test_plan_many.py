@@ -48,7 +48,7 @@ def test_each_answer_is_that_of_one_plan_whatever_the_number_of_threads(asked, s
 
 
 def test_what_one_call_of_compiled_code_leaves_open_is_planned_on(asked, monkeypatch):
-    for module in ("many", "trees", "connectors"):
+    for module in ("many", "planners.trees", "connectors"):
         monkeypatch.setattr(f"evenroad.planning.{module}.RESTART", 12)
     with monkeypatch.context() as patch:
         patch.setattr("evenroad.planning.connectors.answer", None)

@@ -13,10 +13,10 @@ from evenroad.planning import Problem
 from evenroad.planning.connector import Connection
 from evenroad.planning.connectors import PlainTrees
 from evenroad.planning.make_result import led
+from evenroad.planning.planners.trees import solve_by
 from evenroad.planning.result import NO_POINTS, PlanResult, Status
 from evenroad.planning.terminals import NEAR, SAME
 from evenroad.planning.tip_motion import plan_constrained
-from evenroad.planning.trees import solve_by
 from evenroad.roadmap import Budget
 from evenroad.robot import ArmWorld, CartesianLine, Joint, Robot, Scene
 from evenroad.space import SE3, BoxSpace, JointSpace

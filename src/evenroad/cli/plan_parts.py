@@ -15,10 +15,10 @@ from evenroad.cli.sampler import chosen_rule, chosen_sampler, draw_points, requi
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
 from evenroad.planning.plan import solve
-from evenroad.planning.prm import PRM
+from evenroad.planning.planners.prm import PRM
+from evenroad.planning.planners.trees import RRTConnect, default_planner
 from evenroad.planning.problem import Interrupted, Planner, Problem
 from evenroad.planning.result import PlanResult
-from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.roadmap import Budget, Roadmap
 from evenroad.world import NamesNearest, World
 

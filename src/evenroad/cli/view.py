@@ -21,7 +21,7 @@ from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.loading.find import find_robot
 from evenroad.loading.urdf_xml import RobotFile
 from evenroad.planning.plan import solve
-from evenroad.planning.prm import PRM
+from evenroad.planning.planners.prm import PRM
 from evenroad.planning.problem import Problem
 from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading

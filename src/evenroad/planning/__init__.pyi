@@ -1,9 +1,11 @@
-from evenroad.planning.growing import GrowingPRM as GrowingPRM
 from evenroad.planning.many import plan_many as plan_many
 from evenroad.planning.many_results import PlanResults as PlanResults
 from evenroad.planning.plan import plan as plan
-from evenroad.planning.prm import FMT as FMT
-from evenroad.planning.prm import PRM as PRM
+from evenroad.planning.planners.growing import GrowingPRM as GrowingPRM
+from evenroad.planning.planners.prm import FMT as FMT
+from evenroad.planning.planners.prm import PRM as PRM
+from evenroad.planning.planners.trees import GridSearch as GridSearch
+from evenroad.planning.planners.trees import RRTConnect as RRTConnect
 from evenroad.planning.problem import Planner as Planner
 from evenroad.planning.problem import Problem as Problem
 from evenroad.planning.replanner import Replanner as Replanner
@@ -11,6 +13,4 @@ from evenroad.planning.result import PlanResult as PlanResult
 from evenroad.planning.result import SearchedGraph as SearchedGraph
 from evenroad.planning.result import Stage as Stage
 from evenroad.planning.result import Status as Status
-from evenroad.planning.trees import GridSearch as GridSearch
-from evenroad.planning.trees import RRTConnect as RRTConnect
 from evenroad.planning.world_roadmap import WorldRoadmap as WorldRoadmap

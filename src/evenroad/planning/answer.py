@@ -25,35 +25,11 @@ from evenroad.roadmap.neighbours import flat_metric
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.space import Space
 from evenroad.space.path import path_length
-from evenroad.world import Explains, ExplainsStarts, ShowsApart, ValidatesPaths
+from evenroad.world import ShowsApart, ValidatesPaths
 from evenroad.world.protocol import Apart
 
 Solver = TypeVar("Solver")
 More = ParamSpec("More")
-
-
-def refusal(attempt: Attempt) -> PlanResult | None:
-    """Return the result if the start or all goals are in collision; else None, and the attempt keeps the free goals."""
-    terminals, world = attempt.problem.start_and_goals, attempt.world
-    free = attempt.valid_terminals()
-    if free[0] and attempt.goals.size:
-        return None
-    row = int(free[0])
-    try:
-        reason = f": {world.explain(terminals[row])}" if isinstance(world, Explains) else ""
-        if not row and isinstance(world, ExplainsStarts):
-            reason = f": {world.explain_start(terminals[0])}"
-    except BudgetSpent:
-        reason = "; there was no time to say what blocks it"
-    within = world.space.contains(terminals[1:] if row else terminals[:1])
-    if within.any():
-        status = (Status.START_INVALID, Status.GOAL_INVALID)[row]
-        where = "in collision" if within.all() else "in collision or outside the limits"
-    else:
-        status, where = (Status.START_OUTSIDE_LIMITS, Status.GOAL_OUTSIDE_LIMITS)[row], "outside the limits"
-    if row and len(terminals) > 2:
-        return _failed(attempt, status, f"all {len(terminals) - 1} goals are {where}; the first{reason}")
-    return _failed(attempt, status, f"the {('start', 'goal')[row]} is {where}{reason}")
 
 
 def answer(
@@ -90,13 +66,13 @@ def answer(
     made = f"(n={points}, {attempt.rule})"
     if attempt.spent:
         limits = attempt.problem.budget.text(samples=attempt.grows)
-        failed = _failed(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
+        result = failed(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
     else:
         # With ``complete`` only more points help.
         wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
         advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "") + _few_directions(attempt, points)
-        failed = _failed(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
-    return replace(failed, counts=counts, roadmap=graph)
+        result = failed(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
+    return replace(result, counts=counts, roadmap=graph)
 
 
 def connected(attempt: Attempt, connection: Connection) -> PlanResult:
@@ -134,7 +110,7 @@ def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
         f"no path within {attempt.problem.budget.text(samples=False)}: {connection.nodes} nodes were grown and"
         f" {connection.motions} motions checked{cut}; give it more time"
     )
-    return _failed(attempt, Status.BUDGET_SPENT, message, counts=_counts_of(attempt, connection))
+    return failed(attempt, Status.BUDGET_SPENT, message, counts=_counts_of(attempt, connection))
 
 
 def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None:
@@ -153,7 +129,7 @@ def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None
     if found is None:
         return None
     status = Status.NOT_CONNECTED if found.proved else Status.BUDGET_SPENT
-    return _failed(attempt, status, found.message)
+    return failed(attempt, status, found.message)
 
 
 def apart_in(problem: Problem, *, quickly: bool = False) -> Apart | None:
@@ -273,7 +249,8 @@ def _axis_scales(space: Space) -> Floats | None:
     return np.asarray(4.0 * np.linalg.norm(metric.scale * (corners[1:] - corners[0]), axis=1))
 
 
-def _failed(attempt: Attempt, status: Status, message: str, **more: object) -> PlanResult:
+def failed(attempt: Attempt, status: Status, message: str, **more: object) -> PlanResult:
+    """Return the result of an attempt that found no path."""
     return make_result(attempt.problem, status, message, **_made_by(attempt), **more)
 
 

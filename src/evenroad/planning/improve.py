@@ -14,8 +14,8 @@ from evenroad.planning.answer import connected
 from evenroad.planning.attempt import NO_LIMIT, Attempt
 from evenroad.planning.connector import Connector
 from evenroad.planning.connectors import ArmTrees
-from evenroad.planning.growing import GrowingPRM
 from evenroad.planning.make_result import led, path_message
+from evenroad.planning.planners.growing import GrowingPRM
 from evenroad.planning.problem import Interrupted
 from evenroad.planning.result import PlanResult, Stage
 from evenroad.roadmap.budget import BEFORE_REASONS

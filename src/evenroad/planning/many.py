@@ -21,9 +21,9 @@ from evenroad.planning.connector import Smooth, require_smooth
 from evenroad.planning.connectors import RESTART, drivers_of, smoothing_of
 from evenroad.planning.many_results import Part, PlanResults, joined
 from evenroad.planning.plan import budget_of, plan
+from evenroad.planning.planners.trees import TreesGoOn, variant_of
 from evenroad.planning.result import PlanResult
 from evenroad.planning.terminals import from_start_to_goal
-from evenroad.planning.trees import TreesGoOn, variant_of
 from evenroad.roadmap.budget import BEFORE_PROOF, Budget
 from evenroad.world import World
 

@@ -14,12 +14,13 @@ from evenroad.planning.connector import Smooth
 from evenroad.planning.diagnose import with_reasons
 from evenroad.planning.finish import finished
 from evenroad.planning.make_result import out_of_time, unreached
-from evenroad.planning.prm import FMT, PRM
+from evenroad.planning.planners import PLANNERS
+from evenroad.planning.planners.prm import PRM
+from evenroad.planning.planners.trees import RRTConnect, default_planner
 from evenroad.planning.problem import Interrupted, Planner, Problem, Wanted
 from evenroad.planning.read_problem import read_problem
 from evenroad.planning.reading import Goal, Reading
 from evenroad.planning.result import PlanResult
-from evenroad.planning.trees import RRTConnect, default_planner
 from evenroad.planning.world_roadmap import WorldRoadmap
 from evenroad.points.pointset import PointSet
 from evenroad.poses.constraint import Constraint
@@ -27,9 +28,6 @@ from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.roadmap import Roadmap
 from evenroad.robots.robot import ConfigurationLike
 from evenroad.world import World
-
-PLANNERS: dict[str, Callable[[], Planner]] = {"rrtconnect": RRTConnect, "prm": PRM, "fmt": FMT}
-"""Planners by name."""
 
 _PLAIN = Reading()
 

@@ -18,16 +18,16 @@ from evenroad._shared import OwnLock, once
 from evenroad.collision.arm_world import VALIDATION_TOLERANCE, ArmWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
-from evenroad.planning.answer import refusal
 from evenroad.planning.arm_trees import checks_of
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.connectors import drivers_of
 from evenroad.planning.make_result import make_result, solution, unreached
+from evenroad.planning.planners.trees import variant_of
 from evenroad.planning.problem import Problem
 from evenroad.planning.read_problem import problem_in, reaching
 from evenroad.planning.reading import Reading
+from evenroad.planning.refusal import refusal
 from evenroad.planning.result import PlanResult, Status
-from evenroad.planning.trees import variant_of
 from evenroad.points.reversed_halton import PAIRS, share_pairs
 from evenroad.robots.robot import ConfigurationLike
 from evenroad.scenes.obstacle import Bodies

@@ -12,11 +12,12 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._checks import require_known
 from evenroad._shared import OwnLock
-from evenroad.planning.answer import answer, connected, in_its_time, refusal, shown_apart
+from evenroad.planning.answer import answer, connected, in_its_time, shown_apart
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.connector import Connector, Smooth
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.problem import Problem
+from evenroad.planning.refusal import refusal
 from evenroad.planning.result import PlanResult
 from evenroad.planning.terminals import as_start_and_goals
 from evenroad.roadmap.budget import Budget

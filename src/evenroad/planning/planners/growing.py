@@ -14,10 +14,11 @@ from evenroad._call import explains_calls
 from evenroad._checks import require_count, require_known
 from evenroad._time_limit import seconds_left
 from evenroad.errors import InvalidValue
-from evenroad.planning.answer import answer, in_its_time, refusal
+from evenroad.planning.answer import answer, in_its_time
 from evenroad.planning.attempt import Attempt, Searched
 from evenroad.planning.connectors import connector_of
 from evenroad.planning.problem import Interrupted, Problem
+from evenroad.planning.refusal import refusal
 from evenroad.planning.result import PlanResult, Stage
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.edges import LINKS, EdgeCost, require_links

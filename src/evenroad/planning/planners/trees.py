@@ -16,12 +16,13 @@ from evenroad._native.planning import Answer
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad._time_limit import seconds_left
 from evenroad.errors import InvalidValue
-from evenroad.planning.answer import connected, gave_up, in_its_time, refusal, shown_apart
+from evenroad.planning.answer import connected, gave_up, in_its_time, shown_apart
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.connector import Connection, Connector
 from evenroad.planning.connectors import ARM_TREES, CELLS, RESTART, ArmTrees, connector_of, trees_for
 from evenroad.planning.make_result import path_message, solution
 from evenroad.planning.problem import Planner, Problem
+from evenroad.planning.refusal import refusal
 from evenroad.planning.result import PlanResult
 from evenroad.roadmap.budget import BEFORE_PROOF
 from evenroad.space.path import path_length
@@ -111,7 +112,7 @@ _TREES = RRTConnect()
 
 
 def _growing(improve: bool) -> Planner:
-    from evenroad.planning.growing import GrowingPRM
+    from evenroad.planning.planners.growing import GrowingPRM
 
     return GrowingPRM(until="budget", informed=True) if improve else GrowingPRM(until="solved")
 
