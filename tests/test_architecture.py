@@ -71,7 +71,7 @@ UPWARD = {
     ("robots.robot", "Robot.fk"): {"poses.robot_queries"},
     ("robots.robot", "Robot.ik"): {"poses.robot_queries"},
     ("robots.robot", "Robot.random"): {"poses.robot_queries"},
-    ("robots.robot", "Robot.with_padding"): {"poses.robot_queries"},
+    ("robots.robot", "Robot.with_padding"): {"loading.padding"},
     ("robots.robot", TYPES): {"poses.pose_goal", "scenes.scene"},
     ("scenes.scene", "Scene.__init__"): {"scenes.scene_file"},
     ("task.task", "Task.plan"): {"task.solve"},

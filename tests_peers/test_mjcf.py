@@ -12,7 +12,7 @@ from evenroad.errors import BrokenFile
 from evenroad.geometry import Box, Pose
 from evenroad.geometry.shapes import Capsule, Mesh
 from evenroad.loading.mjcf import read_mjcf
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.robot_file import RobotFile
 from evenroad.planning import plan
 from evenroad.robot import ArmWorld, Obstacle, Scene, joint_values, link_poses, load_model, load_robot
 

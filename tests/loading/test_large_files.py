@@ -8,9 +8,9 @@ import pytest
 from evenroad.errors import BrokenFile
 from evenroad.geometry.mesh_file import load_mesh
 from evenroad.io import load_plan
+from evenroad.loading.robot_file import RobotFile
 from evenroad.loading.srdf import read_srdf
 from evenroad.loading.urdf import read_urdf
-from evenroad.loading.urdf_xml import RobotFile
 from evenroad.points import load_points
 from evenroad.robot import load_model, load_scene
 from evenroad.world.gridmap import load_map

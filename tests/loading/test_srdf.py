@@ -7,8 +7,9 @@ import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.loading.groups import chains, choose_group, group_notes
-from evenroad.loading.srdf import read_srdf, srdf_text
+from evenroad.loading.srdf import read_srdf
 from evenroad.loading.urdf import read_urdf
+from evenroad.loading.written_srdf import srdf_text
 from evenroad.planning import plan
 from evenroad.robot import ArmWorld, Scene, configuration, held_values, load_model, load_robot
 from tests.refused import refused

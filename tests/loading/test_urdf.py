@@ -7,8 +7,8 @@ import trimesh
 
 from evenroad.collision.coal_world import original_shapes
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.loading.robot_file import RobotFile, find_mesh
 from evenroad.loading.urdf import read_urdf
-from evenroad.loading.urdf_xml import RobotFile, find_mesh
 from evenroad.robot import ArmWorld, Scene, in_scene, load_model
 from tests.refused import refused
 from tests.robots.urdf_texts import LIMIT, SPHERE, joint, link, two_joints, urdf, write

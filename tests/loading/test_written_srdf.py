@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-from evenroad.loading.srdf import srdf_text
+from evenroad.loading.written_srdf import srdf_text
 from evenroad.robot import load_model
 from tests.robots.urdf_texts import joint, link, urdf, write
 

@@ -8,7 +8,7 @@ import pytest
 
 import evenroad as er
 from evenroad.errors import NotAvailable, UnknownName
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.robot_file import RobotFile
 from evenroad.robot import find_robot
 from evenroad.robots.kinematics import joint_values
 from evenroad.viz.bodies import robot_parts

@@ -19,11 +19,11 @@ from evenroad.certificates.elements import tables_of
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import Exhausted, InvalidValue, NotAvailable, shown
 from evenroad.geometry.shapes import Mesh
+from evenroad.loading.description import RobotDescription
 from evenroad.loading.find import find_robot
 from evenroad.loading.load import read_robot
+from evenroad.loading.robot_file import RobotFile
 from evenroad.loading.srdf import read_srdf
-from evenroad.loading.urdf import Urdf
-from evenroad.loading.urdf_xml import RobotFile
 from evenroad.robots.kinematics import held_values
 from evenroad.scenes.scene_file import find_scene
 
@@ -121,7 +121,7 @@ def _header(claimed: Claimed, digest: str, motions: int, answers: int, direction
     return MAGIC + "\n".join(lines) + "\n\n"
 
 
-def _read(sources: Sources) -> Urdf:
+def _read(sources: Sources) -> RobotDescription:
     """Return what the robot's URDF says; NotAvailable for other files."""
     if sources.robot.suffix != ".urdf":
         raise NotAvailable(f"a certificate is about a URDF, not {sources.robot.name}: write the URDF of it first")
@@ -142,7 +142,7 @@ def _entries(scene: Path) -> list[tuple[str, Mapping[str, object]]]:
     return found
 
 
-def _digest(sources: Sources, urdf: Urdf, entries: list[tuple[str, Mapping[str, object]]]) -> str:
+def _digest(sources: Sources, urdf: RobotDescription, entries: list[tuple[str, Mapping[str, object]]]) -> str:
     """Return the digest of all files that the claim is about, in the order in which a checker reads them."""
     robots = [shape.source for shape in urdf.shapes if isinstance(shape, Mesh)]
     scenes = [sources.scene.parent / str(entry["file"]) for _, entry in entries if "file" in entry]

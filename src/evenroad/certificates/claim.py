@@ -11,7 +11,7 @@ from evenroad._arrays import Floats, Ints
 from evenroad.certificates.elements import Elements, elements_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import IDENTITY, Pose
-from evenroad.loading.urdf import Urdf
+from evenroad.loading.description import RobotDescription
 from evenroad.robots.joint import Joint
 from evenroad.robots.kinematics import joint_motion
 from evenroad.scenes.scene import Scene
@@ -70,7 +70,7 @@ class Claim:
     pairs: tuple[tuple[int, int, float, tuple[str, str]], ...]
 
 
-def tree_of(urdf: Urdf, claimed: Claimed) -> Tree:
+def tree_of(urdf: RobotDescription, claimed: Claimed) -> Tree:
     """Return the frames of a robot; InvalidValue if a joint of the path is none that its file has."""
     placement: dict[str, tuple[int, Pose]] = {urdf.links[0]: (0, IDENTITY)}
     moved: list[tuple[int, Joint, Pose, int, float, float]] = []
@@ -92,7 +92,7 @@ def tree_of(urdf: Urdf, claimed: Claimed) -> Tree:
     return Tree(placement, tuple(moved))
 
 
-def claim_of(urdf: Urdf, scene: Scene, claimed: Claimed) -> Claim:
+def claim_of(urdf: RobotDescription, scene: Scene, claimed: Claimed) -> Claim:
     """Return what is to be proved of a robot in a scene; NotAvailable for bodies that no certificate speaks of."""
     tree = tree_of(urdf, claimed)
     placement = dict(tree.placement)
@@ -148,7 +148,7 @@ def _around(
 
 
 def _touching(
-    urdf: Urdf, scene: Scene, bodies: Mapping[str, list[int]], claimed: Claimed
+    urdf: RobotDescription, scene: Scene, bodies: Mapping[str, list[int]], claimed: Claimed
 ) -> set[frozenset[str]] | frozenset[frozenset[str]]:
     """Return pairs of links that may touch: those of the SRDF, else neighbours; and what a held body may."""
     touching = {frozenset((held.name, link)) for held in scene.attached for link in (held.link, *held.touches)}

@@ -16,7 +16,7 @@ from evenroad.cli.sampler import SamplerOptions, speaks_of_points
 from evenroad.errors import InvalidValue
 
 if TYPE_CHECKING:
-    from evenroad.loading.description import RobotModel
+    from evenroad.loading.model import RobotModel
 
 OF_ROBOTS: dict[str, tuple[str, ...]] = {
     "the robot's files": ("srdf", "group", "bodies", "use_visuals", "upright_meshes", "package", "xacro", "padding")

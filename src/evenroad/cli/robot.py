@@ -20,9 +20,9 @@ from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import Undecided
-from evenroad.loading.description import RobotModel
 from evenroad.loading.groups import EVERY
-from evenroad.loading.srdf import srdf_text
+from evenroad.loading.model import RobotModel
+from evenroad.loading.written_srdf import srdf_text
 from evenroad.robots.joint import Joint
 from evenroad.robots.kinematics import held_values
 from evenroad.robots.robot import Robot as Arm

@@ -19,7 +19,7 @@ from evenroad.cli.plan_file import PlanFile, read_plan
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.loading.find import find_robot
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.robot_file import RobotFile
 from evenroad.planning.plan import solve
 from evenroad.planning.planners.prm import PRM
 from evenroad.planning.problem import Problem

@@ -21,7 +21,7 @@ from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Capsule, Mesh, PointCloud, Shape, along_z
 from evenroad.loading.find import find_robot
 from evenroad.loading.load import read_robot
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.robot_file import RobotFile
 from evenroad.robots.kinematics import link_poses
 from evenroad.robots.robot import Robot
 from evenroad.scenes.robot_in_scene import scene_around

@@ -13,8 +13,8 @@ from evenroad._arrays import Floats
 from evenroad._rng import generator
 from evenroad.errors import NotAvailable
 from evenroad.geometry.shapes import PointCloud
-from evenroad.loading.description import RobotModel
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.model import RobotModel
+from evenroad.loading.robot_file import RobotFile
 from evenroad.robots.pairs import HELD_TOUCHING, TOUCHING
 from evenroad.robots.robot import Robot
 from evenroad.scenes.scene import Scene

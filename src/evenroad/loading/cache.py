@@ -29,25 +29,31 @@ from evenroad._seal import read_sealed, sealed
 from evenroad.errors import BrokenFile
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Mesh, Shape
-from evenroad.loading.description import RobotModel
-from evenroad.loading.urdf import Urdf
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.description import RobotDescription
+from evenroad.loading.model import RobotModel
+from evenroad.loading.robot_file import RobotFile
 from evenroad.robots.robot import Robot
 
 _FORMAT = 28
 """Version of the cache: it counts up when the same files give another robot, or the format changes."""
 
 
-def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | Sequence[str] | None) -> str:
+def key_of(
+    description: RobotDescription, others: Iterable[tuple[str, Path | None]], group: str | Sequence[str] | None
+) -> str:
     """Return the hash of all that decides the robot: what its file says, the content of meshes and others, the group.
 
     The others have a name for errors: BrokenFile if one is missing, as a cached robot is never returned for files that
     are gone.
     """
-    unchecked = [(joint.acceleration, joint.deceleration, joint.jerk, joint.hard, joint.of) for joint in urdf.joints]
-    said = fingerprint_of(replace(urdf, shapes=()), unchecked, [_said(shape) for shape in urdf.shapes], group)
+    unchecked = [
+        (joint.acceleration, joint.deceleration, joint.jerk, joint.hard, joint.of) for joint in description.joints
+    ]
+    said = fingerprint_of(
+        replace(description, shapes=()), unchecked, [_said(shape) for shape in description.shapes], group
+    )
     digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{said}".encode())
-    sources = [shape.source for shape in urdf.shapes if isinstance(shape, Mesh)]
+    sources = [shape.source for shape in description.shapes if isinstance(shape, Mesh)]
     meshes = [("mesh", source) for source in sources if isinstance(source, Path)]
     for what, path in (*meshes, *others):
         try:

@@ -3,32 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol
 
-from evenroad.errors import InvalidValue, Undecided, UnknownName, listed, shown
-from evenroad.loading.urdf import Urdf
+from evenroad.errors import InvalidValue, Undecided, UnknownName, listed
+from evenroad.loading.description import RobotDescription
+from evenroad.loading.srdf import Srdf, few_of
 from evenroad.robots.free_joints import named
 from evenroad.robots.joint import Joint
 from evenroad.robots.kinematics import KinematicTree, held_values
 
 EVERY = "*"
 """What names all joints of all groups."""
-_MOST_NAMED = 8
-"""Largest number of names in one line."""
 
 
-class Srdf(Protocol):
-    """What groups need of an SRDF; the attributes are those of :class:`evenroad.loading.srdf.Srdf`."""
-
-    @property
-    def groups(self) -> Mapping[str, tuple[str, ...]]: ...  # noqa: D102
-    @property
-    def states(self) -> Mapping[tuple[str, str], Mapping[str, float]]: ...  # noqa: D102
-    @property
-    def passive(self) -> frozenset[str]: ...  # noqa: D102
-
-
-def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | None) -> tuple[str, ...]:
+def choose_group(
+    description: RobotDescription, srdf: Srdf | None, wanted: str | Sequence[str] | None
+) -> tuple[str, ...]:
     """Return the joints that are planned for.
 
     `wanted` are groups of the SRDF and names of joints (as a text: with commas between them), in the order that is
@@ -41,20 +30,22 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
     groups = {} if srdf is None else srdf.groups
     if wanted == EVERY and any(groups.values()):
         members = {name for joints in groups.values() for name in joints}
-        return tuple(name for name in urdf.order if name in members)
+        return tuple(name for name in description.order if name in members)
     if wanted not in (None, EVERY):
-        return _wanted_joints(urdf, groups, _words(wanted))
+        return _wanted_joints(description, groups, _words(wanted))
     if any(groups.values()):
-        return groups[arm_group(urdf, groups)]
-    if all(joint.kind == "fixed" for joint in urdf.joints):
+        return groups[arm_group(description, groups)]
+    if all(joint.kind == "fixed" for joint in description.joints):
         return ()
-    return _movable_joints(urdf, srdf)
+    return _movable_joints(description, srdf)
 
 
-def _wanted_joints(urdf: Urdf, groups: Mapping[str, tuple[str, ...]], words: Sequence[str]) -> tuple[str, ...]:
+def _wanted_joints(
+    description: RobotDescription, groups: Mapping[str, tuple[str, ...]], words: Sequence[str]
+) -> tuple[str, ...]:
     """Return the joints of the groups and joints that words name, in this order."""
-    owners = {joint.of for joint in urdf.joints}
-    if groups and words and not set(words) & {*urdf.order, *groups, *owners}:
+    owners = {joint.of for joint in description.joints}
+    if groups and words and not set(words) & {*description.order, *groups, *owners}:
         raise UnknownName.among("group", ",".join(words), groups)
     chosen: list[str] = []
     for word in words:
@@ -62,23 +53,25 @@ def _wanted_joints(urdf: Urdf, groups: Mapping[str, tuple[str, ...]], words: Seq
             own = _not_empty(groups[word], f"group {word!r}")
             chosen += [name for name in own if name not in chosen]
         else:
-            for name in named(word, urdf) or [word]:
-                _require_movable(urdf, name, chosen)
+            for name in named(word, description) or [word]:
+                _require_movable(description, name, chosen)
                 chosen.append(name)
     return _not_empty(tuple(chosen), "the group")
 
 
-def _movable_joints(urdf: Urdf, srdf: Srdf | None) -> tuple[str, ...]:
+def _movable_joints(description: RobotDescription, srdf: Srdf | None) -> tuple[str, ...]:
     """Return every joint that moves on its own, in the order of the file."""
-    free = urdf.free - (frozenset() if srdf is None else srdf.passive)
-    said = "".join(f"; {note}" for note in urdf.notes if note.startswith("joint"))
-    locked = [joint.name for joint in urdf.joints if joint.kind != "fixed" and joint.lower == joint.upper]
+    free = description.free - (frozenset() if srdf is None else srdf.passive)
+    said = "".join(f"; {note}" for note in description.notes if note.startswith("joint"))
+    locked = [joint.name for joint in description.joints if joint.kind != "fixed" and joint.lower == joint.upper]
     said = said or (f"; limits that are equal lock {', '.join(locked)}" if locked else "")
-    loose = {joint.name for joint in urdf.joints if joint.of}
-    return _not_empty(tuple(name for name in urdf.order if name in free - loose), f"robot {urdf.name!r}", said)
+    loose = {joint.name for joint in description.joints if joint.of}
+    return _not_empty(
+        tuple(name for name in description.order if name in free - loose), f"robot {description.name!r}", said
+    )
 
 
-def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
+def arm_group(description: RobotDescription, groups: Mapping[str, tuple[str, ...]]) -> str:
     """Return the name of the group that is planned for where none is wanted, of those with joints.
 
     It is the only one, or else the longest chain: its joints follow each other without a branch, and none of them is a
@@ -87,7 +80,7 @@ def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
     filled = {name: joints for name, joints in groups.items() if joints}
     if len(filled) == 1:
         return next(iter(filled))
-    runs = [{joint.name for joint in run} for run in chains(urdf.joints).values()]
+    runs = [{joint.name for joint in run} for run in chains(description.joints).values()]
     serial = {name: joints for name, joints in filled.items() if any(run >= set(joints) for run in runs)}
     longest = max(map(len, serial.values()), default=0)
     found = {name: joints for name, joints in serial.items() if len(joints) == longest}
@@ -97,7 +90,7 @@ def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
         name
         for name, joints in found.items()
         for others in found.values()
-        if run_of[joints[0]] != run_of[others[0]] and joints[0] in _below(urdf, others[-1])
+        if run_of[joints[0]] != run_of[others[0]] and joints[0] in _below(description, others[-1])
     }
     found = {name: joints for name, joints in found.items() if name not in carried}
     if len(set(found.values())) != 1:
@@ -109,33 +102,29 @@ def arm_group(urdf: Urdf, groups: Mapping[str, tuple[str, ...]]) -> str:
     return next(iter(found))
 
 
-def _below(urdf: Urdf, name: str) -> set[str]:
+def _below(description: RobotDescription, name: str) -> set[str]:
     """Return the joints that a joint moves."""
-    moved = {joint.child for joint in urdf.joints if joint.name == name}
+    moved = {joint.child for joint in description.joints if joint.name == name}
     below = set()
-    for joint in urdf.joints:
+    for joint in description.joints:
         if joint.parent in moved:
             moved.add(joint.child)
             below.add(joint.name)
     return below
 
 
-def group_notes(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | None) -> tuple[str, ...]:
+def group_notes(
+    description: RobotDescription, srdf: Srdf | None, wanted: str | Sequence[str] | None
+) -> tuple[str, ...]:
     """Return a note about the group that was chosen by default, where there were several."""
     names = [] if srdf is None else [name for name, joints in srdf.groups.items() if joints]
     if srdf is None or wanted not in (None, EVERY) or len(names) < 2:
         return ()
     if wanted == EVERY:
         return (f"planned for are the joints of all groups of the SRDF; --group chooses one of {listed(names)}",)
-    chosen = arm_group(urdf, srdf.groups)
+    chosen = arm_group(description, srdf.groups)
     others = few_of([name for name in names if name != chosen])
     return (f"planned for is the group {chosen!r}, the longest chain of the SRDF; --group chooses from {others}, too",)
-
-
-def few_of(names: Sequence[str]) -> str:
-    """Return the first names as a text of one line, and the number of others."""
-    said = ", ".join(shown(name)[1:-1] for name in names[:_MOST_NAMED])
-    return said if len(names) <= _MOST_NAMED else f"{said} and {len(names) - _MOST_NAMED} more"
 
 
 def chosen_states(
@@ -177,11 +166,11 @@ def _words(wanted: str | Sequence[str]) -> list[str]:
     return [word.strip() for word in words if word.strip()]
 
 
-def _require_movable(urdf: Urdf, name: str, others: Sequence[str]) -> None:
+def _require_movable(description: RobotDescription, name: str, others: Sequence[str]) -> None:
     """Raise unless a joint that was named can be planned for beside others."""
-    joints = {joint.name: joint for joint in urdf.joints}
+    joints = {joint.name: joint for joint in description.joints}
     if name not in joints:
-        movable = [each.name for each in urdf.joints if each.kind != "fixed" and each.mimic is None]
+        movable = [each.name for each in description.joints if each.kind != "fixed" and each.mimic is None]
         raise UnknownName.among("joint of the group", name, movable)
     joint = joints[name]
     if joint.mimic is not None:

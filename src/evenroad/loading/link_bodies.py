@@ -10,8 +10,8 @@ from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.kept import is_new
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Capsule, Mesh, Shape
-from evenroad.loading.description import LinkBody
-from evenroad.loading.urdf import Urdf
+from evenroad.loading.description import RobotDescription
+from evenroad.loading.model import LinkBody
 
 
 def opened(shapes: Sequence[Shape]) -> tuple[Shape, ...]:
@@ -28,17 +28,19 @@ def opened(shapes: Sequence[Shape]) -> tuple[Shape, ...]:
 
 
 def capsules_of(
-    urdf: Urdf, given: dict[str, tuple[Capsule, ...]], progress: Callable[[int, int, str], None] | None
+    description: RobotDescription,
+    given: dict[str, tuple[Capsule, ...]],
+    progress: Callable[[int, int, str], None] | None,
 ) -> dict[str, tuple[Capsule, ...]]:
     """Return the capsules of every link with a body: those given, or fitted ones."""
     found: dict[str, tuple[Capsule, ...]] = {}
-    fitted = [shape for shape in urdf.shapes if shape.link not in given]
+    fitted = [shape for shape in description.shapes if shape.link not in given]
     for i, shape in enumerate(fitted):
         if progress is not None and isinstance(shape, Mesh) and is_new("around", shape.triangles):
             progress(i, len(fitted), f"{shape} of {shape.link}")
         found[shape.link] = found.get(shape.link, ()) + fit_capsules(shape)
     found |= given
-    return {link: found[link] for link in urdf.links if link in found}
+    return {link: found[link] for link in description.links if link in found}
 
 
 def pieces_of(shapes: Iterable[Shape]) -> dict[str, list[Piece]]:
@@ -49,15 +51,15 @@ def pieces_of(shapes: Iterable[Shape]) -> dict[str, list[Piece]]:
     return pieces
 
 
-def shapes_of(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> list[Shape]:
+def shapes_of(description: RobotDescription, given: dict[str, tuple[Capsule, ...]]) -> list[Shape]:
     """Return the shapes of all links: the capsules given, or those of the URDF."""
-    shapes = [shape for shape in urdf.shapes if shape.link not in given]
+    shapes = [shape for shape in description.shapes if shape.link not in given]
     return [*shapes, *(capsule for capsules in given.values() for capsule in capsules)]
 
 
-def link_body(urdf: Urdf, link: str, capsules: tuple[Capsule, ...], given: bool) -> LinkBody:
+def link_body(description: RobotDescription, link: str, capsules: tuple[Capsule, ...], given: bool) -> LinkBody:
     """Return what the capsules of a link stand for."""
-    shapes = [shape for shape in urdf.shapes if shape.link == link]
+    shapes = [shape for shape in description.shapes if shape.link == link]
     return LinkBody(
         link=link,
         shapes=tuple(map(str, shapes)),

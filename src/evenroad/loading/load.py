@@ -18,15 +18,16 @@ from evenroad.geometry.parts import parts_of
 from evenroad.geometry.shapes import Mesh
 from evenroad.loading.bodies_file import read_bodies
 from evenroad.loading.cache import cached, keep, key_of, know, known, stamps
-from evenroad.loading.description import RobotModel
+from evenroad.loading.description import RobotDescription, require_few_links
 from evenroad.loading.find import find_robot
 from evenroad.loading.groups import EVERY, choose_group, chosen_states, group_notes, held_states
 from evenroad.loading.link_bodies import capsules_of, link_body, opened, pieces_of, shapes_of
+from evenroad.loading.model import RobotModel
 from evenroad.loading.ready_posture import held_apart
+from evenroad.loading.robot_file import RobotFile
 from evenroad.loading.srdf import Srdf, read_srdf, with_moving_base
 from evenroad.loading.units import size_notes
-from evenroad.loading.urdf import Urdf, read_urdf, require_few_links
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.urdf import read_urdf
 from evenroad.loading.xml_file import outermost
 from evenroad.robots.free_joints import without_moved
 from evenroad.robots.pairs import SelfPairs, pairs_of, self_pairs
@@ -182,22 +183,22 @@ def _model_of(request: _Request, progress: Callable[[int, int, str], None] | Non
     """Return a robot from the user's cache, or from its files."""
     file, others = request.file, [("SRDF", request.srdf), ("file of bodies", request.bodies)]
     before = stamps((file.path, request.srdf, request.bodies))
-    urdf = read_robot(file)
-    before |= stamps(shape.source for shape in urdf.shapes if isinstance(shape, Mesh))
+    description = read_robot(file)
+    before |= stamps(shape.source for shape in description.shapes if isinstance(shape, Mesh))
     others += [] if request.with_shapes else [(CAPSULES, None)]
-    key = key_of(urdf, others, request.group)
+    key = key_of(description, others, request.group)
     model = cached(key)
     if model is None:
-        model = _build(request, urdf, progress)
+        model = _build(request, description, progress)
         # Files may have been saved while they were read: the robot may then mix two versions.
-        if key_of(urdf, others, request.group) == key:
+        if key_of(description, others, request.group) == key:
             keep(key, model)
     model = replace(model, file=file)
     know(request, before, model)
     return model
 
 
-def read_robot(file: RobotFile) -> Urdf:
+def read_robot(file: RobotFile) -> RobotDescription:
     """Return what the file of a robot says: an MJCF with the suffix ``.xml`` or ``.mjcf``, else a URDF or xacro."""
     is_mjcf = file.path.suffix in (".xml", ".mjcf") and outermost(file.path) != "robot"
     if not is_mjcf:
@@ -208,62 +209,66 @@ def read_robot(file: RobotFile) -> Urdf:
     return read_mjcf(file)
 
 
-def _build(request: _Request, urdf: Urdf, progress: Callable[[int, int, str], None] | None) -> RobotModel:
+def _build(
+    request: _Request, description: RobotDescription, progress: Callable[[int, int, str], None] | None
+) -> RobotModel:
     group, path = request.group, request.file.path
-    urdf, srdf, chosen = _planned(urdf, request.srdf, group)
-    given = {} if request.bodies is None else read_bodies(request.bodies, urdf.links)
-    require_few_links(len(urdf.links), len({shape.link for shape in urdf.shapes}), path)
-    urdf = replace(urdf, shapes=opened(urdf.shapes))
-    shapes = shapes_of(urdf, given)
-    capsules = capsules_of(urdf, given, progress)
+    description, srdf, chosen = _planned(description, request.srdf, group)
+    given = {} if request.bodies is None else read_bodies(request.bodies, description.links)
+    require_few_links(len(description.links), len({shape.link for shape in description.shapes}), path)
+    description = replace(description, shapes=opened(description.shapes))
+    shapes = shapes_of(description, given)
+    capsules = capsules_of(description, given, progress)
     if not capsules:
-        hint = "; --use-visuals takes what is drawn" if urdf.drawn_only else ""
+        hint = "; --use-visuals takes what is drawn" if description.drawn_only else ""
         raise BrokenFile(f"{path} has no collision geometry at all: the robot would never collide{hint}")
     robot = Robot(
-        urdf.name,
-        urdf.links,
-        urdf.joints,
-        tuple(capsule for link in urdf.links for capsule in capsules.get(link, ())),
+        description.name,
+        description.links,
+        description.joints,
+        tuple(capsule for link in description.links for capsule in capsules.get(link, ())),
         pairs=(),
         group=chosen,
-        states=_states(urdf, srdf, chosen, group),
-        planes=urdf.planes,
+        states=_states(description, srdf, chosen, group),
+        planes=description.planes,
         # Capsules that the user gives replace a link's shapes as they are.
         inner=inner_of(shapes),
         shapes=parts_of(shapes) if request.with_shapes else (),
     )
-    robot, pairs = _with_pairs(robot, urdf, srdf, pieces_of(shapes))
+    robot, pairs = _with_pairs(robot, description, srdf, pieces_of(shapes))
     return RobotModel(
         robot,
-        tuple(link_body(urdf, link, capsules[link], link in given) for link in capsules),
-        pairs_from="SRDF" if robot.pairs_given else "computed" if urdf.untested is None else "MJCF",
+        tuple(link_body(description, link, capsules[link], link in given) for link in capsules),
+        pairs_from="SRDF" if robot.pairs_given else "computed" if description.untested is None else "MJCF",
         dropped=pairs.dropped,
-        drawn_only=tuple(link for link in urdf.drawn_only if link not in capsules),
+        drawn_only=tuple(link for link in description.drawn_only if link not in capsules),
         always_touching=pairs.always,
         never_free=pairs.never_free,
         notes=(
-            *without_moved(urdf.notes, urdf.joints, chosen),
+            *without_moved(description.notes, description.joints, chosen),
             *(() if srdf is None else srdf.notes),
-            *group_notes(urdf, srdf, group),
-            *size_notes(capsules, urdf.joints),
-            *gap_notes("link", ((shape.link, shape) for shape in urdf.shapes)),
+            *group_notes(description, srdf, group),
+            *size_notes(capsules, description.joints),
+            *gap_notes("link", ((shape.link, shape) for shape in description.shapes)),
             *map(_contained, pairs.contained),
         ),
     )
 
 
 def _states(
-    urdf: Urdf, srdf: Srdf | None, chosen: tuple[str, ...], group: str | Sequence[str] | None
+    description: RobotDescription, srdf: Srdf | None, chosen: tuple[str, ...], group: str | Sequence[str] | None
 ) -> dict[str, dict[str, float]]:
     """Return the named states with a value for every joint chosen; of two of a name that of the SRDF."""
-    own = {name: dict(values) for name, values in urdf.states.items() if set(chosen) <= set(values)}
+    own = {name: dict(values) for name, values in description.states.items() if set(chosen) <= set(values)}
     return own | ({} if srdf is None else chosen_states(srdf, chosen, group))
 
 
-def _with_pairs(robot: Robot, urdf: Urdf, srdf: Srdf | None, pieces: dict[str, list[Piece]]) -> tuple[Robot, SelfPairs]:
+def _with_pairs(
+    robot: Robot, description: RobotDescription, srdf: Srdf | None, pieces: dict[str, list[Piece]]
+) -> tuple[Robot, SelfPairs]:
     """Return a robot with the pairs of links that are tested, and what is known of all pairs."""
     # Of those that a robot's own file lets touch, each has its reason; those of an SRDF have one for all.
-    untested = {frozenset((a, b)): why for a, b, why in urdf.untested or ()}
+    untested = {frozenset((a, b)): why for a, b, why in description.untested or ()}
     by_srdf = srdf is not None and bool(srdf.disabled)
     if srdf is not None and by_srdf:
         untested = dict.fromkeys(srdf.disabled, "disabled in the SRDF") | untested
@@ -271,25 +276,25 @@ def _with_pairs(robot: Robot, urdf: Urdf, srdf: Srdf | None, pieces: dict[str, l
         robot = replace(robot, held=held_states(srdf, robot))
         apart = held_apart(robot, pieces, pairs_of(robot, pieces, untested), srdf.states.values())
         robot = replace(robot, held={**robot.held, **apart})
-    said = by_srdf or urdf.untested is not None
+    said = by_srdf or description.untested is not None
     pairs = self_pairs(robot, pieces, untested if said else None, drop_touching=not by_srdf)
     return replace(robot, pairs=pairs.tested, hulls=pairs.hulls, pairs_given=by_srdf, resting=pairs.held), pairs
 
 
 def _planned(
-    urdf: Urdf, srdf_path: Path | None, group: str | Sequence[str] | None
-) -> tuple[Urdf, Srdf | None, tuple[str, ...]]:
+    description: RobotDescription, srdf_path: Path | None, group: str | Sequence[str] | None
+) -> tuple[RobotDescription, Srdf | None, tuple[str, ...]]:
     """Return the robot, its SRDF and the group that is planned for; its base moves if the group says so."""
     if srdf_path is None:
-        return urdf, None, choose_group(urdf, None, group)
-    moving = with_moving_base(urdf, srdf_path)
+        return description, None, choose_group(description, None, group)
+    moving = with_moving_base(description, srdf_path)
     if group not in (None, EVERY):
         srdf = read_srdf(srdf_path, moving)
         chosen = choose_group(moving, srdf, group)
-        if not set(chosen) <= set(urdf.order):
+        if not set(chosen) <= set(description.order):
             return moving, srdf, chosen
-    srdf = read_srdf(srdf_path, urdf)
-    return replace(urdf, notes=moving.notes), srdf, choose_group(urdf, srdf, group)
+    srdf = read_srdf(srdf_path, description)
+    return replace(description, notes=moving.notes), srdf, choose_group(description, srdf, group)
 
 
 def _contained(pair: tuple[str, str]) -> str:

@@ -12,8 +12,9 @@ import numpy as np
 from evenroad._understood import require_understood
 from evenroad.errors import BrokenFile
 from evenroad.geometry.pose import Pose
+from evenroad.loading.robot_file import RobotFile
 from evenroad.loading.urdf_kinds import ROBOT
-from evenroad.loading.urdf_xml import RobotFile, read_robot_xml
+from evenroad.loading.urdf_xml import read_robot_xml
 
 
 @dataclass(frozen=True)

@@ -14,13 +14,13 @@ from evenroad.errors import BrokenFile
 from evenroad.geometry.mesh import TriangleMesh, convex_hull
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Mesh, Shape, shape_of
+from evenroad.loading.description import RobotDescription, as_tree, require_few_links
 from evenroad.loading.mjcf_contacts import Contacts, contacts_of, untested_pairs
 from evenroad.loading.mjcf_equalities import with_equalities
 from evenroad.loading.mjcf_guard import require_bounded
 from evenroad.loading.mjcf_model import CompiledMjcf
 from evenroad.loading.mjcf_states import keyframes, note_left_out
-from evenroad.loading.urdf import Urdf, as_tree, require_few_links
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.robot_file import RobotFile
 from evenroad.loading.xml_file import read_xml
 from evenroad.robots.joint import Joint, Kind
 from evenroad.robots.planes import DEPTH, SIDE, Plane
@@ -30,7 +30,7 @@ _FAR = 1e6
 _KINDS: dict[str, Kind] = {"hinge": "revolute", "slide": "prismatic"}
 
 
-def read_mjcf(file: RobotFile) -> Urdf:
+def read_mjcf(file: RobotFile) -> RobotDescription:
     """Read an MJCF file with MuJoCo, whose defaults, includes, frames and rules of contact are its own.
 
     Bodies are links and keep their names; of a body with several joints, or with one whose anchor is not its origin,
@@ -69,7 +69,7 @@ class _Reader:
         self.links = [mjcf.name("body", i) for i in range(self.model.nbody)]
         self.kinds = [mjcf.kind_of("mjtGeom", "mjGEOM_", kind) for kind in self.model.geom_type]
 
-    def urdf(self) -> Urdf:
+    def urdf(self) -> RobotDescription:
         model, links = self.model, list(self.links)
         joints: list[Joint] = []
         for body in range(1, model.nbody):

@@ -1,28 +1,21 @@
-"""SRDFs: groups, named states, pairs of links that need no test; and writing one."""
+"""Reading an SRDF: groups, named states, and pairs of links that need no test."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 from evenroad._checks import require_known
 from evenroad._understood import Kind, require_understood
-from evenroad.errors import BrokenFile, InvalidValue
-from evenroad.loading.description import RobotModel
-from evenroad.loading.groups import chains, few_of
-from evenroad.loading.ready_posture import bent_posture, held_apart
-from evenroad.loading.urdf import Urdf
+from evenroad.errors import BrokenFile, InvalidValue, shown
+from evenroad.loading.description import RobotDescription
 from evenroad.loading.xml_file import read_xml
 from evenroad.robots.free_joints import held_note, named, of_base
 from evenroad.robots.joint import Joint
-from evenroad.robots.pairs import TOUCHING
-from evenroad.robots.robot import pieces_of
 
 _NAMED = Kind(("name",))
 _GROUP = Kind(
@@ -51,6 +44,8 @@ _FILE = Kind(
     },
 )
 """What is read of an SRDF."""
+_MOST_NAMED = 8
+"""Largest number of names in one line."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +65,7 @@ class Srdf:
     notes: tuple[str, ...] = ()
 
 
-def read_srdf(path: Path, urdf: Urdf) -> Srdf:
+def read_srdf(path: Path, urdf: RobotDescription) -> Srdf:
     """Read the SRDF that belongs to a URDF.
 
     Of a link whose collisions are off by default, ``disable_default_collisions``, no pair with another link is tested,
@@ -135,7 +130,7 @@ def _same(first: Element, second: Element) -> bool:
     return said[0] == said[1]
 
 
-def with_moving_base(urdf: Urdf, srdf: Path) -> Urdf:
+def with_moving_base(urdf: RobotDescription, srdf: Path) -> RobotDescription:
     """Return a robot whose root moves, in the plane or in all ways, where a virtual joint of its SRDF says so."""
     root = urdf.links[0]
     for element in read_xml(srdf, "SRDF", "an SRDF").findall("virtual_joint"):
@@ -154,6 +149,12 @@ def with_moving_base(urdf: Urdf, srdf: Path) -> Urdf:
     return urdf
 
 
+def few_of(names: Sequence[str]) -> str:
+    """Return the first names as a text of one line, and the number of others."""
+    said = ", ".join(shown(name)[1:-1] for name in names[:_MOST_NAMED])
+    return said if len(names) <= _MOST_NAMED else f"{said} and {len(names) - _MOST_NAMED} more"
+
+
 _DEEPEST = 100
 """Largest number of groups of an SRDF inside of each other."""
 _MISSING = {
@@ -168,7 +169,7 @@ _MISSING = {
 class _Model:
     """Names of the URDF, and requested ones that it lacks."""
 
-    urdf: Urdf
+    urdf: RobotDescription
     virtual: frozenset[str]
     missing: dict[str, dict[str, None]] = field(default_factory=lambda: defaultdict(dict))
 
@@ -264,7 +265,7 @@ def _values(state: Element, known: _Model, path: Path) -> dict[str, float]:
     return values
 
 
-def _in_order(names: set[str], urdf: Urdf) -> tuple[str, ...]:
+def _in_order(names: set[str], urdf: RobotDescription) -> tuple[str, ...]:
     free = names & urdf.free
     return tuple(name for name in urdf.order if name in free)
 
@@ -274,60 +275,3 @@ def _attribute(element: Element, name: str, path: Path) -> str:
     if not value:
         raise BrokenFile(f"<{element.tag}> in {path} lacks {name!r}")
     return value
-
-
-_REASONS = {"neighbours": "Adjacent", TOUCHING: "Always", "fixed to each other": "Never moves"}
-"""Why a pair is not tested, in MoveIt's words where it has such."""
-
-
-_GRIPPER = re.compile("gripper|jaw|finger|claw", re.IGNORECASE)
-"""What the name of a joint has that opens a gripper."""
-
-
-def srdf_text(model: RobotModel) -> str:
-    """Return an SRDF of a robot: groups, named states, and the pairs that are not tested, each with the reason.
-
-    Groups are the robot's chains without a branch, each named after the link at its end, and the group that the robot
-    has where it is none of these.  A last joint whose name is a gripper's has a group of its own.  Every group has a
-    state ``home``, at 0 or the nearest to it within limits, or near there where links would touch, and where one was
-    found a state ``ready``, free and bent, beside the states that are known.  Read again with this file, the robot
-    tests the same pairs, but for those that touched in every sample.
-    """
-    robot = model.robot
-    root = ElementTree.Element("robot", name=robot.name)
-    runs = chains(robot.joints)
-    groups = {name: part for run in runs.values() for name, part in _without_gripper(run)}
-    for name, joints in groups.items():
-        group = ElementTree.SubElement(root, "group", name=name)
-        ElementTree.SubElement(group, "chain", base_link=joints[0].parent, tip_link=joints[-1].child)
-    names = {name: tuple(joint.name for joint in joints) for name, joints in groups.items()}
-    if robot.group and set(robot.group) not in [{joint.name for joint in run} for run in runs.values()]:
-        names["planned"] = robot.group
-        group = ElementTree.SubElement(root, "group", name="planned")
-        for joint in robot.group:
-            ElementTree.SubElement(group, "joint", name=joint)
-    neutral = {joint.name: joint.neutral for joint in robot.joints}
-    neutral |= held_apart(replace(robot, group=(), held={}), pieces_of(robot), robot.pairs)
-    ready = bent_posture(robot, pieces_of(robot), robot.pairs, neutral)
-    for name, members in names.items():
-        for state, values in ({"home": neutral, "ready": ready} | dict(robot.states)).items():
-            if set(members) <= set(values):
-                element = ElementTree.SubElement(root, "group_state", name=state, group=name)
-                for joint in members:
-                    ElementTree.SubElement(element, "joint", name=joint, value=repr(float(values[joint])))
-    always = [(first, second, TOUCHING) for first, second in model.always_touching]
-    for first, second, why in (*model.dropped, *always):
-        reason = _REASONS.get(why, why)
-        ElementTree.SubElement(root, "disable_collisions", link1=first, link2=second, reason=reason)
-    ElementTree.indent(root)
-    return '<?xml version="1.0"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
-
-
-def _without_gripper(run: list[Joint]) -> list[tuple[str, list[Joint]]]:
-    """Return the chain, or the arm and the joint at its end that opens a gripper, each with its last link."""
-    whole = (run[-1].child, run)
-    opens = [_GRIPPER.search(joint.name) is not None for joint in run]
-    # A finger of several joints stays one.
-    if len(run) == 1 or not opens[-1] or any(opens[:-1]):
-        return [whole]
-    return [(run[-2].child, run[:-1]), (run[-1].child, run[-1:])]

@@ -7,15 +7,13 @@ robot free of collisions has not been given its bodies.  What is read otherwise 
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
-from urllib.parse import unquote
 from xml.etree.ElementTree import Element
 
 from evenroad._understood import require_understood
 from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.loading.robot_file import RobotFile, package_folder
 from evenroad.loading.urdf_kinds import IGNORED, LIMITS, ROBOT, SIZES, SOFT
 from evenroad.loading.xacro.expand import expanded, is_xacro
 from evenroad.loading.xml_file import read_xml
@@ -45,23 +43,6 @@ _THIN = 1e-6
 """What a body has in place of a dimension of 0 [m]."""
 _SINGLE = ("origin", "axis", "limit", "safety_controller", "mimic", "parent", "child", "geometry")
 """Of these, the first would be taken and others passed over, unless they are equal."""
-
-
-@dataclass(frozen=True)
-class RobotFile:
-    """The file of a robot, and how it is to be read.
-
-    With `use_visuals`, links without collision geometry get what is drawn of them; with `as_drawn` all links do, where
-    anything is.  With `upright_meshes`, the y axis of a glTF becomes z.  `packages` are folders of packages, (name,
-    folder), beside those that are found; `arguments` are those of a xacro, (name, value).
-    """
-
-    path: Path
-    use_visuals: bool = False
-    packages: tuple[tuple[str, str], ...] = ()
-    arguments: tuple[tuple[str, str], ...] = ()
-    as_drawn: bool = False
-    upright_meshes: bool = False
 
 
 def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
@@ -115,15 +96,7 @@ def read_robot_xml(file: RobotFile) -> Element:
 
 def _expanded(file: RobotFile) -> Element:
     """Return the URDF that a xacro stands for."""
-    return expanded(file.path, dict(file.arguments), lambda name: _package(name, file), dict(file.packages))
-
-
-def _package(name: str, file: RobotFile) -> Path:
-    """Return the folder of a package; LookupError if there is none."""
-    for folder in _package_folders(name, file):
-        if folder.is_dir():
-            return folder
-    raise LookupError(name)
+    return expanded(file.path, dict(file.arguments), lambda name: package_folder(name, file), dict(file.packages))
 
 
 def drawn_only(root: Element) -> tuple[str, ...]:
@@ -220,65 +193,3 @@ def _numbers(what: str, attribute: str, text: str, count: int) -> list[float]:
     if attribute == "scale" and 0.0 in numbers:
         raise InvalidValue(f"{what} must not be 0, got {text!r}: a flat mesh would hardly ever collide")
     return numbers
-
-
-def find_mesh(name: str, file: RobotFile, link: str) -> Path:
-    """Return the file that a URDF means by `name`.
-
-    ``package://PACKAGE/FILE`` is looked for in the given packages, in the folder of the URDF and those above it, either
-    inside of a folder PACKAGE, or one whose ``package.xml`` has this name, or in one, and where ROS keeps packages
-    (``ROS_PACKAGE_PATH``, ``AMENT_PREFIX_PATH``); so is what a xacro finds.
-    ``file://`` is absolute; all else is relative to the URDF.  Raises BrokenFile if there is none; the text says where
-    it was looked for.
-    """
-    candidates = list(_candidates(name, file))
-    for candidate in candidates:
-        if candidate.is_file():
-            return candidate
-    looked = ", ".join(str(candidate) for candidate in candidates[:4]) + (", ..." if len(candidates) > 4 else "")
-    package = name.removeprefix("package://").partition("/")[0] if name.startswith("package://") else ""
-    hint = f"; --package {package}=FOLDER says where that package is" if package else ""
-    where = f"of link {link!r} in {file.path}"
-    raise BrokenFile(f"the mesh {name!r} {where} is missing; looked for {looked}{hint}")
-
-
-def _candidates(name: str, file: RobotFile) -> Iterator[Path]:
-    folder = file.path.absolute().parent
-    scheme, separator, rest = name.partition("://")
-    if not separator:
-        yield folder / name
-        return
-    rest = unquote(rest)
-    if scheme == "file":
-        yield Path(rest)
-        return
-    package, _, inside = rest.partition("/")
-    for found in _package_folders(package, file):
-        yield found / inside
-
-
-def _package_folders(package: str, file: RobotFile) -> Iterator[Path]:
-    """Yield the folders in which a package may be, whether they exist or not."""
-    given, folder = dict(file.packages), file.path.absolute().parent
-    if package in given:
-        yield Path(given[package])
-    for above in (folder, *folder.parents):
-        if package in (above.name, _said_name(above / "package.xml")):
-            yield above
-        yield above / package
-    for root in _paths("ROS_PACKAGE_PATH"):
-        yield root if root.name == package else root / package
-    for root in _paths("AMENT_PREFIX_PATH"):
-        yield root / "share" / package
-
-
-def _said_name(manifest: Path) -> str:
-    """Return the name that a ``package.xml`` gives its package, if it is there."""
-    try:
-        return (read_xml(manifest, "package", "a package", "package").findtext("name") or "").strip()
-    except BrokenFile:
-        return ""
-
-
-def _paths(variable: str) -> list[Path]:
-    return [Path(entry) for entry in os.environ.get(variable, "").split(os.pathsep) if entry]

@@ -11,8 +11,8 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.loading.description import RobotModel
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.model import RobotModel
+from evenroad.loading.robot_file import RobotFile
 from evenroad.planning.connector import Smooth, require_smooth
 from evenroad.planning.result import PlanResult
 from evenroad.poses.constraint import Constraint

@@ -14,12 +14,11 @@ from evenroad._rng import RngLike, generator
 from evenroad.collision.prepared_robots import prepared
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
-from evenroad.loading.bodies_file import padding_of
 from evenroad.poses.chain import default_tip
 from evenroad.poses.inverse_kinematics import reach
 from evenroad.poses.pose_goal import PoseGoal, as_pose_goal
 from evenroad.robots.kinematics import link_poses
-from evenroad.robots.robot import ConfigurationLike, Padding, Robot
+from evenroad.robots.robot import ConfigurationLike, Robot
 from evenroad.scenes.states import as_configuration
 
 
@@ -70,9 +69,3 @@ def random_configurations(robot: Robot, rng: RngLike = 0, n: int | None = None) 
     count = 1 if n is None else require_count("n", n)
     drawn = space.from_cube(generator(rng).random((count, space.dim)))
     return drawn[0] if n is None else drawn
-
-
-def with_padding(robot: Robot, padding: Padding) -> Robot:
-    """Do as :meth:`evenroad.robot.Robot.with_padding`."""
-    every = dict(robot.padding) | {link: float(metres) for link, metres in padding_of(robot, padding).items()}
-    return replace(robot, padding=tuple(sorted((link, metres) for link, metres in every.items() if metres > 0.0)))

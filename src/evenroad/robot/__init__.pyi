@@ -1,11 +1,11 @@
 from evenroad.collision.arm_world import ArmWorld as ArmWorld
 from evenroad.geometry.shapes import Capsule as Capsule
 from evenroad.loading import find as find
-from evenroad.loading.description import LinkBody as LinkBody
-from evenroad.loading.description import RobotModel as RobotModel
 from evenroad.loading.find import find_robot as find_robot
 from evenroad.loading.load import load_model as load_model
 from evenroad.loading.load import load_robot as load_robot
+from evenroad.loading.model import LinkBody as LinkBody
+from evenroad.loading.model import RobotModel as RobotModel
 from evenroad.poses.cartesian_line import CartesianLine as CartesianLine
 from evenroad.poses.pose_goal import PoseGoal as PoseGoal
 from evenroad.robots.held import HeldObject as HeldObject

@@ -291,7 +291,7 @@ class Robot:
         >>> er.ArmWorld(robot, "box-reach").valid("home")
         True
         """
-        from evenroad.poses.robot_queries import with_padding
+        from evenroad.loading.padding import with_padding
 
         return with_padding(self, padding)
 

@@ -17,7 +17,7 @@ from evenroad._understood import Kind, require_understood
 from evenroad._yaml import numbers
 from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.geometry.pose import IDENTITY
-from evenroad.loading.bodies_file import padded
+from evenroad.loading.padding import padded
 from evenroad.scenes.entry import Entry
 from evenroad.scenes.planning_objects import (
     PLANNING_FRAMES,

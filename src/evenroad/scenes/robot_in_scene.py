@@ -9,7 +9,7 @@ import numpy as np
 from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.pose import IDENTITY, Pose
-from evenroad.loading.bodies_file import padding_of
+from evenroad.loading.padding import padding_of
 from evenroad.robots.held import HeldObject, same_bodies
 from evenroad.robots.joint import Joint
 from evenroad.robots.kinematics import poses_at, with_mimics

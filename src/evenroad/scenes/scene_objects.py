@@ -14,8 +14,8 @@ from evenroad.geometry.mesh import convex_hull
 from evenroad.geometry.mesh_file import GLTF, Y_UP, load_objects
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import WORLD, Mesh, Shape
+from evenroad.loading.robot_file import RobotFile
 from evenroad.loading.urdf import read_urdf
-from evenroad.loading.urdf_xml import RobotFile
 from evenroad.robots.joint import require_within
 from evenroad.robots.kinematics import poses_at, with_mimics
 

@@ -12,7 +12,7 @@ from PIL import Image
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.robot_file import RobotFile
 from evenroad.planning.result import PlanResult, Status
 from evenroad.robots.kinematics import link_poses, tip_links
 from evenroad.space.path import configuration_at

@@ -19,7 +19,7 @@ from evenroad.geometry.mesh import convex_hull
 from evenroad.geometry.shapes import Capsule, Mesh, Shape, Sphere
 from evenroad.loading.cache import file_of, key_of
 from evenroad.loading.load import read_robot
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.robot_file import RobotFile
 from evenroad.robots.robot import Robot
 from evenroad.scenes.scene import Obstacle
 from evenroad.viz import style

@@ -18,7 +18,7 @@ from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import EvenroadError
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Box, Shape, Sphere
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.robot_file import RobotFile
 from evenroad.planning.arm_trees import grown_trees
 from evenroad.planning.result import PlanResult
 from evenroad.robots.kinematics import joint_values, link_poses, tip_links

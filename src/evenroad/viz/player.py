@@ -18,7 +18,7 @@ from evenroad._files import atomic_write
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import NotAvailable
 from evenroad.geometry.pose import IDENTITY, Pose
-from evenroad.loading.urdf_xml import RobotFile
+from evenroad.loading.robot_file import RobotFile
 from evenroad.planning.result import PlanResult
 from evenroad.robots.kinematics import joint_values, tip_links
 from evenroad.scenes.scene import Obstacle

@@ -4,8 +4,8 @@ import pytest
 
 from evenroad.errors import BrokenFile
 from evenroad.loading.load import read_robot
+from evenroad.loading.robot_file import RobotFile, find_mesh
 from evenroad.loading.urdf import read_urdf
-from evenroad.loading.urdf_xml import RobotFile, find_mesh
 from tests.robots.urdf_texts import two_joints, write
 
 
