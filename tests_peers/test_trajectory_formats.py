@@ -53,13 +53,13 @@ def _moves(script):
 
 def test_it_is_as_fast_as_toppra_on_the_same_corners():
     toppra = pytest.importorskip("toppra")
-    from evenroad.trajectory.blends import rounded
+    from evenroad._native.trajectory import rounded
     from evenroad.trajectory.timing import fastest
 
     curve = rounded(PATH, np.full(len(PATH), 0.05))
     ours = fastest(curve, LIMITS).duration
     s = np.linspace(0.0, curve.length, 1500)
-    spline = toppra.SplineInterpolator(s, curve.at(s)[0])
+    spline = toppra.SplineInterpolator(s, curve.at(s).positions)
     velocity, push = np.array(LIMITS.velocity), np.array(LIMITS.acceleration)
     constraints = [
         toppra.constraint.JointVelocityConstraint(np.column_stack([-velocity, velocity])),

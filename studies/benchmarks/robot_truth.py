@@ -20,7 +20,7 @@ import pinocchio
 import trimesh
 from studies.benchmarks.rows import row_per_robot
 
-from evenroad.geometry.mesh import TriangleMesh, closed_parts
+from evenroad.geometry.mesh import TriangleMesh
 from evenroad.planning.arm_trees import connect, shorten
 from evenroad.robot import ArmWorld, Scene, load_model
 from evenroad.robots.pairs import CONTAINED
@@ -81,8 +81,8 @@ class Truth:
         else:
             self.notes.append(f"{Path(item.meshPath).name} as coal reads it")
         mesh = TriangleMesh(corners, np.array(read.faces))
-        closed, turned = closed_parts(mesh)
-        if turned and closed.any():
+        closed = mesh.closed_parts.closed
+        if mesh.closed_parts.oriented and closed.any():
             self.surfaces[i] = mesh.vertices[mesh.triangles[closed]]
             self.boxes[i] = self.surfaces[i].min(axis=(0, 1)), self.surfaces[i].max(axis=(0, 1))
         if mesh.is_convex:

@@ -23,6 +23,7 @@ import numpy as np
 import numpy.typing as npt
 from studies.benchmarks.arm_problems import REPORTING, Pool, arm_named, problems
 
+from evenroad._native.trajectory import rounded
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import NotAvailable
 from evenroad.loading.masses import Mass
@@ -31,7 +32,6 @@ from evenroad.planning.arm_trees import shorten
 from evenroad.planning.read_problem import arm_problem
 from evenroad.robot import Scene
 from evenroad.trajectory import Dynamics, InMotion, Limits, TipLimits, arm_trajectory, limits_of
-from evenroad.trajectory.blends import rounded
 from evenroad.trajectory.make import DEVIATION
 from evenroad.trajectory.timing import TimeLaw
 
@@ -92,7 +92,7 @@ def toppra_ms(path: Path, limits: Limits) -> float:
         ]
         # At speed 1 times are lengths.
         along = TimeLaw(curve, curve.starts, curve.starts, np.ones(len(curve.starts)), np.zeros(len(curve.bend)))
-        spline = toppra.SplineInterpolator(s, along.at(s)[0])
+        spline = toppra.SplineInterpolator(s, along.at(s).positions)
         toppra.algorithm.TOPPRA(constraints, spline, gridpoints=s).compute_trajectory()
 
     return best_ms(run)

@@ -8,7 +8,7 @@ import pytest
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.collision.native_surfaces import FRAME, surface_of
 from evenroad.geometry import Mesh, PointCloud, Pose, Sphere, TriangleMesh
-from evenroad.geometry.mesh import closed_parts, merged
+from evenroad.geometry.mesh import merged
 from evenroad.scenes.scene import Obstacle, Scene
 from evenroad.world import FunctionWorld
 from tests.robots.kernel_arms import (
@@ -231,8 +231,8 @@ NAMED_APART = BALLS[0].vertices[BALLS[0].triangles].reshape(-1, 3), np.arange(24
     (TriangleMesh(*NAMED_APART), 1.0, True),
 ])  # fmt: skip
 def test_closed_parts_are_found(mesh, closed, turned):
-    parts, sides = closed_parts(mesh)
-    assert (parts.mean(), sides) == (pytest.approx(closed), turned)
+    parts = mesh.closed_parts
+    assert (parts.closed.mean(), parts.oriented) == (pytest.approx(closed), turned)
 
 
 def test_a_few_frames_of_a_camera_are_kept_and_not_every_one():

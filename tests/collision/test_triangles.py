@@ -7,7 +7,6 @@ import pytest
 
 from evenroad._native import robot as native
 from evenroad.geometry import TriangleMesh
-from evenroad.geometry.mesh import closed_parts, first_of_parts
 
 
 def slow_closed_parts(mesh):
@@ -80,8 +79,8 @@ def test_closed_parts_are_those_of_a_slow_search(seed):
     rng = np.random.default_rng(seed)
     mesh = tetrahedra(rng, int(rng.integers(1, 30)), turned=seed % 2 == 1)
     closed, first = slow_closed_parts(mesh)
-    assert closed_parts(mesh)[0].tolist() == closed
-    assert first_of_parts(mesh).tolist() == first
+    assert mesh.closed_parts.closed.tolist() == closed
+    assert mesh.closed_parts.first.tolist() == first
 
 
 def test_pieces_are_those_of_a_slow_recursion_and_cover_what_is_reached():

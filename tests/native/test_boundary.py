@@ -34,22 +34,22 @@ def test_arrays_that_do_not_fit_each_other_are_refused():
         points.maximum_pair_sums(COLUMNS, ONES, np.ones(4), True)
     flat = np.zeros((3, 39))
     with pytest.raises(InvalidValue, match=r"own must have shape \(3, 40\), got \(3, 39\)"):
-        points.distance_pair_sums(COLUMNS, (ONES, ONES, ONES, flat, flat), True)
-    with pytest.raises(InvalidValue, match="pairs must be"):
-        points.distance_pair_sums(COLUMNS, (ONES, ONES), True)
+        points.distance_pair_sums(COLUMNS, ONES, ONES, ONES, flat, flat, True)
 
 
 def test_arrays_that_cannot_be_written_to_are_read():
     frozen = COLUMNS.copy()
     frozen.setflags(write=False)
     np.testing.assert_array_equal(
-        points.maximum_pair_sums(frozen, ONES, ONES, True)[0],
-        points.maximum_pair_sums(COLUMNS, ONES, ONES, True)[0],
+        points.maximum_pair_sums(frozen, ONES, ONES, True).sums,
+        points.maximum_pair_sums(COLUMNS, ONES, ONES, True).sums,
     )
 
 
 def test_results_outlive_the_call_and_own_their_memory():
-    sums, gradient = points.maximum_pair_sums(COLUMNS, ONES, ONES, True)
+    found = points.maximum_pair_sums(COLUMNS, ONES, ONES, True)
+    sums, gradient = found.sums, found.gradient
+    del found
     kept = sums.copy(), gradient.copy()
     for _ in range(50):
         points.maximum_pair_sums(COLUMNS, 2 * ONES, ONES, True)
@@ -60,21 +60,21 @@ def test_results_outlive_the_call_and_own_their_memory():
 
 
 def test_no_points_and_no_coordinates_are_sums_of_nothing():
-    assert points.maximum_pair_sums(np.zeros((3, 0)), ONES, ONES, True)[0].shape == (0,)
+    assert points.maximum_pair_sums(np.zeros((3, 0)), ONES, ONES, True).sums.shape == (0,)
     np.testing.assert_array_equal(
-        points.maximum_pair_sums(np.zeros((0, 5)), ONES[:0], ONES[:0], True)[0], np.full(5, 5.0)
+        points.maximum_pair_sums(np.zeros((0, 5)), ONES[:0], ONES[:0], True).sums, np.full(5, 5.0)
     )
 
 
 def test_eight_threads_get_what_one_gets():
     sets = [np.random.default_rng(seed).random((4, 200)) for seed in range(8)]
     ones = np.ones(4)
-    alone = [points.maximum_pair_sums(each, 2 * ones, ones, True)[1] for each in sets]
+    alone = [points.maximum_pair_sums(each, 2 * ones, ones, True).gradient for each in sets]
     found = [[] for _ in sets]
 
     def work(i):
         for _ in range(20):
-            found[i].append(points.maximum_pair_sums(sets[i], 2 * ones, ones, True)[1])
+            found[i].append(points.maximum_pair_sums(sets[i], 2 * ones, ones, True).gradient)
 
     threads = [threading.Thread(target=work, args=(i,)) for i in range(8)]
     for thread in threads:

@@ -52,10 +52,11 @@ def test_maps_and_neighbours_are_the_same_bits_in_every_build(variant, monkeypat
     for kernel in (_native.kernel, variants.load()):
         disk = kernel.world.Disk(occupied, np.array([0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0]), 1.3)
         start, *goals = a[disk.points_free(a)]
-        path, *counts = disk.find_path(start, np.array(goals[-2:]), 10_000)
+        path = disk.find_path(start, np.array(goals[-2:]), 10_000)
+        counts = path.goal, path.expanded, path.motions
         near = kernel.roadmap.k_nearest(a, np.array([80.0, np.inf]), 7, False)
         far = kernel.space.flat_distances(a, b, np.ones(2), np.array([80.0, np.inf]))
-        found.append((disk.motions_free(a, b), disk.nearest_obstacles(a)[0], path, counts, near, far))
+        found.append((disk.motions_free(a, b), disk.nearest_obstacles(a)[0], path.points, counts, near, far))
     assert 0.02 < found[0][0].mean() < 0.98
     assert len(found[0][2]) > 2
     for one, other in zip(*found, strict=True):
@@ -68,11 +69,10 @@ def test_sums_of_pairs_are_the_same_bits_in_every_build(variant, monkeypatch):
     monkeypatch.setenv(variants.ENVIRONMENT, variant)
     points = variants.load().points
     columns, ones = np.random.default_rng(1).random((5, 301)), np.ones(5)
-    first = _native.points.maximum_pair_sums(columns, 2 * ones, ones, True)
-    for one, other in zip(first, points.maximum_pair_sums(columns, 2 * ones, ones, True), strict=True):
-        np.testing.assert_array_equal(one, other)
-    still = np.zeros_like(columns)
-    pairs = (2 * ones, ones, 0.5 * ones, 0.1 * columns, still)
-    first = _native.points.distance_pair_sums(columns, pairs, True)
-    for one, other in zip(first, points.distance_pair_sums(columns, pairs, True), strict=True):
-        np.testing.assert_array_equal(one, other)
+    kernels, pairs = (_native.points, points), (2 * ones, ones, 0.5 * ones, 0.1 * columns, np.zeros_like(columns))
+    for one, other in (
+        [each.maximum_pair_sums(columns, 2 * ones, ones, True) for each in kernels],
+        [each.distance_pair_sums(columns, *pairs, True) for each in kernels],
+    ):
+        np.testing.assert_array_equal(one.sums, other.sums)
+        np.testing.assert_array_equal(one.gradient, other.gradient)

@@ -12,7 +12,7 @@ import pytest
 import evenroad as er
 from evenroad._native.planning import CLEARANCES
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.planning.arm_trees import connect, shorten, smooth, smooth_apart
+from evenroad.planning.arm_trees import connect, shorten, smooth, smooth_with_clearance
 from evenroad.robot import Obstacle, Scene, load_robot
 from tests.refused import refused
 from tests.robots.kernel_arms import random_scene, random_tree, ur5
@@ -56,7 +56,7 @@ def test_a_plan_is_drawn_tight_unless_quick_shortcuts_or_no_smoothing_are_wanted
     raw = plans[False].path
     np.testing.assert_array_equal(plans["quick"].path, shorten(world, raw)[0])
     # Joints that wrap are brought into their range and back, which rounds.
-    np.testing.assert_allclose(plans[True].path, smooth_apart(world, raw, batches=500)[0], rtol=0, atol=1e-14)
+    np.testing.assert_allclose(plans[True].path, smooth_with_clearance(world, raw, batches=500)[0], rtol=0, atol=1e-14)
     assert max(plans[True].cost, plans["quick"].cost) < plans[False].cost
     # To keep 5 mm off may cost 2 % of the length.
     assert plans[True].cost < 1.02 * plans["quick"].cost
@@ -69,7 +69,7 @@ def test_a_plan_keeps_five_millimetres_off_where_that_costs_two_percent_at_most(
     world, found = paths
     kept, lengths = 0, np.zeros(2)
     for path in found:
-        plan, _ = smooth_apart(world, path, batches=500)
+        plan, _ = smooth_with_clearance(world, path, batches=500)
         tight, _ = smooth(world, path, batches=500)
         assert proved(world, plan)
         np.testing.assert_array_equal(plan[[0, -1]], path[[0, -1]])

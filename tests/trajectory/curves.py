@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from evenroad._native.trajectory import rounded
 from evenroad.trajectory import Limits
-from evenroad.trajectory.blends import rounded
 
 
 def curve(seed, dim=4, points=6):

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicHermiteSpline
 
-from evenroad._native.trajectory import distances_to, largest_share
-from evenroad.trajectory.blends import rounded
+from evenroad._native.trajectory import distances_to, largest_share, rounded
 from evenroad.trajectory.timing import fastest, paused, slowed
 from tests.trajectory.curves import curve, limits_from
 
@@ -42,7 +41,8 @@ def test_states_are_those_of_the_oracle_also_outside_and_in_pauses(seed):
     law = slowed(paused(fastest(curve(seed)[1], limits_from(seed)), 0.1), 1.3)
     t = np.random.default_rng(seed).uniform(-0.2, law.duration + 0.2, 700)
     t[:5] = 0.0, law.duration, -1.0, law.times[300], law.duration + 1.0
-    for found, expected in zip(law.at(t), states(law, t), strict=True):
+    at = law.at(t)
+    for found, expected in zip((at.positions, at.velocities, at.accelerations), states(law, t), strict=True):
         np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
 
 
@@ -53,7 +53,8 @@ def test_the_largest_shares_are_those_of_all_samples(seed):
     within = law.times[:-1, None] + np.diff(law.times)[:, None] * np.linspace(0.0, 1.0 - 1e-9, 8)
     _, velocities, accelerations = states(law, within.ravel())
     expected = [np.max(np.abs(velocities) / limits.velocity), np.max(np.abs(accelerations) / limits.acceleration)]
-    np.testing.assert_allclose(law.largest_shares(limits, 8), expected, rtol=1e-8)
+    used = law.largest_shares(limits, 8)
+    np.testing.assert_allclose((used.velocity, used.acceleration), expected, rtol=1e-8)
 
 
 def pushes(side, square, step, following, acceleration):
@@ -183,9 +184,9 @@ def test_averages_are_those_of_splines(seed):
     positions = (travelled(t) - travelled(t - window)) / window
     positions[[0, -1]] = now[0][[0, -1]]
     found = law.averages(window, t)
-    np.testing.assert_allclose(found[0], positions, rtol=1e-9, atol=1e-11)
-    np.testing.assert_allclose(found[1], (now[0] - before[0]) / window, rtol=1e-9, atol=1e-11)
-    np.testing.assert_allclose(found[2], (now[1] - before[1]) / window, rtol=1e-9, atol=1e-10)
+    np.testing.assert_allclose(found.positions, positions, rtol=1e-9, atol=1e-11)
+    np.testing.assert_allclose(found.velocities, (now[0] - before[0]) / window, rtol=1e-9, atol=1e-11)
+    np.testing.assert_allclose(found.accelerations, (now[1] - before[1]) / window, rtol=1e-9, atol=1e-10)
 
 
 @pytest.mark.parametrize("shape", [(0, 3), (1, 3), (57, 3), (40, 20), (5, 0), (0, 0)])

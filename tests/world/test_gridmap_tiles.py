@@ -70,5 +70,5 @@ def test_a_thread_that_searched_very_often_finds_the_same_path():
     for _ in range(65_536):
         disk.find_path(a, b, 1000)
     last = disk.find_path(a, b, 1000)
-    np.testing.assert_array_equal(first[0], last[0])
-    assert first[1:] == last[1:]
+    np.testing.assert_array_equal(first.points, last.points)
+    assert (first.goal, first.expanded, first.motions) == (last.goal, last.expanded, last.motions)

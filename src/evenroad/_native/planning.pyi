@@ -6,8 +6,13 @@ from evenroad._native.robot import Checker
 
 CLEARANCES: tuple[float, float]
 
+class Counts:
+    motions: int
+    configurations: int
+    batches: int
+
 class Checks:
-    counts: tuple[int, int, int]
+    counts: Counts
     def __init__(self, checker: Checker) -> None: ...
 
 class Points:
@@ -22,10 +27,14 @@ class Answer:
     path: Floats
     raw_length: float
     length: float
-    counts: tuple[int, int, int, int]
-    seconds: tuple[float, float]
+    nodes: int
+    configurations: int
+    motions: int
+    smoothing_motions: int
+    search_seconds: float
+    smoothing_seconds: float
     is_cut: bool
-    def smooth_apart(self, checker: Checker, roomier: Checker, drivers: Drivers) -> None: ...
+    def smooth_with_clearance(self, checker: Checker, roomier: Checker, drivers: Drivers) -> None: ...
 
 class Trees:
     path: Floats
@@ -48,8 +57,10 @@ class Improver:
         self,
         checks: Checks,
         terminals: Floats,
-        driven_by: tuple[Points, Points, Points, Points],
-        first: tuple[Floats, int, int],
+        drivers: Drivers,
+        path: Floats,
+        goal: int,
+        motions: int,
         is_smoothing: bool,
     ) -> None: ...
     def improve(self, rounds: int, motions: int, batches: int) -> Literal["paused", "spent", "shortest"]: ...
@@ -61,8 +72,17 @@ class Tree:
     def nearest(self, q: Floats) -> int: ...
     def remove_branch(self, node: int) -> None: ...
 
+class Columns:
+    """Which queries have a path, where the waypoints of each begin, all waypoints, and lengths and seconds."""
+
+    solved: Bools
+    begins: Ints
+    waypoints: Floats
+    lengths: Floats
+    seconds: Floats
+
 class ManyQueries:
-    columns: tuple[Bools, Ints, Floats, Floats, Floats]
+    columns: Columns
     def __init__(
         self,
         checkers: Sequence[Checker],
@@ -72,7 +92,7 @@ class ManyQueries:
         drivers: Drivers,
         motions: int,
         seconds: tuple[float, float],
-        smoothing: Literal["none", "quick", "full", "apart"],
+        smoothing: Literal["none", "quick", "full", "with clearance"],
     ) -> None: ...
     def go_on(self, threads: int, seconds: float) -> int: ...
     def answer(self, query: int) -> Answer: ...
@@ -84,13 +104,12 @@ def answer(
     drivers: Drivers,
     motions: int,
     search_seconds: float,
-    smoothing: Literal["none", "quick", "full", "apart"],
+    smoothing: Literal["none", "quick", "full", "with clearance"],
 ) -> Answer: ...
 def shorten(checks: Checks, path: Floats, pairs: Points, most_shortcuts: int) -> tuple[Floats, int]: ...
 def smooth(
-    checks: Checks, path: Floats, pairs: Points, directions: Points, most_batches: int, proved: bool
+    checks: Checks, path: Floats, drivers: Drivers, most_batches: int, proved: bool
 ) -> tuple[Floats | None, int]: ...
-def smooth_apart(
-    checks: Checks, roomier: Checks, path: Floats, pairs: Points, directions: Points, most_batches: int
+def smooth_with_clearance(
+    checks: Checks, roomier: Checks, path: Floats, drivers: Drivers, most_batches: int
 ) -> tuple[Floats, int]: ...
-def prove_or_bend(checks: Checks, path: Floats, margin: float, directions: Points) -> Floats | None: ...

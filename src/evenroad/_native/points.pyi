@@ -1,13 +1,31 @@
 from evenroad._arrays import Floats
 
-def maximum_pair_sums(
-    columns: Floats, ceiling: Floats, slope: Floats, want_gradient: bool
-) -> tuple[Floats, Floats]: ...
+class PairSums:
+    sums: Floats
+    gradient: Floats
+
+class RieszRows:
+    nearest: Floats
+    sums: Floats
+    pushes: Floats
+
+class Dispersion:
+    lower: float
+    upper: float
+    work: float
+
+def maximum_pair_sums(columns: Floats, ceiling: Floats, slope: Floats, want_gradient: bool) -> PairSums: ...
 def distance_pair_sums(
-    columns: Floats, pairs: tuple[Floats, Floats, Floats, Floats, Floats], want_gradient: bool
-) -> tuple[Floats, Floats]: ...
-def riesz_rows(columns: Floats, s: int, periodic: bool, want_gradient: bool) -> tuple[Floats, Floats, Floats]: ...
+    columns: Floats,
+    level: Floats,
+    slope: Floats,
+    curvature: Floats,
+    own: Floats,
+    own_slope: Floats,
+    want_gradient: bool,
+) -> PairSums: ...
+def riesz_rows(columns: Floats, s: int, periodic: bool, want_gradient: bool) -> RieszRows: ...
 def star_discrepancy(columns: Floats) -> float: ...
 def bound_dispersion(
     points: Floats, period: Floats, sides: Floats, lower: float, share: float, most: float
-) -> tuple[float, float, float]: ...
+) -> Dispersion: ...

@@ -1,5 +1,5 @@
 from collections.abc import Mapping, Sequence
-from typing import overload
+from typing import Literal, TypeAlias, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -36,10 +36,21 @@ class Surface:
     @staticmethod
     def around(surfaces: Sequence[Surface | None]) -> Surface: ...
 
-def closed_parts(vertices: Floats, triangles: Ints) -> tuple[Bools, bool, Bools, Bools]: ...
+class ClosedParts:
+    """Which triangles bound what is solid, have to be turned, and are the first of their part, (t,) each."""
+
+    closed: Bools
+    turned: Bools
+    first: Bools
+    oriented: bool
+
+def closed_parts(vertices: Floats, triangles: Ints) -> ClosedParts: ...
 def pieces_within(triangles: Floats, first: Bools, reach: float, longest: float) -> tuple[Floats, Bools]: ...
 def winding_at(point: Floats, triangles: Floats, turned: bool) -> int: ...
 def box_rows(size: object, xyz: object, xyzw: object) -> Floats | None: ...
+
+class SurfaceObstacle:
+    def __init__(self, surface: Surface, number: int, tested: Bools) -> None: ...
 
 class Scene:
     added: float
@@ -51,7 +62,7 @@ class Scene:
         robot: Robot,
         obstacles: Floats,
         tested: Bools,
-        surfaces: list[tuple[Surface, int, Bools]],
+        surfaces: list[SurfaceObstacle],
         around: Surface | None,
         clearance: float,
     ) -> None: ...
@@ -59,8 +70,15 @@ class Scene:
         self, robot: Robot, gone: Ints, obstacles: Floats, numbers: Ints, tested: Bools, clearance: float
     ) -> Scene | None: ...
 
+class Contact:
+    """What touches: a capsule and an obstacle of the scene, or of its surfaces, or the number of a pair of capsules."""
+
+    kind: Literal["nothing", "obstacle", "surface", "itself"]
+    capsule: int
+    other: int
+
 class Checker:
-    fixed_contact: tuple[str, int, int]
+    fixed_contact: Contact
     def __init__(
         self, robot: Robot, scene: Scene, resolution: float, clearance: float, touches_itself: bool
     ) -> None: ...
@@ -72,30 +90,49 @@ class Checker:
     def motion_valid(self, a: Floats, b: Floats, tolerance: float = 0.0) -> Bools: ...
     @overload
     def motion_valid(self, a: object, b: object, tolerance: float = 0.0) -> Bools | bool | None: ...
-    def distances(self, q: Floats, most: float, to_itself: bool) -> tuple[Floats, Ints]: ...
-    def find_contact(self, q: Floats) -> tuple[str, int, int]: ...
+    def distances(self, q: Floats, most: float, to_itself: bool) -> tuple[Floats, list[Contact]]: ...
+    def find_contact(self, q: Floats) -> Contact: ...
+
+KeepKind: TypeAlias = Literal["linear", "box", "circle", "together", "joints"]
+
+class Keep:
+    def __init__(self, kind: KeepKind, first: int, second: int, limit: float, numbers: Floats) -> None: ...
+
+class Projecting:
+    def __init__(self, aim: float, enough: float, steps: int, longest: float) -> None: ...
+
+class Walking:
+    def __init__(self, scale: Floats, step: float, jump: float, projecting: Projecting) -> None: ...
 
 class Keeps:
-    def __init__(
-        self, chains: list[Chain], constraints: list[tuple[int, int, int, float, Floats]], limits: Floats
-    ) -> None: ...
+    def __init__(self, chains: list[Chain], constraints: list[Keep], limits: Floats) -> None: ...
     def shares(self, q: Floats) -> Floats: ...
     def residuals(self, q: Floats) -> Floats: ...
     def derivative(self, q: Floats) -> Floats: ...
-    def project(
-        self, q: Floats, aim: float, enough: float, steps: int, longest: float
-    ) -> tuple[Floats, npt.NDArray[np.uint8]]: ...
-    def walk(
-        self, begins: Floats, directions: Floats, scale: Floats, how: tuple[float, float, float, float, int, float]
-    ) -> tuple[Floats, Ints]: ...
-    def refine(
-        self,
-        paths: Floats,
-        counts: Ints,
-        pieces: int,
-        scale: Floats,
-        how: tuple[float, float, float, float, int, float],
-    ) -> tuple[Floats, Ints]: ...
+    def project(self, q: Floats, how: Projecting) -> tuple[Floats, Bools]: ...
+    def walk(self, begins: Floats, directions: Floats, how: Walking) -> tuple[Floats, Ints]: ...
+    def refine(self, paths: Floats, counts: Ints, pieces: int, how: Walking) -> tuple[Floats, Ints]: ...
+
+class Beginnings:
+    """Configurations at which solutions begin: `start`, and those of the nearest tips among `known`.
+
+    Of these from number `first` to below `last`, one in `every`.
+    """
+
+    def __init__(self, start: Floats, known: Floats, tips: Floats, first: int, last: int, every: int) -> None: ...
+
+class Postures:
+    """Which coordinates are in the same posture after a whole turn, their bounds, and how far one posture reaches."""
+
+    def __init__(self, turns: Bools, bounds: Floats, same: float) -> None: ...
+
+class Solutions:
+    """Postures of all tasks, whose each is, what is nearest to each task, and what that lacks, squared."""
+
+    q: Floats
+    task: Ints
+    nearest: Floats
+    missing: Floats
 
 class Chain:
     def __init__(self, coordinates: Ints, slides: Bools, rows: Floats, dim: int) -> None: ...
@@ -104,14 +141,13 @@ class Chain:
     def reach(self, q: Floats, task: Floats, limits: Floats, steps: int, enough: int) -> tuple[Floats, Floats]: ...
     def reach_all(
         self,
-        known: tuple[Floats, Floats, Floats],
-        pick: tuple[int, int, int],
+        beginnings: Beginnings,
         tasks: Floats,
         limits: Floats,
-        turns: tuple[Bools, Floats],
-        apart: float,
-        effort: tuple[int, int],
-    ) -> tuple[Floats, Ints, Floats, Floats]: ...
+        postures: Postures,
+        steps: int,
+        enough: int,
+    ) -> Solutions: ...
     def follow(
         self, q: Floats, towards: Floats, task: Floats, poses: Floats, limits: Floats, steps: int, longest: float
     ) -> Floats: ...

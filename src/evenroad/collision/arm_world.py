@@ -14,12 +14,12 @@ from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
-from evenroad._native.robot import Checker
+from evenroad._native.robot import Checker, Contact
 from evenroad._native.robot import Scene as NativeScene
 from evenroad._shared import once_property
 from evenroad._time_limit import require_time_for
 from evenroad.collision.coerce import as_robot, as_scene
-from evenroad.collision.distance import LEAST, MOST, WITH, Distance, Pair
+from evenroad.collision.distance import LEAST, MOST, Distance, Pair
 from evenroad.collision.native_scene import native_scene
 from evenroad.collision.numbered_scene import NumberedScene
 from evenroad.collision.prepared_robots import Prepared, prepared
@@ -329,7 +329,7 @@ class ArmWorld(Changes, OneOrMany):
     def _distances(self, q: Floats, *, to_itself: bool = True) -> tuple[Floats, list[Pair | None]]:
         """Return the distances of configurations, (n, dim); without `to_itself` those from obstacles alone."""
         metres, nearest = self._measuring.distances(q, MOST, to_itself)
-        return metres, [self._names(WITH[kind], *of, anew=True) if kind else None for kind, *of in nearest.tolist()]
+        return metres, [self._names(contact, anew=True) for contact in nearest]
 
     def nearest_along(self, path: Floats) -> tuple[str, str] | None:
         """Return the link and the obstacle that come nearest to each other along a path, (p, dim); None beyond 1 m."""
@@ -461,20 +461,22 @@ class ArmWorld(Changes, OneOrMany):
     @cached_property
     def fixed_contact(self) -> tuple[str, str] | None:
         """Two bodies that touch at all values of the joints, or None."""
-        kind, capsule, other = self.checker.fixed_contact
-        return self.robot_tables.fixed_contact if kind == "nothing" else self._names(kind, capsule, other)
+        return self._names(self.checker.fixed_contact) or self.robot_tables.fixed_contact
 
     def _touching(self, q: Floats) -> tuple[str, str] | None:
         """Return two bodies that touch at a configuration within the limits."""
-        kind, capsule, other = self.checker.find_contact(q)
-        return None if kind == "nothing" else self._names(kind, capsule, other)
+        return self._names(self.checker.find_contact(q))
 
-    def _names(self, kind: str, capsule: int, other: int, *, anew: bool = False) -> tuple[str, str]:
-        """Return the names of two bodies that touch, as native checks number them; or those of a scene made anew."""
-        capsules = self.robot_tables.capsules
-        if kind == "itself":
-            first, second = self.robot_tables.capsule_pairs[other]
-            return capsules[first].link, capsules[second].link
-        if kind == "surface":
-            return capsules[capsule].link, self.scene.names[other]
-        return capsules[capsule].link, self.scene.solid_names[other] if anew else self._numbered.name_of(other)
+    def _names(self, contact: Contact, *, anew: bool = False) -> tuple[str, str] | None:
+        """Return the names of two bodies that touch, None for nothing; or those of a scene made anew."""
+        capsules, other = self.robot_tables.capsules, contact.other
+        match contact.kind:
+            case "nothing":
+                return None
+            case "itself":
+                first, second = self.robot_tables.capsule_pairs[other]
+                return capsules[first].link, capsules[second].link
+            case "surface":
+                return capsules[contact.capsule].link, self.scene.names[other]
+        name = self.scene.solid_names[other] if anew else self._numbered.name_of(other)
+        return capsules[contact.capsule].link, name

@@ -30,6 +30,3 @@ MOST = 1.0
 
 LEAST = 1e-9
 """Distance of what does not touch, where less than some micrometres is known of it [m]."""
-
-WITH = ("nothing", "obstacle", "surface", "itself")
-"""With what something is in contact, as the native kernel numbers it."""

@@ -33,7 +33,7 @@ def native_scene(
         if not tested[:, number].any():
             continue
         if (surface := surface_of(body, reach, obstacle.clearance)) is not None:
-            surfaces.append((surface, number, np.ascontiguousarray(tested[:, number])))
+            surfaces.append(native.SurfaceObstacle(surface, number, np.ascontiguousarray(tested[:, number])))
             bodies.append((body, obstacle.clearance))
     around = surfaces_around(tuple(bodies), reach) if len(bodies) >= MANY else None
     solid = tested if not scene.surfaces else np.delete(tested, [number for number, _ in scene.surfaces], axis=1)

@@ -10,7 +10,6 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats
 from evenroad._native import robot as native
-from evenroad.geometry.mesh import closed_parts, first_of_parts
 from evenroad.geometry.shapes import Mesh, PointCloud
 
 MANY = 8
@@ -55,7 +54,8 @@ def make_surface(body: PointCloud | Mesh, reach: float, clearance: float = 0.0) 
         return native.Surface.of_cloud(body.points, *pose, body.radius, clearance, reach)
     mesh = body.triangles
     corners = body.pose.apply(mesh.vertices)[mesh.facing]
-    (closed, turned), first = closed_parts(mesh), first_of_parts(mesh)
+    parts = mesh.closed_parts
+    closed, turned, first = parts.closed, parts.oriented, parts.first
     # A large mesh is not copied.
     solid = corners if closed.all() else corners[closed]
     found = [_within(solid, first[closed], reach), _within(corners[~closed], first[~closed], reach)]

@@ -108,14 +108,14 @@ class KeptWorld:
         object.__setattr__(self, "chains", {tip: chain_of(self.world.robot, tip) for tip in tips})
         object.__setattr__(self, "space", space.projected_by(self))
         number = {tip: i for i, tip in enumerate(self.chains)}
-        rows = [
-            (int(kind), number[keep.tips[0]] if keep.tips else 0, number[keep.tips[-1]] if keep.tips else 0, *rest)
-            for keep in self.keeps
-            for kind, numbers in (keep.residual,)
-            for rest in ((keep.limit, np.ascontiguousarray(numbers, dtype=np.float64)),)
-        ]
+        keeps = []
+        for keep in self.keeps:
+            kind, numbers = keep.residual
+            first, last = (number[keep.tips[0]], number[keep.tips[-1]]) if keep.tips else (0, 0)
+            given = np.ascontiguousarray(numbers, dtype=np.float64)
+            keeps.append(kernel.Keep(kind, first, last, keep.limit, given))
         chains = [chain.native for chain in self.chains.values()]
-        object.__setattr__(self, "native", kernel.Keeps(chains, rows, self.limits))
+        object.__setattr__(self, "native", kernel.Keeps(chains, keeps, self.limits))
 
     @property
     def proof(self) -> str:
@@ -154,8 +154,7 @@ class KeptWorld:
         """Return the configurations, (n, dim), moved to where all residuals are within a share of their limits, and
         which succeeded (damped Gauss-Newton, Nakamura and Hanafusa 1986).
         """
-        moved, good = self.native.project(np.ascontiguousarray(q), _AIM, _ENOUGH, steps, _LONGEST)
-        return moved, good.view(np.bool_)
+        return self.native.project(np.ascontiguousarray(q), kernel.Projecting(_AIM, _ENOUGH, steps, _LONGEST))
 
     def bounds(self, path: Floats) -> Floats:
         """Return bounds on the residuals along each motion of a path, (n, dim), as shares of limits: (n - 1, c).
@@ -210,10 +209,10 @@ class KeptWorld:
         world, flat, finer = self.world, self.space.flat, max(1, int(_STEP / self.step))
         back, given = is_backwards(a, b), (a, b)
         a, b = np.where(back[:, np.newaxis], given[::-1], given)
-        states, counts = self.native.walk(a, flat.difference(a, b), flat.scale, self._walking(finer * self.step))
+        states, counts = self.native.walk(a, flat.difference(a, b), self._walking(finer * self.step))
         states, counts = _without(states, counts, ~world.valid(self.space.wrapped(states)))
         if finer > 1:
-            states, counts = self.native.refine(states, counts, finer, flat.scale, self._walking(self.step))
+            states, counts = self.native.refine(states, counts, finer, self._walking(self.step))
         free = np.flatnonzero(counts)
         motion, states = np.repeat(np.arange(len(a)), counts), self.space.wrapped(states).copy()
         # Sums round: the ends are as they were given.
@@ -231,9 +230,10 @@ class KeptWorld:
         rows = good[motion]
         return good, *turned_round(motion[rows], states[rows], back)
 
-    def _walking(self, step: float) -> tuple[float, float, float, float, int, float]:
+    def _walking(self, step: float) -> kernel.Walking:
         """Return how compiled code walks by such steps."""
-        return step, _JUMP, _AIM, _ENOUGH, _FEW, _LONGEST
+        projecting = kernel.Projecting(_AIM, _ENOUGH, _FEW, _LONGEST)
+        return kernel.Walking(self.space.flat.scale, step, _JUMP, projecting)
 
     def path_through(self, waypoints: Floats) -> Floats:
         """Return the path through waypoints between which motions are free, (p, dim)."""

@@ -8,8 +8,7 @@ for a second derivative, which `bend` bounds by how the tips move.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from enum import IntEnum
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
@@ -17,21 +16,8 @@ from evenroad.poses.cartesian_path import Moves
 from evenroad.poses.constraint import Constraint
 from evenroad.robots.robot import Robot
 
-
-class Kind(IntEnum):
-    """What a residual is, and which numbers it is made of, as in ``robot/keeps.hpp``."""
-
-    LINEAR = 0
-    """Rows, each of twelve coefficients of the tip's pose, and what is taken off."""
-    BOX = 1
-    """The way of the tip's origin out of a box: the box's low and high corner."""
-    CIRCLE = 2
-    """Distance from the circle and its plane, and a tenth of how far the tip is from turning with it."""
-    TOGETHER = 3
-    """Shift of the second tip from where the first one holds it, and a tenth of its turn: the pose that it holds."""
-    JOINTS = 4
-    """How far joints are outside of their ranges: lows and highs of all."""
-
+if TYPE_CHECKING:
+    from evenroad._native.robot import KeepKind
 
 WITHIN = 1e-4
 """Default for how far a tip may be off [m]."""
@@ -60,8 +46,15 @@ class Keep(Constraint):
         return self.within
 
     @property
-    def residual(self) -> tuple[Kind, Floats]:
-        """Its residual for compiled code: of which kind it is, and the numbers, (k,), that it is made of."""
+    def residual(self) -> tuple[KeepKind, Floats]:
+        """Its residual for compiled code: of which kind it is, and the numbers, (k,), that it is made of.
+
+        ``linear``: rows, each of twelve coefficients of the tip's pose, and what is taken off.  ``box``: the way of the
+        tip's origin out of a box, by its low and high corner.  ``circle``: the distance from the circle and its plane,
+        and a tenth of how far the tip is from turning with it.  ``together``: the shift of the second tip from where
+        the first one holds it, and a tenth of its turn, by the pose that it holds.  ``joints``: how far joints are
+        outside of their ranges, lows and highs of all.
+        """
         raise NotImplementedError
 
     def bend(self, moves: Sequence[Moves]) -> Floats:

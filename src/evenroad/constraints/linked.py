@@ -6,19 +6,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_row, require_known, require_positive
-from evenroad.constraints.keep import WITHIN, Keep, Kind, pose_row
+from evenroad.constraints.keep import WITHIN, Keep, pose_row
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
 from evenroad.poses.cartesian_path import Moves
 from evenroad.poses.chain import chain_of
 from evenroad.poses.pose_goal import as_axis
 from evenroad.robots.robot import Robot
+
+if TYPE_CHECKING:
+    from evenroad._native.robot import KeepKind
 
 
 @dataclass(frozen=True)
@@ -88,9 +91,9 @@ class KeepOnCircle(Keep):
         return float(np.subtract(self.pose.xyz, self.centre) @ self.frame[2])
 
     @property
-    def residual(self) -> tuple[Kind, Floats]:
+    def residual(self) -> tuple[KeepKind, Floats]:
         assert self.pose is not None, "only of a bound constraint"
-        return Kind.CIRCLE, np.concatenate([*self.frame, [self.radius], pose_row(self.pose)])
+        return "circle", np.concatenate([*self.frame, [self.radius], pose_row(self.pose)])
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         # Of the distance from the hinge it is at most that of the tip and its speed squared by that distance, of the
@@ -153,9 +156,9 @@ class KeepTogether(Keep):
         return replace(self, pose=self.pose or first.inverse() @ second)
 
     @property
-    def residual(self) -> tuple[Kind, Floats]:
+    def residual(self) -> tuple[KeepKind, Floats]:
         assert self.pose is not None, "only of a bound constraint"
-        return Kind.TOGETHER, np.array(pose_row(self.pose))
+        return "together", np.array(pose_row(self.pose))
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         assert self.pose is not None, "only of a bound constraint"
@@ -219,8 +222,8 @@ class KeepJoints(Keep):
         return np.array([self.ranges.get(name, (-np.inf, np.inf)) for name in self.joints]).T
 
     @property
-    def residual(self) -> tuple[Kind, Floats]:
-        return Kind.JOINTS, self.bounds.ravel()
+    def residual(self) -> tuple[KeepKind, Floats]:
+        return "joints", self.bounds.ravel()
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return np.zeros(1)

@@ -7,19 +7,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_row, require_positive
-from evenroad.constraints.keep import WITHIN, Keep, Kind, turns_of
+from evenroad.constraints.keep import WITHIN, Keep, turns_of
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
 from evenroad.poses.cartesian_path import Moves
 from evenroad.poses.chain import chain_of
 from evenroad.poses.pose_goal import AXES, as_axis
 from evenroad.robots.robot import Robot
+
+if TYPE_CHECKING:
+    from evenroad._native.robot import KeepKind
 
 UP = (0.0, 0.0, 1.0)
 
@@ -78,12 +81,12 @@ class KeepUpright(Keep):
         return _chord(self.within)
 
     @property
-    def residual(self) -> tuple[Kind, Floats]:
+    def residual(self) -> tuple[KeepKind, Floats]:
         rows = np.zeros((3, 13))
         for k in range(3):
             rows[k, 3 * k : 3 * k + 3] = self.axis
         rows[:, 12] = UP
-        return Kind.LINEAR, rows.ravel()
+        return "linear", rows.ravel()
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return moves[0].swing
@@ -144,10 +147,10 @@ class KeepOrientation(Keep):
         return math.sqrt(2.0) * _chord(self.within)
 
     @property
-    def residual(self) -> tuple[Kind, Floats]:
+    def residual(self) -> tuple[KeepKind, Floats]:
         rows = np.eye(9, 13)
         rows[:, 12] = self.rotation
-        return Kind.LINEAR, rows.ravel()
+        return "linear", rows.ravel()
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return math.sqrt(2.0) * moves[0].swing
@@ -207,11 +210,11 @@ class KeepInPlane(Keep):
         return np.array(self.normal, dtype=np.float64)[np.newaxis]
 
     @property
-    def residual(self) -> tuple[Kind, Floats]:
+    def residual(self) -> tuple[KeepKind, Floats]:
         across = self.across
         rows = np.zeros((len(across), 13))
         rows[:, 9:12], rows[:, 12] = across, across @ np.array(self.through)
-        return Kind.LINEAR, rows.ravel()
+        return "linear", rows.ravel()
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return moves[0].push
@@ -295,8 +298,8 @@ class KeepInBox(Keep):
         return replace(self, tip=self.tip or tip)
 
     @property
-    def residual(self) -> tuple[Kind, Floats]:
-        return Kind.BOX, np.array([*self.low, *self.high])
+    def residual(self) -> tuple[KeepKind, Floats]:
+        return "box", np.array([*self.low, *self.high])
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return moves[0].push

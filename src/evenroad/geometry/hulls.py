@@ -12,7 +12,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad.errors import InvalidValue
 from evenroad.geometry.fit import best_cut, divided, farthest, used
-from evenroad.geometry.mesh import TriangleMesh, closed_parts, extreme
+from evenroad.geometry.mesh import TriangleMesh, extreme
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 SIDES = 32
@@ -188,7 +188,7 @@ def _is_on_its_hull(mesh: TriangleMesh) -> bool:
 
     corners = mesh.vertices[mesh.triangles]
     sides = np.unique(ConvexHull(mesh.outer).equations.round(12), axis=0)
-    if len(corners) * len(sides) > _MOST_COMPARED or not closed_parts(mesh)[1]:
+    if len(corners) * len(sides) > _MOST_COMPARED or not mesh.closed_parts.oriented:
         return False
     return all(float((-sides[:, :3] @ triangle.T - sides[:, 3:]).max(axis=1).min()) <= _DEEP for triangle in corners)
 

@@ -11,7 +11,7 @@ from evenroad._arrays import Bools, Floats
 from evenroad.geometry.fit import Fitted, divided
 from evenroad.geometry.hulls import distances, winding_number
 from evenroad.geometry.kept import fitted_once
-from evenroad.geometry.mesh import TriangleMesh, closed_parts
+from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 MOST_SIDE_BY_SIDE = 8
@@ -93,9 +93,9 @@ def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
     """Return balls inside the closed parts of a mesh; none where their sides cannot tell inside from outside."""
     from scipy.spatial import cKDTree
 
-    closed, turned = closed_parts(mesh)
+    closed = mesh.closed_parts.closed
     # Where sides do not tell nobody knows what is solid.
-    if not turned or not closed.any():
+    if not mesh.closed_parts.oriented or not closed.any():
         return []
     mesh = mesh.compact
     proper = (mesh.triangles != np.roll(mesh.triangles, 1, axis=1)).all(axis=1)

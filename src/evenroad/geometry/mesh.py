@@ -15,6 +15,7 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats, Ints, set_fields, unique_rows
 from evenroad._checks import as_batch, as_row, require_positive
 from evenroad._native import robot as native
+from evenroad._shared import state_without
 from evenroad.errors import InvalidValue
 
 _AS_LARGE = 1e-4
@@ -90,13 +91,23 @@ class TriangleMesh:
         return self.compact.triangles
 
     @cached_property
-    def _closed(self) -> tuple[Bools, bool, Bools, Bools]:
+    def closed_parts(self) -> native.ClosedParts:
+        """Which triangles bound closed parts, and whether `facing` tells inside from outside there.
+
+        A part, of triangles that share corners, is closed if every edge belongs to an even number of triangles.  Equal
+        corners are one; a triangle that is there again does not count where the part is closed without it, nor does one
+        without an area.  What closed surfaces go around is solid, however they face, but for hollows: surfaces within
+        others that face the other way, or to both sides, and cross no larger one.
+        """
         return native.closed_parts(self.vertices, self.triangles)
+
+    def __getstate__(self) -> dict[str, object]:
+        return state_without(self, ["closed_parts"])
 
     @cached_property
     def facing(self) -> Ints:
         """The triangles, those of closed parts turned so that what they wind around is solid."""
-        turned = self._closed[3]
+        turned = self.closed_parts.turned
         if not turned.any():
             return self.triangles
         return np.where(turned[:, np.newaxis], self.triangles[:, ::-1], self.triangles)
@@ -104,7 +115,7 @@ class TriangleMesh:
     @cached_property
     def is_nearly_closed(self) -> bool:
         """Whether its open parts seem to be solids with gaps: they lack hardly any area, and few edges."""
-        is_open = ~self._closed[0]
+        is_open = ~self.closed_parts.closed
         a, b, c = self.vertices[self.triangles[is_open]].swapaxes(0, 1)
         areas = np.cross(b - a, c - a)
         # Areas of a closed surface add up to zero, each along its normal: few meshes need a look at their edges.
@@ -133,7 +144,7 @@ class TriangleMesh:
             return False
         corners = self.vertices[self.triangles]
         own = abs(float(np.linalg.det(corners - corners.mean(axis=(0, 1))).sum())) / 6.0
-        return abs(own - whole) <= _AS_LARGE * whole and bool(closed_parts(self)[0].all())
+        return abs(own - whole) <= _AS_LARGE * whole and bool(self.closed_parts.closed.all())
 
     def __hash__(self) -> int:
         return hash((self.name, self.digest))
@@ -274,19 +285,3 @@ def _ground_below(surface: TriangleMesh, depth: float) -> TriangleMesh:
     walls = np.concatenate([np.stack([b, a, a + count], axis=1), np.stack([b, a + count, b + count], axis=1)])
     triangles = np.concatenate([top, top[:, ::-1] + count, walls])
     return TriangleMesh(np.concatenate([surface.vertices, bottom]), triangles, surface.name)
-
-
-def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
-    """Return which triangles bound closed parts, (t,), and whether `facing` tells inside from outside.
-
-    A part, of triangles that share corners, is closed if every edge belongs to an even number of triangles.  Equal
-    corners are one; a triangle that is there again does not count where the part is closed without it, nor does one
-    without an area.  What closed surfaces go around is solid, however they face, but for hollows: surfaces within
-    others that face the other way, or to both sides, and cross no larger one.
-    """
-    return mesh._closed[:2]
-
-
-def first_of_parts(mesh: TriangleMesh) -> Bools:
-    """Return which triangles are the first of their part, (t,)."""
-    return mesh._closed[2]

@@ -10,7 +10,6 @@ import numpy as np
 
 from evenroad._arrays import Floats, set_fields
 from evenroad.geometry.hulls import piece_of, thinned
-from evenroad.geometry.mesh import closed_parts
 from evenroad.geometry.pose import Vector
 from evenroad.geometry.shapes import Capsule, Cylinder, Mesh, Shape, Sphere
 
@@ -90,9 +89,8 @@ def _parts(shape: Shape) -> tuple[Parts, ...]:
     if mesh.is_convex:
         return (Parts(around[np.newaxis], shape.link, "hull", beyond),)
     corners = shape.pose.apply(mesh.vertices)[mesh.facing]
-    closed, turned = closed_parts(mesh)
     # Where sides do not tell inside from outside nobody knows what is solid.
-    closed &= turned
+    closed = mesh.closed_parts.closed & mesh.closed_parts.oriented
     return tuple(
         Parts(_single(corners[these]), shape.link, "mesh", closed=bool(inside), around=around, beyond=beyond)
         for these, inside in ((closed, True), (~closed, False))

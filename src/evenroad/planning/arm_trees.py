@@ -15,8 +15,8 @@ from evenroad._time_limit import BudgetSpent, within
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
 from evenroad.planning.connector import Connection
-from evenroad.planning.drivers import native_points
-from evenroad.points.reversed_halton import PAIRS, ball_points, cube_points, share_pairs, sphere_points
+from evenroad.planning.drivers import drivers, native_points
+from evenroad.points.reversed_halton import PAIRS, ball_points, cube_points, share_pairs
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 
@@ -128,12 +128,12 @@ def smooth(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: 
     `proved` says whether the given path is; a single motion has to be.  Where neither the given, nor the shortened, nor
     the smoothed path is proved, there are no waypoints: (0, dim).  InvalidValue if `path` is no such array.
     """
-    guides = native_points(share_pairs, PAIRS), native_points(sphere_points, world.space.dim)
-    smoothed, motions = planning.smooth(checks_of(world), _as_path(world, path), *guides, batches, proved)
+    by = drivers(world.space.dim)
+    smoothed, motions = planning.smooth(checks_of(world), _as_path(world, path), by, batches, proved)
     return np.empty((0, world.space.dim)) if smoothed is None else smoothed, motions
 
 
-def smooth_apart(world: ArmWorld, path: Floats, *, batches: int) -> tuple[Floats, int]:
+def smooth_with_clearance(world: ArmWorld, path: Floats, *, batches: int) -> tuple[Floats, int]:
     """Return a path smoothed as by `smooth`, 5 mm away from obstacles where that costs at most 2 % of its length.
 
     The shortest paths touch what they pass.  So the given path, whose motions are proved, is smoothed in the same world
@@ -142,14 +142,14 @@ def smooth_apart(world: ArmWorld, path: Floats, *, batches: int) -> tuple[Floats
     """
     if len(path) < 3 or world.roomier.fixed_contact is not None:
         return smooth(world, path, batches=batches)
-    guides = native_points(share_pairs, PAIRS), native_points(sphere_points, world.space.dim)
-    return planning.smooth_apart(checks_of(world), checks_of(world.roomier), _as_path(world, path), *guides, batches)
+    checks, roomier, by = checks_of(world), checks_of(world.roomier), drivers(world.space.dim)
+    return planning.smooth_with_clearance(checks, roomier, _as_path(world, path), by, batches)
 
 
 def improver(
     world: PlansWithTrees,
     terminals: Floats,
-    samples: planning.Points,
+    by: planning.Drivers,
     first: tuple[Floats, int, int],
     *,
     is_smoothing: bool,
@@ -158,11 +158,7 @@ def improver(
 
     Its motions are proved, and so are those of the better paths.  Without smoothing they are as trees find them.
     """
-    dim = world.space.dim
-    guides = native_points(share_pairs, PAIRS), native_points(sphere_points, dim)
-    return planning.Improver(
-        checks_of(world), terminals, (samples, native_points(ball_points, dim), *guides), first, is_smoothing
-    )
+    return planning.Improver(checks_of(world), terminals, by, *first, is_smoothing)
 
 
 def checks_of(world: PlansWithTrees) -> planning.Checks:
@@ -197,9 +193,9 @@ def _grown(
             continue
     except BudgetSpent:
         is_over = True
-    motions, configurations, _ = checks.counts
+    counts = checks.counts
     goal = order[trees.goal] if trees.goal >= 0 else -1
-    return Connection(trees.path, goal, sum(trees.sizes), configurations, motions, is_over), trees
+    return Connection(trees.path, goal, sum(trees.sizes), counts.configurations, counts.motions, is_over), trees
 
 
 def _start_and_goals(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> Floats:

@@ -43,13 +43,13 @@ SMOOTHING, LONG_SMOOTHING = 500, 2000
 """Numbers of batches of sixteen checks after which no waypoint of an arm's path slides any more; the second of a path
 that is to be as short as can be."""
 
-Smoothing = Literal["none", "quick", "full", "apart"]
+Smoothing = Literal["none", "quick", "full", "with clearance"]
 """What compiled code calls the ways to smooth a path."""
 
 
 def smoothing_of(smooth: Smooth) -> Smoothing:
     """Return what compiled code calls this way to smooth a path."""
-    return "quick" if smooth == "quick" else "apart" if smooth else "none"
+    return "quick" if smooth == "quick" else "with clearance" if smooth else "none"
 
 
 def drivers_of(dim: int, variant: int) -> Drivers:
@@ -125,14 +125,14 @@ class ArmTrees:
         Trees grow for that time at most [s].
         """
         inside, by, smoothing = self.inside or world, drivers_of(len(start), variant), smoothing_of(smooth)
-        if self.shortest and smoothing == "apart":
+        if self.shortest and smoothing == "with clearance":
             smoothing = "full"
         found = answer(inside.checker, start, goal, by, most_motions, search_seconds, smoothing)
         # Where a world is new, one with more room takes as long as a short plan.
-        if smoothing == "apart" and found.ended == "solved" and found.counts[0] > 2:
+        if smoothing == "with clearance" and found.ended == "solved" and found.nodes > 2:
             # Where there is no time to make the world with more room the path stays as trees found it.
             try:
-                found.smooth_apart(inside.checker, inside.roomier.checker, by)
+                found.smooth_with_clearance(inside.checker, inside.roomier.checker, by)
             except BudgetSpent:
                 return found
         return found
@@ -141,12 +141,11 @@ class ArmTrees:
         self, world: Any, terminals: Floats, first: tuple[Floats, int, int], *, variant: int, is_smoothing: bool
     ) -> Improver:
         """Return what makes a `first` path shorter: the path, the row of its goal, and the motions checked for it."""
-        inside, dim = self.inside or world, terminals.shape[1]
-        samples = Points(shifted_cube_points(dim, variant)) if variant else native_points(cube_points, dim)
-        return arm_trees.improver(inside, terminals, samples, first, is_smoothing=is_smoothing)
+        by = drivers_of(terminals.shape[1], variant)
+        return arm_trees.improver(self.inside or world, terminals, by, first, is_smoothing=is_smoothing)
 
     def smooth(self, world: ArmWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
-        """See :func:`evenroad.planning.arm_trees.smooth_apart`; quickly by its :func:`shorten`."""
+        """See :func:`evenroad.planning.arm_trees.smooth_with_clearance`; quickly by its :func:`shorten`."""
         if len(path) == 2:
             # One motion is as short as can be.
             return path, 0
@@ -155,7 +154,7 @@ class ArmTrees:
             return arm_trees.shorten(inside, path)
         if self.shortest:
             return arm_trees.smooth(inside, path, batches=LONG_SMOOTHING)
-        return arm_trees.smooth_apart(inside, path, batches=SMOOTHING)
+        return arm_trees.smooth_with_clearance(inside, path, batches=SMOOTHING)
 
 
 @dataclass(frozen=True)
@@ -190,8 +189,8 @@ class Cells:
         """
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)
-        path, goal, nodes, motions = world.disk.find_path(first, last, most_motions)
-        return Connection(path, goal, nodes, 0, motions)
+        found = world.disk.find_path(first, last, most_motions)
+        return Connection(found.points, found.goal, found.expanded, 0, found.motions)
 
     def smooth(self, world: DiskWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and the number of checks."""

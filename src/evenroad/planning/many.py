@@ -107,7 +107,7 @@ def plan_many(
     def query(row: int) -> PlanResult:
         # Another thread may do that: its time is what the first search has left.
         answer = solved.pathless.get(row)
-        spent, planner = (0.0, None) if answer is None else (answer.seconds[0], TreesGoOn(answer))
+        spent, planner = (0.0, None) if answer is None else (answer.search_seconds, TreesGoOn(answer))
         rest = None if budget.seconds is None else budget.seconds - spent
         with within(rest):
             return plan(different[of[row]], first[row], last[row], planner, limits=budget, smooth=smooth, rng=variant)
@@ -168,7 +168,7 @@ def by_compiled_code(
     seconds = np.inf if budget.seconds is None else budget.seconds
     queries = ManyQueries(
         [world.checker for world in arms],
-        [world.roomier.checker if smoothing == "apart" else None for world in arms],
+        [world.roomier.checker if smoothing == "with clearance" else None for world in arms],
         (np.cumsum(is_arm) - 1)[of[rows]],
         np.ascontiguousarray(terminals[rows]).reshape(-1, dim),
         drivers_of(dim, variant),
@@ -178,11 +178,12 @@ def by_compiled_code(
     )
     while (done := queries.go_on(threads, _SLICE)) < len(rows):
         report(done)
-    found, begins, waypoints, lengths, took = queries.columns
-    pathless = {int(rows[number]): queries.answer(number) for number in np.flatnonzero(~found).tolist()}
-    counts = np.diff(begins)[found]
-    waypoints, counts = _led(different, of[rows[found]], waypoints, counts, terminals[rows[found]])
-    return Part(rows[found], counts, waypoints, lengths[found], took[found], pathless)
+    columns = queries.columns
+    solved = columns.solved
+    pathless = {int(rows[number]): queries.answer(number) for number in np.flatnonzero(~solved).tolist()}
+    counts = np.diff(columns.begins)[solved]
+    waypoints, counts = _led(different, of[rows[solved]], columns.waypoints, counts, terminals[rows[solved]])
+    return Part(rows[solved], counts, waypoints, columns.lengths[solved], columns.seconds[solved], pathless)
 
 
 def _led(different: list[Any], of: Ints, waypoints: Floats, counts: Ints, terminals: Floats) -> tuple[Floats, Ints]:

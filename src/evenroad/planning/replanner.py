@@ -209,11 +209,12 @@ class Replanner:
         order = free[np.argsort(world.space.distance(np.broadcast_to(start, goals[free].shape), goals[free]))]
         goal = int(order[self._failures % len(order)])
         answered = answer(world.checker, start, goals[goal], self._driver(), self._motions, np.inf, "none")
-        nodes, configurations, motions, _ = answered.counts
-        counts = dict(nodes=nodes, configurations_checked=configurations, edges_checked=motions)
+        counts = dict(
+            nodes=answered.nodes, configurations_checked=answered.configurations, edges_checked=answered.motions
+        )
         if answered.ended != "solved":
             self._failures += 1
-            message = f"no path within {motions} motions; the next update grows other trees"
+            message = f"no path within {answered.motions} motions; the next update grows other trees"
             timings = {"search": now() - began}
             return make_result(problem, Status.BUDGET_SPENT, message, planner="trees", counts=counts, timings=timings)
         self._failures = 0

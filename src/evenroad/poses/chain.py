@@ -113,17 +113,20 @@ class Chain:
         pick: tuple[int, int, int],
         *,
         limits: bool = True,
-        apart: float = 0.0,
+        same: float = 0.0,
         enough: int = 2**31,
-    ) -> tuple[Floats, Ints, Floats, Floats]:
-        """Return postures that reach tasks, (p, 22), and whose each is; the nearest to each task, and what it lacks.
+    ) -> kernel.Solutions:
+        """Return postures that reach tasks, (p, 22).
 
         Solutions begin at `start`, (dim,), and at those even configurations with the nearest tips that `pick` says:
-        from, to below, every.  Of postures of one task that are nearer than `apart` the first stays.
+        from, to below, every.  Of postures of one task that are nearer than `same` the first stays.
         """
         within = np.array([self.low, self.high]) if limits else _unlimited(len(self.group))
-        known = start, *self.even
-        return self.native.reach_all(known, pick, tasks, within, (self.turns, self.bounds), apart, (STEPS, enough))
+        beginnings, postures = (
+            kernel.Beginnings(start, *self.even, *pick),
+            kernel.Postures(self.turns, self.bounds, same),
+        )
+        return self.native.reach_all(beginnings, tasks, within, postures, STEPS, enough)
 
     def followed(self, q: Floats, poses: Floats, longest: float, wraps: Bools, towards: Floats | None = None) -> Floats:
         """Return configurations, (m, dim), that bring the tip through poses, (n, 12): as many as there are.

@@ -32,7 +32,7 @@ _ENOUGH = 24
 _POLISHED = 4
 _SAME = 1e-4
 """Distance below which configurations are one posture [rad or m]."""
-_APART = 0.1
+_SAME_OF_SPARE = 0.1
 """The same for an arm with redundant joints."""
 _SIDE, _TOGETHER = 8, 1e-16
 """Number of postures of each link of several, and the largest squared error of those that reach theirs together."""
@@ -104,7 +104,7 @@ def _reached(world: Checks, goal: PoseGoal, chain: Chain, task: PoseTask, start:
     spare = len(chain.moving) > task.numbers
     solver, free = "numeric", np.empty(0, dtype=np.bool_)
     for found, solver, best in stages(chain, task, start, exact=goal.is_exact):  # noqa: B007
-        solved = distinct(chain, np.concatenate([solved, found]), _APART if spare else _SAME)
+        solved = distinct(chain, np.concatenate([solved, found]), _SAME_OF_SPARE if spare else _SAME)
         free = world.valid(solved)
         if free.any() or quickly:
             break
@@ -143,8 +143,9 @@ def _reached_quickly(world: Checks, goals: Sequence[PoseGoal], start: Floats) ->
         together.setdefault((id(chain), len(chain.moving) > task.numbers), []).append((number, task))
     for (chain_id, spare), some in together.items():
         chain, tasks = chains[chain_id], np.stack([task.row for _, task in some])
-        apart, enough = (_APART, _ENOUGH) if spare else (_SAME, 2**31)
-        q, of, nearest, _ = chain.reached_all(start, tasks, _PICKS[0], apart=apart, enough=enough)
+        same, enough = (_SAME_OF_SPARE, _ENOUGH) if spare else (_SAME, 2**31)
+        solutions = chain.reached_all(start, tasks, _PICKS[0], same=same, enough=enough)
+        q, of, nearest = solutions.q, solutions.task, solutions.nearest
         free = world.valid(q)
         turned, whose = with_turns(chain, q[free], start, of[free])
         begins, firsts = (np.searchsorted(numbers, np.arange(len(some) + 1)) for numbers in (of, whose))
@@ -238,10 +239,10 @@ def numeric(chain: Chain, task: PoseTask, start: Floats, *, limits: bool = True)
     best, least, row = start, math.inf, task.row[np.newaxis]
     # The start of the query first; then near ones and, where these fail, farther ones.
     for pick in _PICKS:
-        q, _, nearest, missing = chain.reached_all(start, row, pick, limits=limits, enough=_enough(chain, task))
-        if missing[0] < least:
-            least, best = float(missing[0]), nearest[0]
-        yield q, best
+        found = chain.reached_all(start, row, pick, limits=limits, enough=_enough(chain, task))
+        if (missing := float(found.missing[0])) < least:
+            least, best = missing, found.nearest[0]
+        yield found.q, best
 
 
 def _enough(chain: Chain, task: PoseTask) -> int:

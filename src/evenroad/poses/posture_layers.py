@@ -115,10 +115,10 @@ def _postures(follower: Follower, row: int, before: Floats) -> Floats:
     return every[world.valid(every)][:_MOST] if len(every) else every
 
 
-def _distinct(q: Floats, apart: float) -> Floats:
+def _distinct(q: Floats, same: float) -> Floats:
     kept: list[Floats] = []
     for row in q:
-        if not kept or np.abs(np.array(kept) - row).max(axis=1).min() >= apart:
+        if not kept or np.abs(np.array(kept) - row).max(axis=1).min() >= same:
             kept.append(row)
     return np.array(kept).reshape(-1, q.shape[1])
 

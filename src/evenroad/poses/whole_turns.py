@@ -25,16 +25,16 @@ def wrapped(chain: Chain, q: Floats) -> Floats:
     return np.where(np.abs(q - nearest) <= 1e-9, nearest, q)
 
 
-def distinct(chain: Chain, q: Floats, apart: float) -> Floats:
-    """Return postures of which no two are nearer than `apart`, modulo turns; the first of each stays."""
+def distinct(chain: Chain, q: Floats, same: float) -> Floats:
+    """Return postures of which no two are nearer than `same`, modulo turns; the first of each stays."""
     if len(q) < 2:
         return q
     kept = q[:0]
     for begin in range(0, len(q), _AT_ONCE):
         look_at_clock()
         some = q[begin : begin + _AT_ONCE]
-        some = some[~_near(chain, some, kept, apart).any(axis=1)]
-        near = _near(chain, some, some, apart)
+        some = some[~_near(chain, some, kept, same).any(axis=1)]
+        near = _near(chain, some, some, same)
         new: list[int] = []
         for row in range(len(some)):
             if not near[row, new].any():
@@ -43,11 +43,11 @@ def distinct(chain: Chain, q: Floats, apart: float) -> Floats:
     return kept
 
 
-def _near(chain: Chain, a: Floats, b: Floats, apart: float) -> Bools:
-    """Return which postures of two sets, (n, dim) and (m, dim), are nearer than `apart`: (n, m)."""
+def _near(chain: Chain, a: Floats, b: Floats, same: float) -> Bools:
+    """Return which postures of two sets, (n, dim) and (m, dim), are nearer than `same`: (n, m)."""
     gap = np.abs(a[:, np.newaxis] - b)
     gap = np.where(chain.turns, np.minimum(gap, np.abs(TURN - gap)), gap)
-    return np.asarray(gap.max(axis=2, initial=0.0) < apart)
+    return np.asarray(gap.max(axis=2, initial=0.0) < same)
 
 
 def with_turns(chain: Chain, q: Floats, start: Floats, of: Ints) -> tuple[Floats, Ints]:

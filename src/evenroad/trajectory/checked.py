@@ -37,7 +37,7 @@ def require_within_limits(trajectory: Trajectory) -> None:
     """
     dt, limits = trajectory.step, trajectory.limits
     q, v, a = trajectory.positions, trajectory.velocities, trajectory.accelerations
-    fastest, push, slower = limits.most
+    fastest, push, slower = (np.array(row) for row in (limits.velocity, limits.acceleration, limits.stopping))
     # Where a joint may slow down faster than it speeds up, so may the velocities between states.
     slows = a * v < 0.0
     push, faster = np.maximum(push, slower), push

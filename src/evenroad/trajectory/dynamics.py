@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._arrays import Bools, Floats, Ints
+from evenroad._arrays import Floats
 from evenroad._checks import as_batch, as_row, require_known, require_positive
-from evenroad._native.trajectory import TorqueLimits
+from evenroad._native.trajectory import MovingLinks, TorqueLimits
 from evenroad._shared import once_property, state_without
 from evenroad.collision.prepared_robots import prepared
 from evenroad.errors import InvalidValue
@@ -87,7 +87,7 @@ class Dynamics:
         return state_without(self, ["native"])
 
 
-def native_links(robot: Robot, masses: Iterable[Mass] = ()) -> tuple[Ints, Ints, Bools, Floats]:
+def native_links(robot: Robot, masses: Iterable[Mass] = ()) -> MovingLinks:
     """Return the links of a robot as the native kernel takes them: of each frame that moves its coordinate, its parent,
     whether it slides, and its pose, multiplier, offset, mass, centre and inertia, (n, 27).
     """
@@ -112,7 +112,8 @@ def native_links(robot: Robot, masses: Iterable[Mass] = ()) -> tuple[Ints, Ints,
             row[15:18] /= row[14]
         row[18:] = (moment - row[14] * _about(row[15:18])).ravel()
     frames = tree.frames
-    return (
+    return MovingLinks(
+        len(robot.group),
         np.array([frame.coordinate for frame in frames], dtype=np.int64),
         np.array([frame.parent - 1 for frame in frames], dtype=np.int64),
         np.array([frame.slides for frame in frames], dtype=np.bool_),

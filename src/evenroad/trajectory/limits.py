@@ -7,14 +7,12 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_row, require_known, require_positive
-from evenroad._native.trajectory import TipLimits as NativeTip
-from evenroad._native.trajectory import TorqueLimits, further_shares
+from evenroad._native import trajectory as kernel
 from evenroad._shared import once_property, state_without
 from evenroad.collision.prepared_robots import prepared
 from evenroad.errors import InvalidValue, NotAvailable, shown
@@ -22,9 +20,6 @@ from evenroad.robots.robot import Robot
 from evenroad.space.joints import SLACK
 from evenroad.trajectory.dynamics import Dynamics, native_links
 from evenroad.trajectory.limits_file import LimitsFile, read_limits
-
-if TYPE_CHECKING:
-    from evenroad._native.trajectory import Within
 
 SECONDS_TO_FULL_SPEED = 0.5
 """Default time from rest to full speed [s]: URDF has no acceleration."""
@@ -60,15 +55,15 @@ class TipLimits:
                 require_positive(f"the tip's {kind}", most)
 
     @once_property
-    def native(self) -> NativeTip:
+    def native(self) -> kernel.TipLimits:
         """The limits of the native kernel; InvalidValue if no joint moves the link."""
         links = prepared(self.robot).tables.tree.links
         require_known(f"link of {self.robot.name!r}:", self.link, links)
         fixed = links[self.link]
         if fixed.frame == 0:
             raise InvalidValue(f"no joint of the group, {','.join(self.robot.group)}, moves the link {self.link!r}")
-        moving, dim = native_links(self.robot), len(self.robot.group)
-        return NativeTip(moving, dim, fixed.frame - 1, fixed.translation, self.speed, self.acceleration)
+        moving = native_links(self.robot)
+        return kernel.TipLimits(moving, fixed.frame - 1, fixed.translation, self.speed, self.acceleration)
 
     def __getstate__(self) -> dict[str, object]:
         return state_without(self, ["native"])
@@ -167,9 +162,9 @@ class Limits:
         return self.acceleration if self.deceleration is None else self.deceleration
 
     @property
-    def most(self) -> tuple[Floats, Floats, Floats]:
+    def of_joints(self) -> kernel.JointLimits:
         """Largest velocities, accelerations and decelerations, as the native kernel takes them."""
-        return np.array(self.velocity), np.array(self.acceleration), np.array(self.stopping)
+        return kernel.JointLimits(np.array(self.velocity), np.array(self.acceleration), np.array(self.stopping))
 
     def symmetric(self) -> Limits:
         """Return the limits with one acceleration a joint: the smaller one, of speeding up and of slowing down."""
@@ -183,20 +178,20 @@ class Limits:
         return self.torque is None and self.tip is None
 
     @property
-    def further(self) -> tuple[TorqueLimits | None, NativeTip | None]:
+    def further(self) -> kernel.FurtherLimits:
         """Limits beside those of joints, of torques and of a tip, as the native kernel takes them."""
-        return (
+        return kernel.FurtherLimits(
             None if self.torque is None else self.torque.native,
             None if self.tip is None else self.tip.native,
         )
 
-    def along(self, start: float, goal: float, share: float) -> Within:
+    def along(self, start: float, goal: float, share: float) -> kernel.PathLimits:
         """Return limits of the motion along a path that begins and ends at these speeds, for the native kernel.
 
         They are the square of the largest speed, and a `share` of the limits of torques and of a tip.
         """
         highest = _ANY_SPEED if self.along_path is None else self.along_path**2
-        return highest, start, goal, self.further, share
+        return kernel.PathLimits(highest, start, goal, self.further, share)
 
     def too_heavy(self, q: Floats) -> NotAvailable:
         """Return the error of a path, (n, dim), along which torques cannot hold the robot, or hardly."""
@@ -212,12 +207,12 @@ class Limits:
 
     def further_shares(self, q: Floats, velocity: Floats, acceleration: Floats) -> dict[str, float]:
         """Return the largest shares of such limits, by kind, at states, (n, dim) each."""
-        return named_shares(further_shares(self.further, q, velocity, acceleration))
+        return named_shares(kernel.further_shares(self.further, q, velocity, acceleration))
 
 
-def named_shares(used: tuple[float, float, float]) -> dict[str, float]:
+def named_shares(used: kernel.FurtherShares) -> dict[str, float]:
     """Return shares of torque and of a tip's speed and acceleration by their names, without those that are 0."""
-    kinds = dict(zip(("torque", "tip speed", "tip acceleration"), used, strict=True))
+    kinds = {"torque": used.torque, "tip speed": used.tip_speed, "tip acceleration": used.tip_acceleration}
     return {kind: share for kind, share in kinds.items() if share > 0.0}
 
 

@@ -11,9 +11,8 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_batch, require_positive
-from evenroad._native.trajectory import bends_of, distances_to, largest_share
+from evenroad._native.trajectory import RoundedPath, bends_of, distances_to, largest_share, rounded
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.trajectory.blends import RoundedPath, rounded
 from evenroad.trajectory.corners import TRIES, TimedStates, drivable, less_at, require_steps, with_rests
 from evenroad.trajectory.in_motion import FARTHER, InMotion
 from evenroad.trajectory.limits import Limits
@@ -196,7 +195,8 @@ def _averaged_law(
         law, fine, driven = _on_steps(law, waypoints, limits, window, step)
         if limits.is_plain:
             return law, fine, driven
-        further = limits.further_shares(*law.averages(window, fine))
+        moved = law.averages(window, fine)
+        further = limits.further_shares(moved.positions, moved.velocities, moved.accelerations)
         if max(further.values(), default=0.0) <= 1.0:
             return law, fine, driven._replace(highest=driven.highest | further)
         share *= _LESS / max(further.values())
@@ -211,8 +211,8 @@ def _on_steps(
 
     With it come fine times, and what the robot does then.
     """
-    velocity, acceleration = law.largest_shares(limits, _FINER)
-    law = slowed(law, max(1.0, velocity, math.sqrt(acceleration)))
+    used = law.largest_shares(limits, _FINER)
+    law = slowed(law, max(1.0, used.velocity, math.sqrt(used.acceleration)))
     steps = max(math.ceil((law.duration + window) / step - 1e-9), math.floor(window / step) + 1)
     require_steps(steps, law.duration + window, step)
     while True:
@@ -226,10 +226,11 @@ def _on_steps(
 
 def _averaged(law: TimeLaw, waypoints: Floats, limits: Limits, window: float, fine: Floats) -> Driven:
     """Return what the robot does at fine times where its motion is averaged over the `window` before each."""
-    positions, velocities, accelerations = law.averages(window, fine)
+    moved, most = law.averages(window, fine), limits.of_joints
+    positions, velocities, accelerations = moved.positions, moved.velocities, moved.accelerations
     highest = {
-        "velocity": largest_share(velocities, np.array(limits.velocity)),
-        "acceleration": largest_share(accelerations, np.array(limits.acceleration)),
+        "velocity": largest_share(velocities, most.velocity),
+        "acceleration": largest_share(accelerations, most.acceleration),
         "jerk": largest_share(accelerations, fine[1] * np.array(limits.jerk), of_steps=True),
     }
     return Driven(

@@ -32,22 +32,24 @@ def timed_path(
     """
     within = limits.along(*speeds, 1.0)
     for tried in range(TRIES):
-        outcome, states, lengths, corners, stops, duration, deviation, used, further, is_slower_at_start, cuts = timed(
-            waypoints, cuts, limits.most, within, (step, MOST_STATES)
-        )
-        shares = dict(zip(("velocity", "acceleration"), used, strict=True)) | named_shares(further)
-        if outcome == "too long":
-            require_steps(MOST_STATES + 1, duration, step)
-        if outcome != "made":
-            raise _refused(outcome, waypoints, limits, shares, "start" if is_slower_at_start else "goal")
-        free, proof = drivable(world, states[0])
+        made = timed(waypoints, cuts, limits.of_joints, within, step, MOST_STATES)
+        cuts = made.deviations
+        shares = {"velocity": made.highest.velocity, "acceleration": made.highest.acceleration}
+        shares |= named_shares(made.further)
+        if made.outcome == "too long":
+            require_steps(MOST_STATES + 1, made.duration, step)
+        if made.outcome != "made":
+            raise _refused(made.outcome, waypoints, limits, shares, "start" if made.is_slower_at_start else "goal")
+        free, proof = drivable(world, made.positions)
         if free.all():
-            times: Floats = (duration / len(free) if any(speeds) else step) * np.arange(len(free) + 1, dtype=np.float64)
-            return TimedStates(times, *states, deviation, stops, shares, proof)
-        if len(corners) == 0:
+            lasts = made.duration / len(free) if any(speeds) else step
+            times: Floats = lasts * np.arange(len(free) + 1, dtype=np.float64)
+            states = made.positions, made.velocities, made.accelerations
+            return TimedStates(times, *states, made.deviation, made.stops, shares, proof)
+        if len(made.corners) == 0:
             break
-        cuts = less_at(cuts, corners, lengths[:-1][~free], lengths[1:][~free], tried)
-    refusal = f"the trajectory is not proved free at {duration * np.argmin(free) / len(free):.3f} s"
+        cuts = less_at(cuts, made.corners, made.lengths[:-1][~free], made.lengths[1:][~free], tried)
+    refusal = f"the trajectory is not proved free at {made.duration * np.argmin(free) / len(free):.3f} s"
     if any(speeds):
         raise NotAvailable(refusal)
     return with_rests(lambda part, own: timed_path(world, part, limits, own, step), world, waypoints, cuts, refusal)

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
-from evenroad._native.trajectory import averages, largest_shares, states
-from evenroad._native.trajectory import fastest as native_fastest
-from evenroad.trajectory.blends import RoundedPath
+from evenroad._native import trajectory as kernel
+from evenroad._native.trajectory import JointLimits, RoundedPath, Shares, States
 from evenroad.trajectory.limits import Limits
 
 _WITHIN = 1.0 - 1e-3
@@ -47,21 +46,21 @@ class TimeLaw:
         )
 
     @property
-    def columns(self) -> tuple[Floats, Floats, Floats, Floats]:
+    def native(self) -> kernel.TimeLaw:
         """The law as the native kernel takes it."""
-        return self.times, self.lengths, self.speeds, self.accelerations
+        return kernel.TimeLaw(self.times, self.lengths, self.speeds, self.accelerations)
 
-    def at(self, t: Floats) -> tuple[Floats, Floats, Floats]:
+    def at(self, t: Floats) -> States:
         """Return positions, velocities and accelerations, (n, dim) each, at times, (n,) [s]; at rest outside."""
-        return states(self.path.columns, self.columns, t)
+        return kernel.states(self.path, self.native, t)
 
-    def averages(self, window: float, t: Floats) -> tuple[Floats, Floats, Floats]:
+    def averages(self, window: float, t: Floats) -> States:
         """Return the same at rising times, averaged over the `window` before each, > 0 [s]."""
-        return averages(self.path.columns, self.columns, window, t)
+        return kernel.averages(self.path, self.native, window, t)
 
-    def largest_shares(self, limits: Limits, samples: int) -> tuple[float, float]:
+    def largest_shares(self, limits: Limits, samples: int) -> Shares:
         """Return the largest shares of velocity and acceleration at `samples` times in each interval."""
-        return largest_shares(self.path.columns, self.columns, limits.most, samples)
+        return kernel.largest_shares(self.path, self.native, limits.of_joints, samples)
 
 
 def fastest(path: RoundedPath, limits: Limits, share: float = 1.0) -> TimeLaw:
@@ -69,13 +68,13 @@ def fastest(path: RoundedPath, limits: Limits, share: float = 1.0) -> TimeLaw:
 
     A whole path has about 400 intervals.  The law uses a share of the limits of a tip and of torques.
     """
-    velocity, faster, slower = limits.most
-    most = velocity, _WITHIN * faster, _WITHIN * slower
-    found = native_fastest(path.columns, path.stops, most, limits.along(0.0, 0.0, _WITHIN * share))
+    most = limits.of_joints
+    within = JointLimits(most.velocity, _WITHIN * most.acceleration, _WITHIN * most.deceleration)
+    found = kernel.fastest(path, within, limits.along(0.0, 0.0, _WITHIN * share))
     if found is None:
         steady = TimeLaw(path, path.starts, path.starts, np.ones(len(path.starts)), np.zeros(len(path.bend)))
-        raise limits.too_heavy(steady.at(np.linspace(0.0, path.length, 600))[0])
-    return TimeLaw(path, *found)
+        raise limits.too_heavy(steady.at(np.linspace(0.0, path.length, 600)).positions)
+    return TimeLaw(path, found.times, found.lengths, found.speeds, found.accelerations)
 
 
 def slowed(law: TimeLaw, factor: float) -> TimeLaw:

@@ -147,7 +147,7 @@ def test_a_contact_is_found_where_a_state_is_blocked():
     world = ArmWorld(ur5(), random_scene(5))
     q = world.space.from_cube(np.random.default_rng(1).random((500, 6)))
     for row, free in zip(q, world.valid(q), strict=True):
-        kind, capsule, other = world.checker.find_contact(row)
-        assert (kind == "nothing") == free
-        assert (kind == "obstacle") == (capsule >= 0)
-        assert (other >= 0) == (not free)
+        contact = world.checker.find_contact(row)
+        assert (contact.kind == "nothing") == free
+        assert (contact.kind == "obstacle") == (contact.capsule >= 0)
+        assert (contact.other >= 0) == (not free)

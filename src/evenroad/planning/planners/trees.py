@@ -168,8 +168,9 @@ def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Ans
     connection, is_tried = _NOTHING, False
     for number, search in enumerate(connector.searches(attempt.world.space.dim)):
         if number == 0 and first is not None:
-            found = Connection(first.raw, -1, *first.counts[:3], spent=first.ended == "paused")
-            attempt.take(found.motions, first.seconds[0])
+            counts, is_spent = (first.nodes, first.configurations, first.motions), first.ended == "paused"
+            found = Connection(first.raw, -1, *counts, spent=is_spent)
+            attempt.take(found.motions, first.search_seconds)
         elif connector.varies:
             found = _connection(attempt, connector, search.most, variant + number)
         else:
@@ -206,13 +207,11 @@ def _answer(problem: Problem, connector: ArmTrees, variant: int) -> Answer:
 
 def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult:
     """Return the result of an answer with a path."""
-    world, path = problem.world, found.path
-    nodes, configurations, motions, smoothing = found.counts
-    search, shortcut = found.seconds
-    counts = {"nodes": nodes, "configurations_checked": configurations, "edges_checked": motions}
-    timings = {"search": search}
+    world, path, smoothing = problem.world, found.path, found.smoothing_motions
+    counts = {"nodes": found.nodes, "configurations_checked": found.configurations, "edges_checked": found.motions}
+    timings = {"search": found.search_seconds}
     if problem.smooth:
-        counts["shortcut_motions"], timings["shortcut"] = smoothing, shortcut
+        counts["shortcut_motions"], timings["shortcut"] = smoothing, found.smoothing_seconds
     length = _length(path, found.length, world)
     return solution(
         problem,

@@ -73,8 +73,8 @@ def dispersion_bounds(
     period = np.where(wraps, lengths, np.inf)
     lower, upper = 0.0, float(np.linalg.norm(np.where(wraps, 0.5 * lengths, lengths)))
     for share in SHARES:
-        lower, bound, used = bound_dispersion(scaled, period, lengths, lower, share, left)
-        upper, left = min(upper, bound), left - used
+        found = bound_dispersion(scaled, period, lengths, lower, share, left)
+        lower, upper, left = found.lower, min(upper, found.upper), left - found.work
         if left <= 0.0 or upper == 0.0:
             break
     extent = float(np.linalg.norm(lengths))

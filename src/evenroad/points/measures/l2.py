@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._native.points import distance_pair_sums, maximum_pair_sums
+from evenroad._native.points import PairSums, distance_pair_sums, maximum_pair_sums
 
 
 class MaximumPairs(NamedTuple):
@@ -137,7 +137,7 @@ def average_squared(points: Floats, weights: Floats) -> ProductTerms:
     return ProductTerms(3.0 ** -len(points), linear, 0.5 - points, pairs)
 
 
-def pair_sums(columns: Floats, pairs: Pairs, want_gradient: bool) -> tuple[Floats, Floats]:
+def pair_sums(columns: Floats, pairs: Pairs, want_gradient: bool) -> PairSums:
     """Sum the pair products of every point with all points, itself included, (n,), and the derivative of the total.
 
     O(n^2 d) time, O(n d) memory.  The gradient, (d, n), is zero where it is not wanted, in about half the time.  Where
@@ -145,7 +145,7 @@ def pair_sums(columns: Floats, pairs: Pairs, want_gradient: bool) -> tuple[Float
     """
     if isinstance(pairs, MaximumPairs):
         return maximum_pair_sums(columns, *pairs, want_gradient)
-    return distance_pair_sums(columns, pairs, want_gradient)
+    return distance_pair_sums(columns, *pairs, want_gradient)
 
 
 def pair_row(columns: Floats, pairs: Pairs, i: int, others: slice = slice(None)) -> Floats:

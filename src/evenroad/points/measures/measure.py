@@ -68,7 +68,8 @@ class Measure:
         n = columns.shape[1]
         terms = self.terms(columns, weights)
         products = terms.linear.prod(axis=0)
-        sums, gradient = l2.pair_sums(columns, terms.pairs, want_gradient)
+        found = l2.pair_sums(columns, terms.pairs, want_gradient)
+        sums, gradient = found.sums, found.gradient
         # The parts nearly cancel: differences point by point keep digits that the textbook order loses for large n.
         value = float(np.mean((sums / n - products) - (products - terms.constant)))
         if want_gradient:

@@ -46,14 +46,15 @@ def log_riesz_of_columns(columns: Floats, s: int, periodic: bool, want_gradient:
     points have the distance 10^-100 and no gradient.
     """
     d, n = columns.shape
-    nearest, rows, pushes = riesz_rows(columns, s, periodic, want_gradient)
-    row_logs = np.log(rows) - (0.5 * s) * np.log(nearest)
+    rows = riesz_rows(columns, s, periodic, want_gradient)
+    sum_logs, pushes = np.log(rows.sums), rows.pushes
+    row_logs = sum_logs - (0.5 * s) * np.log(rows.nearest)
     largest = row_logs.max()
     total_log = largest + math.log(np.exp(row_logs - largest).sum())
     logarithm = total_log - math.log(n) - (s / d) * math.log(n)
     if want_gradient:
         # A pair stands in the sum twice, so a point's own row holds half of what its coordinates change.
-        pushes *= -2.0 * s * np.exp(row_logs - np.log(rows) - total_log)
+        pushes *= -2.0 * s * np.exp(row_logs - sum_logs - total_log)
     return logarithm, pushes
 
 

@@ -86,9 +86,9 @@ def find_any(terminals: Terminals, states: EdgeStates) -> Found:
     tree[terminals.start], tree[terminals.goals] = 1, 2
     parent_edge = np.full(len(tree), -1, dtype=np.int32)
     evaluated, most = np.empty(0, dtype=np.int32), _FIRST
-    known, trees = (states.edge_states, states.node_states), (tree, parent_edge, away)
+    known = states.edge_states, states.node_states
     while True:
-        met, _, evaluated = native.grow(edges, known, trees, evaluated, most)
+        met, evaluated = native.grow(edges, known, tree, parent_edge, away, evaluated, most)
         if met >= 0:
             a, b = sorted(edges[met].tolist(), key=lambda node: tree[node])
             there, back = _path_back(parent_edge, edges, a), _path_back(parent_edge, edges, b)

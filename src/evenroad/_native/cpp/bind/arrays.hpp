@@ -12,6 +12,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -173,6 +174,26 @@ nb::object as_rows(std::vector<T>&& values, std::size_t columns) {
 template <class T>
 nb::object as_rows(OwnMatrix<T>&& matrix) {
   return as_numpy(std::move(matrix.values), {matrix.rows, matrix.columns});
+}
+
+/// The struct that a field is one of.
+template <class Struct, class Values>
+Struct owner_of(Values Struct::* field);
+
+/// Return a field of a struct that Python has, a vector or a matrix, as an array that looks into it; bytes are flags.
+template <auto FIELD>
+nb::object array_of(nb::handle self) {
+  auto& field = nb::cast<decltype(owner_of(FIELD))&>(self).*FIELD;
+  const auto view = [&](auto& values, std::initializer_list<std::size_t> shape) {
+    using Value = typename std::remove_reference_t<decltype(values)>::value_type;
+    using Seen = std::conditional_t<std::is_same_v<Value, std::uint8_t>, bool, Value>;
+    return nb::cast(nb::ndarray<nb::numpy, Seen>(reinterpret_cast<Seen*>(values.data()), shape, self));
+  };
+  if constexpr (requires { field.columns; }) {
+    return view(field.values, {field.rows, field.columns});
+  } else {
+    return view(field, {field.size()});
+  }
 }
 
 /// Call a function while other threads of Python run.

@@ -1,8 +1,5 @@
 // evenroad._native.robot.Chain: the joints that carry a link, where they bring it, and configurations for its poses.
-#include <nanobind/stl/array.h>
-
 #include <algorithm>
-#include <array>
 
 #include "bind/arrays.hpp"
 #include "robot/many_poses.hpp"
@@ -117,38 +114,49 @@ nb::tuple reach(const Chain& chain, nb::handle q, nb::handle task, nb::handle li
   return nb::make_tuple(as_numpy(std::move(moved), {rows, dim(chain)}), as_numpy(std::move(missing), {rows}));
 }
 
-/// Return postures that reach tasks, (p, 22), whose each is, and what is nearest to each task.
-///
-/// `known` is the query's configuration, others, and their tips; `pick` says which of these solutions begin at, `turns`
-/// which coordinates turn and their bounds, `effort` how many steps a solution has and how many are enough.
-nb::tuple reach_all(const Chain& chain, nb::tuple known, std::array<std::size_t, 3> pick, nb::handle tasks,
-                    nb::handle limits, nb::tuple turns, double apart, std::array<std::size_t, 2> effort) {
+/// Where solutions begin, with the arrays that it reads.
+struct Beginnings {
+  Array<const double, 1> start;
+  Array<const double, 2> known, tips;
+  std::size_t first, last, every;
+
+  Beginnings(nb::handle from, nb::handle q, nb::handle poses, std::size_t first, std::size_t last, std::size_t every)
+      : start(from, "start"), known(q, "known"), tips(poses, "tips"), first(first), last(last), every(every) {
+    known.of_shape({tips.shape(0), start.size()});
+    tips.of_shape({tips.shape(0), POSE});
+    require(every > 0, "every must be at least 1");
+  }
+};
+
+/// What is one posture, with the arrays that it reads.
+struct Postures {
+  Array<const bool, 1> turns;
+  Array<const double, 2> bounds;
+  double same;
+
+  Postures(nb::handle turning, nb::handle ranges, double same)
+      : turns(turning, "turns"), bounds(ranges, "bounds", Entries::ANY), same(same) {
+    bounds.of_shape({2, turns.size()});
+  }
+};
+
+/// Return postures that reach tasks, (p, 22), in `steps` steps each, or fewer where `enough` do.
+robot::Solutions reach_all(const Chain& chain, const Beginnings& beginnings, nb::handle tasks, nb::handle limits,
+                           const Postures& postures, std::int64_t steps, std::size_t enough) {
   const std::size_t d = dim(chain);
-  require(known.size() == 3 && turns.size() == 2, "known must be three arrays, and turns two");
-  const Array<const double, 1> begin(known[0], "start");
-  const Array<const double, 2> q(known[1], "known"), tips(known[2], "tips"), rows(tasks, "tasks");
-  const Array<const double, 2> ranges(limits, "limits", Entries::ANY), bounds(turns[1], "bounds", Entries::ANY);
-  const Array<const bool, 1> turning(turns[0], "turns");
-  begin.of_shape({d});
-  q.of_shape({tips.shape(0), d});
-  tips.of_shape({tips.shape(0), POSE});
+  const Array<const double, 2> rows(tasks, "tasks"), ranges(limits, "limits", Entries::ANY);
+  require(beginnings.start.size() == d && postures.turns.size() == d,
+          "solutions must have the coordinates of the chain");
   rows.of_shape({rows.shape(0), TASK});
-  bounds.of_shape({2, d});
-  turning.of_shape({d});
-  require(pick[2] > 0, "every must be at least 1");
-  require_below(static_cast<std::int64_t>(effort[0]), std::size_t{1} << 31, "steps");
+  require_below(steps, std::size_t{1} << 31, "steps");
   std::vector<robot::PoseTask> wanted;
   for (std::size_t i = 0; i < rows.shape(0); i++) wanted.push_back(task_of(rows.matrix()[i]));
-  const robot::Beginnings from{begin.span(), q.matrix(), tips.matrix(), pick[0], pick[1], pick[2]};
-  const robot::Postures postures{turning.span(), bounds.matrix(), apart};
+  const robot::Beginnings from{beginnings.start.span(), beginnings.known.matrix(), beginnings.tips.matrix(),
+                               beginnings.first,        beginnings.last,           beginnings.every};
+  const robot::Postures different{postures.turns.span(), postures.bounds.matrix(), postures.same};
   const robot::Limits within = limits_of(ranges, d);
-  const int steps = static_cast<int>(effort[0]);
-  robot::Solutions found =
-      without_gil([&] { return robot::reach_all(chain, wanted, within, from, postures, steps, effort[1]); });
-  const std::size_t count = found.task.size();
-  return nb::make_tuple(as_numpy(std::move(found.q), {count, d}), as_numpy(std::move(found.task), {count}),
-                        as_numpy(std::move(found.nearest), {wanted.size(), d}),
-                        as_numpy(std::move(found.missing), {wanted.size()}));
+  return without_gil(
+      [&] { return robot::reach_all(chain, wanted, within, from, different, static_cast<int>(steps), enough); });
 }
 
 /// Return the configurations, (n, dim), with which the tip gets through poses, as far as it does.
@@ -169,13 +177,23 @@ nb::object follow(const Chain& chain, nb::handle q, nb::handle towards, nb::hand
 
 }  // namespace
 
-void add_chain(nb::module_& robot) {
-  nb::class_<Chain>(robot, "Chain")
+void add_chain(nb::module_& part) {
+  nb::class_<Beginnings>(part, "Beginnings")
+      .def(nb::init<nb::handle, nb::handle, nb::handle, std::size_t, std::size_t, std::size_t>(), "start"_a, "known"_a,
+           "tips"_a, "first"_a, "last"_a, "every"_a);
+  nb::class_<Postures>(part, "Postures")
+      .def(nb::init<nb::handle, nb::handle, double>(), "turns"_a, "bounds"_a, "same"_a);
+  nb::class_<robot::Solutions>(part, "Solutions")
+      .def_prop_ro("q", &array_of<&robot::Solutions::q>)
+      .def_prop_ro("task", &array_of<&robot::Solutions::task>)
+      .def_prop_ro("nearest", &array_of<&robot::Solutions::nearest>)
+      .def_prop_ro("missing", &array_of<&robot::Solutions::missing>);
+  nb::class_<Chain>(part, "Chain")
       .def("__init__", &make_chain, "coordinates"_a, "slides"_a, "rows"_a, "dim"_a)
       .def("tip_poses", &tip_poses, "q"_a)
       .def("derivatives", &derivatives, "q"_a)
       .def("reach", &reach, "q"_a, "task"_a, "limits"_a, "steps"_a, "enough"_a)
-      .def("reach_all", &reach_all, "known"_a, "pick"_a, "tasks"_a, "limits"_a, "turns"_a, "apart"_a, "effort"_a)
+      .def("reach_all", &reach_all, "beginnings"_a, "tasks"_a, "limits"_a, "postures"_a, "steps"_a, "enough"_a)
       .def("follow", &follow, "q"_a, "towards"_a, "task"_a, "poses"_a, "limits"_a, "steps"_a, "longest"_a);
 }
 

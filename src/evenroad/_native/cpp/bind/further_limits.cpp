@@ -11,23 +11,25 @@ using namespace nb::literals;
 
 namespace {
 
+using robot::MovingLinks;
+using trajectory::FurtherLimits;
 using trajectory::TipLimits;
 using trajectory::TorqueLimits;
 
 constexpr std::size_t LINK = POSE + 2 + 4 + 9, MOST_DIM = 65536;
 
-/// Return links of the coordinates of their joints, of their parents, which of them slide, and of each a row: its pose,
+/// Take the coordinates of the joints of links, their parents, which of them slide, and of each a row: its pose,
 /// multiplier, offset, mass, centre and inertia.
-robot::MovingLinks links_of(nb::tuple given, std::size_t dim) {
-  require(given.size() == 4, "links must be four arrays");
-  const Array<const std::int64_t, 1> coordinates(given[0], "coordinates"), parents(given[1], "parents");
-  const Array<const bool, 1> slides(given[2], "slides");
-  const FloatRows rows(given[3], "rows");
+void make_links(MovingLinks* self, std::size_t dim, nb::handle of_joints, nb::handle before, nb::handle sliding,
+                nb::handle numbers) {
+  const Array<const std::int64_t, 1> coordinates(of_joints, "coordinates"), parents(before, "parents");
+  const Array<const bool, 1> slides(sliding, "slides");
+  const FloatRows rows(numbers, "rows");
   require(dim <= MOST_DIM, "dim must be at most 65536");
   parents.of_shape({coordinates.size()}), slides.of_shape({coordinates.size()});
   rows.of_shape({coordinates.size(), LINK});
   require_below(coordinates.span(), dim, "coordinates");
-  robot::MovingLinks links{dim, {}};
+  MovingLinks links{dim, {}};
   for (std::size_t i = 0; i < coordinates.size(); i++) {
     const double* row = rows.matrix()[i].data();
     const std::int64_t parent = parents.span()[i];
@@ -44,7 +46,7 @@ robot::MovingLinks links_of(nb::tuple given, std::size_t dim) {
     std::copy_n(row + POSE + 6, 9, link.inertia.begin());
     links.links.push_back(link);
   }
-  return links;
+  new (self) MovingLinks(std::move(links));
 }
 
 robot::Point point_of(nb::handle given, const char* name) {
@@ -55,19 +57,18 @@ robot::Point point_of(nb::handle given, const char* name) {
   return point;
 }
 
-void make_torques(TorqueLimits* self, nb::tuple links, nb::handle efforts, nb::handle gravity) {
+void make_torques(TorqueLimits* self, const MovingLinks& links, nb::handle efforts, nb::handle gravity) {
   const Floats most(efforts, "efforts", Entries::ANY);
+  most.of_shape({links.dim});
   for (const double effort : most.span()) require(effort > 0.0, "efforts must be > 0");
-  new (self) TorqueLimits{
-      links_of(links, most.size()), {most.span().begin(), most.span().end()}, point_of(gravity, "gravity")};
+  new (self) TorqueLimits{links, {most.span().begin(), most.span().end()}, point_of(gravity, "gravity")};
 }
 
-void make_tip(TipLimits* self, nb::tuple links, std::size_t dim, std::size_t link, nb::handle point, double speed,
+void make_tip(TipLimits* self, const MovingLinks& links, std::size_t link, nb::handle point, double speed,
               double acceleration) {
-  robot::MovingLinks moving = links_of(links, dim);
-  require_below(static_cast<std::int64_t>(link), moving.links.size(), "link");
+  require_below(static_cast<std::int64_t>(link), links.links.size(), "link");
   require(speed > 0.0 && acceleration > 0.0, "speed and acceleration must be > 0");
-  new (self) TipLimits{std::move(moving), link, point_of(point, "point"), speed, acceleration};
+  new (self) TipLimits{links, link, point_of(point, "point"), speed, acceleration};
 }
 
 nb::object torques(const TorqueLimits& limits, nb::handle q, nb::handle velocity, nb::handle acceleration) {
@@ -83,11 +84,16 @@ nb::object torques(const TorqueLimits& limits, nb::handle q, nb::handle velocity
 }  // namespace
 
 void add_further_limits(nb::module_& trajectory) {
+  nb::class_<MovingLinks>(trajectory, "MovingLinks")
+      .def("__init__", &make_links, "dim"_a, "coordinates"_a, "parents"_a, "slides"_a, "rows"_a);
   nb::class_<TorqueLimits>(trajectory, "TorqueLimits")
       .def("__init__", &make_torques, "links"_a, "efforts"_a, "gravity"_a)
       .def("torques", &torques, "q"_a, "velocity"_a, "acceleration"_a);
   nb::class_<TipLimits>(trajectory, "TipLimits")
-      .def("__init__", &make_tip, "links"_a, "dim"_a, "link"_a, "point"_a, "speed"_a, "acceleration"_a);
+      .def("__init__", &make_tip, "links"_a, "link"_a, "point"_a, "speed"_a, "acceleration"_a);
+  nb::class_<FurtherLimits>(trajectory, "FurtherLimits")
+      .def(nb::init<const TorqueLimits*, const TipLimits*>(), "torque"_a.none(), "tip"_a.none(), nb::keep_alive<1, 2>(),
+           nb::keep_alive<1, 3>());
 }
 
 }  // namespace evenroad::bind

@@ -1,10 +1,13 @@
 // evenroad._native.robot.Keeps: the constraints of a path, and configurations that are moved onto them.
 #include "robot/keeps.hpp"
 
-#include <array>
+#include <nanobind/stl/string_view.h>
+
 #include <cmath>
+#include <string_view>
 
 #include "bind/arrays.hpp"
+#include "bind/words.hpp"
 #include "robot/keep_walk.hpp"
 
 namespace evenroad::bind {
@@ -13,8 +16,13 @@ using namespace nb::literals;
 
 namespace {
 
+using robot::Keep;
 using robot::KeepKind;
 using robot::Keeps;
+using robot::Projecting;
+using robot::Walking;
+
+constexpr Words<KeepKind::JOINTS> KINDS{"kind", {"linear", "box", "circle", "together", "joints"}};
 
 constexpr int MOST_STEPS = 1000, MOST_PIECES = 1000;
 /// A walk may be so long in each coordinate [rad or m].
@@ -40,10 +48,17 @@ std::size_t rows_of(KeepKind kind, std::size_t count, std::size_t dim) {
       require(count == 2 * dim, "joints must have lows and highs");
       return dim;
   }
-  throw InvalidValue("no such kind of constraint");
+  return 0;
 }
 
-/// A constraint is its kind, the numbers of its chains, its limit, and what its residual is made of.
+void make_keep(Keep* self, std::string_view kind, std::size_t first, std::size_t second, double limit,
+               nb::handle numbers) {
+  const Array<const double, 1> given(numbers, "numbers", Entries::ANY);
+  require(limit > 0.0, "a limit must be > 0");
+  new (self) Keep{KINDS.from(kind), first, second, limit, {given.span().begin(), given.span().end()}, 0};
+}
+
+/// Take the chains of all tips, constraints, and limits of the joints.
 void make_keeps(Keeps* self, nb::list chains, nb::list constraints, nb::handle limits) {
   const Array<const double, 2> bounds(limits, "limits", Entries::ANY);
   bounds.of_shape({2, bounds.shape(1)});
@@ -53,24 +68,12 @@ void make_keeps(Keeps* self, nb::list chains, nb::list constraints, nb::handle l
   keeps.high.assign(bounds.data() + dim, bounds.data() + 2 * dim);
   for (std::size_t k = 0; k < dim; k++) require(keeps.low[k] <= keeps.high[k], "limits must be lows and highs");
   for (nb::handle chain : chains) {
-    keeps.chains.push_back(nb::cast<const robot::Chain&>(chain));
+    keeps.chains.push_back(*value_of<const robot::Chain*>(chain, "chains"));
     require(static_cast<std::size_t>(keeps.chains.back().dim) == dim, "chains must have the coordinates of the limits");
   }
-  for (nb::handle given : constraints) {
-    const auto parts = value_of<nb::tuple>(given, "constraint");
-    require(parts.size() == 5, "a constraint must be its kind, two tips, a limit and numbers");
-    const auto kind = value_of<std::int64_t>(parts[0], "kind");
-    require_below(kind, static_cast<std::size_t>(KeepKind::JOINTS) + 1, "kind");
-    robot::Keep keep{static_cast<KeepKind>(kind),
-                     value_of<std::size_t>(parts[1], "first tip"),
-                     value_of<std::size_t>(parts[2], "second tip"),
-                     value_of<double>(parts[3], "limit"),
-                     {},
-                     0};
-    const Array<const double, 1> numbers(parts[4], "numbers", Entries::ANY);
-    keep.numbers.assign(numbers.span().begin(), numbers.span().end());
+  for (nb::handle constraint : constraints) {
+    Keep keep = *value_of<const Keep*>(constraint, "constraints");
     keep.rows = rows_of(keep.kind, keep.numbers.size(), dim);
-    require(keep.limit > 0.0, "a limit must be > 0");
     require(keep.kind == KeepKind::JOINTS || (keep.first < keeps.chains.size() && keep.second < keeps.chains.size()),
             "tips must be numbers of chains");
     keeps.each.push_back(std::move(keep));
@@ -102,20 +105,30 @@ nb::object derivative(const Keeps& keeps, nb::handle q) {
   return as_rows(std::move(written));
 }
 
+void make_projecting(Projecting* self, double aim, double enough, int steps, double longest) {
+  require(steps >= 0 && steps <= MOST_STEPS, "steps must be from 0 to 1000");
+  new (self) Projecting{aim, enough, steps, longest};
+}
+
+void make_walking(Walking* self, nb::handle scale, double step, double jump, const Projecting& projecting) {
+  const Floats scales(scale, "scale");
+  require(scales.size() > 0, "scale must have one number or more");
+  require(step > 1e-9, "step must be > 1e-9");
+  new (self) Walking{{scales.span().begin(), scales.span().end()}, step, jump, projecting};
+}
+
 /// Return configurations moved onto the constraints, and which got there.
-nb::tuple project(const Keeps& keeps, nb::handle q, double aim, double enough, int steps, double longest) {
+nb::tuple project(const Keeps& keeps, nb::handle q, const Projecting& how) {
   const Array<const double, 2> given(q, "q");
   const std::size_t rows = given.shape(0);
   given.of_shape({rows, keeps.dim()});
-  require(steps >= 0 && steps <= MOST_STEPS, "steps must be from 0 to 1000");
-  const robot::Projecting how{aim, enough, steps, longest};
   std::vector<double> moved(given.span().begin(), given.span().end());
   std::vector<std::uint8_t> good = without_gil([&] { return keeps.project({moved.data(), rows, keeps.dim()}, how); });
-  return nb::make_tuple(as_numpy(std::move(moved), {rows, keeps.dim()}), as_numpy(std::move(good), {rows}));
+  return nb::make_tuple(as_numpy(std::move(moved), {rows, keeps.dim()}), as_bools(std::move(good), {rows}));
 }
 
 /// The states of motions, one motion after the other, and how many each has: none where it fails.
-struct States {
+struct Walks {
   std::vector<double> rows;
   std::vector<std::int64_t> counts;
 
@@ -133,30 +146,18 @@ struct States {
   }
 };
 
-/// A way of walking as Python gives it: step, jump, aim, enough, steps, longest; and the scale.
-robot::Walking walking(const Keeps& keeps, const Array<const double, 1>& scale, nb::tuple numbers) {
-  require(scale.shape(0) == keeps.dim() && keeps.dim() > 0,
-          "scale must have the coordinates of the limits, one or more");
-  require(numbers.size() == 6, "how must be a step, jump, aim, enough, steps and longest");
-  const robot::Walking how{scale.span(),
-                           value_of<double>(numbers[0], "step"),
-                           value_of<double>(numbers[1], "jump"),
-                           {value_of<double>(numbers[2], "aim"), value_of<double>(numbers[3], "enough"),
-                            value_of<int>(numbers[4], "steps"), value_of<double>(numbers[5], "longest")}};
-  require(how.step > 1e-9, "step must be > 1e-9");
-  require(how.projecting.steps >= 0 && how.projecting.steps <= MOST_STEPS, "steps must be from 0 to 1000");
-  return how;
+void require_of_dim(const Walking& how, const Keeps& keeps) {
+  require(how.scale.size() == keeps.dim(), "scale must have the coordinates of the limits");
 }
 
 /// Return the states of walks from configurations by ways, (n, dim) each, and how many each has.
-nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle directions, nb::handle scale, nb::tuple numbers) {
+nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle directions, const Walking& how) {
   const Array<const double, 2> begins(from, "from"), moved(directions, "directions");
   begins.of_shape({begins.shape(0), keeps.dim()});
   moved.of_shape({begins.shape(0), keeps.dim()});
-  const Array<const double, 1> scales(scale, "scale");
-  const robot::Walking how = walking(keeps, scales, numbers);
+  require_of_dim(how, keeps);
   for (const double each : moved.span()) require(std::abs(each) < LONGEST_MOTION, "directions must be shorter");
-  States states;
+  Walks states;
   without_gil([&] {
     for (std::size_t i = 0; i < begins.shape(0); i++) {
       states.add(keeps.dim(), [&](std::vector<double>& rows) {
@@ -168,8 +169,7 @@ nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle directions, nb::h
 }
 
 /// Return the states of paths with that many pieces for one of each motion, and how many each path has.
-nb::tuple refine(const Keeps& keeps, nb::handle paths, nb::handle counts, int pieces, nb::handle scale,
-                 nb::tuple numbers) {
+nb::tuple refine(const Keeps& keeps, nb::handle paths, nb::handle counts, int pieces, const Walking& how) {
   const Array<const double, 2> given(paths, "paths");
   given.of_shape({given.shape(0), keeps.dim()});
   const Array<const std::int64_t, 1> sizes(counts, "counts");
@@ -180,9 +180,8 @@ nb::tuple refine(const Keeps& keeps, nb::handle paths, nb::handle counts, int pi
   }
   require(total == given.shape(0), "counts must be those of paths");
   require(pieces >= 1 && pieces <= MOST_PIECES, "pieces must be from 1 to 1000");
-  const Array<const double, 1> scales(scale, "scale");
-  const robot::Walking how = walking(keeps, scales, numbers);
-  States states;
+  require_of_dim(how, keeps);
+  Walks states;
   without_gil([&] {
     const double* first = given.data();
     for (const std::int64_t each : sizes.span()) {
@@ -196,15 +195,19 @@ nb::tuple refine(const Keeps& keeps, nb::handle paths, nb::handle counts, int pi
 
 }  // namespace
 
-void add_keeps(nb::module_& robot) {
-  nb::class_<Keeps>(robot, "Keeps")
+void add_keeps(nb::module_& part) {
+  nb::class_<Keep>(part, "Keep").def("__init__", &make_keep, "kind"_a, "first"_a, "second"_a, "limit"_a, "numbers"_a);
+  nb::class_<Projecting>(part, "Projecting")
+      .def("__init__", &make_projecting, "aim"_a, "enough"_a, "steps"_a, "longest"_a);
+  nb::class_<Walking>(part, "Walking").def("__init__", &make_walking, "scale"_a, "step"_a, "jump"_a, "projecting"_a);
+  nb::class_<Keeps>(part, "Keeps")
       .def("__init__", &make_keeps, "chains"_a, "constraints"_a, "limits"_a)
       .def("shares", &shares, "q"_a)
       .def("residuals", &residuals, "q"_a)
       .def("derivative", &derivative, "q"_a)
-      .def("project", &project, "q"_a, "aim"_a, "enough"_a, "steps"_a, "longest"_a)
-      .def("walk", &walk, "begins"_a, "directions"_a, "scale"_a, "how"_a)
-      .def("refine", &refine, "paths"_a, "counts"_a, "pieces"_a, "scale"_a, "how"_a);
+      .def("project", &project, "q"_a, "how"_a)
+      .def("walk", &walk, "begins"_a, "directions"_a, "how"_a)
+      .def("refine", &refine, "paths"_a, "counts"_a, "pieces"_a, "how"_a);
 }
 
 }  // namespace evenroad::bind

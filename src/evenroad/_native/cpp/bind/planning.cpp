@@ -5,13 +5,12 @@
 
 #include <algorithm>
 
-#include "planning/apart.hpp"
 #include "planning/improver.hpp"
 #include "planning/motion_checks.hpp"
-#include "planning/path_proof.hpp"
 #include "planning/smoother.hpp"
 #include "planning/tree.hpp"
 #include "planning/tree_planner.hpp"
+#include "planning/with_clearance.hpp"
 
 namespace evenroad::bind {
 
@@ -21,17 +20,7 @@ using planning::MotionChecks;
 using planning::Path;
 using planning::TreePlanner;
 
-const char* in_words(planning::Progress progress) {
-  switch (progress) {
-    case planning::Progress::PAUSED:
-      return "paused";
-    case planning::Progress::SPENT:
-      return "spent";
-    case planning::Progress::SHORTEST:
-      return "shortest";
-  }
-  return "";
-}
+constexpr Words<planning::Progress::SHORTEST> PROGRESSES{"progress", {"paused", "spent", "shortest"}};
 
 /// A planner with the arrays that it reads.
 struct Trees {
@@ -52,10 +41,6 @@ nb::object path_of(const Trees& trees) {
   std::vector<double> points = trees.planner.path();
   const std::size_t size = points.size() / trees.dim();
   return as_numpy(std::move(points), {size, trees.dim()});
-}
-
-nb::tuple counts_of(const robot::Counts& counts) {
-  return nb::make_tuple(counts.motions, counts.configurations, counts.batches);
 }
 
 /// Return the nodes of a tree, (n, dim), and the parent of each, -1 of roots.
@@ -92,10 +77,10 @@ nb::tuple shorten(MotionChecks& checks, nb::handle path, const Points& pairs, st
   return nb::make_tuple(points_of(shorter), checks.counts.motions);
 }
 
-nb::tuple smooth(MotionChecks& checks, nb::handle path, const Points& pairs, const Points& directions,
-                 std::int64_t most_batches, bool proved) {
+nb::tuple smooth(MotionChecks& checks, nb::handle path, const Drivers& drivers, std::int64_t most_batches,
+                 bool proved) {
   const FloatRows points(path, "path");
-  const planning::Guides by{pairs.of(2, true, "pairs"), directions.of(checks.joints.size(), false, "directions")};
+  const planning::Guides by = drivers.of(checks.joints.size()).guides;
   require_budget(most_batches, "most_batches");
   Path smoothed = path_from(points, checks);
   const bool is_proved = without_gil([&] { return planning::smooth(smoothed, by, {most_batches}, proved, checks); });
@@ -103,25 +88,16 @@ nb::tuple smooth(MotionChecks& checks, nb::handle path, const Points& pairs, con
   return nb::make_tuple(found, checks.counts.motions);
 }
 
-nb::tuple smooth_apart(MotionChecks& checks, MotionChecks& roomier, nb::handle path, const Points& pairs,
-                       const Points& directions, std::int64_t most_batches) {
+nb::tuple smooth_with_clearance(MotionChecks& checks, MotionChecks& roomier, nb::handle path, const Drivers& drivers,
+                                std::int64_t most_batches) {
   const FloatRows points(path, "path");
   const std::size_t dim = checks.joints.size();
   require(roomier.joints.size() == dim, "roomier must have the joints of the checks");
-  const planning::Guides by{pairs.of(2, true, "pairs"), directions.of(dim, false, "directions")};
+  const planning::Guides by = drivers.of(dim).guides;
   require_budget(most_batches, "most_batches");
-  Path apart = path_from(points, checks);
-  without_gil([&] { planning::smooth_apart(apart, by, most_batches, checks, roomier); });
-  return nb::make_tuple(points_of(apart), checks.counts.motions + roomier.counts.motions);
-}
-
-nb::object prove_or_bend(MotionChecks& checks, nb::handle path, double margin, const Points& directions) {
-  const FloatRows points(path, "path");
-  const Matrix<const double> sphere = directions.of(checks.joints.size(), false, "directions");
-  require(margin >= 0.0 && margin <= 1.0, "margin must be from 0 to 1");
-  Path bent = path_from(points, checks);
-  const bool is_proved = without_gil([&] { return planning::prove_or_bend(bent, margin, sphere, checks); });
-  return is_proved ? points_of(bent) : nb::none();
+  Path clear = path_from(points, checks);
+  without_gil([&] { planning::smooth_with_clearance(clear, by, most_batches, checks, roomier); });
+  return nb::make_tuple(points_of(clear), checks.counts.motions + roomier.counts.motions);
 }
 
 /// An improver with the array that it reads.
@@ -129,51 +105,49 @@ struct Improvement {
   FloatRows terminals;
   planning::Improver improver;
 
-  Improvement(MotionChecks& checks, const FloatRows& start_and_goals, const planning::Sequences& sequences,
-              const planning::Guides& guides, planning::First first, bool is_smoothing)
+  Improvement(MotionChecks& checks, const FloatRows& start_and_goals, const planning::Drivers& drivers,
+              planning::First first, bool is_smoothing)
       : terminals(start_and_goals),
-        improver(terminals.matrix(), sequences, guides, std::move(first), is_smoothing, checks) {}
+        improver(terminals.matrix(), drivers.sequences, drivers.guides, std::move(first), is_smoothing, checks) {}
 };
 
-/// `driven_by` are samples, steps, pairs and directions; `first` is a path, its goal, and the motions that trees
-/// checked.
-void make_improvement(Improvement* improvement, MotionChecks& checks, nb::handle start_and_goals, nb::tuple driven_by,
-                      nb::tuple first, bool is_smoothing) {
+/// Take the path to a goal that trees found after some motions.
+void make_improvement(Improvement* improvement, MotionChecks& checks, nb::handle start_and_goals,
+                      const Drivers& drivers, nb::handle path, std::int64_t goal, std::int64_t motions,
+                      bool is_smoothing) {
   const std::size_t dim = checks.joints.size();
-  require(driven_by.size() == 4, "driven_by must be (samples, steps, pairs, directions)");
-  require(first.size() == 3, "first must be (path, goal, motions)");
-  const auto by = [&](std::size_t i, std::size_t columns, bool of_unit_cube, const char* name) {
-    return value_of<const Points*>(driven_by[i], name)->of(columns, of_unit_cube, name);
-  };
   const FloatRows terminals(start_and_goals, "terminals");
   terminals.of_shape({terminals.shape(0), dim});
   require(terminals.shape(0) >= 2, "terminals must be a start and one goal or more");
-  const auto goal = value_of<std::int64_t>(first[1], "goal"), motions = value_of<std::int64_t>(first[2], "motions");
   require(goal >= 0 && motions >= 0, "goal and motions must be 0 or more");
-  planning::First given{path_from(FloatRows(first[0], "path"), checks), goal, motions};
-  new (improvement)
-      Improvement(checks, terminals, {by(0, dim, true, "samples"), by(1, dim, false, "steps")},
-                  {by(2, 2, true, "pairs"), by(3, dim, false, "directions")}, std::move(given), is_smoothing);
+  planning::First first{path_from(FloatRows(path, "path"), checks), goal, motions};
+  new (improvement) Improvement(checks, terminals, drivers.of(dim), std::move(first), is_smoothing);
+}
+
+/// Return a number of an improver.
+template <auto METHOD>
+auto number_of_improver(const Improvement& improvement) {
+  return (improvement.improver.*METHOD)();
 }
 
 void add_improver(nb::module_& part) {
   nb::class_<Improvement>(part, "Improver")
       .def("__init__", &make_improvement, nb::keep_alive<1, 2>(), nb::keep_alive<1, 4>())
-      .def("improve",
-           [](Improvement& improvement, std::int64_t rounds, std::int64_t motions, std::int64_t batches) {
-             require_budget(rounds, "rounds"), require_budget(motions, "motions"), require_budget(batches, "batches");
-             return in_words(without_gil([&] { return improvement.improver.improve({rounds, motions}, batches); }));
-           })
+      .def(
+          "improve",
+          [](Improvement& improvement, std::int64_t rounds, std::int64_t motions, std::int64_t batches) {
+            require_budget(rounds, "rounds"), require_budget(motions, "motions"), require_budget(batches, "batches");
+            return PROGRESSES.of(without_gil([&] { return improvement.improver.improve({rounds, motions}, batches); }));
+          })
       .def_prop_ro("path", [](const Improvement& improvement) { return points_of(improvement.improver.path()); })
       .def_prop_ro("along_trees",
                    [](const Improvement& improvement) { return points_of(improvement.improver.along_trees()); })
-      .def_prop_ro("goal", [](const Improvement& improvement) { return improvement.improver.goal(); })
-      .def_prop_ro("length", [](const Improvement& improvement) { return improvement.improver.length(); })
-      .def_prop_ro("rounds", [](const Improvement& improvement) { return improvement.improver.rounds(); })
-      .def_prop_ro("motions", [](const Improvement& improvement) { return improvement.improver.motions(); })
-      .def_prop_ro("smoothing_motions",
-                   [](const Improvement& improvement) { return improvement.improver.smoothing_motions(); })
-      .def_prop_ro("nodes", [](const Improvement& improvement) { return improvement.improver.nodes(); });
+      .def_prop_ro("goal", &number_of_improver<&planning::Improver::goal>)
+      .def_prop_ro("length", &number_of_improver<&planning::Improver::length>)
+      .def_prop_ro("rounds", &number_of_improver<&planning::Improver::rounds>)
+      .def_prop_ro("motions", &number_of_improver<&planning::Improver::motions>)
+      .def_prop_ro("smoothing_motions", &number_of_improver<&planning::Improver::smoothing_motions>)
+      .def_prop_ro("nodes", &number_of_improver<&planning::Improver::nodes>);
 }
 
 /// A tree by itself, for tests.
@@ -220,15 +194,20 @@ void add_planning(nb::module_& module) {
   nb::class_<MotionChecks>(part, "Checks")
       .def("__init__",
            [](MotionChecks* checks, std::shared_ptr<robot::Checker> of) { new (checks) MotionChecks(std::move(of)); })
-      .def_prop_ro("counts", [](const MotionChecks& checks) { return counts_of(checks.counts); });
+      .def_prop_ro("counts", [](const MotionChecks& checks) { return checks.counts; });
+  nb::class_<robot::Counts>(part, "Counts")
+      .def_ro("motions", &robot::Counts::motions)
+      .def_ro("configurations", &robot::Counts::configurations)
+      .def_ro("batches", &robot::Counts::batches);
   nb::class_<Points>(part, "Points").def(nb::init<nb::handle>());
+  nb::class_<Drivers>(part, "Drivers").def(nb::init<const Points&, const Points&, const Points&, const Points&>());
   nb::class_<Trees>(part, "Trees")
       .def(nb::init<MotionChecks&, nb::handle, const Points&, const Points&>(), nb::keep_alive<1, 2>(),
            nb::keep_alive<1, 4>(), nb::keep_alive<1, 5>())
       .def("grow",
            [](Trees& trees, std::int64_t most_motions, std::int64_t batches) {
              require_budget(most_motions, "most_motions"), require_budget(batches, "batches");
-             return in_words(without_gil([&] { return trees.planner.grow(most_motions, batches); }));
+             return GROWTHS.of(without_gil([&] { return trees.planner.grow(most_motions, batches); }));
            })
       .def_prop_ro("path", &path_of)
       .def_prop_ro("goal", [](const Trees& trees) { return trees.planner.goal(); })
@@ -240,8 +219,7 @@ void add_planning(nb::module_& module) {
       });
   part.def("shorten", &shorten);
   part.def("smooth", &smooth);
-  part.def("smooth_apart", &smooth_apart);
-  part.def("prove_or_bend", &prove_or_bend);
+  part.def("smooth_with_clearance", &smooth_with_clearance);
   part.attr("CLEARANCES") = nb::make_tuple(planning::CLEARANCES[0], planning::CLEARANCES[1]);
   add_tree(part);
   add_improver(part);

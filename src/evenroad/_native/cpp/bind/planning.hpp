@@ -4,7 +4,8 @@
 #include <algorithm>
 
 #include "bind/arrays.hpp"
-#include "planning/tree_planner.hpp"
+#include "bind/words.hpp"
+#include "planning/query.hpp"
 
 namespace evenroad::bind {
 
@@ -28,20 +29,24 @@ struct Points {
   }
 };
 
-/// Return what a search ended with.
-inline const char* in_words(planning::Growth growth) {
-  switch (growth) {
-    case planning::Growth::PAUSED:
-      return "paused";
-    case planning::Growth::SPENT:
-      return "spent";
-    case planning::Growth::NOT_FREE:
-      return "not free";
-    case planning::Growth::SOLVED:
-      return "solved";
+/// Sequences of one dimension, for all queries that they drive.
+struct Drivers {
+  Points samples, steps, pairs, directions;
+
+  Drivers(const Points& samples, const Points& steps, const Points& pairs, const Points& directions)
+      : samples(samples), steps(steps), pairs(pairs), directions(directions) {
+    of(samples.rows.shape(1));
   }
-  return "";
-}
+
+  /// Return them for arms of that many joints.
+  planning::Drivers of(std::size_t dim) const {
+    return {{samples.of(dim, true, "samples"), steps.of(dim, false, "steps")},
+            {pairs.of(2, true, "pairs"), directions.of(dim, false, "directions")}};
+  }
+};
+
+/// What a search ended with.
+constexpr Words<planning::Growth::SOLVED> GROWTHS{"ended", {"paused", "spent", "not free", "solved"}};
 
 /// Add queries of an arm, from its ends to a smoothed path.
 void add_queries(nb::module_& part);

@@ -7,7 +7,6 @@
 
 #include "bind/planning.hpp"
 #include "planning/many_queries.hpp"
-#include "planning/query.hpp"
 
 namespace evenroad::bind {
 
@@ -18,29 +17,7 @@ using robot::Checker;
 
 constexpr std::size_t MOST_THREADS = 1024;
 
-/// Sequences of one dimension, for all queries that they drive.
-struct Drivers {
-  Points samples, steps, pairs, directions;
-
-  Drivers(const Points& samples, const Points& steps, const Points& pairs, const Points& directions)
-      : samples(samples), steps(steps), pairs(pairs), directions(directions) {
-    of(samples.rows.shape(1));
-  }
-
-  /// Return them for arms of that many joints.
-  planning::Drivers of(std::size_t dim) const {
-    return {{samples.of(dim, true, "samples"), steps.of(dim, false, "steps")},
-            {pairs.of(2, true, "pairs"), directions.of(dim, false, "directions")}};
-  }
-};
-
-Smoothing smoothing_from(std::string_view name) {
-  if (name == "none") return Smoothing::NONE;
-  if (name == "quick") return Smoothing::QUICK;
-  if (name == "full") return Smoothing::FULL;
-  if (name == "apart") return Smoothing::APART;
-  throw InvalidValue("smoothing must be none, quick, full or apart, got " + std::string(name));
-}
+constexpr Words<Smoothing::WITH_CLEARANCE> SMOOTHINGS{"smoothing", {"none", "quick", "full", "with clearance"}};
 
 /// An answer with the number of coordinates of its waypoints.
 struct Answer {
@@ -56,7 +33,7 @@ Answer answer(std::shared_ptr<Checker> checker, nb::handle start, nb::handle goa
   const Floats first(start, "start"), last(goal, "goal");
   const auto from = first.of_shape({size}).span(), to = last.of_shape({size}).span();
   require_budget(motions, "motions");
-  const Smoothing how = smoothing_from(smoothing);
+  const Smoothing how = SMOOTHINGS.from(smoothing);
   const planning::Drivers by = drivers.of(size);
   std::vector<double> terminals(from.begin(), from.end());
   terminals.insert(terminals.end(), to.begin(), to.end());
@@ -72,7 +49,7 @@ void smooth_answer(Answer& answer, std::shared_ptr<Checker> checker, std::shared
   require(roomier->dim() == answer.dim, "roomier must have the joints of the answer");
   require(!answer.found.raw.empty(), "the answer must have a path");
   const planning::Drivers by = drivers.of(answer.dim);
-  without_gil([&] { planning::smooth_apart(answer.found, std::move(checker), std::move(roomier), by); });
+  without_gil([&] { planning::smooth_with_clearance(answer.found, std::move(checker), std::move(roomier), by); });
 }
 
 /// Many queries with the arrays that they read.
@@ -111,49 +88,52 @@ void make_many_queries(ManyQueries* made, nb::sequence checkers, nb::sequence ro
   std::vector<planning::QueryWorld> pairs;
   for (std::size_t i = 0; i < worlds.size(); i++) pairs.push_back({worlds[i], wider[i]});
   planning::ManyQueries queries(std::move(pairs), numbers.span(), rows.matrix(), drivers.of(rows.shape(1)), limits,
-                                smoothing_from(smoothing));
+                                SMOOTHINGS.from(smoothing));
   new (made) ManyQueries{rows, numbers, std::move(queries)};
 }
 
-/// Return which queries have a path, where the waypoints of each begin, all waypoints, and lengths and seconds.
-nb::tuple columns_of(const ManyQueries& many) {
+/// Which queries have a path, where the waypoints of each begin, all waypoints, and lengths and seconds.
+struct Columns {
   std::vector<std::uint8_t> solved;
   std::vector<std::int64_t> begins{0};
-  std::vector<double> waypoints, lengths, seconds;
-  for (const planning::Answer& answer : many.queries.answers()) {
-    solved.push_back(answer.growth == planning::Growth::SOLVED);
-    waypoints.insert(waypoints.end(), answer.path.begin(), answer.path.end());
-    begins.push_back(static_cast<std::int64_t>(waypoints.size() / many.dim()));
-    lengths.push_back(answer.length);
-    seconds.push_back(answer.search_seconds + answer.smoothing_seconds);
+  OwnMatrix<double> waypoints;
+  std::vector<double> lengths, seconds;
+
+  explicit Columns(const ManyQueries& many) : waypoints(0, many.dim()) {
+    for (const planning::Answer& answer : many.queries.answers()) {
+      solved.push_back(answer.growth == planning::Growth::SOLVED);
+      waypoints.values.insert(waypoints.values.end(), answer.path.begin(), answer.path.end());
+      waypoints.rows += answer.path.size() / many.dim();
+      begins.push_back(static_cast<std::int64_t>(waypoints.rows));
+      lengths.push_back(answer.length);
+      seconds.push_back(answer.search_seconds + answer.smoothing_seconds);
+    }
   }
-  const std::size_t count = solved.size();
-  return nb::make_tuple(as_bools(std::move(solved), {count}), as_row(std::move(begins)),
-                        as_rows(std::move(waypoints), many.dim()), as_row(std::move(lengths)),
-                        as_row(std::move(seconds)));
+};
+
+/// Return a number of an answer.
+template <auto FIELD>
+auto number_of_answer(const Answer& answer) {
+  return answer.found.*FIELD;
 }
 
 }  // namespace
 
 void add_queries(nb::module_& part) {
-  nb::class_<Drivers>(part, "Drivers").def(nb::init<const Points&, const Points&, const Points&, const Points&>());
   nb::class_<Answer>(part, "Answer")
-      .def_prop_ro("ended", [](const Answer& answer) { return in_words(answer.found.growth); })
+      .def_prop_ro("ended", [](const Answer& answer) { return GROWTHS.of(answer.found.growth); })
       .def_prop_ro("raw", [](const Answer& answer) { return answer.rows(answer.found.raw); })
       .def_prop_ro("path", [](const Answer& answer) { return answer.rows(answer.found.path); })
-      .def_prop_ro("raw_length", [](const Answer& answer) { return answer.found.raw_length; })
-      .def_prop_ro("length", [](const Answer& answer) { return answer.found.length; })
-      .def_prop_ro("counts",
-                   [](const Answer& answer) {
-                     const planning::Answer& found = answer.found;
-                     return nb::make_tuple(found.nodes, found.configurations, found.motions, found.smoothing_motions);
-                   })
-      .def_prop_ro("seconds",
-                   [](const Answer& answer) {
-                     return nb::make_tuple(answer.found.search_seconds, answer.found.smoothing_seconds);
-                   })
-      .def_prop_ro("is_cut", [](const Answer& answer) { return answer.found.is_cut; })
-      .def("smooth_apart", &smooth_answer);
+      .def_prop_ro("raw_length", &number_of_answer<&planning::Answer::raw_length>)
+      .def_prop_ro("length", &number_of_answer<&planning::Answer::length>)
+      .def_prop_ro("nodes", &number_of_answer<&planning::Answer::nodes>)
+      .def_prop_ro("configurations", &number_of_answer<&planning::Answer::configurations>)
+      .def_prop_ro("motions", &number_of_answer<&planning::Answer::motions>)
+      .def_prop_ro("smoothing_motions", &number_of_answer<&planning::Answer::smoothing_motions>)
+      .def_prop_ro("search_seconds", &number_of_answer<&planning::Answer::search_seconds>)
+      .def_prop_ro("smoothing_seconds", &number_of_answer<&planning::Answer::smoothing_seconds>)
+      .def_prop_ro("is_cut", &number_of_answer<&planning::Answer::is_cut>)
+      .def("smooth_with_clearance", &smooth_answer);
   part.def("answer", &answer);
   nb::class_<ManyQueries>(part, "ManyQueries")
       .def("__init__", &make_many_queries, nb::keep_alive<1, 6>())
@@ -169,7 +149,13 @@ void add_queries(nb::module_& part) {
              require_below(query, answers.size(), "query");
              return Answer{answers[static_cast<std::size_t>(query)], many.dim()};
            })
-      .def_prop_ro("columns", &columns_of);
+      .def_prop_ro("columns", [](const ManyQueries& many) { return Columns(many); });
+  nb::class_<Columns>(part, "Columns")
+      .def_prop_ro("solved", &array_of<&Columns::solved>)
+      .def_prop_ro("begins", &array_of<&Columns::begins>)
+      .def_prop_ro("waypoints", &array_of<&Columns::waypoints>)
+      .def_prop_ro("lengths", &array_of<&Columns::lengths>)
+      .def_prop_ro("seconds", &array_of<&Columns::seconds>);
 }
 
 }  // namespace evenroad::bind

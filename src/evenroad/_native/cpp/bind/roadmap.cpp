@@ -8,7 +8,6 @@
 #include "roadmap/kdtree.hpp"
 #include "roadmap/near_one.hpp"
 #include "roadmap/shortest_path.hpp"
-#include "roadmap/spread_order.hpp"
 
 namespace evenroad::bind {
 
@@ -141,11 +140,12 @@ void join(nb::handle labels, nb::handle edges) {
   without_gil([&] { roadmap::join(label.span(), given.matrix()); });
 }
 
-nb::tuple grow(nb::handle edges, nb::tuple states, nb::tuple trees, nb::handle asked, std::size_t most) {
-  require(states.size() == 2 && trees.size() == 3, "states must be (edges, nodes), trees (tree, parent_edge, away)");
-  const Array<std::int8_t, 1> tree(trees[0], "tree");
-  const Array<std::int32_t, 1> parent_edge(trees[1], "parent_edge");
-  const FloatRows away(trees[2], "away");
+nb::tuple grow(nb::handle edges, nb::tuple states, nb::handle of_nodes, nb::handle parent_edges, nb::handle distances,
+               nb::handle asked, std::size_t most) {
+  require(states.size() == 2, "states must be those of (edges, nodes)");
+  const Array<std::int8_t, 1> tree(of_nodes, "tree");
+  const Array<std::int32_t, 1> parent_edge(parent_edges, "parent_edge");
+  const FloatRows away(distances, "away");
   const std::size_t nodes = tree.size();
   parent_edge.of_shape({nodes}), away.of_shape({2, nodes});
   const Edges given(edges, nodes);
@@ -158,23 +158,7 @@ nb::tuple grow(nb::handle edges, nb::tuple states, nb::tuple trees, nb::handle a
     return roadmap::grow(given.matrix(), {edge_states.span(), node_states.span()},
                          {tree.span(), parent_edge.span(), away.matrix()}, evaluated.span(), most);
   });
-  return nb::make_tuple(growth.met, as_row(std::move(growth.takers)), as_row(std::move(growth.edges)));
-}
-
-nb::object spread_order(nb::tuple set, nb::handle preferences, std::size_t count, nb::tuple seen, nb::tuple serving) {
-  require(set.size() == 2 && seen.size() == 2 && serving.size() == 2, "set, seen and serving must be pairs");
-  const PeriodicPoints given(set[0], set[1]);
-  const Floats preference(preferences, "preference");
-  const Int64s first(seen[0], "first"), which(seen[1], "which");
-  preference.of_shape({given.count()});
-  require(count <= given.count(), "count must be at most the number of points");
-  require_below(which.span(), given.count(), "which");
-  require(std::is_sorted(first.span().begin(), first.span().end()), "first must not fall");
-  require_below(first.span(), which.size() + 1, "first");
-  const roadmap::Serving share{value_of<double>(serving[0], "least"), value_of<double>(serving[1], "served")};
-  const roadmap::Seen by_terminals{first.span(), which.span()};
-  return as_row(
-      without_gil([&] { return roadmap::spread_order(given.set(), preference.span(), count, by_terminals, share); }));
+  return nb::make_tuple(growth.met, as_row(std::move(growth.edges)));
 }
 
 }  // namespace
@@ -188,12 +172,12 @@ void add_roadmap(nb::module_& module) {
   part.def("shortest_path", &shortest_path, "graph"_a, "costs"_a, "states"_a, "start"_a, "goals"_a.none());
   part.def("best_offers", &best_offers, "graph"_a, "node"_a, "weights"_a.none(), "cost"_a.none(), "stage"_a.none());
   part.def("join", &join, "label"_a.none(), "edges"_a.none());
-  part.def("grow", &grow, "edges"_a.none(), "states"_a, "trees"_a, "asked"_a.none(), "most"_a);
+  part.def("grow", &grow, "edges"_a.none(), "states"_a, "tree"_a.none(), "parent_edge"_a.none(), "away"_a.none(),
+           "asked"_a.none(), "most"_a);
   part.def("k_nearest", &k_nearest, "points"_a.none(), "period"_a.none(), "k"_a, "earlier"_a);
   part.def("pairs_within", &pairs_within, "points"_a.none(), "period"_a.none(), "radius"_a);
   part.def("distances_from", &distances_from, "points"_a.none(), "period"_a.none(), "point"_a.none());
   part.def("k_smallest", &k_smallest, "distances"_a.none(), "usable"_a.none(), "k"_a, "radius"_a);
-  part.def("spread_order", &spread_order, "set"_a, "preference"_a.none(), "count"_a, "seen"_a, "serving"_a);
 }
 
 }  // namespace evenroad::bind

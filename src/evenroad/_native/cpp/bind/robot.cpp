@@ -1,12 +1,14 @@
 // evenroad._native.robot: a robot in a scene, and the checks of its configurations and motions.
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "bind/arrays.hpp"
 #include "bind/doubles.hpp"
+#include "bind/words.hpp"
 #include "robot/distance.hpp"
 #include "robot/motion_check.hpp"
 
@@ -18,6 +20,7 @@ namespace {
 constexpr double MOST_STATES = 1e9;
 
 using robot::Checker;
+using robot::Contact;
 using robot::Robot;
 using robot::Scene;
 
@@ -195,34 +198,25 @@ nb::object motion_valid(const Checker& checker, nb::handle a, nb::handle b, doub
   return flags(from.rows, [&](std::span<bool> free) { robot::motions_free(checker, from, to, tolerance, free); });
 }
 
-nb::tuple in_words(const robot::Contact& contact) {
-  constexpr const char* WITH[] = {"nothing", "obstacle", "surface", "itself"};
-  static_assert(std::size(WITH) == static_cast<std::size_t>(robot::Contact::With::ITSELF) + 1);
-  return nb::make_tuple(WITH[static_cast<std::size_t>(contact.with)], contact.capsule, contact.other);
-}
+constexpr Words<Contact::With::ITSELF> CONTACTS{"contact", {"nothing", "obstacle", "surface", "itself"}};
 
-/// Return the least distances of configurations, (n, dim), and of what they are, (n, 3): the kind, a capsule, and the
-/// number of an obstacle or of a pair.
+/// Return the least distances of configurations, (n, dim), and between what they are.
 nb::tuple distances(const Checker& checker, nb::handle q, double most, bool to_itself) {
   const FloatRows given(q, "q");
   const Matrix<const double> rows = given.of_shape({given.shape(0), checker.dim()}).matrix();
   require_within({&most, 1}, 0.0, FARTHEST, "most");
   std::vector<double> metres(rows.rows);
-  std::vector<robot::Contact> nearest(rows.rows);
+  std::vector<Contact> nearest(rows.rows);
   without_gil([&] { robot::write_distances(checker, rows, most, to_itself, metres, nearest); });
-  std::vector<std::int64_t> numbers;
-  for (const robot::Contact& each : nearest) {
-    numbers.insert(numbers.end(), {static_cast<std::int64_t>(each.with), each.capsule, each.other});
-  }
-  return nb::make_tuple(as_numpy(std::move(metres), {rows.rows}), as_numpy(std::move(numbers), {rows.rows, 3}));
+  return nb::make_tuple(as_row(std::move(metres)), nb::cast(std::move(nearest)));
 }
 
-nb::tuple find_contact(const Checker& checker, nb::handle q) {
+Contact find_contact(const Checker& checker, nb::handle q) {
   const Floats given(q, "q");
   given.of_shape({checker.dim()});
   std::vector<double> inside(checker.dim());
   require(robot::enter(given.span(), checker.robot().joints, inside), "q must be within the limits of the joints");
-  return in_words(robot::find_contact(checker, inside));
+  return robot::find_contact(checker, inside);
 }
 
 }  // namespace
@@ -238,13 +232,17 @@ void add_robot(nb::module_& module) {
       .def("ball", &ball_of, nb::arg("body"))
       .def("contacts", &hull_contacts, nb::arg("first"), nb::arg("second"), nb::arg("poses"));
   add_scene(part);
+  nb::class_<Contact>(part, "Contact")
+      .def_prop_ro("kind", [](const Contact& contact) { return CONTACTS.of(contact.with); })
+      .def_ro("capsule", &Contact::capsule)
+      .def_ro("other", &Contact::other);
   nb::class_<Checker>(part, "Checker")
       .def("__init__", &make_checker)
       .def("valid", &valid, nb::arg("q").none())
       .def("motion_valid", &motion_valid, nb::arg("a").none(), nb::arg("b").none(), nb::arg("tolerance") = 0.0)
       .def("distances", &distances)
       .def("find_contact", &find_contact)
-      .def_prop_ro("fixed_contact", [](const Checker& checker) { return in_words(checker.fixed_contact()); });
+      .def_prop_ro("fixed_contact", &Checker::fixed_contact);
   add_chain(part);
   add_keeps(part);
 }

@@ -26,6 +26,7 @@ constexpr std::size_t MOST_CORNERS = 1 << 28;
 using robot::Robot;
 using robot::Scene;
 using robot::Surface;
+using robot::SurfaceObstacle;
 
 void make_surface(Surface* self, nb::handle corners, double radius, nb::handle solid, bool turned, double reach,
                   nb::handle first, nb::handle bounding) {
@@ -41,18 +42,14 @@ void make_surface(Surface* self, nb::handle corners, double radius, nb::handle s
       {of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach, firsts.span(), bounds.span()}));
 }
 
-/// Return which triangles, (t, 3) rows of vertices, (n, 3), belong to closed parts, whether these can be oriented,
-/// which ones are the first of their part, and which have to be turned.
-nb::tuple closed_parts(nb::handle vertices, nb::handle triangles) {
+/// Look at triangles, (t, 3) rows of vertices, (n, 3).
+robot::ClosedParts closed_parts(nb::handle vertices, nb::handle triangles) {
   const FloatRows corners(vertices, "vertices");
   const Array<const std::int64_t, 2> rows(triangles, "triangles");
   require(corners.shape(1) == 3 && rows.shape(1) == 3, "vertices and triangles must be (n, 3)");
   require(corners.shape(0) <= MOST_CORNERS && rows.shape(0) <= MOST_CORNERS, "a mesh has too many triangles");
   require_below(rows.span(), corners.shape(0), "triangles");
-  const std::size_t count = rows.shape(0);
-  robot::ClosedParts parts = robot::closed_parts({corners.data(), 3 * corners.shape(0)}, rows.span());
-  return nb::make_tuple(as_bools(std::move(parts.closed), {count}), parts.oriented,
-                        as_bools(std::move(parts.first), {count}), as_bools(std::move(parts.turned), {count}));
+  return robot::closed_parts({corners.data(), 3 * corners.shape(0)}, rows.span());
 }
 
 /// Return how often closed triangles, (t, 3, 3), wind around a place, (3,); unless they are turned, whether they do so
@@ -130,8 +127,13 @@ nb::object box_rows(nb::handle size, nb::handle xyz, nb::handle xyzw) {
   return are_boxes ? rows : nb::none();
 }
 
-/// A scene is given its obstacles, (n, 17), its surfaces, each with its number and the capsules tested against it, and
-/// the grid around these, or None.
+void make_surface_obstacle(SurfaceObstacle* self, std::shared_ptr<Surface> surface, int number, nb::handle tested) {
+  require(!surface->tree.levels.empty(), "a grid around surfaces is no surface");
+  const Array<const bool, 1> capsules(tested, "tested");
+  new (self) SurfaceObstacle{std::move(surface), number, {capsules.span().begin(), capsules.span().end()}};
+}
+
+/// A scene is given its obstacles, (n, 17), its surfaces, and the grid around these, or None.
 void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle tested, nb::list surfaces,
                 nb::object around, double clearance) {
   require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");
@@ -140,15 +142,10 @@ void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle t
   Scene scene = robot::make_scene(of, given, flags.matrix(), clearance);
   if (!around.is_none()) scene.around = value_of<std::shared_ptr<Surface>>(around, "around");
   for (nb::handle each : surfaces) {
-    const auto part = value_of<nb::tuple>(each, "surfaces");
-    require(part.size() == 3, "surfaces must be (surface, number, tested) each");
-    const Array<const bool, 1> capsules(part[2], "tested");
-    capsules.of_shape({of.capsules.size()});
-    auto surface = value_of<std::shared_ptr<Surface>>(part[0], "surface");
-    require(!surface->tree.levels.empty(), "a grid around surfaces is no surface");
-    scene.surfaces.push_back(
-        {std::move(surface), value_of<int>(part[1], "number"), {capsules.span().begin(), capsules.span().end()}});
-    for (std::size_t i = 0; i < of.capsules.size(); i++) scene.surfaces_tested[i] += capsules.span()[i];
+    scene.surfaces.push_back(*value_of<const SurfaceObstacle*>(each, "surfaces"));
+    const std::vector<bool>& capsules = scene.surfaces.back().tested;
+    require(capsules.size() == of.capsules.size(), "surfaces must be tested against the capsules of the robot");
+    for (std::size_t i = 0; i < capsules.size(); i++) scene.surfaces_tested[i] += capsules[i];
   }
   new (self) Scene(std::move(scene));
 }
@@ -175,6 +172,13 @@ void add_scene(nb::module_& part) {
            nb::arg("reach"), nb::arg("first"), nb::arg("closed"))
       .def_static("of_cloud", &surface_of_cloud)
       .def_static("around", &surface_around);
+  nb::class_<SurfaceObstacle>(part, "SurfaceObstacle")
+      .def("__init__", &make_surface_obstacle, nb::arg("surface"), nb::arg("number"), nb::arg("tested"));
+  nb::class_<robot::ClosedParts>(part, "ClosedParts")
+      .def_prop_ro("closed", &array_of<&robot::ClosedParts::closed>)
+      .def_prop_ro("turned", &array_of<&robot::ClosedParts::turned>)
+      .def_prop_ro("first", &array_of<&robot::ClosedParts::first>)
+      .def_ro("oriented", &robot::ClosedParts::oriented);
   part.def("closed_parts", &closed_parts);
   part.def("pieces_within", &pieces_within);
   part.def("winding_at", &winding_at);

@@ -1,9 +1,11 @@
 // evenroad._native.trajectory: times along a path.
-#include <algorithm>
+#include <nanobind/stl/optional.h>
+
 #include <cmath>
-#include <functional>
+#include <optional>
 
 #include "bind/arrays.hpp"
+#include "bind/words.hpp"
 #include "trajectory/averages.hpp"
 #include "trajectory/blends.hpp"
 #include "trajectory/further_limits.hpp"
@@ -11,6 +13,8 @@
 #include "trajectory/timed.hpp"
 
 namespace evenroad::bind {
+
+using namespace nb::literals;
 
 namespace {
 
@@ -21,162 +25,112 @@ constexpr std::size_t MOST_TIMES = 1 << 24;
 /// No motion takes longer [s].
 constexpr double LONGEST = 1e9;
 
+using trajectory::FurtherLimits;
+using trajectory::JointLimits;
+using trajectory::PathLimits;
 using trajectory::RoundedPath;
 using trajectory::TimeLaw;
 
-/// A rounded path in arrays of Python.
-struct PathArrays {
-  Floats starts;
-  FloatRows origin, out, along;
-  Floats bend;
+constexpr Words<trajectory::Outcome::NOT_WITHIN> OUTCOMES{"outcome",
+                                                          {"made", "too long", "too heavy", "too fast", "not within"}};
 
-  explicit PathArrays(nb::tuple given)
-      : starts(column(given, 0, 5), "starts"),
-        origin(given[1], "origin"),
-        out(given[2], "out"),
-        along(given[3], "along"),
-        bend(given[4], "bend") {
-    require(bend.size() >= 1, "bend must be 1 or more, got 0");
-    starts.of_shape({bend.size() + 1});
-    for (const auto* each : {&origin, &out, &along}) each->of_shape({bend.size(), origin.shape(1)});
-    const auto lengths = starts.span();
-    require(std::ranges::is_sorted(lengths, std::less_equal()) && lengths[0] >= 0.0, "starts must rise from 0 on");
-  }
+std::vector<double> copied(const Floats& array) { return {array.span().begin(), array.span().end()}; }
 
-  static nb::handle column(nb::tuple given, std::size_t i, std::size_t columns) {
-    require(given.size() == columns, "must be " + std::to_string(columns) + " arrays");
-    return given[i];
-  }
+/// Positions, velocities and accelerations at times.
+struct States {
+  OwnMatrix<double> positions, velocities, accelerations;
 
-  RoundedPath path() const { return {starts.span(), origin.matrix(), out.matrix(), along.matrix(), bend.span()}; }
+  States(std::size_t count, std::size_t dim)
+      : positions(count, dim), velocities(count, dim), accelerations(count, dim) {}
 };
 
-/// A law in arrays of Python.
-struct LawArrays {
-  Floats times, lengths, speeds, accelerations;
-
-  explicit LawArrays(nb::tuple given)
-      : times(PathArrays::column(given, 0, 4), "times"),
-        lengths(given[1], "lengths"),
-        speeds(given[2], "speeds"),
-        accelerations(given[3], "accelerations") {
-    require(accelerations.size() >= 1, "accelerations must be 1 or more, got 0");
-    for (const auto* each : {&times, &lengths, &speeds}) each->of_shape({accelerations.size() + 1});
-  }
-
-  TimeLaw law() const { return {times.span(), lengths.span(), speeds.span(), accelerations.span()}; }
-};
-
-/// The largest velocities, accelerations and decelerations in arrays of Python.
-struct MostArrays {
-  Floats velocity, acceleration, deceleration;
-
-  MostArrays(nb::tuple given, std::size_t dim)
-      : velocity(PathArrays::column(given, 0, 3), "velocity"),
-        acceleration(given[1], "acceleration"),
-        deceleration(given[2], "deceleration") {
-    for (const auto* each : {&velocity, &acceleration, &deceleration}) {
-      each->of_shape({dim});
-      for (const double value : each->span()) require(value > 0.0, "velocity, acceleration, deceleration must be > 0");
-    }
-  }
-
-  trajectory::Most most() const { return {velocity.span(), acceleration.span(), deceleration.span()}; }
-};
-
-/// Return further limits of a pair: of torques and of a tip, either may be None; they are its own.
-trajectory::FurtherLimits further_of(nb::handle given, std::size_t dim) {
-  const auto pair = value_of<nb::tuple>(given, "further limits");
-  require(pair.size() == 2, "further limits must be two");
-  trajectory::FurtherLimits limits;
-  if (!pair[0].is_none()) limits.torque = value_of<const trajectory::TorqueLimits*>(pair[0], "torque");
-  if (!pair[1].is_none()) limits.tip = value_of<const trajectory::TipLimits*>(pair[1], "tip");
-  require((!limits.torque || limits.torque->links.dim == dim) && (!limits.tip || limits.tip->links.dim == dim),
-          "further limits must be those of the path's coordinates");
-  return limits;
+void make_law(TimeLaw* self, nb::handle times, nb::handle lengths, nb::handle speeds, nb::handle accelerations) {
+  const Floats when(times, "times"), where(lengths, "lengths"), fast(speeds, "speeds");
+  const Floats pushes(accelerations, "accelerations");
+  require(pushes.size() >= 1, "accelerations must be 1 or more, got 0");
+  for (const auto* each : {&when, &where, &fast}) each->of_shape({pushes.size() + 1});
+  new (self) TimeLaw{copied(when), copied(where), copied(fast), copied(pushes)};
 }
 
-/// Return what a law keeps beside velocities and accelerations: the square of the largest speed, speeds at start and
-/// goal, and further limits and their share.
-trajectory::Within within_of(nb::tuple given, std::size_t dim) {
-  const auto highest = value_of<double>(PathArrays::column(given, 0, 5), "the square of a speed");
-  const auto start = value_of<double>(given[1], "start"), goal = value_of<double>(given[2], "goal");
-  const auto share = value_of<double>(given[4], "share");
+void make_joint_limits(JointLimits* self, nb::handle velocity, nb::handle acceleration, nb::handle deceleration) {
+  const Floats fastest(velocity, "velocity"), faster(acceleration, "acceleration"),
+      slower(deceleration, "deceleration");
+  for (const auto* each : {&fastest, &faster, &slower}) {
+    each->of_shape({fastest.size()});
+    for (const double value : each->span()) require(value > 0.0, "velocity, acceleration, deceleration must be > 0");
+  }
+  new (self) JointLimits{copied(fastest), copied(faster), copied(slower)};
+}
+
+void make_path_limits(PathLimits* self, double highest, double start, double goal, const FurtherLimits& further,
+                      double share) {
   require(highest > 0.0, "the square of a speed must be > 0");
   require(start >= 0.0 && start < LONGEST && goal >= 0.0 && goal < LONGEST, "speeds must be >= 0 and below 1e9");
   require(share > 0.0 && share <= 1.0, "share must be > 0 and at most 1");
-  return {highest, start, goal, further_of(given[3], dim), share};
+  new (self) PathLimits{highest, start, goal, further, share};
 }
 
-/// Return the fastest law, None where torques cannot hold the robot.
-nb::object fastest(nb::tuple path, nb::handle stops, nb::tuple most, nb::tuple within) {
-  const PathArrays arrays(path);
-  const Floats at(stops, "stops");
-  const std::size_t dim = arrays.path().dim();
-  const MostArrays limits(most, dim);
-  const trajectory::Within kept = within_of(within, dim);
-  trajectory::OwnTimeLaw law = without_gil([&] {
-    return trajectory::fastest(arrays.path(), trajectory::grid_of(arrays.path()), at.span(), limits.most(), kept);
-  });
-  if (law.times.empty()) return nb::none();
-  return nb::make_tuple(as_row(std::move(law.times)), as_row(std::move(law.lengths)), as_row(std::move(law.speeds)),
-                        as_row(std::move(law.accelerations)));
+void require_of_dim(const JointLimits& limits, std::size_t dim) {
+  require(limits.velocity.size() == dim, "limits of joints must be those of the path's coordinates");
 }
 
-/// Return the largest shares of further limits that states use: of torque, and of a tip's speed and acceleration.
-nb::tuple further_shares(nb::handle limits, nb::handle q, nb::handle velocity, nb::handle acceleration) {
+void require_of_dim(const FurtherLimits& limits, std::size_t dim) {
+  require((!limits.torque || limits.torque->links.dim == dim) && (!limits.tip || limits.tip->links.dim == dim),
+          "further limits must be those of the path's coordinates");
+}
+
+/// Return the fastest law, none where torques cannot hold the robot.
+std::optional<TimeLaw> fastest(const RoundedPath& path, const JointLimits& most, const PathLimits& within) {
+  require_of_dim(most, path.dim()), require_of_dim(within.further, path.dim());
+  TimeLaw law = without_gil([&] { return trajectory::fastest(path, trajectory::grid_of(path, false), most, within); });
+  if (law.times.empty()) return {};
+  return law;
+}
+
+trajectory::FurtherShares further_shares(const FurtherLimits& limits, nb::handle q, nb::handle velocity,
+                                         nb::handle acceleration) {
   const FloatRows here(q, "q"), rates(velocity, "velocity"), pushes(acceleration, "acceleration");
   for (const auto* each : {&here, &rates, &pushes}) each->of_shape({here.shape(0), here.shape(1)});
-  const trajectory::FurtherLimits further = further_of(limits, here.shape(1));
-  const trajectory::FurtherShares shares =
-      without_gil([&] { return trajectory::further_shares(further, here.matrix(), rates.matrix(), pushes.matrix()); });
-  return nb::make_tuple(shares.torque, shares.speed, shares.acceleration);
+  require_of_dim(limits, here.shape(1));
+  return without_gil(
+      [&] { return trajectory::further_shares(limits, here.matrix(), rates.matrix(), pushes.matrix()); });
 }
 
-nb::tuple states(nb::tuple path, nb::tuple law, nb::handle times) {
-  const PathArrays arrays(path);
-  const LawArrays when(law);
+States states(const RoundedPath& path, const TimeLaw& law, nb::handle times) {
   const Floats t(times, "t");
-  const std::size_t dim = arrays.path().dim();
-  OwnMatrix<double> positions(t.size(), dim), velocities(t.size(), dim), accelerations(t.size(), dim);
-  without_gil([&] {
-    trajectory::StatesAt(arrays.path(), when.law()).write(t.span(), positions, velocities, accelerations);
-    return 0;
-  });
-  return nb::make_tuple(as_rows(std::move(positions)), as_rows(std::move(velocities)),
-                        as_rows(std::move(accelerations)));
+  States made(t.size(), path.dim());
+  without_gil(
+      [&] { trajectory::StatesAt(path, law).write(t.span(), made.positions, made.velocities, made.accelerations); });
+  return made;
 }
 
-nb::tuple largest_shares(nb::tuple path, nb::tuple law, nb::tuple most, std::int64_t samples) {
-  const PathArrays arrays(path);
-  const LawArrays when(law);
-  const MostArrays limits(most, arrays.path().dim());
+trajectory::Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const JointLimits& most,
+                                  std::int64_t samples) {
+  require_of_dim(most, path.dim());
   require_below(samples - 2, MOST_SAMPLES, "samples less two");
-  const trajectory::Shares shares = without_gil([&] {
-    return trajectory::largest_shares(arrays.path(), when.law(), limits.most(), static_cast<std::size_t>(samples));
-  });
-  return nb::make_tuple(shares.velocity, shares.acceleration);
+  return without_gil([&] { return trajectory::largest_shares(path, law, most, static_cast<std::size_t>(samples)); });
 }
 
 void require_path(const FloatRows& points) {
   require(points.shape(0) >= 2, "waypoints must be 2 or more");
   const auto rows = points.matrix();
   for (std::size_t i = 1; i < rows.rows; i++) {
-    require(!std::ranges::equal(rows[i - 1], rows[i]), "no two waypoints in a row may be equal");
+    double squared = 0.0;
+    for (std::size_t k = 0; k < rows.columns; k++) {
+      const double gap = rows(i, k) - rows(i - 1, k);
+      squared += gap * gap;
+    }
+    require(squared > 0.0, "no two waypoints in a row may be equal");
+    require(std::isfinite(squared), "waypoints must be nearer to each other");
   }
 }
 
-nb::tuple rounded(nb::handle waypoints, nb::handle deviation) {
+RoundedPath rounded(nb::handle waypoints, nb::handle deviation) {
   const FloatRows points(waypoints, "waypoints");
   const Floats within(deviation, "deviation");
   require_path(points);
   within.of_shape({points.shape(0)});
-  const auto rows = points.matrix();
-  trajectory::Blends path = without_gil([&] { return trajectory::rounded(rows, within.span()); });
-  const std::size_t dim = points.shape(1);
-  return nb::make_tuple(as_row(std::move(path.starts)), as_rows(std::move(path.origin), dim),
-                        as_rows(std::move(path.out), dim), as_rows(std::move(path.along), dim),
-                        as_row(std::move(path.bend)), as_row(std::move(path.corners)), as_row(std::move(path.stops)));
+  return without_gil([&] { return trajectory::rounded(points.matrix(), within.span()); });
 }
 
 /// Return the rows of waypoints between which a path is straight; those nearer than `same` are one.
@@ -190,21 +144,16 @@ nb::object bends_of(nb::handle waypoints, double same) {
   }));
 }
 
-nb::tuple averages(nb::tuple path, nb::tuple law, double window, nb::handle times) {
-  const PathArrays arrays(path);
-  const LawArrays when(law);
+States averages(const RoundedPath& path, const TimeLaw& law, double window, nb::handle times) {
   const Floats t(times, "t");
-  const double duration = when.law().times.back();
+  const double duration = law.times.back();
   require(window > 0.0 && window <= LONGEST, "window must be > 0 and at most 1e9");
   require(duration >= 0.0 && duration <= LONGEST, "times must end from 0 to 1e9");
-  const std::size_t dim = arrays.path().dim();
-  OwnMatrix<double> positions(t.size(), dim), velocities(t.size(), dim), accelerations(t.size(), dim);
+  States made(t.size(), path.dim());
   without_gil([&] {
-    trajectory::write_averages(arrays.path(), when.law(), window, t.span(), positions, velocities, accelerations);
-    return 0;
+    trajectory::write_averages(path, law, window, t.span(), made.positions, made.velocities, made.accelerations);
   });
-  return nb::make_tuple(as_rows(std::move(positions)), as_rows(std::move(velocities)),
-                        as_rows(std::move(accelerations)));
+  return made;
 }
 
 /// Return the largest share of rows, or of the differences of rows that follow each other.
@@ -228,51 +177,74 @@ nb::object distances_to(nb::handle waypoints, nb::handle points) {
   }));
 }
 
-const char* name_of(trajectory::Outcome outcome) {
-  switch (outcome) {
-    case trajectory::Outcome::TOO_LONG:
-      return "too long";
-    case trajectory::Outcome::TOO_HEAVY:
-      return "too heavy";
-    case trajectory::Outcome::TOO_FAST:
-      return "too fast";
-    case trajectory::Outcome::NOT_WITHIN:
-      return "not within";
-    default:
-      return "made";
-  }
-}
-
-/// Return what became of a whole trajectory, its states at its steps, how far each is along the path, the lengths at
-/// corners, the number of stops, duration, deviation, the largest shares of velocity and acceleration, those of torque
-/// and of a tip's speed and acceleration, whether it is slower than wanted at the start, and how far each corner is
-/// rounded.
-///
-/// `most` are the largest velocities, accelerations and decelerations; `steps` the step and the largest number of
-/// steps.
-nb::tuple timed(nb::handle waypoints, nb::handle deviation, nb::tuple most, nb::tuple within, nb::tuple steps) {
+trajectory::Timed timed(nb::handle waypoints, nb::handle deviation, const JointLimits& most, const PathLimits& within,
+                        double step, std::int64_t most_steps) {
   const FloatRows path(waypoints, "waypoints");
   const Floats cuts(deviation, "deviation");
-  const double step = value_of<double>(PathArrays::column(steps, 0, 2), "step");
-  const std::int64_t count = value_of<std::int64_t>(steps[1], "steps");
-  const std::size_t dim = path.shape(1);
   require_path(path);
   cuts.of_shape({path.shape(0)});
-  const MostArrays limits(most, dim);
+  require_of_dim(most, path.shape(1)), require_of_dim(within.further, path.shape(1));
   require(step > 0.0 && step <= LONGEST, "step must be > 0 and at most 1e9");
-  require_below(count - 1, MOST_TIMES, "steps less one");
-  const trajectory::Within kept = within_of(within, dim);
-  trajectory::Timed made = without_gil([&] {
-    return trajectory::timed(path.matrix(), cuts.span(), limits.most(), kept, {step, static_cast<std::size_t>(count)});
+  require_below(most_steps - 1, MOST_TIMES, "most_steps less one");
+  return without_gil([&] {
+    return trajectory::timed(path.matrix(), cuts.span(), most, within, {step, static_cast<std::size_t>(most_steps)});
   });
-  const auto& [torque, speed, acceleration] = made.further;
-  return nb::make_tuple(name_of(made.outcome),
-                        nb::make_tuple(as_rows(std::move(made.positions)), as_rows(std::move(made.velocities)),
-                                       as_rows(std::move(made.accelerations))),
-                        as_row(std::move(made.lengths)), as_row(std::move(made.corners)), made.stops, made.duration,
-                        made.deviation, nb::make_tuple(made.highest.velocity, made.highest.acceleration),
-                        nb::make_tuple(torque, speed, acceleration), made.is_slower_at_start,
-                        as_row(std::move(made.deviations)));
+}
+
+void add_values(nb::module_& part) {
+  nb::class_<RoundedPath>(part, "RoundedPath")
+      .def_prop_ro("starts", &array_of<&RoundedPath::starts>)
+      .def_prop_ro("origin", &array_of<&RoundedPath::origin>)
+      .def_prop_ro("out", &array_of<&RoundedPath::out>)
+      .def_prop_ro("along", &array_of<&RoundedPath::along>)
+      .def_prop_ro("bend", &array_of<&RoundedPath::bend>)
+      .def_prop_ro("corners", &array_of<&RoundedPath::corners>)
+      .def_prop_ro("stops", &array_of<&RoundedPath::stops>)
+      .def_prop_ro("length", &RoundedPath::length);
+  nb::class_<TimeLaw>(part, "TimeLaw")
+      .def("__init__", &make_law, "times"_a, "lengths"_a, "speeds"_a, "accelerations"_a)
+      .def_prop_ro("times", &array_of<&TimeLaw::times>)
+      .def_prop_ro("lengths", &array_of<&TimeLaw::lengths>)
+      .def_prop_ro("speeds", &array_of<&TimeLaw::speeds>)
+      .def_prop_ro("accelerations", &array_of<&TimeLaw::accelerations>);
+  nb::class_<JointLimits>(part, "JointLimits")
+      .def("__init__", &make_joint_limits, "velocity"_a, "acceleration"_a, "deceleration"_a)
+      .def_prop_ro("velocity", &array_of<&JointLimits::velocity>)
+      .def_prop_ro("acceleration", &array_of<&JointLimits::acceleration>)
+      .def_prop_ro("deceleration", &array_of<&JointLimits::deceleration>);
+  nb::class_<PathLimits>(part, "PathLimits")
+      .def("__init__", &make_path_limits, "highest"_a, "start"_a, "goal"_a, "further"_a, "share"_a,
+           nb::keep_alive<1, 5>());
+  nb::class_<States>(part, "States")
+      .def_prop_ro("positions", &array_of<&States::positions>)
+      .def_prop_ro("velocities", &array_of<&States::velocities>)
+      .def_prop_ro("accelerations", &array_of<&States::accelerations>);
+  nb::class_<trajectory::Shares>(part, "Shares")
+      .def_ro("velocity", &trajectory::Shares::velocity)
+      .def_ro("acceleration", &trajectory::Shares::acceleration);
+  nb::class_<trajectory::FurtherShares>(part, "FurtherShares")
+      .def_ro("torque", &trajectory::FurtherShares::torque)
+      .def_ro("tip_speed", &trajectory::FurtherShares::speed)
+      .def_ro("tip_acceleration", &trajectory::FurtherShares::acceleration);
+}
+
+void add_timed(nb::module_& part) {
+  using trajectory::Timed;
+  nb::class_<Timed>(part, "Timed")
+      .def_prop_ro("outcome", [](const Timed& made) { return OUTCOMES.of(made.outcome); })
+      .def_prop_ro("positions", &array_of<&Timed::positions>)
+      .def_prop_ro("velocities", &array_of<&Timed::velocities>)
+      .def_prop_ro("accelerations", &array_of<&Timed::accelerations>)
+      .def_prop_ro("lengths", &array_of<&Timed::lengths>)
+      .def_prop_ro("corners", &array_of<&Timed::corners>)
+      .def_prop_ro("deviations", &array_of<&Timed::deviations>)
+      .def_ro("stops", &Timed::stops)
+      .def_ro("duration", &Timed::duration)
+      .def_ro("deviation", &Timed::deviation)
+      .def_ro("highest", &Timed::highest)
+      .def_ro("further", &Timed::further)
+      .def_ro("is_slower_at_start", &Timed::is_slower_at_start);
+  part.def("timed", &timed, "waypoints"_a, "deviation"_a, "most"_a, "within"_a, "step"_a, "most_steps"_a);
 }
 
 }  // namespace
@@ -280,16 +252,17 @@ nb::tuple timed(nb::handle waypoints, nb::handle deviation, nb::tuple most, nb::
 void add_trajectory(nb::module_& module) {
   nb::module_ part = module.def_submodule("trajectory", "Times along a path.");
   add_further_limits(part);
-  part.def("fastest", &fastest);
-  part.def("further_shares", &further_shares);
-  part.def("states", &states);
-  part.def("largest_shares", &largest_shares);
-  part.def("distances_to", &distances_to);
-  part.def("timed", &timed);
-  part.def("rounded", &rounded);
-  part.def("bends_of", &bends_of);
-  part.def("averages", &averages);
-  part.def("largest_share", &largest_share, nb::arg("rows"), nb::arg("most"), nb::arg("of_steps") = false);
+  add_values(part);
+  add_timed(part);
+  part.def("fastest", &fastest, "path"_a, "most"_a, "within"_a);
+  part.def("further_shares", &further_shares, "limits"_a, "q"_a, "velocity"_a, "acceleration"_a);
+  part.def("states", &states, "path"_a, "law"_a, "t"_a);
+  part.def("largest_shares", &largest_shares, "path"_a, "law"_a, "most"_a, "samples"_a);
+  part.def("distances_to", &distances_to, "waypoints"_a, "points"_a);
+  part.def("rounded", &rounded, "waypoints"_a, "deviation"_a);
+  part.def("bends_of", &bends_of, "waypoints"_a, "same"_a);
+  part.def("averages", &averages, "path"_a, "law"_a, "window"_a, "t"_a);
+  part.def("largest_share", &largest_share, "rows"_a, "most"_a, "of_steps"_a = false);
 }
 
 }  // namespace evenroad::bind

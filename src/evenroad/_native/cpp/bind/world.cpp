@@ -112,15 +112,13 @@ nb::object cells(const world::Disk& disk) {
   return as_numpy(std::move(cells.values), {cells.rows, cells.columns});
 }
 
-nb::tuple find_path(const world::Disk& disk, nb::handle start, nb::handle goals, std::int64_t most) {
+world::LatticePath find_path(const world::Disk& disk, nb::handle start, nb::handle goals, std::int64_t most) {
   const Floats from(start, "start");
   from.of_shape({2});
   const std::vector<world::Point> to = Points(goals, "goals").all();
   require(!to.empty(), "goals must be one or more");
   require_budget(most, "most");
-  const world::LatticePath found =
-      without_gil([&] { return world::find_path(disk, {from.data()[0], from.data()[1]}, to, most); });
-  return nb::make_tuple(as_rows(found.points), found.goal, found.expanded, found.motions);
+  return without_gil([&] { return world::find_path(disk, {from.data()[0], from.data()[1]}, to, most); });
 }
 
 bool may_reach(const world::Disk& disk, nb::handle start, nb::handle goals) {
@@ -164,6 +162,11 @@ nb::object cells_of(const world::Components& components, std::int32_t component)
 
 void add_world(nb::module_& module) {
   nb::module_ part = module.def_submodule("world", "A disk on a grid map.");
+  nb::class_<world::LatticePath>(part, "LatticePath")
+      .def_prop_ro("points", [](const world::LatticePath& path) { return as_rows(path.points); })
+      .def_ro("goal", &world::LatticePath::goal)
+      .def_ro("expanded", &world::LatticePath::expanded)
+      .def_ro("motions", &world::LatticePath::motions);
   nb::class_<world::Disk>(part, "Disk", "What is known of one disk on one map.")
       .def("__init__", &make_disk, "occupied"_a.none(), "frame"_a.none(), "radius"_a)
       .def("points_free", &points_free, "q"_a.none())

@@ -32,6 +32,11 @@ struct OwnMatrix {
 
   OwnMatrix(std::size_t rows, std::size_t columns) : rows(rows), columns(columns), values(rows * columns) {}
 
+  void append(std::span<const T> row) {
+    values.insert(values.end(), row.begin(), row.end());
+    rows++;
+  }
+
   std::span<T> operator[](std::size_t row) { return {values.data() + row * columns, columns}; }
   std::span<const T> operator[](std::size_t row) const { return {values.data() + row * columns, columns}; }
   T& operator()(std::size_t row, std::size_t column) { return values[row * columns + column]; }

@@ -47,7 +47,8 @@ Answer ManyQueries::answered(std::size_t query) const {
   const Matrix<const double> terminals{terminals_[2 * query].data(), 2, terminals_.columns};
   const TimeLimit time(limits_.seconds);
   Answer found = answer(world.checker, terminals, drivers_, limits_, smoothing_);
-  if (world.roomier && found.growth == Growth::SOLVED) smooth_apart(found, world.checker, world.roomier, drivers_);
+  if (world.roomier && found.growth == Growth::SOLVED)
+    smooth_with_clearance(found, world.checker, world.roomier, drivers_);
   found.raw = {};
   return found;
 }

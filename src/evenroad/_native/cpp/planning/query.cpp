@@ -2,9 +2,9 @@
 #include "planning/query.hpp"
 
 #include "common/time_limit.hpp"
-#include "planning/apart.hpp"
 #include "planning/motion_checks.hpp"
 #include "planning/path_proof.hpp"
+#include "planning/with_clearance.hpp"
 
 namespace evenroad::planning {
 
@@ -57,8 +57,8 @@ bool is_done_in_time(Work work) {
 }
 
 /// Write the path of an answer, smoothed in both worlds.
-void smooth_path_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
-                       std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
+void smooth_in_both(Answer& answer, std::shared_ptr<const robot::Checker> checker,
+                    std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
   MotionChecks checks(std::move(checker));
   Path path(answer.raw, checks.joints);
   const bool is_straight = path.size() == 2;
@@ -70,7 +70,7 @@ void smooth_path_apart(Answer& answer, std::shared_ptr<const robot::Checker> che
     if (!is_straight || !is_proved(path, 0, 2, wider)) {
       if (is_straight) divide(path, answer.nodes - 1, checks.joints);
       // A straight path is as short as can be: it stays unless another keeps away.
-      is_new |= smooth_apart(path, drivers.guides, SLIDING, checks, wider);
+      is_new |= smooth_with_clearance(path, drivers.guides, SLIDING, checks, wider);
     }
     answer.smoothing_motions += wider.counts.motions;
   }
@@ -114,13 +114,12 @@ Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double
   return found;
 }
 
-void smooth_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
-                  std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
+void smooth_with_clearance(Answer& answer, std::shared_ptr<const robot::Checker> checker,
+                           std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
   // One step of a tree is short: it stays as it is.
   if (answer.nodes <= 2) return;
   const Clock clock;
-  answer.is_cut |=
-      !is_done_in_time([&] { smooth_path_apart(answer, std::move(checker), std::move(roomier), drivers); });
+  answer.is_cut |= !is_done_in_time([&] { smooth_in_both(answer, std::move(checker), std::move(roomier), drivers); });
   answer.smoothing_seconds += clock.seconds();
 }
 

@@ -13,7 +13,7 @@ namespace evenroad::planning {
 
 /// How a path is made shorter: not at all, by straight motions alone, by waypoints that slide along what they touch, or
 /// by such that keep away from it where that is hardly longer.
-enum class Smoothing : std::uint8_t { NONE, QUICK, FULL, APART };
+enum class Smoothing : std::uint8_t { NONE, QUICK, FULL, WITH_CLEARANCE };
 
 /// The sequences that drive a query.
 struct Drivers {
@@ -40,13 +40,13 @@ struct Answer {
   bool is_cut = false;
 };
 
-/// Answer a query from the first row of `terminals` to the second.  A path that is to keep apart from obstacles is left
-/// to `smooth_apart`.
+/// Answer a query from the first row of `terminals` to the second.  A path that is to keep away from obstacles is
+/// left to `smooth_with_clearance`.
 Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double> terminals, const Drivers& drivers,
               QueryLimits limits, Smoothing smoothing);
 
 /// Smooth the path of an answer in its world, and in the same one with more room around obstacles.
-void smooth_apart(Answer& answer, std::shared_ptr<const robot::Checker> checker,
-                  std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers);
+void smooth_with_clearance(Answer& answer, std::shared_ptr<const robot::Checker> checker,
+                           std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers);
 
 }  // namespace evenroad::planning

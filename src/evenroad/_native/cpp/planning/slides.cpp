@@ -63,7 +63,7 @@ void Slides::slide(std::size_t i, std::size_t number) {
 }
 
 /// Write the direction in which a waypoint shortens the path soonest; return how far its neighbours are.
-Slides::Apart Slides::write_ahead(ConstConfiguration a, ConstConfiguration here, ConstConfiguration b) {
+Slides::Gaps Slides::write_ahead(ConstConfiguration a, ConstConfiguration here, ConstConfiguration b) {
   constexpr double LEAST = 1e-9;
   const double before = std::max(write_direction(here, a, checks_.joints, direction_), LEAST);
   for (std::size_t k = 0; k < here.size(); k++) ahead_[k] = direction_[k] / before;

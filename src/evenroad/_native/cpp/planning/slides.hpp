@@ -42,11 +42,11 @@ class Slides {
   };
 
   /// How far the neighbours of a waypoint are.
-  struct Apart {
+  struct Gaps {
     double before, after;
   };
 
-  Apart write_ahead(ConstConfiguration a, ConstConfiguration here, ConstConfiguration b);
+  Gaps write_ahead(ConstConfiguration a, ConstConfiguration here, ConstConfiguration b);
   bool write_candidate(Candidate& candidate, ConstConfiguration here, std::size_t turn, double shorter);
   void write_states(std::size_t number, ConstConfiguration a, ConstConfiguration b);
   void take_best(std::size_t i);

@@ -27,10 +27,10 @@ Tree::Tree(const robot::Joints& joints) : dim_(joints.size()), periods_(joints.s
   for (std::size_t k = 0; k < dim_; k++) periods_[k] = static_cast<float>(std::min(joints.period[k], NO_PERIOD));
 }
 
-Node Tree::add(ConstConfiguration q, Node parent, double apart) {
+Node Tree::add(ConstConfiguration q, Node parent, double distance) {
   const Node node = size();
   nodes_.insert(nodes_.end(), q.begin(), q.end());
-  costs_.push_back(parent == NO_NODE ? 0.0 : cost(parent) + apart);
+  costs_.push_back(parent == NO_NODE ? 0.0 : cost(parent) + distance);
   parents_.push_back(parent);
   tried_.push_back(0);
   proved_.push_back(0);
@@ -61,9 +61,9 @@ Node Tree::nearest_of(ConstConfiguration q, Admitted admitted) const {
     Floats16 squared{};
     const float* column = columns_.data() + first;
     for (std::size_t k = 0; k < dim_; k++, column += capacity_) {
-      Floats16 apart = abs(load<Floats16>(column) - static_cast<float>(q[k]));
-      apart = min(apart, periods_[k] - apart);
-      squared = fma(apart, apart, squared);
+      Floats16 gap = abs(load<Floats16>(column) - static_cast<float>(q[k]));
+      gap = min(gap, periods_[k] - gap);
+      squared = fma(gap, gap, squared);
     }
     squared = admitted(first, squared);
     if (below_zero(squared - best) == 0) continue;

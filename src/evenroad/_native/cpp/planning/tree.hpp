@@ -39,7 +39,7 @@ class Tree {
   double cost(Node node) const { return costs_[static_cast<std::size_t>(node)]; }
 
   /// Add a configuration, which is no node of this tree, so far from its parent, and return its number.
-  Node add(ConstConfiguration q, Node parent, double apart);
+  Node add(ConstConfiguration q, Node parent, double distance);
 
   /// Return the node nearest to a configuration, the first of equals; distances are of single precision.
   Node nearest(ConstConfiguration q) const;

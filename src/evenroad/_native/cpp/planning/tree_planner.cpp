@@ -84,8 +84,8 @@ void TreePlanner::begin_along(const Path& path, std::int64_t goal, double first,
   is_begun_ = true;
   const auto root = std::ranges::find(goals_, goal);
   if (!is_planted() || root == goals_.end()) return;
-  const auto add = [&](std::size_t tree, Node parent, std::size_t i, double apart) {
-    const Node node = trees_[tree].add(path[i], parent, apart);
+  const auto add = [&](std::size_t tree, Node parent, std::size_t i, double distance) {
+    const Node node = trees_[tree].add(path[i], parent, distance);
     trees_[tree].set_proved(node);
     return node;
   };
@@ -117,8 +117,8 @@ bool TreePlanner::grow_once() {
   for (const Step& step : steps) {
     if (is_spent()) return false;
     if (!checks_.is_free(own[step.origin], step.target, Known::START)) continue;
-    const double apart = write_direction(own[step.origin], step.target, checks_.joints, direction_);
-    const Node found = own.add(step.target, step.origin, apart);
+    const double distance = write_direction(own[step.origin], step.target, checks_.joints, direction_);
+    const Node found = own.add(step.target, step.origin, distance);
     const Node other = other_end(tree, found);
     if (other == NO_NODE) continue;
     if (join(tree, found, other)) return true;

@@ -21,7 +21,7 @@ constexpr double STEP_SHARE = 1.0 / 5.8, LONGEST_STEP = 1.5;
 constexpr double BALL_SHARE = 1.5, LARGEST_BALL = 2.0;
 
 /// So many steps of the sequence are rounds apart.
-constexpr std::size_t APART = 1279;
+constexpr std::size_t BETWEEN_ROUNDS = 1279;
 
 double longest_step(const robot::Joints& joints) {
   double squares = 0.0;
@@ -40,7 +40,7 @@ TreeSteps::TreeSteps(const robot::Joints& joints, const Sequences& sequences, co
       longest_(longest_step(joints)),
       radii_(joints.size()),
       next_sample_(round * sequences.samples.rows),
-      next_step_(round * APART),
+      next_step_(round * BETWEEN_ROUNDS),
       sample_(joints.size()),
       direction_(joints.size()) {
   for (std::size_t k = 0; k < joints.size(); k++) {

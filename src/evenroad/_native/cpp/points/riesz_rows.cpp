@@ -47,11 +47,11 @@ RieszRows riesz_rows(Matrix<const double> points, unsigned s, bool periodic, boo
   for (std::size_t i = 0; i < n; i++) {
     Block nearest = Block{} + FAR;
     for (std::size_t block = 0; block < others.count(); block++) {
-      Block apart = squared_distances(points, others, i, block, periodic);
-      if (block + 1 == others.count()) apart = last > 0.0 ? apart : all<Block>(FAR);
-      if (block == i / WIDTH) apart[i % WIDTH] = FAR;
-      nearest = min(nearest, apart);
-      squared[block] = apart;
+      Block away = squared_distances(points, others, i, block, periodic);
+      if (block + 1 == others.count()) away = last > 0.0 ? away : all<Block>(FAR);
+      if (block == i / WIDTH) away[i % WIDTH] = FAR;
+      nearest = min(nearest, away);
+      squared[block] = away;
     }
     const double smallest = least<double, WIDTH>(nearest);
     Block sum_of_powers{};

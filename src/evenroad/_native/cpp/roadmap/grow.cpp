@@ -47,7 +47,7 @@ std::int32_t take(Matrix<const std::int32_t> edges, std::span<const std::int8_t>
 
 Growth grow(Matrix<const std::int32_t> edges, const States& states, const TwoTrees& trees,
             std::span<const std::int32_t> asked, std::size_t most) {
-  Growth growth{take(edges, states.edges, trees, asked), {}, {}};
+  Growth growth{take(edges, states.edges, trees, asked), {}};
   if (growth.met >= 0) return growth;
   std::vector<std::int32_t> offer(trees.tree.size(), -1);
   std::array<Offered, 2> offered = {Offered(trees.away[0], most), Offered(trees.away[1], most)};
@@ -64,7 +64,7 @@ Growth grow(Matrix<const std::int32_t> edges, const States& states, const TwoTre
   }
   if (!grows[1] || !grows[2]) return growth;
   for (const Offered& each : offered) {
-    for (const std::int32_t node : each.nodes()) growth.takers.push_back(node), growth.edges.push_back(offer[node]);
+    for (const std::int32_t node : each.nodes()) growth.edges.push_back(offer[node]);
   }
   return growth;
 }

@@ -18,10 +18,10 @@ struct TwoTrees {
   Matrix<const double> away;
 };
 
-/// Where two trees go on: an edge at which they meet, or -1; else nodes to take, and the edge that leads to each.
+/// Where two trees go on: an edge at which they meet, or -1; else edges that lead to nodes to take.
 struct Growth {
   std::int32_t met;
-  std::vector<std::int32_t> takers, edges;
+  std::vector<std::int32_t> edges;
 };
 
 /// Take into the trees what evaluated edges lead to, where they are free; offer at most that many nodes

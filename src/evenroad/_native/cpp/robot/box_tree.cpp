@@ -161,12 +161,12 @@ Around around_points(std::span<const Point3> points) {
   }
   float squared = 0;
   for (const Point3& point : points) {
-    float apart = 0;
+    float away = 0;
     for (int axis = 0; axis < 3; axis++) {
       const float gap = point.at[axis] - made.centre[axis];
-      apart += gap * gap;
+      away += gap * gap;
     }
-    squared = std::max(squared, apart);
+    squared = std::max(squared, away);
   }
   made.radius = std::sqrt(squared);
   return made;
@@ -184,12 +184,12 @@ Around around_boxes(std::span<const Around> children, float wider) {
   }
   float farthest = 0;
   for (const Around& each : children) {
-    float apart = 0;
+    float away = 0;
     for (int axis = 0; axis < 3; axis++) {
       const float gap = each.centre[axis] - made.centre[axis];
-      apart += gap * gap;
+      away += gap * gap;
     }
-    farthest = std::max(farthest, std::sqrt(apart) + each.radius);
+    farthest = std::max(farthest, std::sqrt(away) + each.radius);
   }
   made.radius = farthest + wider;
   return made;

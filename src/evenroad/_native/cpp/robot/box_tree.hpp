@@ -56,11 +56,11 @@ EVENROAD_INLINE std::uint32_t near_nodes(const BoxNode& node, const CapsuleAt& c
   const float reach = capsule.reach;
   const Vec3x16 half = spread(Vec3{__builtin_fabsf(x) + reach, __builtin_fabsf(y) + reach, __builtin_fabsf(z) + reach});
   const Vec3x16 along = spread(capsule.half);
-  Vec3x16 apart = node.centre - spread(capsule.centre);
-  const std::uint32_t boxes = below_zero(largest(abs(apart) - node.half - half));
+  Vec3x16 offset = node.centre - spread(capsule.centre);
+  const std::uint32_t boxes = below_zero(largest(abs(offset) - node.half - half));
   const Floats16 near = node.radius + reach;
-  apart = minus(apart, along, clamp(dot(apart, along) * capsule.one_by_squared, spread(-1), spread(1)));
-  return boxes & below_zero(fma(-near, near, dot(apart, apart)));
+  offset = minus(offset, along, clamp(dot(offset, along) * capsule.one_by_squared, spread(-1), spread(1)));
+  return boxes & below_zero(fma(-near, near, dot(offset, offset)));
 }
 
 /// A walk through the nodes of a tree, from the root down to leaves.

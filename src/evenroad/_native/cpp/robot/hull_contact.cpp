@@ -25,13 +25,13 @@ struct RelativePose16 {
 };
 
 RelativePose16 relative_pose(const PlacedFrame& a, const PlacedFrame& b) {
-  const Vec3x16 apart = b.origin - a.origin;
+  const Vec3x16 offset = b.origin - a.origin;
   const auto row = [&](Floats16 x, Floats16 y, Floats16 z) {
     return combine(b.rows[0], x, b.rows[1], y, b.rows[2], z);
   };
   return {{row(a.rows[0].x, a.rows[1].x, a.rows[2].x), row(a.rows[0].y, a.rows[1].y, a.rows[2].y),
            row(a.rows[0].z, a.rows[1].z, a.rows[2].z)},
-          combine(a.rows[0], apart.x, a.rows[1], apart.y, a.rows[2], apart.z)};
+          combine(a.rows[0], offset.x, a.rows[1], offset.y, a.rows[2], offset.z)};
 }
 
 /// Return the same for one lane, in double precision.
@@ -75,8 +75,8 @@ Mask boxes_near(const RelativePose16& pose, const Node& a, const Node& b, Floats
 }
 
 /// Return the mask of those queried lanes in which none of some planes separates two leaves.
-Mask not_apart(const RelativePose16& pose, const HullTree<float>& tree, const Node& a, const HullTree<float>& other,
-               const Node& b, Floats16 near, Mask asked) {
+Mask not_separated(const RelativePose16& pose, const HullTree<float>& tree, const Node& a, const HullTree<float>& other,
+                   const Node& b, Floats16 near, Mask asked) {
   const TwoBoxes boxes = boxes_of(pose, a, b);
   const auto first = [&](Vec3x16 along) { return farthest(along, tree, a); };
   const auto second = [&](Vec3x16 along) {
@@ -129,7 +129,7 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
     // Of the lane before: often it separates the next one, too.
     PlaneNormal plane;
     if (p.points.size() > 0 && !p.is_leaf() && q.points.size() > 0) {
-      // Apart from what is around all of the first.
+      // Separated from what is around all of the first.
       for (Mask all = left; all != 0; all &= all - 1) {
         const int lane = std::countr_zero(all);
         if (!leaves_meet(a, b, lane, plane)) left &= ~(1U << lane);
@@ -138,10 +138,11 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
     }
     if (p.is_leaf() && q.is_leaf()) {
       if (kept != nullptr)
-        left = not_apart_across(kept->of(a, b).normal, {tree, a, first.frame}, {other, b, second.frame}, near, left);
+        left =
+            not_separated_across(kept->of(a, b).normal, {tree, a, first.frame}, {other, b, second.frame}, near, left);
       if (left == 0) continue;
       if (CORNERS_OF_A_LANE * std::popcount(left) >= CORNERS_OF_PLANES + p.points.size() + q.points.size())
-        left = not_apart(pose, tree, p, other, q, near, left);
+        left = not_separated(pose, tree, p, other, q, near, left);
       for (; left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left);
         if (!leaves_meet(a, b, lane, plane)) continue;

@@ -38,9 +38,9 @@ struct PlacedHulls {
 Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked, Wanted wanted,
                    KeptOfPairs* kept = nullptr);
 
-/// Lanes in which two trees are apart, and in which they come within a margin.
+/// Lanes in which two trees are separated, and in which they come within a margin.
 struct Decided {
-  Mask apart, near;
+  Mask separated, near;
 };
 
 /// By how much, of the lengths that they come of, single precision may have distances wrong: thirty roundings.
@@ -54,7 +54,7 @@ Floats16 lost(const PlacedHulls& first, const PlacedHulls& second);
 
 /// Return the mask of those queried lanes in which a plane, if one is known, does not separate the hulls of two nodes
 /// by more than `near`; its normal is in the frame of the second.
-Mask not_apart_across(Vec3 normal, const PlacedHulls& first, const PlacedHulls& second, Floats16 near, Mask asked);
+Mask not_separated_across(Vec3 normal, const PlacedHulls& first, const PlacedHulls& second, Floats16 near, Mask asked);
 
 /// Return what is decided about the queried lanes by what is kept of two roots; the second is an obstacle's leaf.
 Decided decided_by(const Kept& kept, const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked);

@@ -1,7 +1,8 @@
 // Contact of two bodies of convex hulls in double precision: a tree over the hulls of each, and GJK below.
 //
-// Apart is only what a plane separates: its gap is computed from all corners, so no rounding, and no search that ends
-// too soon, calls bodies free that touch.  The search is that of E. Gilbert, D. Johnson and S. Keerthi (1988).
+// Separated is only what a plane separates: its gap is computed from all corners, so no rounding, and no search
+// that ends too soon, calls bodies free that touch.  The search is that of E. Gilbert, D. Johnson and S. Keerthi
+// (1988).
 #include "robot/hull_tree.hpp"
 
 #include <algorithm>
@@ -122,7 +123,7 @@ Vector first_direction(const HullNode<T>& a, const HullNode<T>& b, const Relativ
   return direction;
 }
 
-enum class Answer : std::uint8_t { APART, NEAR, OPEN };
+enum class Answer : std::uint8_t { SEPARATED, NEAR, OPEN };
 
 /// A search for a plane between two leaves.
 template <class T>
@@ -148,11 +149,11 @@ struct Search {
   void add(const Vector& p, const Vector& q) {
     firsts[count] = p, others[count] = q;
     simplex.numbers[simplex.size] = count++;
-    Vector& apart = simplex.corners[simplex.size++];
+    Vector& corner = simplex.corners[simplex.size++];
     for (int axis = 0; axis < 3; axis++) {
       const double* row = pose.rotation + 3 * axis;
       const double turned = row[0] * q[0] + row[1] * q[1] + row[2] * q[2];
-      apart[axis] = p[axis] - turned - pose.translation[axis];
+      corner[axis] = p[axis] - turned - pose.translation[axis];
     }
   }
 
@@ -171,7 +172,7 @@ struct Search {
     }
   }
 
-  /// What is farthest along the way, and by how much a plane across it has the two apart.
+  /// What is farthest along the way, and by how much a plane across it separates the two.
   struct Across {
     Farthest p, q;
     double gap;
@@ -187,35 +188,35 @@ struct Search {
     return {p, q, -p.along - q.along - (shift[0] * x + shift[1] * y + shift[2] * z), turned_back};
   }
 
-  Answer apart(const Across& seen) {
+  Answer separated(const Across& seen) {
     for (int axis = 0; axis < 3; axis++) plane.at[axis] = seen.normal[axis];
-    return Answer::APART;
+    return Answer::SEPARATED;
   }
 
   /// Go on from where another search ended, but first with the plane that is given, if there is one.
-  Answer go_on(double apart_by, double near_by, Ended& ended) {
+  Answer go_on(double separated_by, double near_by, Ended& ended) {
     if (plane.at[0] != 0 || plane.at[1] != 0 || plane.at[2] != 0) {
       direction = first_direction(a, b, pose, plane), length = std::sqrt(squared_length(direction));
       const Across seen = look();
-      if (seen.gap > apart_by) return apart(seen);
+      if (seen.gap > separated_by) return separated(seen);
     }
     for (int i = 0; i < ended.size; i++) add(ended.first[i], ended.second[i]);
     point = {static_cast<float>(firsts[0][0]), static_cast<float>(firsts[0][1]), static_cast<float>(firsts[0][2])};
-    return turn() || length <= near_by ? Answer::NEAR : steps(apart_by, near_by, &ended);
+    return turn() || length <= near_by ? Answer::NEAR : steps(separated_by, near_by, &ended);
   }
 
-  Answer go(double apart_by, double near_by, Ended* ended) {
+  Answer go(double separated_by, double near_by, Ended* ended) {
     simplex.size = count = 0;
     direction = first_direction(a, b, pose, plane), length = std::sqrt(squared_length(direction));
-    return length == 0.0 ? Answer::NEAR : steps(apart_by, near_by, ended);
+    return length == 0.0 ? Answer::NEAR : steps(separated_by, near_by, ended);
   }
 
-  Answer steps(double apart_by, double near_by, Ended* ended) {
+  Answer steps(double separated_by, double near_by, Ended* ended) {
     for (int step = 0; step < MOST_STEPS; step++) {
       const Across seen = look();
-      if (seen.gap > apart_by) {
+      if (seen.gap > separated_by) {
         write(ended, simplex.size);
-        return apart(seen);
+        return separated(seen);
       }
       const Vector &p = seen.p.point, &q = seen.q.point;
       point = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
@@ -295,7 +296,7 @@ bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, i
     const Answer answer = search.go_on(margin * (1.0 + SURER) + 2.0 * SAME, margin - SAME, *ended);
     if (answer != Answer::OPEN) return answer == Answer::NEAR;
   }
-  return search.go(margin, std::max(margin, SAME), ended) != Answer::APART;
+  return search.go(margin, std::max(margin, SAME), ended) != Answer::SEPARATED;
 }
 
 #define EVENROAD_HULLS_OF(T)                                                                               \

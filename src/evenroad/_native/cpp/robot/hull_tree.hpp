@@ -102,7 +102,7 @@ struct PlaneNormal {
   double at[3] = {0, 0, 0};
 };
 
-/// Return whether two leaves, each of a tree, come within a margin; apart is only what a plane separates.  The search
+/// Return whether two leaves, each of a tree, come within a margin; only a plane separates them.  The search
 /// begins with a plane, if one is given, and writes the one that separates them, or else a point of the first that is
 /// about nearest to the second.  It goes on from where another one of these leaves ended, if that is given, and writes
 /// where it ends; what that decides by less than rounding is sought anew.

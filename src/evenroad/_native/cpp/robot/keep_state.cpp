@@ -80,7 +80,7 @@ struct Circle {
 };
 
 /// Return the way from one tip to another.
-Point apart(const Pose& a, const Pose& b) {
+Point offset(const Pose& a, const Pose& b) {
   return {b.origin[0] - a.origin[0], b.origin[1] - a.origin[1], b.origin[2] - a.origin[2]};
 }
 
@@ -133,7 +133,7 @@ void KeepState::write_residual(const Keep& keep, std::span<double> to) const {
     case KeepKind::TOGETHER: {
       const Pose &a = tips_[keep.first], &b = tips_[keep.second];
       const Turn9 turn = between(a.rotation, b.rotation);
-      const Point gap = turned_back(a.rotation, apart(a, b));
+      const Point gap = turned_back(a.rotation, offset(a, b));
       for (int k = 0; k < 3; k++) to[k] = gap[k] - keep.numbers[9 + k];
       for (int k = 0; k < 9; k++) to[3 + k] = TURNED * (turn[k] - keep.numbers[k]);
       return;
@@ -187,7 +187,7 @@ void KeepState::write_column(const Keep& keep, std::size_t joint, std::span<doub
       const Pose &a = tips_[keep.first], &b = tips_[keep.second];
       const auto [a_moved, a_turned] = twist(keep.first, joint);
       const auto [b_moved, b_turned] = twist(keep.second, joint);
-      const Point away = apart(a, b), carried = cross(away.data(), a_turned.data());
+      const Point away = offset(a, b), carried = cross(away.data(), a_turned.data());
       Point moved, turned;
       for (int k = 0; k < 3; k++) {
         moved[k] = b_moved[k] - a_moved[k] + carried[k];

@@ -10,7 +10,7 @@ namespace evenroad::robot {
 
 /// How long steps are in a metric that counts each coordinate so much, and by how much a projected one may be longer.
 struct Walking {
-  std::span<const double> scale;  // (dim,)
+  std::vector<double> scale;  // (dim,)
   double step, jump;
   Projecting projecting;
 };

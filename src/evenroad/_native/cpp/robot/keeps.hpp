@@ -13,7 +13,7 @@
 
 namespace evenroad::robot {
 
-/// What a residual is, and which numbers it is made of; in the order of `evenroad.constraints.keep.Kind`.
+/// What a residual is, and which numbers it is made of.
 enum class KeepKind : std::uint8_t {
   LINEAR,    // rows of 12 coefficients of the tip's pose, and what is taken off
   BOX,       // the origin's way out of a box: its low and high corner

@@ -44,12 +44,12 @@ float reach_of(const Node& root) {
 }
 
 Floats16 lost(const PlacedHulls& first, const PlacedHulls& second) {
-  const Vec3x16 apart = abs(second.frame.origin - first.frame.origin);
+  const Vec3x16 offset = abs(second.frame.origin - first.frame.origin);
   const float size = reach_of(first.tree.nodes[first.root]) + reach_of(second.tree.nodes[second.root]);
-  return (apart.x + apart.y + apart.z + size) * SLACK;
+  return (offset.x + offset.y + offset.z + size) * SLACK;
 }
 
-Mask not_apart_across(Vec3 normal, const PlacedHulls& first, const PlacedHulls& second, Floats16 near, Mask asked) {
+Mask not_separated_across(Vec3 normal, const PlacedHulls& first, const PlacedHulls& second, Floats16 near, Mask asked) {
   const Node &a = first.tree.nodes[first.root], &b = second.tree.nodes[second.root];
   if ((normal.x == 0 && normal.y == 0 && normal.z == 0) || a.points.size() == 0 || b.points.size() == 0) return asked;
   const Vec3x16 seen = spread(normal);
@@ -74,7 +74,7 @@ Mask not_apart_across(Vec3 normal, const PlacedHulls& first, const PlacedHulls& 
 Decided decided_by(const Kept& kept, const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked) {
   const Node& b = second.tree.nodes[second.root];
   const Floats16 loss = lost(first, second);
-  const Mask left = not_apart_across(kept.normal, first, second, spread(margin) + loss, asked);
+  const Mask left = not_separated_across(kept.normal, first, second, spread(margin) + loss, asked);
   if (!kept.has_point || left == 0) return {asked & ~left, 0};
   const PlacedFrame &here = first.frame, &there = second.frame;
   const Vec3x16 p = spread(kept.point);

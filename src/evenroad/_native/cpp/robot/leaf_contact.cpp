@@ -44,7 +44,7 @@ struct SeenTriangles {
     return most;
   }
 
-  Mask not_apart_from(const HullTree<float>& tree, const HullNode<float>& hull, Mask asked) const {
+  Mask not_separated_from(const HullTree<float>& tree, const HullNode<float>& hull, Mask asked) const {
     const auto body = [&](Vec3x16 along) { return farthest(along, tree, hull); };
     const auto triangle = [&](Vec3x16 along) { return farthest_along(along); };
     return unseparated(spread3(hull.centre) - centre, spread3(hull.half) + half, corner, body, triangle,
@@ -117,7 +117,7 @@ bool ShapeAt::meets(const TriangleLeaf& leaf, Mask asked) {
       continue;
     }
     if (CORNERS_OF_A_LANE * std::popcount(left) >= CORNERS_OF_PLANES + node.points.size() + 3)
-      left = seen.not_apart_from(tree_, node, left);
+      left = seen.not_separated_from(tree_, node, left);
     for (; left != 0; left &= left - 1) {
       if (meets(hull, leaf, std::countr_zero(left))) return true;
     }

@@ -66,7 +66,7 @@ bool is_same(std::span<const double> a, std::span<const double> b, const Posture
   for (std::size_t k = 0; k < a.size(); k++) {
     double gap = std::abs(a[k] - b[k]);
     if (postures.turns[k]) gap = std::min(gap, std::abs(FULL_TURN - gap));
-    if (!(gap < postures.apart)) return false;
+    if (!(gap < postures.same)) return false;
   }
   return true;
 }
@@ -78,7 +78,7 @@ Solutions reach_all(const Chain& chain, std::span<const PoseTask> tasks, const L
   const auto dim = static_cast<std::size_t>(chain.dim);
   std::vector<bool> moves(dim, false);
   for (const ChainJoint& joint : chain.joints) moves[joint.coordinate] = true;
-  Solutions found;
+  Solutions found{{0, dim}, {}, {0, dim}, {}};
   std::vector<double> away, tried;
   std::vector<std::size_t> rows;
   for (std::size_t number = 0; number < tasks.size(); number++) {
@@ -92,17 +92,17 @@ Solutions reach_all(const Chain& chain, std::span<const PoseTask> tasks, const L
     const std::vector<double> missing = reach(chain, tasks[number], limits, steps, enough, q);
     const auto least = static_cast<std::size_t>(std::min_element(missing.begin(), missing.end()) - missing.begin());
     for (std::size_t i = 0; i < q.rows; i++) wrap(q[i], postures);
-    found.nearest.insert(found.nearest.end(), q[least].begin(), q[least].end());
+    found.nearest.append(q[least]);
     found.missing.push_back(missing[least]);
     const std::size_t first = found.task.size();
     for (std::size_t i = 0; i < q.rows; i++) {
       if (missing[i] != 0.0) continue;
       bool is_new = true;
       for (std::size_t k = first; k < found.task.size() && is_new; k++) {
-        is_new = !is_same({found.q.data() + k * dim, dim}, q[i], postures);
+        is_new = !is_same(found.q[k], q[i], postures);
       }
       if (!is_new) continue;
-      found.q.insert(found.q.end(), q[i].begin(), q[i].end());
+      found.q.append(q[i]);
       found.task.push_back(static_cast<std::int64_t>(number));
     }
   }

@@ -14,17 +14,17 @@ struct Beginnings {
   std::size_t first, last, every;    // of the nearest known ones: from number `first` to below `last`, one in `every`
 };
 
-/// What one posture is: all configurations that differ by whole turns, or by less than `apart` in every coordinate.
+/// What one posture is: all configurations that differ by whole turns, or by less than `same` in every coordinate.
 struct Postures {
   std::span<const bool> turns;  // which coordinates are in the same posture after a whole turn
   Matrix<const double> bounds;  // (2, dim): a posture stands in the turn nearest to their middle
-  double apart;
+  double same;
 };
 
 struct Solutions {
-  std::vector<double> q;           // (m, dim), of one task after the other
+  OwnMatrix<double> q;             // (m, dim), of one task after the other
   std::vector<std::int64_t> task;  // whose each is, (m,)
-  std::vector<double> nearest;     // (tasks, dim): what misses each task least
+  OwnMatrix<double> nearest;       // (tasks, dim): what misses each task least
   std::vector<double> missing;     // (tasks,): by how much that is, squared
 };
 

@@ -187,7 +187,7 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
             placed.kept.of(robot.bodies[b].shape, obstacle),
             {robot.shapes, robot.bodies[b].shape, placed.frames[robot.bodies[b].frame]},
             {layer.obstacles->hulls, obstacle, frame_of(layer.obstacles->rows[obstacle])}, lengths.shapes[b], asked);
-        asked &= ~decided.apart;
+        asked &= ~decided.separated;
         if (asked == 0) continue;
         const Mask open = asked & ~with_others(decided.near, wanted);
         Mask surely = decided.near;

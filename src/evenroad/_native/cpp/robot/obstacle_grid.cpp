@@ -60,7 +60,7 @@ ObstacleGrid make_obstacle_grid(const Obstacles& obstacles, const GridLayout& la
                                 std::span<const std::array<double, 6>> boxes, float exact) {
   std::vector<std::uint8_t> marked(layout.count());
   mark_boxes(layout, boxes, marked);
-  const std::vector<std::uint8_t> apart = distances_to(layout, marked);
+  const std::vector<std::uint8_t> away = distances_to(layout, marked);
   const float most = std::min(exact, static_cast<float>(4.0 * layout.cell));
   Middles all(layout, most);
   for (std::size_t k = 0; k < boxes.size(); k++) bring_in(obstacles.rows[k], boxes[k], most, all);
@@ -76,7 +76,7 @@ ObstacleGrid make_obstacle_grid(const Obstacles& obstacles, const GridLayout& la
   for (int x = 0; x < layout.cells[0]; x++) {
     for (int y = 0; y < layout.cells[1]; y++) {
       const float* row = all.at(x, y);
-      const std::uint8_t* there = &apart[(static_cast<std::size_t>(x) * layout.cells[1] + y) * layout.cells[2]];
+      const std::uint8_t* there = &away[(static_cast<std::size_t>(x) * layout.cells[1] + y) * layout.cells[2]];
       for (int z = 0; z < layout.cells[2]; z++) {
         float away = std::max(row[z], 0.0F);
         // A ball of half a cell about the middle is within the cell, and all of that is so far at least.

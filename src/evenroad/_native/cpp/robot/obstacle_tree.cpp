@@ -111,7 +111,7 @@ struct Check {
         decided_by(placed.kept.of(body.shape, obstacle), {robot.shapes, body.shape, placed.frames[body.frame]},
                    {layer.obstacles->hulls, obstacle, frame_of(there)}, lengths.shapes[b], asked);
     Mask surely = decided.near;
-    asked &= ~decided.apart;
+    asked &= ~decided.separated;
     const Mask open = asked & ~with_others(decided.near, wanted);
     if (open != 0 && !is_enough(surely, wanted)) {
       surely |= inside_meeting(robot, placed, body, there, lengths.shapes[b], open, wanted);

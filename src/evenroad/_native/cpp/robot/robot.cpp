@@ -93,11 +93,11 @@ Ball ball_around(const Shapes& shapes, Range capsules) {
   }
   for (int i = capsules.first; i < capsules.end; i++) {
     for (double side : {-1.0, 1.0}) {
-      double apart[3];
+      double offset[3];
       for (int axis = 0; axis < 3; axis++) {
-        apart[axis] = shapes.centre(i)[axis] + side * shapes.half(i)[axis] - ball.centre[axis];
+        offset[axis] = shapes.centre(i)[axis] + side * shapes.half(i)[axis] - ball.centre[axis];
       }
-      ball.radius = std::max(ball.radius, norm(apart) + shapes.radius(i));
+      ball.radius = std::max(ball.radius, norm(offset) + shapes.radius(i));
     }
   }
   return ball;
@@ -111,8 +111,8 @@ Vec3 half_extents(const Shapes& shapes, Range capsules, const double* centre, do
     for (int sample = samples.first; sample < samples.end; sample++) {
       const double share = shapes.given.capsules.samples[sample];
       for (int axis = 0; axis < 3; axis++) {
-        const double apart = std::abs(shapes.centre(i)[axis] + share * shapes.half(i)[axis] - centre[axis]);
-        half[axis] = std::max(half[axis], apart + shapes.covering(i));
+        const double away = std::abs(shapes.centre(i)[axis] + share * shapes.half(i)[axis] - centre[axis]);
+        half[axis] = std::max(half[axis], away + shapes.covering(i));
       }
     }
   }

@@ -7,8 +7,8 @@ namespace {
 
 /// Return the mask of lanes in which two centres are nearer to each other than `near`.
 EVENROAD_INLINE Mask within(const Vec3x16& a, const Vec3x16& b, float near) {
-  const Vec3x16 apart = a - b;
-  return below_zero(dot(apart, apart) - near * near);
+  const Vec3x16 offset = a - b;
+  return below_zero(dot(offset, offset) - near * near);
 }
 
 }  // namespace
@@ -26,8 +26,8 @@ Floats16 squared_distance(const PlacedCapsule& a, const PlacedCapsule& b, const 
   Floats16 t = cut(dot(across_f, across_r) / max(dot(across_f, across_f), spread(LEAST_SQUARE)));
   const Floats16 s = cut(fma(along_f, t, -along_r));
   t = cut(fma(ef, s, fr) * pair.one_by_ff);
-  const Vec3x16 apart = minus(plus(r, e, s), f, t);
-  return dot(apart, apart);
+  const Vec3x16 offset = minus(plus(r, e, s), f, t);
+  return dot(offset, offset);
 }
 
 Mask capsules_touching(const PlacedCapsule& a, const PlacedCapsule& b, const CapsulePair& pair, float reach) {

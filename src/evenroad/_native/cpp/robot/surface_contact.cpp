@@ -54,9 +54,9 @@ bool reaches(const Surface& surface, const PlacedCapsule& capsule, float reach) 
 /// Return which points touch a capsule.
 Mask near_points(Vec3x16 points, const CapsuleAt& capsule) {
   const Vec3x16 along = spread(capsule.half);
-  Vec3x16 apart = points - spread(capsule.centre);
-  apart = minus(apart, along, clamp(dot(apart, along) * capsule.one_by_squared, spread(-1), spread(1)));
-  return below_zero(dot(apart, apart) - capsule.reach * capsule.reach);
+  Vec3x16 offset = points - spread(capsule.centre);
+  offset = minus(offset, along, clamp(dot(offset, along) * capsule.one_by_squared, spread(-1), spread(1)));
+  return below_zero(dot(offset, offset) - capsule.reach * capsule.reach);
 }
 
 /// Return whether a point or triangle touches a capsule.

@@ -25,8 +25,8 @@ EVENROAD_INLINE Mask near_side(Vec3x16 start, Vec3x16 direction, Vec3x16 along, 
   Floats16 other = cut(fma(ef, share, er) * one_by_squared);
   share = part(fma(ef, other, -fr) / max(ff, spread(LEAST_SQUARE)));
   other = cut(fma(ef, share, er) * one_by_squared);
-  const Vec3x16 apart = minus(plus(start, direction, share), along, other);
-  return below_zero(dot(apart, apart) - capsule.reach * capsule.reach);
+  const Vec3x16 side = minus(plus(start, direction, share), along, other);
+  return below_zero(dot(side, side) - capsule.reach * capsule.reach);
 }
 
 /// Return for which triangles a place, seen from their corner, is not above them, by more than a slack [m^2].
@@ -41,14 +41,14 @@ EVENROAD_INLINE Mask outside(const TriangleLeaf& leaf, Vec3x16 third, Vec3x16 he
 std::optional<int> crossings(const TriangleLeaf& leaf, Mask some, Vec3 begin, Vec3 half) {
   const Vec3x16 corner = leaf.corner - spread(begin), third = leaf.second - leaf.first, along = spread(half);
   const Floats16 before = -dot(leaf.normal, corner), slope = dot(leaf.normal, along);
-  const Floats16 after = before + slope + slope, apart = max(min(before, after), -max(before, after));
+  const Floats16 after = before + slope + slope, side = max(min(before, after), -max(before, after));
   const Floats16 share = before / (before - after + LEAST_SQUARE);
   const Floats16 whole = part(share);
   const Vec3x16 here = plus(-corner, along + along, whole);
   const Mask sized = below_zero(0.5F - dot(leaf.normal, leaf.normal));
-  const Mask maybe = ~outside(leaf, third, here, UNSURE) & ~below_zero(UNSURE - apart) & sized & some;
+  const Mask maybe = ~outside(leaf, third, here, UNSURE) & ~below_zero(UNSURE - side) & sized & some;
   if (maybe == 0) return 0;
-  const Mask surely = below_zero(apart + UNSURE) & ~outside(leaf, third, here, -UNSURE);
+  const Mask surely = below_zero(side + UNSURE) & ~outside(leaf, third, here, -UNSURE);
   if ((maybe & ~surely) != 0) return std::nullopt;
   const Mask with_normal = below_zero(before) & maybe;
   return std::popcount(with_normal) - std::popcount(maybe & ~with_normal);

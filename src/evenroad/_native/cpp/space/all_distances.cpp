@@ -46,8 +46,8 @@ OwnMatrix<double> quaternion_angles(Matrix<const double> a, Matrix<const double>
     for (std::size_t j = 0; j < b.rows; j++) {
       double chord = 0.0, together = 0.0;
       for (std::size_t k = 0; k < 4; k++) {
-        const double apart = a(i, k) - b(j, k), sum = a(i, k) + b(j, k);
-        chord += apart * apart, together += sum * sum;
+        const double gap = a(i, k) - b(j, k), sum = a(i, k) + b(j, k);
+        chord += gap * gap, together += sum * sum;
       }
       // The nearer of b and -b is the one with the shorter chord.
       const auto [shorter, longer] = std::minmax(chord, together);

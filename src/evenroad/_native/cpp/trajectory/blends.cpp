@@ -35,12 +35,12 @@ struct Corner {
 
 /// Return half of the angle between two directions, exact for small ones, too.
 double half_angle(std::span<const double> before, std::span<const double> after) {
-  double apart = 0.0, together = 0.0;
+  double difference = 0.0, sum = 0.0;
   for (std::size_t k = 0; k < before.size(); k++) {
-    apart += (after[k] - before[k]) * (after[k] - before[k]);
-    together += (after[k] + before[k]) * (after[k] + before[k]);
+    difference += (after[k] - before[k]) * (after[k] - before[k]);
+    sum += (after[k] + before[k]) * (after[k] + before[k]);
   }
-  return std::atan2(std::sqrt(apart), std::sqrt(together));
+  return std::atan2(std::sqrt(difference), std::sqrt(sum));
 }
 
 /// Return whether a place is within a distance of the straight way from one place to another.
@@ -58,8 +58,6 @@ bool is_between(std::span<const double> point, std::span<const double> from, std
   return away <= off * off;
 }
 
-void append(std::vector<double>& row, std::span<const double> more) { row.insert(row.end(), more.begin(), more.end()); }
-
 }  // namespace
 
 std::vector<std::size_t> bends_of(Matrix<const double> waypoints, double same) {
@@ -73,9 +71,9 @@ std::vector<std::size_t> bends_of(Matrix<const double> waypoints, double same) {
     }
     whole += std::sqrt(squared);
   }
-  const double apart = std::max(same, NO_MOTION * whole), off = OFF_PATH * whole + OFF_ROUNDING * largest;
+  const double gap = std::max(same, NO_MOTION * whole), off = OFF_PATH * whole + OFF_ROUNDING * largest;
   const auto is_same = [&](std::size_t i, std::size_t j) {
-    return std::ranges::equal(waypoints[i], waypoints[j], [&](double a, double b) { return std::abs(a - b) <= apart; });
+    return std::ranges::equal(waypoints[i], waypoints[j], [&](double a, double b) { return std::abs(a - b) <= gap; });
   };
   std::vector<std::size_t> bends{0};
   // The waypoint after the last bend that may be one, too.
@@ -89,7 +87,7 @@ std::vector<std::size_t> bends_of(Matrix<const double> waypoints, double same) {
   return bends;
 }
 
-Blends rounded(Matrix<const double> waypoints, std::span<const double> deviation) {
+RoundedPath rounded(Matrix<const double> waypoints, std::span<const double> deviation) {
   const std::size_t motions = waypoints.rows - 1, dim = waypoints.columns;
   OwnMatrix<double> directions(motions, dim);
   std::vector<double> lengths(motions);
@@ -112,14 +110,14 @@ Blends rounded(Matrix<const double> waypoints, std::span<const double> deviation
         std::min(0.5 * std::min(lengths[i - 1], lengths[i]), deviation[i] * std::sin(half) / (1.0 - std::cos(half)));
     if (cut > NO_ARC * whole) corners[i].cut = cut;
   }
-  Blends path;
+  RoundedPath path(dim);
   double total = 0.0;
   std::vector<double> centre(dim), out(dim), start(dim);
   const std::vector<double> nowhere(dim);
   const auto add = [&](std::span<const double> origin, std::span<const double> from, std::span<const double> along,
                        double bend) {
     path.starts.push_back(total), path.bend.push_back(bend);
-    append(path.origin, origin), append(path.out, from), append(path.along, along);
+    path.origin.append(origin), path.out.append(from), path.along.append(along);
   };
   for (std::size_t i = 0; i < motions; i++) {
     const Corner& corner = corners[i];

@@ -9,9 +9,21 @@
 
 namespace evenroad::trajectory {
 
-/// Lines and arcs in columns, as `RoundedPath` reads them, and the lengths at inner waypoints and at stops.
-struct Blends {
-  std::vector<double> starts, origin, out, along, bend, corners, stops;
+/// Lines and arcs, one after the other.
+///
+/// Piece i reaches from length starts[i] to starts[i + 1].  It is a line from origin[i] along along[i] where its bend
+/// is 0, else an arc of radius 1 / bend[i] about origin[i], from the direction out[i] towards along[i].  `corners` are
+/// the lengths at inner waypoints, `stops` those at which the direction jumps.
+struct RoundedPath {
+  std::vector<double> starts;
+  OwnMatrix<double> origin, out, along;
+  std::vector<double> bend, corners, stops;
+
+  explicit RoundedPath(std::size_t dim) : origin(0, dim), out(0, dim), along(0, dim) {}
+
+  std::size_t pieces() const { return bend.size(); }
+  std::size_t dim() const { return along.columns; }
+  double length() const { return starts.back(); }
 };
 
 /// Return the rows of waypoints between which a path is straight: its first, those at which it bends, and its last.
@@ -22,6 +34,6 @@ std::vector<std::size_t> bends_of(Matrix<const double> waypoints, double same);
 
 /// Round the corners of a path of two waypoints or more, no two in a row equal: the arc at waypoint i passes it within
 /// deviation[i], and replaces at most half of both motions.  Where that is 0 the path stops at its corner.
-Blends rounded(Matrix<const double> waypoints, std::span<const double> deviation);
+RoundedPath rounded(Matrix<const double> waypoints, std::span<const double> deviation);
 
 }  // namespace evenroad::trajectory

@@ -30,8 +30,8 @@ struct TipLimits {
 
 /// Both are nullptr where there are none.
 struct FurtherLimits {
-  const TorqueLimits* torque = nullptr;
-  const TipLimits* tip = nullptr;
+  const TorqueLimits* torque;
+  const TipLimits* tip;
 
   /// Return how many limits there are beside those of speed.
   std::size_t size() const;

@@ -52,13 +52,13 @@ void StatesAt::write(std::span<const double> t, Matrix<double> positions, Matrix
 }
 
 /// Return the shares that speed 1 and acceleration 1 along a line use.
-SharesAlong along_line(const RoundedPath& path, std::size_t piece, const Most& most) {
+SharesAlong along_line(const RoundedPath& path, std::size_t piece, const JointLimits& most) {
   SharesAlong shares;
   for (std::size_t k = 0; k < path.dim(); k++) shares.add(k, std::abs(path.along(piece, k)), most);
   return shares;
 }
 
-Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const Most& most, std::size_t samples) {
+Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const JointLimits& most, std::size_t samples) {
   const std::vector<std::size_t> pieces = pieces_of(path, law);
   Shares shares;
   SharesAlong along;

@@ -106,11 +106,12 @@ double intervals_of_arc(double angle) { return std::max(std::ceil(angle / ANGLE)
 
 }  // namespace
 
-Grid lean_grid_of(const RoundedPath& path) {
-  Grid grid{{0.0}, {}, true};
+Grid grid_of(const RoundedPath& path, bool is_lean) {
+  Grid grid{{0.0}, {}, is_lean};
   for (std::size_t piece = 0; piece < path.pieces(); piece++) {
     const double begin = path.starts[piece], end = path.starts[piece + 1], bend = path.bend[piece];
-    const double count = bend > 0.0 ? intervals_of_arc((end - begin) * bend) : 1.0;
+    double count = bend > 0.0 ? intervals_of_arc((end - begin) * bend) : is_lean ? 1.0 : PER_LINE;
+    if (!is_lean) count = std::max(count, std::ceil(INTERVALS * ((end - begin) / path.length())));
     for (std::int64_t i = 1; static_cast<double>(i) < count; i++)
       grid.lengths.push_back(begin + static_cast<double>(i) * ((end - begin) / count));
     grid.lengths.push_back(end);
@@ -119,23 +120,7 @@ Grid lean_grid_of(const RoundedPath& path) {
   return grid;
 }
 
-Grid grid_of(const RoundedPath& path) {
-  Grid grid{{0.0}, {}, false};
-  for (std::size_t piece = 0; piece < path.pieces(); piece++) {
-    const double begin = path.starts[piece], end = path.starts[piece + 1];
-    const double share = (end - begin) / path.starts.back();
-    const double bend = path.bend[piece], least = bend > 0.0 ? intervals_of_arc((end - begin) * bend) : PER_LINE;
-    const double count = std::max(std::ceil(INTERVALS * share), least);
-    for (std::int64_t i = 1; static_cast<double>(i) < count; i++)
-      grid.lengths.push_back(begin + static_cast<double>(i) * ((end - begin) / count));
-    grid.lengths.push_back(end);
-    grid.pieces.resize(grid.lengths.size() - 1, piece);
-  }
-  return grid;
-}
-
-OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> stops, const Most& most,
-                   const Within& within) {
+TimeLaw fastest(const RoundedPath& path, Grid grid, const JointLimits& most, const PathLimits& within) {
   std::vector<std::size_t> state(grid.pieces.size());
   for (std::size_t i = 0; i < state.size(); i++) state[i] = i + grid.pieces[i];
   std::optional<Used> used;
@@ -145,7 +130,7 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
       if (!(std::abs(share) < 1.0)) return {};
     }
   }
-  OwnTimeLaw law;
+  TimeLaw law;
   law.lengths = std::move(grid.lengths);
   const std::vector<std::size_t>& pieces = grid.pieces;
   const bool is_lean = grid.is_lean;
@@ -177,7 +162,7 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
   }
   ceiling.front() = std::min(ceiling.front(), within.start * within.start);
   ceiling.back() = std::min(ceiling.back(), within.goal * within.goal);
-  for (const double stop : stops) {
+  for (const double stop : path.stops) {
     const auto at = std::ranges::lower_bound(law.lengths, stop);
     if (at != law.lengths.end() && *at == stop) ceiling[static_cast<std::size_t>(at - law.lengths.begin())] = 0.0;
   }
@@ -186,7 +171,7 @@ OwnTimeLaw fastest(const RoundedPath& path, Grid grid, std::span<const double> s
   std::vector<double> squares = squared_speeds(curve, further, ceiling, {most.acceleration, most.deceleration});
   if (is_lean) {
     Speeds all;
-    const double least = LEAST_INTERVAL * path.starts.back();
+    const double least = LEAST_INTERVAL * path.length();
     all.add(0.0, squares[0]);
     for (std::size_t i = 0; i < intervals; i++) {
       const std::size_t k = row[i];

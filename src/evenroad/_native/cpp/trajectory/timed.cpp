@@ -39,7 +39,7 @@ constexpr int PARTS = 2;
 constexpr double SAME = 1e-9;
 
 /// Return the largest shares that speed 1 and acceleration 1 use in any direction of a piece's plane.
-SharesAlong of_plane(const RoundedPath& path, std::size_t piece, const Most& most) {
+SharesAlong of_plane(const RoundedPath& path, std::size_t piece, const JointLimits& most) {
   SharesAlong shares;
   for (std::size_t k = 0; k < path.dim(); k++) {
     shares.add(k, std::hypot(path.along(piece, k), path.out(piece, k)), most);
@@ -51,7 +51,7 @@ SharesAlong of_plane(const RoundedPath& path, std::size_t piece, const Most& mos
 ///
 /// Along a line the ends use most.  Along an arc a share between two places is at most that at one of them and an
 /// eighth of the squared angle between them times the largest second derivative.  The squared speed is linear there.
-Shares used_in(const RoundedPath& path, const TimeLaw& law, std::size_t i, std::size_t piece, const Most& most,
+Shares used_in(const RoundedPath& path, const TimeLaw& law, std::size_t i, std::size_t piece, const JointLimits& most,
                const SharesAlong& plane) {
   const double push = law.accelerations[i], bend = path.bend[piece];
   const double first = law.speeds[i] * law.speeds[i], last = law.speeds[i + 1] * law.speeds[i + 1];
@@ -77,7 +77,7 @@ Shares used_in(const RoundedPath& path, const TimeLaw& law, std::size_t i, std::
 }
 
 /// Return bounds of the shares that a law uses at any time.
-Shares used_at_all_times(const RoundedPath& path, const TimeLaw& law, const Most& most) {
+Shares used_at_all_times(const RoundedPath& path, const TimeLaw& law, const JointLimits& most) {
   const std::vector<std::size_t> pieces = pieces_of(path, law);
   Shares shares;
   SharesAlong plane;
@@ -91,7 +91,7 @@ Shares used_at_all_times(const RoundedPath& path, const TimeLaw& law, const Most
 }
 
 /// Slow a law down by a factor of 1 or more.
-void slow(OwnTimeLaw& law, double factor) {
+void slow(TimeLaw& law, double factor) {
   for (double& each : law.times) each *= factor;
   for (double& each : law.speeds) each /= factor;
   for (double& each : law.accelerations) each /= factor * factor;
@@ -122,34 +122,29 @@ std::vector<double> lengths_at(const TimeLaw& law, std::span<const double> times
 /// A law with the limits that it was made within, of which less is used where it takes more between grid points.
 class Tried {
  public:
-  Tried(const RoundedPath& path, std::span<const double> stops, const Most& most, const Within& within)
-      : path_(path),
-        stops_(stops),
-        most_(most),
-        within_(within),
-        velocity_(most.velocity.begin(), most.velocity.end()) {
+  Tried(const RoundedPath& path, const JointLimits& most, const PathLimits& within)
+      : path_(path), most_(most), used_(most), within_(within) {
     within_.share *= WITHIN_FURTHER;
-    for (const double each : most.acceleration) acceleration_.push_back(each * WITHIN);
-    for (const double each : most.deceleration) deceleration_.push_back(each * WITHIN);
+    for (auto* row : {&used_.acceleration, &used_.deceleration}) {
+      for (double& each : *row) each *= WITHIN;
+    }
   }
 
   /// Make the law; it is empty where torques cannot hold the robot.
   void make() {
     const bool is_lean = !within_.further.torque && !within_.further.tip;
-    law_ = fastest(path_, is_lean ? lean_grid_of(path_) : grid_of(path_), stops_,
-                   {velocity_, acceleration_, deceleration_}, within_);
+    law_ = fastest(path_, grid_of(path_, is_lean), used_, within_);
   }
 
-  OwnTimeLaw& law() { return law_; }
-  TimeLaw view() const { return {law_.times, law_.lengths, law_.speeds, law_.accelerations}; }
+  TimeLaw& law() { return law_; }
 
   /// Return bounds of the shares that it uses at any time.
-  Shares used() const { return used_at_all_times(path_, view(), most_); }
+  Shares used() const { return used_at_all_times(path_, law_, most_); }
 
   /// Use less of velocities and accelerations, or of further limits, than was used by these shares.
   void use_less(const Shares& used) {
-    for (double& each : velocity_) each *= LESS / std::max(used.velocity, 1.0);
-    for (auto* row : {&acceleration_, &deceleration_}) {
+    for (double& each : used_.velocity) each *= LESS / std::max(used.velocity, 1.0);
+    for (auto* row : {&used_.acceleration, &used_.deceleration}) {
       for (double& each : *row) each *= LESS / std::max(used.acceleration, 1.0);
     }
   }
@@ -159,11 +154,10 @@ class Tried {
 
  private:
   const RoundedPath& path_;
-  std::span<const double> stops_;
-  const Most& most_;
-  Within within_;
-  std::vector<double> velocity_, acceleration_, deceleration_;
-  OwnTimeLaw law_;
+  const JointLimits& most_;
+  JointLimits used_;
+  PathLimits within_;
+  TimeLaw law_;
 };
 
 /// Return the largest shares of further limits, at `PER_STEP` times in each step.
@@ -178,20 +172,18 @@ FurtherShares further_in(const RoundedPath& path, const TimeLaw& law, const Furt
 }
 
 /// Return the fastest trajectory with corners rounded so.
-Timed timed_once(Matrix<const double> waypoints, std::span<const double> deviation, const Most& most,
-                 const Within& within, const Steps& steps) {
-  Blends blends = rounded(waypoints, deviation);
-  const std::size_t dim = waypoints.columns, pieces = blends.bend.size();
-  const auto rows = [&](const std::vector<double>& values) { return Matrix<const double>{values.data(), pieces, dim}; };
-  const RoundedPath path{blends.starts, rows(blends.origin), rows(blends.out), rows(blends.along), blends.bend};
-  Timed made{Outcome::NOT_WITHIN, {0, dim}, {0, dim},           {0, dim}, {}, std::move(blends.corners),
-             blends.stops.size(), 0.0,      deviation_of(path), {},       {}};
+Timed timed_once(Matrix<const double> waypoints, std::span<const double> deviation, const JointLimits& most,
+                 const PathLimits& within, const Steps& steps) {
+  const RoundedPath path = rounded(waypoints, deviation);
+  const std::size_t dim = waypoints.columns;
+  Timed made{Outcome::NOT_WITHIN, {0, dim}, {0, dim},           {0, dim}, {}, path.corners,
+             path.stops.size(),   0.0,      deviation_of(path), {},       {}};
   const bool is_moving = within.start > 0.0 || within.goal > 0.0;
-  Tried tried(path, blends.stops, most, within);
+  Tried tried(path, most, within);
   double count = 0.0;
   for (int tries = 0; made.outcome == Outcome::NOT_WITHIN && tries < TRIES; tries++) {
     tried.make();
-    OwnTimeLaw& law = tried.law();
+    TimeLaw& law = tried.law();
     if (law.times.empty()) {
       made.outcome = Outcome::TOO_HEAVY;
       return made;
@@ -222,7 +214,7 @@ Timed timed_once(Matrix<const double> waypoints, std::span<const double> deviati
     }
     made.highest = {std::min(made.highest.velocity, 1.0), std::min(made.highest.acceleration, 1.0)};
     if (within.further.torque || within.further.tip) {
-      made.further = further_in(path, tried.view(), within.further, count);
+      made.further = further_in(path, tried.law(), within.further, count);
       if (Tried::worst(made.further) > 1.0) {
         tried.use_less(made.further);
         continue;
@@ -231,30 +223,29 @@ Timed timed_once(Matrix<const double> waypoints, std::span<const double> deviati
     made.outcome = Outcome::MADE;
   }
   if (made.outcome != Outcome::MADE) return made;
-  const OwnTimeLaw& law = tried.law();
+  const TimeLaw& law = tried.law();
   const std::size_t states = static_cast<std::size_t>(count) + 1;
   std::vector<double> times(states);
   for (std::size_t i = 0; i < states; i++) times[i] = law.times.back() * (static_cast<double>(i) / count);
   made.positions = made.velocities = made.accelerations = OwnMatrix<double>(states, dim);
-  StatesAt(path, tried.view()).write(times, made.positions, made.velocities, made.accelerations);
-  made.lengths = lengths_at(tried.view(), times);
+  StatesAt(path, tried.law()).write(times, made.positions, made.velocities, made.accelerations);
+  made.lengths = lengths_at(tried.law(), times);
   return made;
 }
 
 /// Return whether a robot with this speed along the first of two lines probably gets slow enough for a corner.
 bool is_slow_enough(Matrix<const double> lines, double deviation, double speed, std::span<const double> acceleration) {
   const double within[] = {0.0, deviation, 0.0};
-  const Blends blends = rounded(lines, within);
-  const std::size_t dim = lines.columns, arc = blends.bend[0] > 0.0 ? 0 : 1;
-  if (arc >= blends.bend.size() || blends.bend[arc] <= 0.0) return true;
-  const double* along = &blends.along[arc * dim];
-  const double* out = &blends.out[arc * dim];
+  const RoundedPath path = rounded(lines, within);
+  const std::size_t arc = path.bend[0] > 0.0 ? 0 : 1;
+  if (arc >= path.pieces() || path.bend[arc] <= 0.0) return true;
   double brakes = std::numeric_limits<double>::infinity(), allowed = brakes;
-  for (std::size_t k = 0; k < dim; k++) {
-    brakes = std::min(brakes, acceleration[k] / std::abs(along[k]));
-    allowed = std::min(allowed, acceleration[k] / (blends.bend[arc] * std::hypot(along[k], out[k])));
+  for (std::size_t k = 0; k < path.dim(); k++) {
+    brakes = std::min(brakes, acceleration[k] / std::abs(path.along(arc, k)));
+    const double curvature = path.bend[arc] * std::hypot(path.along(arc, k), path.out(arc, k));
+    allowed = std::min(allowed, acceleration[k] / curvature);
   }
-  return speed * speed - 2.0 * brakes * blends.starts[arc] <= PROBABLY * allowed;
+  return speed * speed - 2.0 * brakes * path.starts[arc] <= PROBABLY * allowed;
 }
 
 /// Round a corner next to a start or a goal in motion less, until it probably can be driven; then see how often it was
@@ -276,8 +267,8 @@ int rounded_less(Matrix<const double> waypoints, bool from_goal, double speed, s
 
 }  // namespace
 
-Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, const Most& most, const Within& within,
-            const Steps& steps) {
+Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, const JointLimits& most,
+            const PathLimits& within, const Steps& steps) {
   std::vector<double> deviations(deviation.begin(), deviation.end());
   int at_start = 0, at_goal = 0;
   if (waypoints.rows >= 3 && within.start > 0.0) {

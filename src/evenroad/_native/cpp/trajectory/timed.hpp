@@ -51,7 +51,7 @@ struct Timed {
 /// where it is too fast there.
 ///
 /// From rest to rest it ends on a whole step; else its steps are a little shorter, since it may not be slowed down.
-Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, const Most& most, const Within& within,
-            const Steps& steps);
+Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, const JointLimits& most,
+            const PathLimits& within, const Steps& steps);
 
 }  // namespace evenroad::trajectory

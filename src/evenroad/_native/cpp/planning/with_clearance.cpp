@@ -1,5 +1,5 @@
 // The shortest paths touch what they pass.  From a path that does not, it is not far to one that does.
-#include "planning/apart.hpp"
+#include "planning/with_clearance.hpp"
 
 #include <utility>
 
@@ -39,15 +39,15 @@ double length_of(const std::vector<double>& points, const robot::Joints& joints)
   return length;
 }
 
-bool smooth_apart(Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks,
-                  MotionChecks& roomier) {
+bool smooth_with_clearance(Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks,
+                           MotionChecks& roomier) {
   const Sliding sliding = first_time(most_batches);
-  Path apart = path;
-  if (path.size() < 3 || !are_terminals_free(path, roomier) || !smooth(apart, guides, sliding, false, roomier)) {
+  Path clear = path;
+  if (path.size() < 3 || !are_terminals_free(path, roomier) || !smooth(clear, guides, sliding, false, roomier)) {
     smooth(path, guides, sliding, true, checks);
     return false;
   }
-  path = std::move(apart);
+  path = std::move(clear);
   const double longest = length_of(path.points(), checks.joints) / (1.0 + LONGER);
   std::vector<double> direction(checks.joints.size());
   const double straight = write_direction(path[0], path[path.size() - 1], checks.joints, direction);

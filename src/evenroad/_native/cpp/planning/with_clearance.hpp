@@ -18,7 +18,7 @@ double length_of(const std::vector<double>& points, const robot::Joints& joints)
 ///
 /// Where an end has not that much room, or the first path is not proved there, the path is smoothed in its own world.
 /// Return whether it keeps away.
-bool smooth_apart(Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks,
-                  MotionChecks& roomier);
+bool smooth_with_clearance(Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks,
+                           MotionChecks& roomier);
 
 }  // namespace evenroad::planning
