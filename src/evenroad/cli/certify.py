@@ -61,13 +61,13 @@ class Certify:
         points, file = load_points(self.set), self.set
         sides = (1.0,) * points.d if self.sides is None else _sides(self.sides, points.d)
         space = BoxSpace([0.0] * points.d, sides)
-        rule = chosen_rule(self) or default_rule(space)
+        rule = chosen_rule(self.k, self.connect_radius) or default_rule(space)
         certificate = certify(points, rule, space, goals=self.goals)
         record = {"file": str(file), "n": points.n, "d": points.d, "hash": points.hash, "rule": str(rule)}
         title = f"{file}: n={points.n}, d={points.d}, {points.origin}, {rule}"
         return self._show(title, record | {"sides": list(sides)}, certificate)
 
-    def _show(self, title: str, record: dict[str, Any], certificate: Certificate) -> int:
+    def _show(self, title: str, record: dict[str, object], certificate: Certificate) -> int:
         record |= guarantees(certificate)
         rows = guarantee_rows(certificate)
         held = certificate.complete

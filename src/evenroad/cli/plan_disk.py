@@ -31,7 +31,7 @@ from evenroad.world.gridmap.load import map_files
 
 def plan_disk(plan: PlanDisk) -> int:
     """Plan, write, report; return 0 when solved, else 1."""
-    chosen_rule(plan)
+    chosen_rule(plan.k, plan.connect_radius)
     budget = chosen_budget(plan)
     if plan.guarantees and not wants_points(plan):
         raise InvalidValue("--guarantees goes with a roadmap of points: give their number with -n")

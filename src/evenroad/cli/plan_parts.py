@@ -49,7 +49,7 @@ def chosen_planner(plan: PlanOptions, world: World, **of_prm: Any) -> Planner:
     if not wants_points(plan):
         return default_planner(world, improve=plan.improve)
     points = draw_points(plan, _n(plan), world.space.cube_dim)
-    return PRM(points, rule=chosen_rule(plan), **of_prm)
+    return PRM(points, rule=chosen_rule(plan.k, plan.connect_radius), **of_prm)
 
 
 def chosen_budget(plan: PlanOptions) -> Budget:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
-from evenroad.cli.options import Positional
+from evenroad.cli.options import Option, Positional, options_of
 from evenroad.cli.plan import RobotOptions
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.collision.coerce import as_scene
@@ -20,6 +20,7 @@ from evenroad.scenes.scene import Scene
 if TYPE_CHECKING:
     from evenroad.task import TaskResult
     from evenroad.trajectory import Trajectory
+    from evenroad.trajectory.files import Json
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,39 +93,27 @@ class RunTask(RobotOptions):
 
         return done.trajectory(speed=self.speed, limits=limits_of(world.robot, self.limits))
 
-    def _record(self) -> dict[str, Any]:
+    def _record(self) -> dict[str, object]:
         """Return the options as plain values, of which `run_task_of` makes them again."""
         values = {each.name: getattr(self, each.name) for each in fields(self) if each.name != "out"}
         return {name: str(value) if isinstance(value, Path) else value for name, value in values.items()}
 
 
-def run_task_of(record: Any, file: Path) -> RunTask:
+def run_task_of(record: Json, file: Path) -> RunTask:
     """Return the options of the record in a trajectory's file; BrokenFile where they are none."""
+    options = {each.field: each for each in options_of(RunTask) if each.field != "out"}
     # Files of earlier versions have no such option.
-    record = {"upright_meshes": False, **record} if isinstance(record, dict) else record
-    sound = isinstance(record, dict) and {*record} == {*_FIELDS}
-    if not sound or not all(isinstance(record[name], kind) for name, kind in _FIELDS.items()):
+    record = {"upright_meshes": False, **record} if isinstance(record, dict) else {}
+    if record.keys() != options.keys() or not all(_is_value(record[name], options[name]) for name in options):
         raise BrokenFile(f"{file} is a damaged trajectory: of the task that it was made for")
-    texts = {name: tuple(map(str, record[name])) for name, kind in _FIELDS.items() if kind is list}
-    paths = {name: Path(record[name]) for name in ("task", "limits", "srdf", "bodies") if record[name] is not None}
+    texts = {name: tuple(map(str, record[name])) for name, each in options.items() if each.default == ()}
+    paths = {name: Path(record[name]) for name, each in options.items() if each.kind is Path and record[name]}
     return RunTask(**{**record, **paths, **texts})
 
 
-_FIELDS: dict[str, Any] = {
-    "task": str,
-    "robot": str | None,
-    "scene": str | None,
-    "speed": float | int,
-    "limits": str | None,
-    "time": float | int | None,
-    "seed": int,
-    "srdf": str | None,
-    "group": list,
-    "bodies": str | None,
-    "use_visuals": bool,
-    "upright_meshes": bool,
-    "package": list,
-    "xacro": list,
-    "padding": list,
-}
-"""Options of a task in the file of its trajectory, and their types there."""
+def _is_value(value: object, option: Option) -> bool:
+    """Return whether a value of JSON is one of an option."""
+    if option.default == ():
+        return isinstance(value, list)
+    kinds = {Path: (str,), float: (float, int)}.get(option.kind, (option.kind,))
+    return (value is None and option.default is None) or isinstance(value, kinds)

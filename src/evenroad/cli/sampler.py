@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from evenroad.errors import InvalidValue, shown
 
@@ -63,7 +63,7 @@ def draw_points(options: SamplerOptions, n: int, d: int) -> PointSet:
     from evenroad.points import make_sampler
 
     name = chosen_sampler(options, n)
-    how: dict[str, Any] = {}
+    how: dict[str, object] = {}
     if name in TAKES["plain"]:
         how = {"scramble": not options.plain, "start": options.skip}
     elif name in TAKES["allow_fewer"]:
@@ -71,15 +71,15 @@ def draw_points(options: SamplerOptions, n: int, d: int) -> PointSet:
     return make_sampler(name, **how).draw(n, d, rng=options.seed)
 
 
-def chosen_rule(options: Any) -> Rule | None:
-    """Return the connection rule of the options `k` and `connect_radius`, or None."""
+def chosen_rule(k: int | None, connect_radius: float | None) -> Rule | None:
+    """Return the connection rule of the options of these names, or None."""
     from evenroad.roadmap import KNearest, Radius
 
-    if options.connect_radius is None:
-        return None if options.k is None else KNearest(options.k)
-    if options.k is not None:
+    if connect_radius is None:
+        return None if k is None else KNearest(k)
+    if k is not None:
         raise InvalidValue("give -k or --connect-radius, not both")
-    return Radius(options.connect_radius)
+    return Radius(connect_radius)
 
 
 def require_seed(seed: int) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,17 +19,17 @@ from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
 from evenroad.poses.constraint import Constraint, part_of
 from evenroad.trajectory import Trajectory, arm_trajectory, controller_joints, limits_of, proved_in
-from evenroad.trajectory.files import trajectory_of
+from evenroad.trajectory.files import Json, trajectory_of
 from evenroad.trajectory.make import DEVIATION
 
 _SAME = 1e-6
 """Largest distance of the first and last states from start and goal [rad or m]."""
 
-Given = tuple[str, str, dict[str, Any]]
+Given = tuple[str, str, dict[str, Json]]
 """A robot, a scene, and the options of the robot's files, as a command names them."""
 
 
-def sent_plan(record: Any, file: Path, fastest: float) -> tuple[Trajectory, str]:
+def sent_plan(record: Json, file: Path, fastest: float) -> tuple[Trajectory, str]:
     """Return the trajectory of a plan's record, or one that is not `fastest` [rad/s] made of its path, and which.
 
     Raises InvalidValue where it is another than its robot and scene are now, or does not keep its limits; NotAvailable
@@ -47,7 +46,7 @@ def sent_plan(record: Any, file: Path, fastest: float) -> tuple[Trajectory, str]
     return proved, "of the plan" if is_kept else f"made for at most {fastest:g} rad/s"
 
 
-def sent_trajectory(record: Any, file: Path, given: Given | None) -> Trajectory:
+def sent_trajectory(record: Json, file: Path, given: Given | None) -> Trajectory:
     """Return the trajectory of a record, proved where the file says that it was planned, or in what is `given`.
 
     Raises as :func:`sent_plan`.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -125,8 +125,8 @@ def trajectory_rows(
     result: PlanResult,
     constraints: Constraint | None,
     make: Callable[..., Trajectory] | None,
-    source: dict[str, Any],
-) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:
+    source: Mapping[str, object],
+) -> tuple[list[tuple[str, str]], dict[str, object] | None]:
     """Write the trajectory of a solved plan, with its `source`; return rows for the table, and its record.
 
     `make` makes it in place of :func:`evenroad.trajectory.arm_trajectory`, from the options.

@@ -5,13 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future
-from typing import Any
+from typing import Any, TypeAlias
 
 from evenroad import __version__
 from evenroad._checks import require_extra
 from evenroad.datasets.workers import Arguments, Result, Workers
 from evenroad.errors import InvalidValue, NotAvailable
 
+DaskClient: TypeAlias = Any
+"""A client of Dask, which has no types."""
 CONNECT_SECONDS = 8.0
 WORKER_SECONDS = 60.0
 """How long a cluster may be without any worker: these may be just starting."""
@@ -54,7 +56,7 @@ def _connect(address: str) -> _DaskExecutor:
 class _DaskExecutor(Executor):
     """Dask's own executor, on a client that it closes."""
 
-    def __init__(self, client: Any, address: str) -> None:
+    def __init__(self, client: DaskClient, address: str) -> None:
         self._client, self._address = client, address
         self._executor = client.get_executor(pure=False)
 

@@ -8,7 +8,6 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from pathlib import Path
-from typing import Any
 
 from evenroad._files import atomic_write, remove_abandoned_parts
 from evenroad.datasets.part import Request, make_part
@@ -45,7 +44,7 @@ def make_parts(
     return todo
 
 
-def claim_folder(folder: Path, request: dict[str, Any], name: str) -> None:
+def claim_folder(folder: Path, request: dict[str, object], name: str) -> None:
     """Write the request into the file `name` of `folder`; if it is there, check that it is the same.
 
     Temporary files that killed processes left in the folder are removed.  Raises InvalidValue, with the first
@@ -96,7 +95,7 @@ def merge(shards: Sequence[Path], folder: Path) -> Request:
 def request_of(folder: Path) -> Request:
     """Return the request of a folder; BrokenFile if it has none."""
     try:
-        values: dict[str, Any] = json.loads((folder / REQUEST).read_bytes())
+        values = json.loads((folder / REQUEST).read_bytes())
         fields = {name: values[name] for name in Request.__dataclass_fields__}
     except (OSError, ValueError, KeyError) as error:
         raise BrokenFile(f"{folder} is no folder of a data set: {error}") from None

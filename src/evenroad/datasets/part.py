@@ -22,8 +22,10 @@ from evenroad.trajectory.arm import arm_trajectory
 STATES = 64
 """Number of states of a trajectory that are kept, evenly in time."""
 
+ArrowArray: TypeAlias = Any
+"""An array of pyarrow, which has no types."""
 Format = Literal["parquet", "hdf5"]
-_Columns: TypeAlias = "dict[str, Floats | np.ndarray[Any, np.dtype[Any]]]"
+Array: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.generic]]
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class Request:
         """Return the name of the file of a part."""
         return f"part-{part:06d}.{'parquet' if self.format == 'parquet' else 'h5'}"
 
-    def values(self) -> dict[str, Any]:
+    def values(self) -> dict[str, object]:
         """Return the request as plain values, for the card."""
         return {**asdict(self), "sources": list(self.sources), "states": STATES, "evenroad": __version__}
 
@@ -72,7 +74,7 @@ def make_part(request: Request, part: int) -> bytes:
     for row in found.rows.tolist():
         path = found.waypoints[offsets[row] : offsets[row + 1]]
         durations[row], states[row] = timed(queries.worlds[of[row]], path)
-    columns = {
+    columns: dict[str, Array] = {
         "solved": counts > 0,
         "cost": cost,
         "duration": durations,
@@ -98,16 +100,16 @@ def timed(world: ArmWorld, path: Floats) -> tuple[float, Floats]:
     return float(trajectory.duration), np.stack(columns, axis=1)
 
 
-def _parquet(columns: _Columns, waypoints: Floats, offsets: Ints, queries: Queries) -> bytes:
+def _parquet(columns: dict[str, Array], waypoints: Floats, offsets: Ints, queries: Queries) -> bytes:
     arrow = require_extra("pyarrow", "parquet", "a data set")
     parquet = require_extra("pyarrow.parquet", "parquet", "a data set")
 
-    def nested(array: Any) -> Any:
+    def nested(array: Array) -> ArrowArray:
         if array.ndim == 1:
             return arrow.array(array)
         return arrow.FixedSizeListArray.from_arrays(nested(array.reshape(-1, *array.shape[2:])), array.shape[1])
 
-    table = {name: nested(each) if isinstance(each, np.ndarray) else each for name, each in columns.items()}
+    table: dict[str, ArrowArray] = {name: nested(each) for name, each in columns.items()}
     table["path"] = arrow.ListArray.from_arrays(arrow.array(offsets.astype(np.int32)), nested(waypoints))
     scene_of = arrow.array(np.array(queries.scene_of, dtype=np.int32))
     table["scene"] = arrow.DictionaryArray.from_arrays(scene_of, arrow.array(queries.scenes))
@@ -116,10 +118,10 @@ def _parquet(columns: _Columns, waypoints: Floats, offsets: Ints, queries: Queri
     return file.getvalue()
 
 
-def _hdf5(columns: _Columns, waypoints: Floats, offsets: Ints, queries: Queries) -> bytes:
+def _hdf5(columns: dict[str, Array], waypoints: Floats, offsets: Ints, queries: Queries) -> bytes:
     h5py = require_extra("h5py", "hdf5", "a data set in HDF5")
     file = BytesIO()
-    arrays: dict[str, Any] = {
+    arrays: dict[str, Array | list[str]] = {
         **columns,
         "waypoints": waypoints,
         "offsets": offsets,

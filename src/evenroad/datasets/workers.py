@@ -66,7 +66,7 @@ class ProcessPool(ProcessPoolExecutor):
     """
 
     def __init__(
-        self, jobs: int, initializer: Callable[..., object] | None = None, initargs: tuple[Any, ...] = ()
+        self, jobs: int, initializer: Callable[..., object] | None = None, initargs: tuple[object, ...] = ()
     ) -> None:
         # Spawned, not forked: a fork of a process with threads (BLAS) can hang.
         super().__init__(
@@ -130,7 +130,7 @@ def _dropped_interrupts_raised() -> Iterator[None]:
             raise KeyboardInterrupt
 
 
-def _settle(initializer: Callable[..., object] | None, initargs: tuple[Any, ...]) -> None:
+def _settle(initializer: Callable[..., object] | None, initargs: tuple[object, ...]) -> None:
     """Prepare a worker process, before NumPy is imported there."""
     for name in THREAD_VARIABLES:
         os.environ.setdefault(name, "1")

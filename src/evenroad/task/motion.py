@@ -45,7 +45,8 @@ class Motion:
         """Where it ends, (dim,)."""
         path = self.parts[-1].path
         assert path is not None, "only of a motion that was found"
-        return path[-1]
+        last: Floats = path[-1]
+        return last
 
     def gone_on(self, at: Floats) -> Motion:
         """Return the motion from the numbers of a configuration on, (dim,), up to whole turns where it begins."""

@@ -289,7 +289,7 @@ Move = MoveTo | AlongCurve
 Step = Move | Attach | Detach | Wait
 
 
-def _require_poses(step: AlongCurve, poses: Sequence[Any]) -> None:
+def _require_poses(step: AlongCurve, poses: Sequence[object]) -> None:
     """Refuse what is no whole pose, poses of several tips, and a speed that is none."""
     kind = type(step).__name__
     for pose in poses:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import reduce
 from operator import and_
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from evenroad._call import explains_calls
 from evenroad._yaml import numbers, read_mapping, require_keys
@@ -20,6 +20,7 @@ from evenroad.poses.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.task.steps import Attach, Detach, MoveAlong, MoveCircular, MoveLinear, MoveTo, Step, Wait
 from evenroad.task.task import Task
 
+_T = TypeVar("_T")
 _TO_POSES = ("tip", "frame", "free_axis", "tolerance")
 _OF_A_CURVE = ("tip", "frame", "speed")
 _OF_A_MOTION = ("goals", "poses", "approach", "retreat", "away", "upright", "constraints", *_TO_POSES)
@@ -35,7 +36,7 @@ class TaskFile:
     task: Task
     start: str
     robot: str | None = None
-    scene: str | Mapping[str, Any] | None = None
+    scene: str | Mapping[str, object] | None = None
 
 
 @explains_calls
@@ -91,13 +92,13 @@ def load_task(path: str | os.PathLike[str]) -> TaskFile:
     return TaskFile(Task(made), said["start"], _beside(file, said.get("robot")), _beside(file, said.get("scene")))
 
 
-def _beside(file: Path, source: Any) -> Any:
+def _beside(file: Path, source: _T) -> _T | str:
     """Return a path beside the task's file, where there is one of this name."""
     found = file.parent / source if isinstance(source, str) else None
     return source if found is None or not found.is_file() else str(found)
 
 
-def _step(said: Any) -> Step:
+def _step(said: object) -> Step:
     """Return a step from ``{kind: what}``."""
     if not isinstance(said, Mapping) or len(said) != 1:
         raise InvalidValue(f"a step must be one of {', '.join(f'{kind}: ...' for kind in _STEPS)}, got {shown(said)}")
@@ -106,11 +107,11 @@ def _step(said: Any) -> Step:
     return _STEPS[kind](what)
 
 
-def _move_to(what: Any) -> MoveTo:
+def _move_to(what: object) -> MoveTo:
     if isinstance(what, str):
         return MoveTo(what)
     said = _mapping("move_to", what, (), _OF_A_MOTION)
-    goals: list[Any] = [str(each) for each in _texts("goals", said)]
+    goals: list[str | PoseGoal] = [str(each) for each in _texts("goals", said)]
     tip, frame = str(said.get("tip", "")), str(said.get("frame", ""))
     axis = as_axis("free_axis", said["free_axis"]) if "free_axis" in said else None
     near, tilt, *_ = (*as_numbers("tolerance", str(said.get("tolerance", "0 0")), (1, 2)), 0.0)
@@ -128,23 +129,23 @@ def _move_to(what: Any) -> MoveTo:
     return MoveTo(goals[0] if len(goals) == 1 else goals, constraints=reduce(and_, keeps) if keeps else None, **lines)
 
 
-def _move_linear(what: Any) -> MoveLinear:
+def _move_linear(what: object) -> MoveLinear:
     said = _mapping("move_linear", {"pose": what} if isinstance(what, str) else what, ("pose",), _OF_A_CURVE)
     return MoveLinear(_whole(said, said["pose"]), speed=said.get("speed"))
 
 
-def _move_along(what: Any) -> MoveAlong:
+def _move_along(what: object) -> MoveAlong:
     said = _mapping("move_along", what, ("poses",), ("blend", "spline", *_OF_A_CURVE))
     options = {name: said[name] for name in ("blend", "spline", "speed") if name in said}
     return MoveAlong([_whole(said, text) for text in _texts("poses", said)], **options)  # type: ignore[arg-type]
 
 
-def _move_circular(what: Any) -> MoveCircular:
+def _move_circular(what: object) -> MoveCircular:
     said = _mapping("move_circular", what, ("via", "to"), _OF_A_CURVE)
     return MoveCircular(_whole(said, said["via"]), _whole(said, said["to"]), speed=said.get("speed"))
 
 
-def _whole(said: Mapping[str, Any], text: Any) -> PoseGoal:
+def _whole(said: Mapping[str, object], text: object) -> PoseGoal:
     """Return a pose with a rotation, of the step's tip."""
     pose, turned = pose_of(str(text))
     if not turned:
@@ -152,12 +153,12 @@ def _whole(said: Mapping[str, Any], text: Any) -> PoseGoal:
     return PoseGoal(pose, str(said.get("tip", "")), str(said.get("frame", "")))
 
 
-def _attach(what: Any) -> Attach:
+def _attach(what: object) -> Attach:
     said = {"object": what} if isinstance(what, str) else what
     return Attach(**_mapping("attach", said, ("object",), ("link", "touches", "depth", "reach")))
 
 
-def _detach(what: Any) -> Detach:
+def _detach(what: object) -> Detach:
     said = {"object": what} if isinstance(what, str) else what
     return Detach(**_mapping("detach", said, ("object",), ("onto",)))
 
@@ -166,19 +167,19 @@ def _wait(what: Any) -> Wait:
     return Wait(what)
 
 
-def _mapping(kind: str, what: Any, required: tuple[str, ...], optional: tuple[str, ...]) -> dict[str, Any]:
+def _mapping(kind: str, what: object, required: tuple[str, ...], optional: tuple[str, ...]) -> dict[str, Any]:
     if not isinstance(what, Mapping):
         raise InvalidValue(f"{kind} must have key: value pairs, got {shown(what)}")
     require_keys([str(key) for key in what], required, optional, kind)
     return dict(what)
 
 
-def _texts(name: str, said: Mapping[str, Any]) -> list[Any]:
+def _texts(name: str, said: Mapping[str, object]) -> list[object]:
     given = said.get(name, [])
     return given if isinstance(given, list) else [given]
 
 
-_STEPS: dict[str, Callable[[Any], Step]] = {
+_STEPS: dict[str, Callable[[object], Step]] = {
     "move_to": _move_to,
     "move_linear": _move_linear,
     "move_along": _move_along,

@@ -8,7 +8,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import yaml
@@ -26,6 +26,10 @@ from evenroad.trajectory.urscript import movej_script, servoj_script
 
 FORMAT = "evenroad trajectory 1"
 TOPIC = "/joint_trajectory"
+Json: TypeAlias = Any
+"""A value of JSON, which is checked as it is read."""
+Message: TypeAlias = Any
+"""A message of ROS 2, whose types are made at run time."""
 _TABLES = ("positions", "velocities", "accelerations")
 _MESSAGE = "trajectory_msgs/msg/JointTrajectory"
 
@@ -85,7 +89,7 @@ def load_trajectory(path: str | os.PathLike[str]) -> Trajectory:
     return trajectory_of(read_json_file(path, "trajectory"), path)
 
 
-def trajectory_of(record: Any, path: str | os.PathLike[str]) -> Trajectory:
+def trajectory_of(record: Json, path: str | os.PathLike[str]) -> Trajectory:
     """Return the trajectory of a JSON record of a file; BrokenFile if its numbers do not fit together."""
     if not isinstance(record, dict) or record.get("format") != FORMAT:
         wrote = "as `evenroad plan --trajectory` writes it"
@@ -97,7 +101,7 @@ def trajectory_of(record: Any, path: str | os.PathLike[str]) -> Trajectory:
         raise BrokenFile(f"{path} is a damaged trajectory: {error}") from error
 
 
-def _from_record(record: dict[str, Any]) -> Trajectory:
+def _from_record(record: Json) -> Trajectory:
     names = tuple(map(str, record["joint_names"]))
     limits = Limits(**record["limits"])
     times = np.array(record["times"], dtype=np.float64)
@@ -146,7 +150,7 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
     return trajectory
 
 
-def trajectory_record(trajectory: Trajectory, order: Sequence[str] | None = None) -> dict[str, Any]:
+def trajectory_record(trajectory: Trajectory, order: Sequence[str] | None = None) -> dict[str, object]:
     """Return a trajectory as plain JSON values, as :func:`load_trajectory` reads them."""
     kinds = "velocity", "acceleration", "jerk", "deceleration"
     limits = {
@@ -202,7 +206,9 @@ def _yaml(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
     return text.encode()
 
 
-def joint_trajectory(trajectory: Trajectory, make: Callable[..., Any], order: Sequence[str] | None = None) -> Any:
+def joint_trajectory(
+    trajectory: Trajectory, make: Callable[..., Message], order: Sequence[str] | None = None
+) -> Message:
     """Return a trajectory as ROS 2's ``trajectory_msgs/JointTrajectory``.
 
     Parameters
@@ -214,7 +220,7 @@ def joint_trajectory(trajectory: Trajectory, make: Callable[..., Any], order: Se
     """
     names, tables = trajectory.columns(order)
 
-    def point(time: float, *rows: Floats) -> Any:
+    def point(time: float, *rows: Floats) -> Message:
         fields = dict(zip(_TABLES, rows, strict=True))
         since = dict(zip(("sec", "nanosec"), _stamp(time), strict=True))
         duration = make("builtin_interfaces/msg/Duration", **since)

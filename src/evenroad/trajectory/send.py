@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import multiprocessing
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import Any
+from multiprocessing.connection import Connection
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -29,10 +30,24 @@ _READ = ["timestamp", "actual_q", "robot_mode", "safety_mode", "runtime_state"]
 _PATIENCE = 8.0
 """Time without a message after which the connection counts as lost [s]."""
 
+Rtde: TypeAlias = Any
+"""A connection of ur_rtde, whose bindings have no types."""
 _ERRORS = {kind.__name__: kind for kind in (InvalidValue, NotAvailable)}
 _GAIN = 300.0
 _STOP = 2.0
 """Deceleration at the end, and when something is wrong [rad/s^2]."""
+
+
+@dataclass(frozen=True)
+class _Drive:
+    """What is sent to an arm: states, (n, joints) [rad], one a cycle [s], of named joints, to a model at an address."""
+
+    host: str
+    model: str
+    names: Sequence[str]
+    positions: Floats
+    cycle: float
+    go: bool
 
 
 @dataclass(frozen=True)
@@ -85,8 +100,8 @@ def send_trajectory(
     names, positions, cycle = checked_states(trajectory, fastest, order)
     spawned = multiprocessing.get_context("spawn")
     ours, theirs = spawned.Pipe()
-    talk = (theirs, host, names, positions, cycle, model, go)
-    process = spawned.Process(target=_talk, args=talk, daemon=True)
+    drive = _Drive(host, model, names, positions, cycle, go)
+    process = spawned.Process(target=_talk, args=(theirs, drive), daemon=True)
     process.start()
     theirs.close()
     try:
@@ -122,7 +137,7 @@ def checked_states(
     return names, positions, cycle
 
 
-def _listened(pipe: Any, host: str, progress: Callable[[int, int], None] | None) -> Sent:
+def _listened(pipe: Connection, host: str, progress: Callable[[int, int], None] | None) -> Sent:
     """Return the result of the process that talks to the arm; raise NotAvailable where it is silent."""
     while True:
         if not pipe.poll(_PATIENCE):
@@ -139,11 +154,11 @@ def _listened(pipe: Any, host: str, progress: Callable[[int, int], None] | None)
             raise _ERRORS[kind](said[0])
 
 
-def _talk(pipe: Any, host: str, names: Sequence[str], positions: Floats, cycle: float, model: str, go: bool) -> None:
+def _talk(pipe: Connection, drive: _Drive) -> None:
     """Check, and drive if `go`, in a process of its own, since ur_rtde may wait for ever."""
     try:
         pipe.send(("ready", 0))
-        sent = _checked_and_driven(pipe, host, names, positions, cycle, model, go)
+        sent = _checked_and_driven(pipe, drive)
         pipe.send(("done", sent.states, sent.largest_error))
     except EvenroadError as error:
         pipe.send((type(error).__name__, str(error)))
@@ -152,40 +167,36 @@ def _talk(pipe: Any, host: str, names: Sequence[str], positions: Floats, cycle: 
         pass
 
 
-def _checked_and_driven(
-    pipe: Any, host: str, names: Sequence[str], positions: Floats, cycle: float, model: str, go: bool
-) -> Sent:
+def _checked_and_driven(pipe: Connection, drive: _Drive) -> Sent:
     receive = require_extra("rtde_receive", "ur", "sending to an arm")
-    with _connection_to(host):
-        state = receive.RTDEReceiveInterface(host, 1.0 / cycle, _READ)
+    with _connection_to(drive.host):
+        state = receive.RTDEReceiveInterface(drive.host, 1.0 / drive.cycle, _READ)
     try:
-        _require_ready(host, state, names, positions[0], model)
-        if not go:
+        _require_ready(state, drive)
+        if not drive.go:
             return Sent(0, 0.0)
-        drive = require_extra("rtde_control", "ur", "sending to an arm")
-        with _connection_to(host):
-            control = drive.RTDEControlInterface(host, 1.0 / cycle)
-        return _driven(pipe, control, state, names, positions, cycle)
+        controls = require_extra("rtde_control", "ur", "sending to an arm")
+        with _connection_to(drive.host):
+            control = controls.RTDEControlInterface(drive.host, 1.0 / drive.cycle)
+        return _driven(pipe, control, state, drive)
     finally:
         with suppress(Exception):
             state.disconnect()
 
 
-class _connection_to:
-    """Turns errors of ur_rtde into one line about the controller."""
-
-    def __init__(self, host: str) -> None:
-        self.host = host
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, *_: object) -> None:
-        if isinstance(error, RuntimeError | ValueError | OSError) and not isinstance(error, EvenroadError):
-            raise NotAvailable(f"no answer that makes sense from a controller at {self.host!r}: {error}") from None
+@contextmanager
+def _connection_to(host: str) -> Iterator[None]:
+    """Turn errors of ur_rtde into one line about the controller."""
+    try:
+        yield
+    except EvenroadError:
+        raise
+    except (RuntimeError, ValueError, OSError) as error:
+        raise NotAvailable(f"no answer that makes sense from a controller at {host!r}: {error}") from None
 
 
-def _require_ready(host: str, state: Any, names: Sequence[str], start: Floats, model: str) -> None:
+def _require_ready(state: Rtde, drive: _Drive) -> None:
+    host, model, start = drive.host, drive.model, drive.positions[0]
     dashboards = require_extra("dashboard_client", "ur", "sending to an arm")
     with _connection_to(host):
         dashboard = dashboards.DashboardClient(host)
@@ -205,13 +216,14 @@ def _require_ready(host: str, state: Any, names: Sequence[str], start: Floats, m
     if off.max() > AT_START:
         i = int(np.argmax(off))
         raise InvalidValue(
-            f"the arm is not at the start: {names[i]} is at {q[i]:.4f} rad, more than {AT_START} from {start[i]:.4f}"
+            f"the arm is not at the start: {drive.names[i]} is at {q[i]:.4f} rad,"
+            f" more than {AT_START} from {start[i]:.4f}"
         )
 
 
-def _driven(pipe: Any, control: Any, state: Any, names: Sequence[str], positions: Floats, cycle: float) -> Sent:
+def _driven(pipe: Connection, control: Rtde, state: Rtde, drive: _Drive) -> Sent:
     """Send the states; stop the arm in any case."""
-    worst, i = 0.0, 0
+    positions, cycle, worst, i = drive.positions, drive.cycle, 0.0, 0
     try:
         # The last one is repeated until the arm has caught up.
         states = np.concatenate([positions, np.repeat(positions[-1:], held_cycles(cycle), axis=0)])
@@ -225,7 +237,7 @@ def _driven(pipe: Any, control: Any, state: Any, names: Sequence[str], positions
             off = np.abs(np.array(state.getActualQ()) - q)
             worst = max(worst, float(off.max()))
             if worst > ASTRAY:
-                name = names[int(np.argmax(off))]
+                name = drive.names[int(np.argmax(off))]
                 raise NotAvailable(f"stopped after {i * cycle:.3f} s: {name} is {worst:.3f} rad astray")
             pipe.send(("sent", i + 1, len(states)))
             control.waitPeriod(began)

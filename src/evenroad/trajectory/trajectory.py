@@ -53,7 +53,7 @@ class Trajectory:
     radii : tuple of float
         Distance of the tip from each inner waypoint at which rounding may begin [m], see
         :func:`evenroad.trajectory.urscript.with_radii`; empty if not computed.
-    source : mapping of str to Any
+    source : mapping of str to JSON values
         What ``evenroad plan`` or ``evenroad run`` made it of, as they write it; empty if unknown.
 
     Examples

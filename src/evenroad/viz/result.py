@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -16,6 +15,7 @@ from evenroad.planning.result import PlanResult
 from evenroad.viz.arm import draw_arm_plan
 from evenroad.viz.plan import draw_plan
 from evenroad.viz.sheet import save_png
+from evenroad.world import World
 from evenroad.world.gridmap import DiskWorld
 from evenroad.world.gridmap.grid import CellGrid
 
@@ -25,7 +25,9 @@ _LONG_SIDE = 600
 """Least length of the long side of a map's picture [pixels]."""
 
 
-def plot_result(result: PlanResult, path: str | os.PathLike[str] | None = None, world: Any = None) -> Image.Image:
+def plot_result(
+    result: PlanResult, path: str | os.PathLike[str] | None = None, world: World | None = None
+) -> Image.Image:
     """Return what :meth:`PlanResult.plot` does."""
     world = result.world if world is None else world
     if isinstance(world, KeptWorld):

@@ -5,7 +5,9 @@ from __future__ import annotations
 import sys
 import webbrowser
 from importlib import import_module
-from typing import Any
+from types import ModuleType
+
+from PIL import Image
 
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, NotAvailable, shown
@@ -20,7 +22,7 @@ HEIGHT = 600
 """Height of the page below a notebook's cell [pixels]."""
 
 
-def show(what: PlanResult | GridMap | ArmWorld, q: Any = None, *, port: int = 0) -> Any:
+def show(what: PlanResult | GridMap | ArmWorld, q: object = None, *, port: int = 0) -> ArmPage | Image.Image:
     """Show a plan: of an arm as a page in the browser, with its path under a slider; others and maps as a picture.
 
     An arm in its scene is a picture, too: the robot at a configuration, with what touches in red.  Its title says what
@@ -86,7 +88,7 @@ def show(what: PlanResult | GridMap | ArmWorld, q: Any = None, *, port: int = 0)
     return page
 
 
-def _notebook() -> Any:
+def _notebook() -> ModuleType | None:
     """Return what displays things in a notebook, None outside of one."""
     module = sys.modules.get("IPython")
     shell = None if module is None else module.get_ipython()
