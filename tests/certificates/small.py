@@ -4,6 +4,7 @@ import numpy as np
 
 import evenroad as er
 from evenroad.certificates.certify import Sources, certify
+from evenroad_verify.claim import read_inputs
 
 URDF = """<robot name="arm">
   <link name="base"/>
@@ -21,9 +22,15 @@ def sources_in(folder, scene, urdf=URDF):
     return Sources(folder / "arm.urdf", folder / "scene.yaml")
 
 
-def certificate_in(folder, scene, path, urdf=URDF):
+def certificate_in(folder, scene, path, **of_world):
     """Return sources and certificate of a path that nobody has planned."""
-    sources = sources_in(folder, scene, urdf)
-    world = er.ArmWorld(er.load_robot(sources.robot), er.load_scene(sources.scene))
+    sources = sources_in(folder, scene)
+    read = er.load_scene(sources.scene)
+    world = er.ArmWorld(er.robot.in_scene(er.load_robot(sources.robot), read), read, **of_world)
     certify(world, np.array(path, dtype=float), sources, folder / "arm.cert")
     return sources, (folder / "arm.cert").read_bytes()
+
+
+def inputs_of(sources):
+    """Return what the checker reads of the files."""
+    return read_inputs(sources.robot, sources.scene, None, {})

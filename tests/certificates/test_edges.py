@@ -6,20 +6,15 @@ import trimesh
 from scipy.optimize import brentq
 
 from evenroad.errors import InvalidValue
-from evenroad_verify.claim import read_inputs
 from evenroad_verify.command import verify
 from evenroad_verify.errors import Refused
-from tests.certificates.small import certificate_in, sources_in
+from tests.certificates.small import certificate_in, inputs_of, sources_in
 from tests.certificates.written import accepts, with_digest
 
 WALL = "obstacles:\n  wall: {{shape: box, size: [0.2, 0.2, 0.2], xyz: [{x!r}, 0.0, 0.0]}}\n"
 MESH = "obstacles:\n  shell: {shape: mesh, file: shell.stl}\n"
 # The ball passes the wall at its nearest in the middle of the motion, 1.1 m from the axis.
 PATH = [[-0.4], [0.4]]
-
-
-def inputs_of(sources):
-    return read_inputs(sources.robot, sources.scene, None, {})
 
 
 @pytest.mark.parametrize("apart", [2e-5, 1e-6, 2e-7])

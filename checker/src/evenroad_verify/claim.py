@@ -135,14 +135,12 @@ def _disabled(robot: Robot, scene: Scene, bodies: dict[str, list[Shape]]) -> set
 
 def _require_limits(frames: Frames, scene: Scene, certificate: Certificate) -> None:
     """Raise Refused if a control point leaves the limits of a joint, or those of the scene."""
-    values = frames.factor * certificate.curves[:, :, frames.column] + frames.offset
-    for k, joint in enumerate(frames.joints):
-        within = values[:, :, k].min() >= joint.lower - BEYOND and values[:, :, k].max() <= joint.upper + BEYOND
-        demand(within or joint.upper - joint.lower > 1000.0, f"{joint.name} leaves its limits")
+    limits = {joint.name: (joint.lower, joint.upper) for joint in frames.joints}
     for column, name in enumerate(certificate.joints):
-        low, high = scene.limits.get(name, (-np.inf, np.inf))
-        some = certificate.curves[:, :, column]
-        demand(some.min() >= low - BEYOND and some.max() <= high + BEYOND, f"{name} leaves the limits of the scene")
+        for low, high in (limits[name], scene.limits.get(name, (-np.inf, np.inf))):
+            some = certificate.curves[:, :, column]
+            within = some.min() >= low - BEYOND and some.max() <= high + BEYOND
+            demand(within or high - low > 1000.0, f"{name} leaves its limits")
 
 
 def _silent(

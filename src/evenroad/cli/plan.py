@@ -43,7 +43,7 @@ class PlanOptions(SamplerOptions):
             *("start_velocity", "goal_velocity", "deviation", "step", "controller_joints"),
         ),
         **OF_ROBOTS,
-        "results": ("out", "no_picture", "csv"),
+        "results": ("out", "no_picture", "csv", "certificate"),
     }
     """Title of a group of the help -> its options."""
     planner: ClassVar[str]
@@ -260,6 +260,8 @@ class PlanArm(PlanOptions, RobotOptions):
     """Largest step of a motion check, > 0, in radians."""
     clearance: float = 0.0
     """Distance to keep from all obstacles, 0 to 1, in metres; not from the arm itself."""
+    certificate: Path | None = None
+    """Write a certificate here: a proof that the path is free, which evenroad-verify checks without evenroad."""
     trajectory: Repeatable[tuple[Path, ...]] = ()
     """Write a trajectory: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a bag), .script (URScript,
     by the clock) or .movej.script (waypoint by waypoint).  You can give several."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict, replace
 from functools import reduce
 from operator import and_
 from pathlib import Path
 from typing import Any
 
+from evenroad._files import require_writable_folder
 from evenroad._time_limit import within
 from evenroad.cli import interrupted
 from evenroad.cli.plan import PlanArm, wants_points
@@ -45,6 +47,7 @@ def plan_arm(plan: PlanArm) -> int:
     inputs = (find_scene(plan.world), *find_robot(plan.robot), plan.srdf, plan.bodies, plan.roadmap)
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
+    _require_certifiable(plan, [path for path in inputs if path is not None])
     if plan.roadmap is not None and (wants_points(plan) or plan.improve):
         raise InvalidValue("--roadmap goes without points and without --improve: it has milestones of its own")
     kept = None if plan.roadmap is None else load_roadmap(plan.roadmap)
@@ -85,6 +88,7 @@ def plan_arm(plan: PlanArm) -> int:
     source = {"plan": {name: record[name] for name in ("query", "made_of")}}
     more_rows, record["trajectory"] = trajectory_rows(plan, problem, result, constraints, make, source)
     rows = [*_rows(problem), *([] if meshes is None else [("second check", str(meshes))]), *more_rows]
+    rows += _certified(plan, result)
 
     def draw(file: Path) -> None:
         from evenroad.viz.arm import save_arm_picture
@@ -93,6 +97,26 @@ def plan_arm(plan: PlanArm) -> int:
 
     code = finish(files, result, record, world.robot.group, draw, rows)
     return interrupted() if stopped else code
+
+
+def _require_certifiable(plan: PlanArm, inputs: Iterable[Path]) -> None:
+    """Raise InvalidValue for a certificate of bodies that the robot's URDF lacks, or in place of an input."""
+    if plan.certificate is None:
+        return
+    if plan.bodies is not None or plan.use_visuals:
+        raise InvalidValue("--certificate goes without --bodies and --use-visuals: it is about the URDF's own bodies")
+    if plan.certificate.resolve() in {path.resolve() for path in inputs}:
+        raise InvalidValue(f"--certificate would overwrite the file {plan.certificate}")
+    require_writable_folder(plan.certificate)
+
+
+def _certified(plan: PlanArm, result: PlanResult) -> list[tuple[str, str]]:
+    """Write the certificate of a path, if there is one and it is wanted; return its row for the table."""
+    if plan.certificate is None or not result.solved:
+        return []
+    packages = plan.options()["packages"]
+    result.certify(plan.certificate, robot=plan.robot, scene=plan.world, srdf=plan.srdf, **packages)
+    return [("certificate", f"{plan.certificate}, which evenroad-verify checks")]
 
 
 def _options(plan: PlanArm, problem: Problem, result: PlanResult) -> dict[str, Any]:
