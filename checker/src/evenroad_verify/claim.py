@@ -72,10 +72,7 @@ def claim_of(inputs: Inputs, certificate: Certificate) -> Claim:
         bodies[held.name] = [shape.at(place[held.link][1]) for shape in held.shapes]
     demand(certificate.padding.keys() <= bodies.keys(), "a link is padded that has no shape")
     _require_limits(frames, scene, certificate)
-    around, silent = (
-        _around(frames, nodes, bodies, place, scene, certificate),
-        _silent(robot, scene, bodies, place, certificate),
-    )
+    around = _around(frames, nodes, bodies, place, scene, certificate)
     whole = {name: nodes.whole(place[name][0], shapes) for name, shapes in bodies.items()}
     touching = _disabled(robot, scene, bodies)
     names = list(bodies)
@@ -85,7 +82,7 @@ def claim_of(inputs: Inputs, certificate: Certificate) -> Claim:
         for second in names[i + 1 :]
         if place[first][0] != place[second][0] and frozenset((first, second)) not in touching
     ]
-    return Claim(frames, nodes, (*around, *among), silent)
+    return Claim(frames, nodes, (*around, *among), _silent(robot, scene, bodies, place, certificate))
 
 
 def _around(
@@ -109,10 +106,8 @@ def _around(
         pairs.append(Pair(node, obstacles[touched], keep, (" and ".join(names), "the obstacles")))
     _, out = frames.far(certificate.curves)
     reach = max((out[nodes.frame[node]] + nodes.reach[node] for pair in pairs for node in (pair.first,)), default=0.0)
-    demand(
-        all(each.above == 0.0 or reach + each.above < GROUND for each in scene.obstacles),
-        "the robot reaches beyond a plane",
-    )
+    planes = [each.above for each in scene.obstacles if each.above is not None]
+    demand(reach + max(planes, default=0.0) < GROUND or not planes, "the robot reaches beyond a plane")
     return pairs
 
 
@@ -154,6 +149,7 @@ def _silent(
         "links that no joint of the path moves, with obstacles": ", ".join(
             name for name in bodies if place[name][0] == 0
         ),
+        "links that are fixed to each other": "with each other",
         "pairs of links": f"{len(disabled)} that the SRDF disables"
         if disabled is not None
         else "neighbours, as no SRDF disables any",

@@ -77,13 +77,13 @@ def frames_of(robot: Robot, certificate: Certificate) -> Frames:
     demand(set(certificate.held) <= names.keys(), "a joint that is held is none of the robot's")
     place: dict[str, tuple[int, Pose]] = {robot.links[0]: (0, (np.eye(3), np.zeros(3)))}
     moved: list[tuple[int, Joint, Pose, int, float, float]] = []
-    found = set()
+    found = set[str]()
     for joint in robot.joints:
         frame, at = place[joint.parent]
         at = times(at, joint.origin)
         leader, factor, offset = _leader(joint, names)
         if joint.kind != "fixed" and leader in certificate.joints:
-            found.add(leader)
+            found |= {leader} if leader == joint.name else set()
             moved.append((frame, joint, at, certificate.joints.index(leader), factor, offset))
             place[joint.child] = len(moved), (np.eye(3), np.zeros(3))
             continue

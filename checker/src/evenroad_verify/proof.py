@@ -27,20 +27,15 @@ def prove(claim: Claim, certificate: Certificate, depth: int) -> tuple[float, In
     given = np.cumsum(answers > CENTRES) - 1
     demand(int((answers > CENTRES).sum()) == len(certificate.directions), "directions are missing or left over")
     far, out = claim.frames.far(certificate.curves)
-    reach = (
-        np.array(claim.nodes.reach)[tasks[:, FIRST : SECOND + 1]]
-        + out[np.array(claim.nodes.frame)[tasks[:, FIRST : SECOND + 1]]]
-    )
+    reach = (np.array(claim.nodes.reach) + out[np.array(claim.nodes.frame)])[tasks[:, FIRST : SECOND + 1]]
     largest = 1.0 + np.abs(certificate.curves).max() * max(1.0, float(np.abs(claim.frames.factor).max()))
     demand(ROUNDING * depth * reach.max(initial=0.0) * largest < LEAST, "the robot is too large for double precision")
+    directions = np.concatenate([certificate.directions, np.zeros((1, 3))])  # of those without one any will do
     keep, least = np.array([pair.keep for pair in claim.pairs]), np.inf
     motions = Motions(claim, certificate.curves, far)
     for start in range(0, len(tasks), _AT_ONCE):
         some = slice(start, start + _AT_ONCE)
-        directions = (
-            certificate.directions[given[some]] if len(certificate.directions) else np.zeros((len(tasks[some]), 3))
-        )
-        gap = motions.gaps(tasks[some], answers[some], directions) - keep[tasks[some, PAIR]]
+        gap = motions.gaps(tasks[some], answers[some], directions[given[some]]) - keep[tasks[some, PAIR]]
         worst = int(gap.argmin())
         if not gap[worst] > LEAST:  # nor if it is no number
             first, second = claim.pairs[tasks[start + worst, PAIR]].names
@@ -52,6 +47,7 @@ def prove(claim: Claim, certificate: Certificate, depth: int) -> tuple[float, In
 def expand(claim: Claim, certificate: Certificate) -> tuple[Ints, Ints]:
     """Return the tasks that are answered by a direction, one row each, and these answers."""
     pairs = np.array([(pair.first, pair.second) for pair in claim.pairs], np.int64).reshape(-1, 2)
+    demand(len(certificate.curves) * len(pairs) <= len(certificate.answers), "a task has no answer")
     motion, pair = np.divmod(np.arange(len(certificate.curves) * len(pairs)), max(1, len(pairs)))
     zero = np.zeros_like(motion)
     tasks = np.stack([motion, zero, zero, *pairs[pair].T, pair], axis=1)
@@ -97,14 +93,8 @@ class Motions:
         key, at = np.unique(_middles(tasks), return_inverse=True)
         rate, bend, rotation, origin, turning, along = self._middle_states(key)
         fastest, bend = np.abs(rate)[at] + half[:, None] * bend[at], bend[at]
-        frame, centre = (
-            np.array(nodes.frame)[tasks[:, FIRST : SECOND + 1]],
-            np.array(nodes.centre)[tasks[:, FIRST : SECOND + 1]],
-        )
-        box, reach = (
-            np.array(nodes.box)[tasks[:, FIRST : SECOND + 1]],
-            np.array(nodes.reach)[tasks[:, FIRST : SECOND + 1]],
-        )
+        tables = nodes.frame, nodes.centre, nodes.box, nodes.reach
+        frame, centre, box, reach = (np.array(table)[tasks[:, FIRST : SECOND + 1]] for table in tables)
         turns, origins = rotation[at[:, None], frame], origin[at[:, None], frame]
         middles = origins + np.einsum("nsij,nsj->nsi", turns, centre)
         direction = np.where((answers == CENTRES)[:, None], middles[:, 1] - middles[:, 0], given)
@@ -119,9 +109,8 @@ class Motions:
             for e, time in enumerate((half, -half)):
                 f = sign * (direction + time[:, None] * np.cross(direction, spin))
                 local = np.einsum("nij,ni->nj", turns[:, s], f)
-                far = np.einsum("nc,nc->n", local, centre[:, s]) + np.abs(
-                    np.einsum("nij,nj->ni", box[:, s], local)
-                ).sum(1)
+                far = np.einsum("nc,nc->n", local, centre[:, s])
+                far += np.abs(np.einsum("nij,nj->ni", box[:, s], local)).sum(1)
                 self._reach_by_corners(tasks[:, FIRST + s], by_corners, local, far)
                 ends[e] += far + np.einsum("nc,nc->n", f, origins[:, s])
                 ends[e] += sign * time * np.einsum("nc,nc->n", direction, shift)

@@ -55,17 +55,19 @@ class Robot:
 
 def read_robot(files: Files, urdf: Path, srdf: Path | None, packages: dict[str, Path]) -> Robot:
     """Return a robot of its files."""
-    root = parse_xml(files.read(urdf), urdf.name)
-    require(root.tag == "robot" and root.find(".//*[@xmlns]") is None, f"{urdf.name} is no URDF")
+    data = files.read(urdf)
+    root = parse_xml(data, urdf.name)
+    require(root.tag == "robot" and b"<xacro:" not in data, f"{urdf.name} is no URDF, or a xacro")
     names = [attribute(link, "name") for link in root.findall("link")]
     joints = [each for element in root.findall("joint") for each in _joints(element, names)]
     links, ordered = _tree(names, joints)
-    data = None if srdf is None else files.read(srdf)
+    disabled = None
+    if srdf is not None:
+        disabled = _disabled(parse_xml(files.read(srdf), srdf.name), links)
     shapes: dict[str, list[Shape]] = {}
     for link in root.findall("link"):
         for body in link.findall("collision"):
             shapes.setdefault(attribute(link, "name"), []).extend(_body(files, body, urdf, packages))
-    disabled = None if data is None or srdf is None else _disabled(parse_xml(data, srdf.name), links)
     return Robot(links, ordered, {link: some for link, some in shapes.items() if some}, disabled or None)
 
 

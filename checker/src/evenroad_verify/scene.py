@@ -21,11 +21,11 @@ _SECTIONS = {"obstacles", "allowed", "states", "limits", "attach", "name"}
 
 @dataclass(frozen=True)
 class Obstacle:
-    """Some shapes of one name; `above` is how far the root is from a plane, 0 for all other shapes."""
+    """Some shapes of one name; `above` is how far the root is from a plane, None for all other shapes."""
 
     name: str
     shapes: tuple[Shape, ...]
-    above: float = 0.0
+    above: float | None = None
 
 
 @dataclass(frozen=True)
@@ -110,10 +110,10 @@ def _obstacle(files: Files, path: Path, name: str, entry: dict[str, object]) -> 
     require(kind in of_kind, f"{name} is of the unknown shape {kind}")
     known = {"shape", "xyz", "rpy", "xyzw", "cell", "clearance"} | of_kind[kind]
     require(entry.keys() <= known, f"{name} has keys that are not known here: {', '.join(entry.keys() - known)}")
-    above, shapes = 0.0, list[Shape]()
+    above, shapes = None, list[Shape]()
     if kind == "plane":
         above = float(pose[0][:, 2] @ pose[1])
-        pose = pose[0], (above - 0.5 * GROUND) * pose[0][:, 2]
+        pose, above = (pose[0], (above - 0.5 * GROUND) * pose[0][:, 2]), abs(above)
         kind, entry = "box", {"size": [2 * GROUND, 2 * GROUND, GROUND]}
     if kind == "mesh":
         scale, file = entry.get("scale", "1"), path.parent / str(entry.get("file"))
@@ -127,7 +127,7 @@ def _obstacle(files: Files, path: Path, name: str, entry: dict[str, object]) -> 
         shapes = [shape] if shape is not None else []
     wide = number(entry.get("clearance", "0"))
     require(0.0 <= wide <= 1.0, f"{name} has a clearance that is not 0 to 1 m")
-    return Obstacle(name, tuple(replace(each.at(pose), radius=each.radius + wide) for each in shapes), abs(above))
+    return Obstacle(name, tuple(replace(each.at(pose), radius=each.radius + wide) for each in shapes), above)
 
 
 def _pose(entry: dict[str, object]) -> Pose:
