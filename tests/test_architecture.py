@@ -76,7 +76,9 @@ UPWARD = {
     ("scenes.scene", "Scene.__init__"): {"scenes.scene_file"},
     ("task.task", "Task.plan"): {"task.solve"},
     ("trajectory.trajectory", "Trajectory.save"): {"trajectory.files"},
-    ("world.gridmap.grid", "CellGrid.plot"): {"viz.result"},
+    ("world.gridmap.gridmap", "GridMap.plot"): {"viz.result"},
+    ("world.gridmap.gridmap", "GridMap.world"): {"world.gridmap.disk_world"},
+    ("world.gridmap.gridmap", TYPES): {"world.gridmap.disk_world"},
 }
 """Module and method -> modules above it that the method imports: values have methods for what users type most."""
 

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from evenroad.errors import InvalidValue
 from evenroad.geometry import Pose, rotation_from_quaternion, rotation_from_rpy
-from evenroad.geometry.rotation import rotation_from_z, rotations_from_quaternions
+from evenroad.geometry.rotation import rotation_from_z
 from tests.refused import refused
 
 RNG = np.random.default_rng(1)
@@ -24,7 +24,6 @@ def test_roll_pitch_and_yaw_are_about_fixed_axes(rpy):
 
 def test_quaternions_have_the_order_of_scipy_and_any_norm():
     expected = Rotation.from_quat(QUATERNIONS).as_matrix()
-    np.testing.assert_allclose(rotations_from_quaternions(np.roll(QUATERNIONS, 1, axis=1)), expected, atol=1e-15)
     one_by_one = [np.reshape(rotation_from_quaternion(xyzw=q), (3, 3)) for q in QUATERNIONS]
     np.testing.assert_allclose(one_by_one, expected, atol=1e-15)
 

@@ -281,7 +281,7 @@ def recorded(tmp_path_factory):
         for name in ("Improver", "Trees"):
             patch.setattr(_native.planning, name, recording(f"planning.{name}", calls))
         patch.setattr("evenroad.planning.drivers.Drivers", recording("planning.Drivers", calls))
-        patch.setattr("evenroad.world.gridmap.gridmap.Disk", recording("world.Disk", calls))
+        patch.setattr("evenroad.world.gridmap.disk_world.Disk", recording("world.Disk", calls))
         patch.setattr("evenroad.collision.arm_world.Checker", recording("robot.Checker", calls))
         patch.setattr("evenroad.planning.connectors.answer", recording("planning.answer", calls))
         patch.setattr("evenroad.planning.many.ManyQueries", recording("planning.ManyQueries", calls))

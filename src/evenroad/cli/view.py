@@ -117,7 +117,7 @@ class View(RobotOptions):
         if isinstance(plan.problem.world, ArmWorld):
             save_arm_picture(path, plan.result, plan.problem.world, self._file(plan))
         else:
-            from evenroad.world.gridmap.gridmap import DiskWorld
+            from evenroad.world.gridmap.disk_world import DiskWorld
 
             assert isinstance(plan.problem.world, DiskWorld), "a plan is of an arm or of a disk"
             save_plan_picture(path, plan.result, plan.problem.world)

@@ -26,7 +26,7 @@ class Distance(NamedTuple):
 
 
 MOST = 1.0
-"""Distance from which on all is the same [m]."""
+"""Largest distance that is measured [m]."""
 
 LEAST = 1e-9
-"""Distance of what does not touch, where less than some micrometres is known of it [m]."""
+"""Smallest distance of bodies that do not touch, even where rounding leaves less [m]."""

@@ -1,4 +1,4 @@
-"""A scene as native checks read it, with the number of each obstacle; few changes of many obstacles cost as the few."""
+"""NumberedScene: a native scene with the number of each obstacle, so that the cost of changes follows their number."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from evenroad.scenes.obstacles import Obstacles
 from evenroad.scenes.scene import Scene
 
 FEW, MOST = 128, 128
-"""Scenes of fewer obstacles are made anew, and others after this number of changes: checks look at each changed one."""
+"""`FEW`: scenes of fewer obstacles are made anew.  `MOST`: so are others after this number of changes, since checks
+look at each changed obstacle."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -88,7 +88,7 @@ def robot_tables(robot: Robot) -> RobotTables:
     moving, fixed = _split_pairs(robot, tree)
     bodied = {capsule.link for capsule in capsules}
     hulls, sharp = _hulls_of(robot, tree)
-    # Pairs of which hulls decide come last, and of these the dearest.
+    # Pairs decided by hulls come last, the most expensive ones at the end.
     work = {link: len(hulls[link].leaves) if link in sharp else 0 for link in bodied}
     pairs = sorted(filter(bodied.issuperset, moving), key=lambda pair: work[pair[0]] + work[pair[1]])
     of_hulls = [pair for pair in pairs if not sharp.isdisjoint(pair)]

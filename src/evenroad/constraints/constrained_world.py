@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -38,6 +39,8 @@ _PARTS = 4
 _SHORTCUTS, _ROUNDS, _LONGER = 24, 3, 0.1
 """Numbers of motions that are tried to shorten a path and of the rounds in which they are, and by what share it must be
 longer than the straight one."""
+TOLERANCE = 1e-6
+"""Distance from contact down to which a step is proved free [m]."""
 _TOGETHER = 64
 """Number of motions that are projected at once."""
 
@@ -55,9 +58,7 @@ def kept_world(world: ArmWorld, keeps: tuple[Keep, ...], start: Floats, tip: str
 
 
 class ProjectedSpace(JointSpace):
-    """The joints' space, with points of the cube and points between two projected to the constraints, where that is
-    found.
-    """
+    """The joints' space, whose samples and interpolated points are projected to the constraints where that succeeds."""
 
     def projected_by(self, world: KeptWorld) -> ProjectedSpace:
         """Return a copy that projects in a world; frozen values need it."""
@@ -218,15 +219,13 @@ class KeptWorld:
         # Sums round: the ends are as they were given.
         states[np.cumsum(counts[free]) - 1] = b[free]
         good = counts > 0
-        steps = np.flatnonzero(motion[1:] == motion[:-1])
-        for is_free in (
+        drop_blocked(
+            good,
+            motion,
             lambda rows: world.motion_valid(states[rows], states[rows + 1]),
-            lambda rows: (self.bounds(states)[rows] <= 1.0).all(axis=1),
-            lambda rows: world.motion_certified(states[rows], states[rows + 1], 1e-6),
-        ):
-            if len(steps):
-                good[motion[steps[~is_free(steps)]]] = False
-                steps = steps[good[motion[steps]]]
+            lambda rows: np.asarray((self.bounds(states)[rows] <= 1.0).all(axis=1)),
+            lambda rows: world.motion_certified(states[rows], states[rows + 1], TOLERANCE),
+        )
         rows = good[motion]
         return good, *turned_round(motion[rows], states[rows], back)
 
@@ -293,6 +292,18 @@ class KeptWorld:
         k = int(shares.argmax())
         keep = self.keeps[k]
         return keep.words(float(keep.off(np.array([shares[k] * keep.limit]))[0]))
+
+
+def drop_blocked(good: Bools, motion: Ints, *checks: Callable[[Ints], Bools]) -> None:
+    """Clear the entries of motions, in `good`, of which some step is not free; `motion` says of which each state is.
+
+    Each check returns which of some steps are free, by the number of the state that each begins with.
+    """
+    steps = np.flatnonzero(motion[1:] == motion[:-1])
+    for is_free in checks:
+        steps = steps[good[motion[steps]]]
+        if len(steps):
+            good[motion[steps[~is_free(steps)]]] = False
 
 
 def turned_round(motion: Ints, states: Floats, back: Bools) -> tuple[Ints, Floats]:

@@ -10,15 +10,14 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_known
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.constraints.constrained_world import KeptWorld, is_backwards, turned_round
+from evenroad.constraints.constrained_world import TOLERANCE, KeptWorld, drop_blocked, is_backwards, turned_round
 from evenroad.poses.constraint import Constraint
 from evenroad.robots.robot import Robot
 
 _HALF_TURNS = np.arange(-4, 5) * math.pi
-"""What is added to the direction of a drive: forwards or backwards, in each turn that a heading may have."""
+"""Angles added to the direction of a drive: forwards or backwards, in every turn that a heading may have."""
 _STILL = 1e-9
-"""Way of a base below which it does not drive [m]."""
-_TOLERANCE = 1e-6
+"""Distance below which a base does not drive [m]."""
 
 
 @dataclass(frozen=True)
@@ -73,15 +72,13 @@ class DrivenWorld(KeptWorld):
         states[:, 1:3, self.base[2]] = np.where(np.isfinite(heading), heading, 0.0)[:, np.newaxis]
         flat = self.space.wrapped(states.reshape(-1, a.shape[1]))
         motion = np.repeat(np.arange(len(a)), 4)
-        steps = np.flatnonzero(motion[1:] == motion[:-1])
         good = np.isfinite(heading)
-        for is_free in (
-            self.world.motion_valid,
-            lambda first, last: self.world.motion_certified(first, last, _TOLERANCE),
-        ):
-            steps = steps[good[motion[steps]]]
-            if len(steps):
-                good[motion[steps[~is_free(flat[steps], flat[steps + 1])]]] = False
+        drop_blocked(
+            good,
+            motion,
+            lambda rows: self.world.motion_valid(flat[rows], flat[rows + 1]),
+            lambda rows: self.world.motion_certified(flat[rows], flat[rows + 1], TOLERANCE),
+        )
         rows = good[motion]
         rows[1:] &= (flat[1:] != flat[:-1]).any(axis=1) | (motion[1:] != motion[:-1])
         return good, *turned_round(motion[rows], flat[rows], back)
@@ -94,8 +91,8 @@ class DrivenWorld(KeptWorld):
         kept = np.ones(len(path), dtype=np.bool_)
         kept[1:-1] = ~(turns[:-1] & turns[1:])
         rows = np.flatnonzero(kept)
-        # In a joint without limits one turn may go round the other way, which is not known to be free.
-        free = self.world.motion_certified(path[rows[:-1]], path[rows[1:]], _TOLERANCE)
+        # In a joint without limits the one turn may go the other way round, which is not known to be free.
+        free = self.world.motion_certified(path[rows[:-1]], path[rows[1:]], TOLERANCE)
         for first, last in zip(rows[:-1][~free], rows[1:][~free], strict=True):
             kept[first:last] = True
         path = path[kept]
@@ -118,7 +115,7 @@ class DrivenWorld(KeptWorld):
         else:
             within = (each >= self.space.low[heading]) & (each <= self.space.high[heading])
             turning = np.where(within, turns.sum(axis=0), np.inf)
-        # To the micrometre of a turn, so that rounding does not choose.
+        # Rounded, so that rounding errors do not choose between equal turns.
         best = np.round(turning, 9).argmin(axis=0)
         number = np.arange(len(a))
         chosen = np.where(np.isfinite(turning[best, number]), each[best, number], np.inf)

@@ -10,9 +10,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
+
 from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
 from evenroad.poses.cartesian_path import Moves
+from evenroad.poses.chain import chain_of
 from evenroad.poses.constraint import Constraint
 from evenroad.robots.robot import Robot
 
@@ -29,6 +32,8 @@ class Keep(Constraint):
     unit: ClassVar[str] = "m"
     deviation: ClassVar[str]
     """Name in the deviations of a result."""
+    kept: ClassVar[str] = ""
+    """What it keeps, in words."""
     within: float
 
     def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
@@ -67,12 +72,18 @@ class Keep(Constraint):
 
     def words(self, off: float) -> str:
         """Return, in words, that it is off by so much, and how much it may be."""
-        return f"{self.tips[0]!r} is {off:.4g} {self.unit} off {self}, more than {self.within:.4g}"
+        return f"{self.tips[0]!r} is {off:.4g} {self.unit} off {self.kept}, more than {self.within:.4g}"
 
 
-def turns_of(tips: Floats) -> Floats:
-    """Return the rotations of poses, (n, 12): (n, 3, 3)."""
-    return tips[:, :9].reshape(-1, 3, 3)
+def tip_row(robot: Robot, tip: str, q: Floats) -> tuple[float, ...]:
+    """Return the pose of a tip at a configuration, (dim,): its rotation row by row, and its origin."""
+    return tuple(chain_of(robot, tip).tip_poses(q[np.newaxis])[0].tolist())
+
+
+def tip_pose(robot: Robot, tip: str, q: Floats) -> Pose:
+    """Return the same as a value."""
+    row = tip_row(robot, tip, q)
+    return Pose(row[9:], row[:9])
 
 
 def pose_row(pose: Pose) -> list[float]:

@@ -12,11 +12,10 @@ import numpy as np
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_row, require_known, require_positive
-from evenroad.constraints.keep import WITHIN, Keep, pose_row
+from evenroad.constraints.keep import WITHIN, Keep, pose_row, tip_pose
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
 from evenroad.poses.cartesian_path import Moves
-from evenroad.poses.chain import chain_of
 from evenroad.poses.pose_goal import as_axis
 from evenroad.robots.robot import Robot
 
@@ -59,6 +58,7 @@ class KeepOnCircle(Keep):
     pose: Pose | None = None
     tip: str = ""
     deviation: ClassVar[str] = "circle_m"
+    kept: ClassVar[str] = "its circle"
 
     def __post_init__(self) -> None:
         set_fields(self, within=require_positive("within", self.within), axis=as_axis("axis", self.axis))
@@ -66,8 +66,7 @@ class KeepOnCircle(Keep):
 
     def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
         tip = self.tip or tip
-        row = chain_of(robot, tip).tip_poses(q[np.newaxis])[0].tolist()
-        made = replace(self, pose=self.pose or Pose(tuple(row[9:]), tuple(row[:9])), tip=tip)
+        made = replace(self, pose=self.pose or tip_pose(robot, tip, q), tip=tip)
         if made.radius < 10.0 * self.within:
             raise InvalidValue(
                 f"the circle of {tip!r} needs a radius, got {made.radius:.3g} m about {shown(self.centre)}"
@@ -96,15 +95,12 @@ class KeepOnCircle(Keep):
         return "circle", np.concatenate([*self.frame, [self.radius], pose_row(self.pose)])
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
-        # Of the distance from the hinge it is at most that of the tip and its speed squared by that distance, of the
-        # door's angle as of a polar one; nearer than half the radius no motion is within the limit anyway.
+        # The distance from the hinge bends at most as the tip does, plus its squared speed over that distance; the
+        # door's angle as a polar angle.  Nearer than half the radius no motion is within the limit anyway.
         (tip,), near = moves, 0.5 * self.radius
         rate = tip.speed / near
         swing = tip.push / near + 2.0 * rate**2
         return 2.0 * tip.push + tip.speed**2 / near + 0.1 * (tip.swing + rate**2 + swing)
-
-    def __str__(self) -> str:
-        return "its circle"
 
 
 @dataclass(frozen=True)
@@ -151,8 +147,7 @@ class KeepTogether(Keep):
         return type(self), *self.tips
 
     def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
-        rows = [chain_of(robot, link).tip_poses(q[np.newaxis])[0].tolist() for link in self.tips]
-        first, second = (Pose(tuple(row[9:]), tuple(row[:9])) for row in rows)
+        first, second = (tip_pose(robot, link, q) for link in self.tips)
         return replace(self, pose=self.pose or first.inverse() @ second)
 
     @property

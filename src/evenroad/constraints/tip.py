@@ -13,11 +13,10 @@ import numpy as np
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_row, require_positive
-from evenroad.constraints.keep import WITHIN, Keep, turns_of
+from evenroad.constraints.keep import WITHIN, Keep, tip_pose, tip_row
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
 from evenroad.poses.cartesian_path import Moves
-from evenroad.poses.chain import chain_of
 from evenroad.poses.pose_goal import AXES, as_axis
 from evenroad.robots.robot import Robot
 
@@ -72,8 +71,8 @@ class KeepUpright(Keep):
         tip, axis = self.tip or tip, self.axis
         if axis is None:
             every = [as_axis("axis", sign + name) for name in AXES for sign in ("", "-")]
-            turn = turns_of(chain_of(robot, tip).tip_poses(q[np.newaxis]))[0]
-            axis = max(every, key=lambda each: float((turn @ np.array(each))[2]))
+            up = np.array(tip_row(robot, tip, q)[6:9])
+            axis = max(every, key=lambda each: float(up @ np.array(each)))
         return replace(self, axis=axis, tip=tip)
 
     @property
@@ -131,6 +130,7 @@ class KeepOrientation(Keep):
     tip: str = ""
     unit: ClassVar[str] = "rad"
     deviation: ClassVar[str] = "turn_rad"
+    kept: ClassVar[str] = "its orientation"
 
     def __post_init__(self) -> None:
         set_fields(self, within=require_positive("the tolerance of an orientation", self.within, at_most=math.pi))
@@ -139,8 +139,7 @@ class KeepOrientation(Keep):
 
     def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
         tip = self.tip or tip
-        turn = self.rotation or tuple(chain_of(robot, tip).tip_poses(q[np.newaxis])[0, :9].tolist())
-        return replace(self, rotation=turn, tip=tip)
+        return replace(self, rotation=self.rotation or tip_row(robot, tip, q)[:9], tip=tip)
 
     @property
     def limit(self) -> float:
@@ -157,9 +156,6 @@ class KeepOrientation(Keep):
 
     def off(self, lengths: Floats) -> Floats:
         return 2.0 * np.arcsin(np.minimum(lengths / math.sqrt(8.0), 1.0))
-
-    def __str__(self) -> str:
-        return "its orientation"
 
 
 @dataclass(frozen=True)
@@ -194,6 +190,7 @@ class KeepInPlane(Keep):
     within: float = WITHIN
     tip: str = ""
     deviation: ClassVar[str] = "plane_m"
+    kept: ClassVar[str] = "its plane"
 
     def __post_init__(self) -> None:
         set_fields(self, within=require_positive("within", self.within), normal=as_axis("normal", self.normal))
@@ -202,7 +199,7 @@ class KeepInPlane(Keep):
 
     def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
         tip = self.tip or tip
-        return replace(self, through=self.through or _origin(robot, q, tip), tip=tip)
+        return replace(self, through=self.through or tip_pose(robot, tip, q).xyz, tip=tip)
 
     @property
     def across(self) -> Floats:
@@ -218,9 +215,6 @@ class KeepInPlane(Keep):
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return moves[0].push
-
-    def __str__(self) -> str:
-        return "its plane"
 
 
 @dataclass(frozen=True)
@@ -247,14 +241,12 @@ class KeepOnLine(KeepInPlane):
     """
 
     deviation: ClassVar[str] = "off_line_m"
+    kept: ClassVar[str] = "its line"
 
     @property
     def across(self) -> Floats:
         along = np.array(self.normal, dtype=np.float64)
         return np.eye(3) - np.outer(along, along)
-
-    def __str__(self) -> str:
-        return "its line"
 
 
 @dataclass(frozen=True)
@@ -287,6 +279,7 @@ class KeepInBox(Keep):
     within: float = WITHIN
     tip: str = ""
     deviation: ClassVar[str] = "box_m"
+    kept: ClassVar[str] = "its box"
 
     def __post_init__(self) -> None:
         set_fields(self, within=require_positive("within", self.within))
@@ -303,11 +296,3 @@ class KeepInBox(Keep):
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
         return moves[0].push
-
-    def __str__(self) -> str:
-        return "its box"
-
-
-def _origin(robot: Robot, q: Floats, tip: str) -> Vector:
-    x, y, z = chain_of(robot, tip).tip_poses(q[np.newaxis])[0, 9:].tolist()
-    return x, y, z

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from functools import lru_cache
 from operator import mul
-from typing import Any
 
 import numpy as np
 
@@ -51,17 +50,7 @@ def rotation_from_quaternion(*guessed: object, xyzw: Sequence[float] = ()) -> tu
     norm = math.hypot(w, x, y, z)
     if norm == 0.0:
         raise InvalidValue("quaternion must have a norm > 0, got zeros")
-    return _of_unit_quaternion(w / norm, x / norm, y / norm, z / norm)
-
-
-def rotations_from_quaternions(quaternions: Floats) -> Floats:
-    """Return the matrices, (n, 3, 3), of rows of SO3, (n, 4): quaternions with w first, here of any norm > 0."""
-    w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
-    return np.stack(_of_unit_quaternion(w, x, y, z), axis=1).reshape(-1, 3, 3)
-
-
-def _of_unit_quaternion(w: Any, x: Any, y: Any, z: Any) -> tuple[Any, ...]:
-    """Return the nine numbers of the rotation, row by row; of numbers or of arrays."""
+    w, x, y, z = w / norm, x / norm, y / norm, z / norm
     return (
         1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),
         2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),

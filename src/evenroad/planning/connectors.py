@@ -23,7 +23,7 @@ from evenroad.space.batch import as_batch
 from evenroad.world import World
 
 if TYPE_CHECKING:
-    from evenroad.world.gridmap.gridmap import DiskWorld
+    from evenroad.world.gridmap.disk_world import DiskWorld
 
 RESTART = 4_000
 """Number of motions of the first search, after which trees begin again, elsewhere: most queries need fewer."""
@@ -229,7 +229,7 @@ def connector_of(world: Any) -> Connector | None:
     if isinstance(world, ArmWorld):
         return ARM_TREES
     # Imported late: a plan of an arm has no map.
-    from evenroad.world.gridmap.gridmap import DiskWorld
+    from evenroad.world.gridmap.disk_world import DiskWorld
 
     return CELLS if isinstance(world, DiskWorld) else None
 

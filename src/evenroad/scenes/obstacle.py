@@ -16,7 +16,7 @@ from evenroad._checks import FARTHEST, as_batch, require_positive
 from evenroad._native import robot as native
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
-from evenroad.geometry.rotation import NO_ROTATION, rotations_from_quaternions
+from evenroad.geometry.rotation import NO_ROTATION
 from evenroad.geometry.shapes import PRIMITIVES, Box, Capsule, Mesh, PointCloud, Shape, along_z, shape_of
 
 MARGIN = 0.02
@@ -199,22 +199,17 @@ def box_rows(size: npt.ArrayLike, xyz: npt.ArrayLike, xyzw: npt.ArrayLike | None
     extents, centres = as_batch("size", size, 3), as_batch("xyz", xyz, 3)
     if len(extents) != len(centres):
         raise InvalidValue(f"size and xyz must have one row a box, got {len(extents)} and {len(centres)}")
-    rows = np.zeros((len(extents), 17))
-    rows[:, 1:4], rows[:, 13:16] = extents, centres
-    if len(rows) and not (extents.min() > 0.0 and extents.max() <= FARTHEST):
+    if len(extents) and not (extents.min() > 0.0 and extents.max() <= FARTHEST):
         raise InvalidValue(f"size must be > 0 and at most {FARTHEST:g}, got from {extents.min()} to {extents.max()}")
-    if len(rows) and not np.abs(centres).max() <= FARTHEST:
+    if len(extents) and not np.abs(centres).max() <= FARTHEST:
         raise InvalidValue(
             f"xyz must lie between -{FARTHEST:g} and {FARTHEST:g}, got {centres.flat[np.abs(centres).argmax()]}"
         )
-    if xyzw is None:
-        rows[:, 4:13] = NO_ROTATION
-        return rows
-    turns = as_batch("xyzw", xyzw, 4)
-    if len(turns) != len(rows) or not turns.any(axis=1).all():
+    turns = None if xyzw is None else as_batch("xyzw", xyzw, 4)
+    made = None if turns is not None and len(turns) != len(extents) else native.box_rows(extents, centres, turns)
+    if made is None:
         raise InvalidValue(f"xyzw must be one quaternion a box, of a norm > 0, got {shown(xyzw)}")
-    rows[:, 4:13] = rotations_from_quaternions(turns[:, [3, 0, 1, 2]]).reshape(-1, 9)
-    return rows
+    return made
 
 
 def smaller_rows(rows: Floats, by: float) -> tuple[Floats, Bools]:

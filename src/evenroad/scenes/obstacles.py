@@ -1,4 +1,4 @@
-"""Obstacles: those of a scene, as a sequence that never changes; few changes to many cost as the few.
+"""Obstacles of a scene, as a sequence that never changes; the cost of changes follows their number.
 
 It has three sources: obstacles, rows of boxes, or changes of another sequence.  The other forms are made on first use.
 """
@@ -127,7 +127,7 @@ class Boxes(Obstacles):
 
 
 class Changed(Obstacles):
-    """What of others, among which are neither clouds nor meshes, was moved or is gone, and what came after them."""
+    """Changes of obstacles without clouds and meshes: some were moved or removed, and others came after them."""
 
     def __init__(
         self,
@@ -192,7 +192,7 @@ class Changed(Obstacles):
 
     @cached_property
     def _alone(self) -> Obstacles:
-        """These without the others that they were changed from, whose memory can then be freed."""
+        """These without reference to those that they were changed from, whose memory can then be freed."""
         alone = Obstacles(self.objects)
         alone.names, alone.rows = self.names, self.rows
         return alone

@@ -1,10 +1,9 @@
 """Reading MoveIt's planning scenes in YAML, as MotionBenchMaker and ``ros2 topic echo`` write them.
 
-Of the world boxes, spheres, cylinders and meshes are read, in the order of their operations; what is attached; which
-contacts of objects are allowed; and the padding of links.  Objects may be in the frames of links: they are placed when
-the robot is known, by the joints of ``robot_state``.  What else a planning scene may say is refused where it could be
-an obstacle, and passes where it is none.  Quaternions are (x, y, z, w), lengths metres.  An object of several shapes
-becomes obstacles ``NAME/0``, ``NAME/1``, ...
+The reader takes boxes, spheres, cylinders and meshes, in the order of their operations; attached objects; allowed
+contacts of objects; and the padding of links.  Objects may be in the frames of links: they are placed when the robot is
+known, by the joints of ``robot_state``.  Anything else is refused if it could be an obstacle, and skipped if it cannot.
+Quaternions are (x, y, z, w), lengths metres.  An object of several shapes becomes obstacles ``NAME/0``, ``NAME/1``, ...
 """
 
 from __future__ import annotations
@@ -43,10 +42,7 @@ _OBJECT = Kind(
         "primitives": Kind(("type", "dimensions"), harmless={"polygon"}),
         "meshes": Kind(parts={"vertices": _XYZ, "triangles": Kind(("vertex_indices",))}, harmless={"resource"}),
         "planes": Kind(("coef",)),
-        "primitive_poses": _POSE,
-        "mesh_poses": _POSE,
-        "plane_poses": _POSE,
-        "subframe_poses": _POSE,
+        **dict.fromkeys(("primitive_poses", "mesh_poses", "plane_poses", "subframe_poses"), _POSE),
     },
     harmless={"type"},
 )

@@ -140,7 +140,7 @@ def allowed_everywhere(robot: Robot, scene: Scene) -> list[tuple[str, str]]:
 
 
 _OPEN = ", open to "
-"""Part of the name of a part of a cloud, before the link that may touch it."""
+"""Text between the name of a cloud and the link that may touch this part of it."""
 
 
 def _opened(scene: Scene, link: str, cloud: str, shapes: Sequence[Shape], grow: float) -> Scene:

@@ -117,7 +117,7 @@ class Scene(Changes):
         name: str = "scene",
         allowed: frozenset[tuple[str, str]] = frozenset(),
     ) -> Scene:
-        """Return a scene of many boxes, given as arrays: in a tenth of the time that their objects take.
+        """Return a scene of many boxes, given as arrays: in a tenth of the time that objects take.
 
         Parameters
         ----------
@@ -288,8 +288,7 @@ class Scene(Changes):
         """
         if not isinstance(clearance, Mapping):
             raise InvalidValue(f"clearance must be a mapping, obstacle -> metres, got {shown(clearance)}")
-        for name in clearance:
-            require_known(f"obstacle of scene {self.name!r}:", name, self.names)
+        self._require_known(clearance)
         changed = (replace(each, clearance=clearance.get(each.name, each.clearance)) for each in self.obstacles)
         return replace(self, obstacles=Obstacles(changed))
 
@@ -317,7 +316,7 @@ def _scene(values: Mapping[str, Any], **more: object) -> Scene:
 
 
 def smaller_scene(scene: Scene, by: float) -> Scene:
-    """Return a scene for checks alone: its obstacles reach less far by a distance [m]; clouds and meshes are gone."""
+    """Return a scene for checks alone: obstacles are smaller by a distance [m], without clouds and meshes."""
     rows, left = smaller_rows(scene.rows, by)
     solid = [name for number, name in enumerate(scene.names) if number not in dict(scene.surfaces)]
     names = tuple(name for name, is_left in zip(solid, left.tolist(), strict=True) if is_left)

@@ -28,9 +28,9 @@ OBJECT_FILES = (*ROBOT_FILES, *GLTF)
 def objects_of(path: Path, joints: Mapping[str, float], *, convex: bool = False) -> dict[str, Shape]:
     """Return the bodies of a file by their names, in its frame.
 
-    Of a URDF: the collision shapes of its links, or what is drawn of a link that has none, with its joints at the
-    values given, else at 0 or the limit next to it.  Of a mesh's file: each object of its scene; with `convex` the
-    convex hull of each.  Raises as the readers of such files do; UnknownName for a joint that there is not;
+    A URDF gives the collision shapes of its links, or visual shapes where a link has none, with its joints at the given
+    values, else at 0 or the nearest limit.  A file of meshes gives each object of its scene, with `convex` its convex
+    hull.  Raises as the readers of such files do; UnknownName for a joint that there is not;
     InvalidValue for a value beyond its limits, and for `convex` of a URDF.
     """
     if path.suffix.lower() in ROBOT_FILES:

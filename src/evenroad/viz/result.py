@@ -17,7 +17,7 @@ from evenroad.viz.plan import draw_plan
 from evenroad.viz.sheet import save_png
 from evenroad.world import World
 from evenroad.world.gridmap import DiskWorld
-from evenroad.world.gridmap.grid import CellGrid
+from evenroad.world.gridmap.gridmap import GridMap
 
 _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 40
 """Grey values of free, unknown and occupied cells."""
@@ -42,7 +42,7 @@ def plot_result(
     return _kept(picture, path)
 
 
-def plot_map(gridmap: CellGrid, path: str | os.PathLike[str] | None = None) -> Image.Image:
+def plot_map(gridmap: GridMap, path: str | os.PathLike[str] | None = None) -> Image.Image:
     """Return what :meth:`GridMap.plot` does."""
     shades = np.where(gridmap.unknown, _UNKNOWN, np.where(gridmap.occupied, _OCCUPIED, _FREE)).astype(np.uint8)
     times = max(1, _LONG_SIDE // max(gridmap.shape))

@@ -89,7 +89,7 @@ class GridSearch:
     def solve(self, problem: Problem) -> PlanResult:
         """Return a path, or the proof that there is none; see :class:`GridSearch`."""
         # Imported late, as other planners and worlds here: a plan of an arm needs none of them.
-        from evenroad.world.gridmap.gridmap import DiskWorld
+        from evenroad.world.gridmap.disk_world import DiskWorld
 
         if not isinstance(problem.world, DiskWorld):
             raise InvalidValue(f"GridSearch plans for disks on maps, got {problem.world!r}")

@@ -14,7 +14,8 @@ from evenroad._call import explains_calls
 from evenroad._checks import as_file, require_known
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName, near
 from evenroad.world.gridmap import images, map_server, movingai
-from evenroad.world.gridmap.gridmap import DiskWorld, GridMap
+from evenroad.world.gridmap.disk_world import DiskWorld
+from evenroad.world.gridmap.gridmap import GridMap
 from evenroad.world.gridmap.images import load_image
 from evenroad.world.gridmap.map_server import load_ros_map, read_ros_meta
 from evenroad.world.gridmap.movingai import load_movingai_map
