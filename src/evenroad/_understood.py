@@ -156,6 +156,6 @@ def _owner(node: _Node) -> str:
         content, name, around = above
         own = content.get("name") or content.get("id")
         said = f"<{name}>" if isinstance(content, Element) else name
-        words.append(f"{said} {shown(str(own))}" if own else said)
+        words.append(f"{said} {shown(str(own))}".strip() if own else said)
         above = None if own else around
     return " of ".join(word for word in words if word)

@@ -52,17 +52,12 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
     return with_group(robot, robot.group, {**robot.held, **held}) if held else robot
 
 
-def state_values(robot: Robot, name: str, scene: Scene | None = None) -> Floats:
-    """Return the configuration, (dim,), of a named state of robot or scene [rad or m].
+def _in_order(robot: Robot, name: str, values: Mapping[str, float]) -> Floats:
+    """Return the values of a state as a configuration, (dim,) [rad or m].
 
     UnknownName if the state has a joint that the robot does not have; InvalidValue if it lacks a joint of the group, or
     has another joint elsewhere than where the robot holds it.
     """
-    return _in_order(robot, name, named_states(robot, scene)[name])
-
-
-def _in_order(robot: Robot, name: str, values: Mapping[str, float]) -> Floats:
-    """Return the values of a state as a configuration, (dim,)."""
     missing = [joint for joint in robot.group if joint not in values]
     if missing:
         raise InvalidValue(f"the state {name!r} has no value for {', '.join(missing)}")
@@ -113,7 +108,7 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
     states = named_states(robot, scene)
     name = text.strip()
     if name in states:
-        q = state_values(robot, name, scene)
+        q = _in_order(robot, name, states[name])
     elif "=" in text:
         q = _from_pairs(robot, text, degrees)
     else:
