@@ -139,7 +139,7 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
 
     Notes
     -----
-    What it says of a proof holds for the world in which it was planned; nothing is proved anew.
+    Its proof holds in the world in which it was planned; nothing is proved anew.
 
     Examples
     --------

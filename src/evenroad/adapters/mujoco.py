@@ -137,7 +137,7 @@ class MujocoWorld(TestedAtStates):
 
 @dataclass(frozen=True)
 class Driven:
-    """What MuJoCo's physics made of a trajectory.
+    """A trajectory as MuJoCo's physics drove it.
 
     `positions`, (n, dim), are the joints at its times [rad or m], `largest_error` is the largest distance of a joint
     from where it should be, and `contacts` are the pairs of geoms that touched, with a joint's body among them.

@@ -54,7 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(arguments: Sequence[str]) -> int:
     for stream in (sys.stdout, sys.stderr):
-        # What a pipe's encoding lacks is written as an escape: no answer fails for its name.
+        # Characters that a pipe's encoding lacks are escaped, so that no name makes an answer fail.
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     # Imported late, since Ctrl-C may come while this loads.

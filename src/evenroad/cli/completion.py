@@ -1,4 +1,4 @@
-"""What completes words of the command in a shell: the names of verbs, then those of a verb's options, else files."""
+"""Completion of the command in a shell: names of verbs, then those of a verb's options, else files."""
 
 from __future__ import annotations
 

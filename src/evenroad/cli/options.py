@@ -35,7 +35,7 @@ class Option(NamedTuple):
     field: str
     names: tuple[str, ...]
     kind: type
-    """Of a single value; bool: the option stands alone."""
+    """Type of a single value; an option of type bool stands alone."""
     choices: tuple[str, ...]
     several: bool
     """Takes all words up to the next option."""

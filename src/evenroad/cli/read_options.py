@@ -24,7 +24,7 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     """
     program, options = f"evenroad {verb}", options_of(kind)
     if not HELP.isdisjoint(words):
-        # Whoever wants help need not have finished the other options; imported late, since few do.
+        # The other options need not be complete for help, which is imported late.
         from evenroad.cli.help import help_of
 
         print(help_of(program, kind, options), end="")

@@ -20,8 +20,8 @@ from evenroad.trajectory.send import checked_states, send_trajectory
 class Send(RobotOptions):
     """Send a plan or a trajectory to a UR arm, state by state; nothing moves without --go.
 
-    What is sent is proved anew: in the robot and scene that the file names, which must be as they were, the states keep
-    limits and constraints and touch nothing.  A damaged file is refused.
+    The states are proved again: they keep limits and constraints and touch nothing, with the robot and scene that the
+    file names.  A changed robot or scene and a damaged file are refused.
 
     Without --host there is no arm: the states are checked as they would be sent.  With --host a plan is refused if the
     arm is another model, not ready or not at the start, or if the plan is faster than allowed.  Ctrl-C stops the arm;

@@ -1,4 +1,4 @@
-"""What ``evenroad send`` sends: trajectories of files, proved anew in the worlds that they were made for."""
+"""Trajectories of files for ``evenroad send``, proved again in the worlds that they were made for."""
 
 from __future__ import annotations
 
@@ -87,8 +87,7 @@ def _proved(
 ) -> Trajectory:
     """Return a trajectory from start to goal of a problem with the proof of its world.
 
-    Of a file that is not known to be as it was written, which is said, limits and the order of joints are those of the
-    robot.
+    If the file may have been changed, a message says so, and limits and order of joints are those of the robot.
     """
     world = problem.arm
     if not whole:
@@ -131,7 +130,7 @@ def _made(plan: PlanFile, file: Path, fastest: float) -> Trajectory:
 def _planned_again(trajectory: Trajectory, file: Path) -> Trajectory:
     """Return the trajectory of a task that is planned again, and so proved: it must have the same states.
 
-    What is held, and what may touch it, is another at each step.
+    Each step has other held objects and other contacts, which the file does not say.
     """
     task = run_task_of(trajectory.source["task"], file)
     world, done = task.planned()

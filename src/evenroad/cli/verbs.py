@@ -72,7 +72,7 @@ ABOUT = {name: about for name, (_, about) in VERBS.items()} | OF_STUDIES
 """Name of every verb -> its description."""
 
 COMPLETION = ("--print-completion", "--tyro-print-completion")
-"""What prints the completions of a shell; by its earlier name, too."""
+"""Options that print the completion for a shell, the earlier name last."""
 
 DESCRIPTION = f"""usage: evenroad [-h] [--version [-v]] [--print-completion {{bash,zsh,fish}}] VERB ...
 

@@ -38,7 +38,7 @@ class View(RobotOptions):
     """Show a plan: the arm in its scene, or the disk on its map, along the path.
 
     This computer serves a page on which you move start, goal and obstacles of an arm; the path is planned again as they
-    move.  Ctrl-C ends it.  Of a disk a page is written that plays offline, and opened in the browser.
+    move.  Ctrl-C ends it.  The plan of a disk is written as a page that plays offline, and opened in the browser.
 
     Examples: evenroad view box-reach.json · evenroad view box-reach.json --html reach.html
     """

@@ -26,8 +26,6 @@ TRIES = 200
 """Largest number of scenes drawn until the arm reaches into one."""
 CHOICE = 8
 """Number of goals of which the nearest to the start is taken."""
-STREAM = "report"
-"""Name of the ranges that scenes are drawn from."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +112,7 @@ def _drawn(arm: Robot, source: str, rng: np.random.Generator) -> tuple[Scene, li
     if source not in GENERATORS:
         return _file(source), []
     cell = _cell(arm)
-    obstacles, regions = draw_scene(source, STREAM, rng)
+    obstacles, regions = draw_scene(source, rng)
     named = tuple(replace(each, name=f"{source} {i}") for i, each in enumerate(obstacles))
     return Scene((*cell.obstacles, *named), name=source, allowed=cell.allowed), regions
 
@@ -147,7 +145,7 @@ def _terminals(
 def _pool(robot: str) -> tuple[Floats, Floats]:
     """Return configurations that are free of robot and cell, (n, dim), and where the tool is, (n, 3)."""
     arm = _robot(robot)
-    # Of a gripper the link that its fingers are on.
+    # A gripper's tip is the link that carries its fingers.
     return free_configurations(arm, _cell(arm), POOL, arm.links.index(tip_links(arm)[-1]))
 
 

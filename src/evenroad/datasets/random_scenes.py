@@ -1,8 +1,4 @@
-"""Random scenes, and where the tool goes in them: shelf, clutter, tight, boxes and cage.
-
-Each generator has two ranges of parameters: ``report`` for data sets and published figures, ``tune`` for the choice of
-constants.
-"""
+"""Random scenes, and where the tool goes in them: shelf, clutter, tight, boxes and cage."""
 
 from __future__ import annotations
 
@@ -58,7 +54,7 @@ def _before(rng: np.random.Generator) -> Region:
     return Region(np.array([0.45 * np.cos(angle), 0.45 * np.sin(angle), 0.55]), np.full(3, 0.1), angle)
 
 
-class _Ranges(NamedTuple):
+class Ranges(NamedTuple):
     """Ranges of uniform draws [m, rad]; of counts the upper end is excluded."""
 
     shelf_angle: tuple[float, float]
@@ -76,42 +72,25 @@ class _Ranges(NamedTuple):
     cage_bars: tuple[int, int]
 
 
-RANGES = {
-    "tune": _Ranges(
-        shelf_angle=(-0.6, 0.6),
-        shelf_away=(0.62, 0.72),
-        shelf_width=(0.32, 0.40),
-        shelf_height=(0.28, 0.32),
-        shelf_columns=(2, 3),
-        things=(6, 11),
-        thing_height=(0.15, 0.4),
-        window=(0.22, 0.30),
-        wall_away=(0.5, 0.58),
-        boxes=(6, 13),
-        box_half=(0.04, 0.15),
-        cage_width=(0.5, 0.56),
-        cage_bars=(1, 2),
-    ),
-    "report": _Ranges(
-        shelf_angle=(-1.2, 1.2),
-        shelf_away=(0.58, 0.78),
-        shelf_width=(0.30, 0.46),
-        shelf_height=(0.26, 0.36),
-        shelf_columns=(2, 4),
-        things=(8, 16),
-        thing_height=(0.1, 0.45),
-        window=(0.20, 0.28),
-        wall_away=(0.46, 0.62),
-        boxes=(9, 19),
-        box_half=(0.03, 0.18),
-        cage_width=(0.46, 0.64),
-        cage_bars=(1, 3),
-    ),
-}
-"""Stream -> its ranges."""
+REPORT = Ranges(
+    shelf_angle=(-1.2, 1.2),
+    shelf_away=(0.58, 0.78),
+    shelf_width=(0.30, 0.46),
+    shelf_height=(0.26, 0.36),
+    shelf_columns=(2, 4),
+    things=(8, 16),
+    thing_height=(0.1, 0.45),
+    window=(0.20, 0.28),
+    wall_away=(0.46, 0.62),
+    boxes=(9, 19),
+    box_half=(0.03, 0.18),
+    cage_width=(0.46, 0.64),
+    cage_bars=(1, 3),
+)
+"""Ranges of data sets and of published figures."""
 
 
-def _shelf(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
+def _shelf(ranges: Ranges, rng: np.random.Generator) -> Drawn:
     """Return a shelf of three rows, its open side towards the robot; the tool goes into compartments."""
     angle, away = rng.uniform(*ranges.shelf_angle), rng.uniform(*ranges.shelf_away)
     columns, board, depth = int(rng.integers(*ranges.shelf_columns)), 0.02, 0.3
@@ -134,7 +113,7 @@ def _shelf(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
     return _boxes(centre, angle, parts), [*regions, _before(rng)]
 
 
-def _clutter(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
+def _clutter(ranges: Ranges, rng: np.random.Generator) -> Drawn:
     """Return a table with things on it; the tool goes low between them."""
     obstacles = []
     for _ in range(int(rng.integers(*ranges.things))):
@@ -154,7 +133,7 @@ def _clutter(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
     return obstacles, regions
 
 
-def _wall(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
+def _wall(ranges: Ranges, rng: np.random.Generator) -> Drawn:
     """Return a wall with two windows, hardly larger than the hand; the tool goes through them."""
     angle, away, thick = rng.uniform(-0.8, 0.8), rng.uniform(*ranges.wall_away), 0.02
     centre = np.array([away * np.cos(angle), away * np.sin(angle), 0.0])
@@ -179,7 +158,7 @@ def _wall(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
     return _boxes(centre, angle, parts), [*regions, _before(rng)]
 
 
-def _random_boxes(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
+def _random_boxes(ranges: Ranges, rng: np.random.Generator) -> Drawn:
     """Return boxes anywhere in reach, turned about z; start and goal are anywhere."""
     obstacles = []
     for _ in range(int(rng.integers(*ranges.boxes))):
@@ -190,7 +169,7 @@ def _random_boxes(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
     return obstacles, []
 
 
-def _cage(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
+def _cage(ranges: Ranges, rng: np.random.Generator) -> Drawn:
     """Return a cage of bars, one along every edge and some between; the tool goes in between bars."""
     angle, away, bar = rng.uniform(-0.8, 0.8), rng.uniform(0.5, 0.62), 0.015
     width, height = rng.uniform(*ranges.cage_width), rng.uniform(0.45, 0.6)
@@ -210,7 +189,7 @@ def _cage(ranges: _Ranges, rng: np.random.Generator) -> Drawn:
     return _boxes(centre, angle, parts), [inside, _before(rng)]
 
 
-GENERATORS: dict[str, Callable[[_Ranges, np.random.Generator], Drawn]] = {
+GENERATORS: dict[str, Callable[[Ranges, np.random.Generator], Drawn]] = {
     "shelf": _shelf,
     "clutter": _clutter,
     "tight": _wall,
@@ -220,9 +199,9 @@ GENERATORS: dict[str, Callable[[_Ranges, np.random.Generator], Drawn]] = {
 """Name -> function that draws obstacles without names, and regions."""
 
 
-def draw_scene(generator: str, stream: str, rng: np.random.Generator) -> Drawn:
-    """Return the obstacles and regions that a generator draws for a stream, ``tune`` or ``report``."""
-    return GENERATORS[generator](RANGES[stream], rng)
+def draw_scene(generator: str, rng: np.random.Generator, ranges: Ranges = REPORT) -> Drawn:
+    """Return the obstacles and regions that a generator draws."""
+    return GENERATORS[generator](ranges, rng)
 
 
 def cell_of(robot: Robot) -> Scene:

@@ -32,7 +32,7 @@ _SAMPLES = 9
 def core_of(body: Shape, depth: float, *, as_capsule: bool) -> Shape | None:
     """Return what lies at least `depth` [m] inside of a body; None where nothing is known to.
 
-    Of a mesh it is the mesh drawn together towards its middle.  With `as_capsule` it is one capsule: for robots whose
+    A mesh is scaled towards its middle.  With `as_capsule` the result is one capsule: for robots whose
     bodies are capsules, where a body held has capsules around it.
     """
     if as_capsule or isinstance(body, PointCloud):
@@ -65,7 +65,7 @@ def core_of(body: Shape, depth: float, *, as_capsule: bool) -> Shape | None:
 def distance_of(body: Shape, robot: Robot, q: Floats, links: Collection[str]) -> float:
     """Return how far a body is from the nearest of some links at a configuration, (dim,): no less than it is [m].
 
-    Links are their frames and capsules.  Of a mesh or a cloud the corners or points are looked for.
+    Links are their frames and capsules; meshes and clouds are their corners and points.
     """
     poses = link_poses(robot, q[np.newaxis])[0]
     shares = np.linspace(0.0, 1.0, _SAMPLES)[:, np.newaxis]

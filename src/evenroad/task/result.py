@@ -155,20 +155,17 @@ def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
     step = parts[0].step
     if (seconds := sum(pauses)) > MOST_STATES * step:
         raise InvalidValue(f"the arm would stand still for {seconds:g} s, more than {MOST_STATES} steps of {step:g} s")
-    rows: dict[str, list[Floats]] = {"positions": [], "velocities": [], "accelerations": []}
-    waypoints = [parts[0].waypoints[:1]]
+    rows: list[Floats] = []
+    at = parts[0].positions[0]
     for part, pause in zip([*parts, None], pauses, strict=True):
-        still = parts[0].positions[0] if not rows["positions"] else rows["positions"][-1][-1]
-        count = math.ceil(pause / step - 1e-9)
-        rows["positions"].append(np.tile(still, (count, 1)))
-        for name in ("velocities", "accelerations"):
-            rows[name].append(np.zeros((count, len(still))))
+        still = np.zeros((math.ceil(pause / step - 1e-9), 3, len(at)))
+        still[:, 0] = at
+        rows.append(still)
         if part is not None:
-            waypoints.append(part.waypoints[1:])
-            first = 0 if len(rows["positions"]) == 1 else 1
-            for name, values in rows.items():
-                values.append(getattr(part, name)[first:])
-    positions, velocities, accelerations = (np.concatenate(values) for values in rows.values())
+            states = np.stack([part.positions, part.velocities, part.accelerations], axis=1)
+            rows.append(states[1 if len(rows) > 1 else 0 :])
+            at = part.positions[-1]
+    positions, velocities, accelerations = np.ascontiguousarray(np.concatenate(rows).transpose(1, 0, 2))
     order = ("resolution", "certified", "exact")
     return replace(
         parts[0],
@@ -176,7 +173,7 @@ def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
         positions=positions,
         velocities=velocities,
         accelerations=accelerations,
-        waypoints=np.concatenate(waypoints),
+        waypoints=np.concatenate([parts[0].waypoints[:1], *(part.waypoints[1:] for part in parts)]),
         deviation=max(part.deviation for part in parts),
         stops=sum(part.stops for part in parts) + len(parts) - 1,
         highest={name: max(part.highest[name] for part in parts) for name in parts[0].highest},

@@ -73,7 +73,7 @@ class _Search:
             if not level:
                 return []
         for branch in level:
-            # What is taken or let go after the last motion must exist, too.
+            # Objects that are attached or detached after the last motion must exist, too.
             self._acted(branch)
         return level
 

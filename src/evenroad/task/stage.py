@@ -105,7 +105,7 @@ class Stage:
         clearances = {**self.clearances, step.object: found[0].clearance}
         stage = replace(self, depths=depths, clearances=clearances)
         stage = replace(stage, world=_world(stage, attached))
-        # What it stood on, it may touch until it is lifted.
+        # Until it is lifted it may touch what it stood on.
         stood = frozenset((step.object, each) for each in stage.touched(step.object))
         return replace(stage, near_start=self.near_start | stood)
 
@@ -125,7 +125,7 @@ class Stage:
         setup = replace(scene.setup, attached=left)
         scene = replace(scene, obstacles=(*scene.obstacles, placed), setup=setup, allowed=allowed)
         let_go = frozenset((link, step.object) for link in (held[step.object].link, *held[step.object].touches))
-        # What it stood on is no matter any more: it is no body of the robot.
+        # Contacts of the object itself end: it is no body of the robot any more.
         others = frozenset(each for each in self.near_start if each[0] != step.object)
         return replace(self, world=_world(self, scene), near_start=others | let_go)
 
@@ -184,7 +184,7 @@ def _world(stage: Stage, scene: Scene) -> ArmWorld:
     for held in scene.attached:
         if held.name not in robot.holds:
             look_at_clock(_TO_HOLD)
-            # First, so that where both touch, messages name the object, whose own shape decides of both.
+            # The core comes first: if both touch, messages name the object.
             if held.name in stage.depths:
                 as_capsule = not robot.holding(held).shapes
                 robot = _holding_core(robot, held, stage.depths[held.name], as_capsule=as_capsule)

@@ -28,7 +28,7 @@ _OF_A_MOTION = ("goals", "poses", "approach", "retreat", "away", "upright", "con
 
 @dataclass(frozen=True)
 class TaskFile:
-    """What the file of a task says: `robot` and `scene` as names or paths, `scene` also as a mapping; None if unsaid.
+    """A task from a file, with the `robot` and `scene` that it names, or None; `scene` may be a mapping.
 
     A path is of a file beside that of the task.
     """

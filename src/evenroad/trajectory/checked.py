@@ -1,4 +1,4 @@
-"""Checks of a trajectory by its states alone, and in a world: what was read from a file is not proved by its words."""
+"""Checks of a trajectory, by its states alone and in a world: a file's word is no proof."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def require_within_limits(trajectory: Trajectory) -> None:
     dt, limits = trajectory.step, trajectory.limits
     q, v, a = trajectory.positions, trajectory.velocities, trajectory.accelerations
     fastest, push, slower = (np.array(row) for row in (limits.velocity, limits.acceleration, limits.stopping))
-    # Where a joint may slow down faster than it speeds up, so may the velocities between states.
+    # Velocities between states may change as fast as the joint may slow down.
     slows = a * v < 0.0
     push, faster = np.maximum(push, slower), push
     off = 4.0 * _ROUNDING * (1.0 + float(np.abs(q).max()))

@@ -1,4 +1,4 @@
-"""Which corners are cut less: a trajectory is tried, checked as it is driven, and tried again where it is not free."""
+"""Tries of a trajectory: it is checked as it is driven, and corners that are not free are cut less."""
 
 from __future__ import annotations
 
@@ -76,9 +76,8 @@ def with_rests(
 ) -> TimedStates:
     """Return what `make` does of waypoints and cuts, made for each part of a path between two stops on its own.
 
-    So a state lies at each stop, where else the motion from the state before to that after it cuts the corner.  Stops
-    are the corners whose `cuts`, (p,), are 0.  Raises NotAvailable, with the text of the refusal, where this is not
-    free, either.
+    So a state lies at each stop; otherwise the motion between the states around it would cut the corner.  Stops are the
+    corners whose `cuts`, (p,), are 0.  Raises NotAvailable, with the text of the refusal, if this is not free either.
     """
     stops = [0, *(1 + np.flatnonzero(cuts[1:-1] == 0.0)).tolist(), len(cuts) - 1]
     if len(stops) == 2:

@@ -26,7 +26,7 @@ EARTH = (0.0, 0.0, -9.81)
 
 @dataclass(frozen=True)
 class Dynamics:
-    """What the links of a robot weigh, and which torques its joints have; :func:`load_dynamics` reads both.
+    """Masses of a robot's links and torques of its joints; :func:`load_dynamics` reads both.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ def native_links(robot: Robot, masses: Iterable[Mass] = ()) -> MovingLinks:
     rows = np.zeros((len(tree.frames), 27))
     for row, frame in zip(rows, tree.frames, strict=True):
         row[:14] = *frame.rotation.ravel(), *frame.translation, frame.multiplier, frame.offset
-    # Of each frame its mass, that times the centre, and the inertia about the frame's origin.
+    # Each frame gets its mass, mass times centre, and the inertia about its origin.
     moments = np.zeros((len(rows), 3, 3))
     for mass in masses:
         placement = tree.links[mass.link]

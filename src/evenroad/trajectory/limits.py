@@ -91,7 +91,7 @@ class Limits:
         prismatic ones].  A path that leaves them gets no times.
     deceleration : tuple of float or None
         Largest acceleration of each joint against its velocity, where it slows down, > 0 [rad/s^2]; None: as where it
-        speeds up.  Where jerk is limited, the smaller of both holds for both.
+        speeds up.  If jerk is limited, the smaller of both holds for both.
     """
 
     velocity: tuple[float, ...]

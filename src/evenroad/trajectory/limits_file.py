@@ -36,7 +36,7 @@ _FILE = Kind(
 
 @dataclass(frozen=True)
 class LimitsFile:
-    """What a file says of each joint, without what it switches off.
+    """Limits of joints in a file, without those that it switches off.
 
     `rates` are joint -> kind -> value, `positions` joint -> (lower, upper), infinite where one is not given; `scaling`
     are the factors of all velocities and accelerations, 0 < factor <= 1.

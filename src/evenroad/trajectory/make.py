@@ -36,8 +36,9 @@ _SHARES, _LESS = 8, 0.995
 
 
 class Driven(NamedTuple):
-    """What a robot does at its steps, (n, dim) each; at fine times how far it is from its path, (m,), and the largest
-    shares of its limits.
+    """States of a robot at its steps, (n, dim) each, and distances from its path at fine times, (m,).
+
+    `highest` are the largest shares of its limits.
     """
 
     positions: Floats
@@ -61,14 +62,14 @@ def make_trajectory(
     """Return the fastest trajectory along a path with rounded corners.
 
     Corners become arcs of circles (Kunz and Stilman 2012), with the fastest times within velocities and accelerations
-    (Pham and Pham 2018).  Where jerk is limited, the motion is averaged over the largest ``2 acceleration / jerk``,
+    (Pham and Pham 2018).  If jerk is limited, the motion is averaged over the largest ``2 acceleration / jerk``,
     which keeps all limits.  An arc in collision becomes smaller; where a small one still collides, the robot stops.
 
     Parameters
     ----------
     path : array_like, shape (p, dim), or InMotion
-        Waypoints joined by straight motions; and the velocities at both ends, where these are not at rest.  Where all
-        are equal, the trajectory is one state of no duration.
+        Waypoints joined by straight motions, and velocities at both ends if the robot is not at rest there.  If all
+        waypoints are equal, the trajectory is one state without duration.
     limits : Limits
     world : World, optional
         Checks the trajectory, by its strict check if it has one.  Default: no check.

@@ -40,7 +40,7 @@ _STOP = 2.0
 
 @dataclass(frozen=True)
 class _Drive:
-    """What is sent to an arm: states, (n, joints) [rad], one a cycle [s], of named joints, to a model at an address."""
+    """States for an arm, (n, joints) [rad], one a cycle [s], with its address, model and joints."""
 
     host: str
     model: str

@@ -28,21 +28,22 @@ SIZE, MOVING = (900, 580), (720, 450)
 FRAMES, _FRAME, _PAUSE = 40, 80, 900
 """Number of frames of a moving picture, and milliseconds of each, and of the first and the last."""
 _END, _BETWEEN, _HIDDEN = 0.42, 0.12, 0.4
-"""How opaque an arm is at start and goal, and between; and the share of that where something hides it."""
+"""Opacity of an arm at start and goal, and between; and the share of it where something hides the arm."""
 _GHOSTS = (0.2, 0.4, 0.8)
 """Shares of the path at which a faint arm is shown; at `_MIDDLE` it is a solid one."""
 _MIDDLE = 0.6
 _SAMPLES, _THICK = 80, 0.006
 """Number of pieces of the tip's path, and their radius [m]."""
 _POINTS = 60
-"""Number of corners of each link by which a side for the camera is chosen."""
+"""Number of corners of each link that decide from which side the camera looks."""
 _NEAR, _EVERY = 0.15, 50
-"""How far from the arm obstacles must be shown: a share of what the arm needs; of its corners, every 50th counts."""
+"""Distance up to which obstacles are in the picture, relative to the size of the arm; and the step between its corners
+that are looked at."""
 
 
 @dataclass(frozen=True)
 class ArmScene:
-    """What pictures of one plan share: the bodies, the camera, and the links that move along the path."""
+    """Bodies, camera and moving links that all pictures of one plan share."""
 
     world: ArmWorld
     links: dict[str, Part]
@@ -97,8 +98,8 @@ def chosen_camera(
 def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = None) -> Image.Image:
     """Return a picture of a plan of an arm: the arm on its way, where it starts in green, its goal in blue.
 
-    The paths of its tips are red.  Of a start or goal in collision the arm is shown there, with the links and obstacles
-    that touch in red.  The robot looks as `file`, or the file it was loaded from, draws it.
+    The paths of its tips are red.  If the start or goal is in collision, the arm stands there, and the links and
+    obstacles that touch are red.  The robot looks as `file`, or the file that it was loaded from, draws it.
     """
     scene = ArmScene.of(result, world, file, SIZE)
     start, goal = (
@@ -121,7 +122,7 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = 
 
 
 def kept_distance(result: PlanResult) -> str:
-    """Return how far a path of an arm keeps from obstacles, and which two come nearest, as the end of a sentence."""
+    """Return the clearance of an arm's path and the two nearest bodies, as the end of a sentence."""
     if result.clearance is None:
         return ""
     pair = "" if result.nearest is None else ": {} from {}".format(*result.nearest)

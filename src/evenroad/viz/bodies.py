@@ -1,4 +1,4 @@
-"""What pictures and viewers show of robots and obstacles: bodies in their colours, as their files draw them."""
+"""Bodies of robots and obstacles as pictures and pages show them, in their colours."""
 
 from __future__ import annotations
 
@@ -27,22 +27,21 @@ from evenroad.viz.stage import Part, part_of
 from evenroad.viz.surfaces import surface_of
 
 CAPSULES, COLLISION, VISUAL = "capsules", "collision", "visual"
-"""What a robot can be shown as; one that draws best comes last."""
+"""Ways to show a robot, from the coarsest to the finest."""
 _GRAIN = 0.003
 """Size of the smallest details that are shown of large meshes [m]."""
 _MANY = 2000
-"""Number of triangles of a link from which on it is simplified."""
+"""Number of triangles beyond which a link is simplified."""
 _FORMAT = 1
-"""Version of what is kept of drawings."""
+"""Version of the files that keep drawings."""
 _SAME = 2e-3
-"""Difference between two drawings of a link below which they are one [m]."""
+"""Largest difference of two drawings of a link that count as equal [m]."""
 
 
 def robot_parts(robot: Robot, file: RobotFile | None = None) -> dict[str, Part]:
     """Return link -> what is drawn of it, in the link's frame: as its file draws it, else as its shapes.
 
-    Without a file it is that of which the robot was loaded in this process.  A drawing that cannot be read is no reason
-    to show nothing.
+    Default: the file that the robot was loaded from in this process.  If a drawing cannot be read, shapes stand for it.
     """
     file = file_of(robot) if file is None else file
     drawn = {} if file is None else _drawn(robot, file, as_drawn=True)
@@ -50,7 +49,7 @@ def robot_parts(robot: Robot, file: RobotFile | None = None) -> dict[str, Part]:
 
 
 def robot_sets(robot: Robot, file: RobotFile | None) -> dict[str, dict[str, Part]]:
-    """Return all that a robot can be shown as, by its name: each that differs from those before it."""
+    """Return the different ways to show a robot, by name."""
     sets, shapes = {CAPSULES: _numbered(robot, _by_link(robot.capsules))}, _shapes(robot)
     if file is None and not _equal(own := _numbered(robot, shapes), sets[CAPSULES]):
         sets[COLLISION] = own
@@ -67,7 +66,7 @@ def robot_sets(robot: Robot, file: RobotFile | None) -> dict[str, dict[str, Part
 
 
 def obstacle_part(obstacle: Obstacle) -> Part:
-    """Return what is drawn of an obstacle; what belongs to the cell is grey."""
+    """Return the body of an obstacle; those of the cell are grey."""
     colour = style.CELL if obstacle.cell else style.THING
     return _part_of_shape(obstacle.body, colour)
 

@@ -133,7 +133,7 @@ class _Handler(BaseHTTPRequestHandler):
         return not why
 
     def _refuse(self, status: HTTPStatus, why: str) -> None:
-        # What else was sent is not read: it is no next request.
+        # The rest of the request is not read, so the connection cannot serve another one.
         self.close_connection = True
         self._answer(status, "text/plain", f"evenroad: {why}\n".encode())
 

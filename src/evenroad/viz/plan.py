@@ -90,7 +90,7 @@ _MAP_COLOURS = (
 def _draw_map(view: View, result: PlanResult, world: DiskWorld) -> None:
     """Paint each pixel with the colour of its cell.
 
-    Where it is proved that there is no path, the components of start and goal have colours of their own.
+    If it is proved that there is no path, the components of start and goal have colours of their own.
     """
     grid = world.grid
     kinds = np.where(grid.occupied, 1, 0).astype(np.uint8)
@@ -100,7 +100,7 @@ def _draw_map(view: View, result: PlanResult, world: DiskWorld) -> None:
             kinds[world.cells_of(world.component(configuration))] = kind
     cells = Image.fromarray(kinds)
     cells.putpalette([part for colour in _MAP_COLOURS for part in ImageColor.getrgb(colour)[:3]])
-    # Of the image's corners, where they lie in the map's pixels, yaw included.
+    # Positions of the image's corners in the map's pixels, yaw included.
     corner, right, below = grid.frame.to_pixels(view.positions(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])))
     (a, d), (b, e), (c, f) = right - corner, below - corner, corner
     how = Image.Resampling.NEAREST

@@ -31,7 +31,7 @@ from evenroad.world import MeasuresPaths, World
 from evenroad.world.gridmap import DiskWorld
 
 Data: TypeAlias = "dict[str, object]"
-"""What a page shows, as JSON."""
+"""Data of a page, as JSON."""
 Timed: TypeAlias = tuple[Floats, Floats]
 """Times from 0 on, (n,) [s], and the configurations at them, (n, dim)."""
 TEMPLATE = Path(__file__).parent / "player.html"

@@ -36,7 +36,7 @@ def save_png(picture: Image.Image, path: str | os.PathLike[str]) -> None:
 
 
 class View:
-    """What is seen along one axis, between the corners `low` and `high`, (2,) each, in metres or map units.
+    """A view along one axis, between the corners `low` and `high`, (2,) each, in metres or map units.
 
     It has `scale` pixels a metre; y points up, or down.  Its ``image`` is `FINER` times as large as it is shown.
     """

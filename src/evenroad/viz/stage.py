@@ -22,7 +22,7 @@ _CREASE = 0.75
 class Part:
     """A body to draw: corners of its triangles, (t, 3, 3) [m], their normals, its colour, and how opaque it is.
 
-    Of a translucent one, `hidden` of its opacity is seen where something hides it.  Of one that is `closed` the faces
+    A translucent body keeps the share `hidden` of its opacity where something hides it.  The faces of a `closed` body
     that look away are never seen.
     """
 
@@ -49,7 +49,7 @@ def part_of(surface: Surface, colour: tuple[int, int, int], *, closed: bool = Fa
     corners = vertices[triangles]
     faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     sizes = np.linalg.norm(faces, axis=1)
-    # What has no area, as at the pole of a ball, shows nothing.
+    # Triangles without an area, as at the pole of a ball, show nothing.
     corners, faces, triangles = (each[sizes > 0.0] for each in (corners, faces, triangles))
     units = faces / sizes[sizes > 0.0, np.newaxis]
     _, same = unique_rows(np.round(vertices, 6))

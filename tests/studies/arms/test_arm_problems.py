@@ -5,10 +5,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from evenroad.datasets.random_scenes import GENERATORS, RANGES, cell_of
+from evenroad.datasets.random_scenes import GENERATORS, cell_of
 from evenroad.planning.arm_trees import connect
 from evenroad.robot import ArmWorld
-from evenroad_studies.arms.problems import ARM_ROBOTS, PREFIXES, draw_problem, problem_name, robot_and_generator
+from evenroad_studies.arms.problems import ARM_ROBOTS, PREFIXES, RANGES, draw_problem, problem_name, robot_and_generator
 from evenroad_studies.arms.robots import ARMS, arm_named
 from evenroad_studies.bench.execute import run_task
 from evenroad_studies.problems import PROBLEMS

@@ -13,7 +13,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.collision.arm_world import VALIDATION_TOLERANCE
 from evenroad.datasets.queries import free_configurations
-from evenroad.datasets.random_scenes import GENERATORS, cell_of, draw_scene, inside_of
+from evenroad.datasets.random_scenes import GENERATORS, REPORT, Ranges, cell_of, draw_scene, inside_of
 from evenroad.errors import NotAvailable
 from evenroad.points import PointSet
 from evenroad.roadmap import KNearest, Roadmap, build_roadmap
@@ -35,6 +35,26 @@ EASY_K, ENOUGH_K = 10, 20
 
 TRIES = 2000
 """Scenes that are drawn for one problem at most."""
+
+TUNE = Ranges(
+    shelf_angle=(-0.6, 0.6),
+    shelf_away=(0.62, 0.72),
+    shelf_width=(0.32, 0.40),
+    shelf_height=(0.28, 0.32),
+    shelf_columns=(2, 3),
+    things=(6, 11),
+    thing_height=(0.15, 0.4),
+    window=(0.22, 0.30),
+    wall_away=(0.5, 0.58),
+    boxes=(6, 13),
+    box_half=(0.04, 0.15),
+    cage_width=(0.5, 0.56),
+    cage_bars=(1, 2),
+)
+"""Ranges of problems by which constants are chosen."""
+
+RANGES = {"report": REPORT, "tune": TUNE}
+"""Stream -> ranges of its random scenes."""
 
 PREFIXES = {"report": "arm", "tune": "tune-arm"}
 """Stream -> how the names of its problems begin."""
@@ -75,7 +95,7 @@ def _drawn(robot: str, generator: str, stream: str, rng: np.random.Generator) ->
     """Return a scene with two free configurations, or None where it cannot be reached into."""
     arm = arm_named(robot)
     cell = cell_of(arm)
-    obstacles, regions = draw_scene(generator, stream, rng)
+    obstacles, regions = draw_scene(generator, rng, RANGES[stream])
     named = tuple(replace(each, name=f"{generator} {i}") for i, each in enumerate(obstacles))
     scene = Scene((*cell.obstacles, *named), name=f"{robot} {generator}", allowed=cell.allowed)
     world = ArmWorld(arm, scene)
