@@ -31,6 +31,7 @@ MAGIC = "evenroad certificate 1\n"
 MOST_TASKS = 4_000_000
 _DECIDED = 1e-7
 """Nearer bodies than this count as touching [m]."""
+_ALWAYS = "links that always touch need an SRDF that disables them, as evenroad robot --write-srdf writes one"
 PathLike = str | os.PathLike[str]
 
 
@@ -102,7 +103,8 @@ def answers_of(claim: Claim, curves: Floats) -> tuple[npt.NDArray[np.uint8], npt
     if pair >= 0:
         first, second = claim.pairs[pair][3]
         what = "touches" if gap < _DECIDED else "is not shown to be apart from"
-        raise InvalidValue(f"no certificate: motion {motion} at share {share:.6f}: {first} {what} {second}")
+        said = f"no certificate: motion {motion} at share {share:.6f}: {first} {what} {second}"
+        raise InvalidValue(said if claim.by_srdf else f"{said}; {_ALWAYS}")
     return answers, directions
 
 

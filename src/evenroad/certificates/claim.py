@@ -68,6 +68,8 @@ class Claim:
     shapes: tuple[Elements, ...]
     nodes: tuple[Node, ...]
     pairs: tuple[tuple[int, int, float, tuple[str, str]], ...]
+    by_srdf: bool
+    """Whether an SRDF says which links may touch."""
 
 
 def tree_of(urdf: RobotDescription, claimed: Claimed) -> Tree:
@@ -119,7 +121,7 @@ def claim_of(urdf: RobotDescription, scene: Scene, claimed: Claimed) -> Claim:
         for j in range(i + 1, len(names)):
             if placement[name][0] != placement[names[j]][0] and frozenset((name, names[j])) not in touching:
                 pairs.append((first + i, first + j, 0.0, (name, names[j])))
-    return Claim(tree, tuple(shapes), tuple(nodes), tuple(pairs))
+    return Claim(tree, tuple(shapes), tuple(nodes), tuple(pairs), bool(claimed.disabled))
 
 
 def _around(
