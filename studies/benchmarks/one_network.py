@@ -19,7 +19,6 @@ import math
 import time
 
 import numpy as np
-from numba import njit
 from studies.benchmarks.rows import parser_of
 
 from evenroad._arrays import Floats
@@ -67,44 +66,23 @@ def functions(weights: Floats, n: int, d: int) -> Floats:
     return np.hstack([push, 0.3 * np.exp(out[..., 1].mean(axis=1, keepdims=True))])
 
 
-@njit(cache=True, fastmath=True)
-def moved(points, table, radius):  # type: ignore[no-untyped-def]
+def moved(points: Floats, table: Floats, radius: float) -> Floats:
     """Return where the steps of a table move points, (n, d), on the torus."""
-    n, d = points.shape
     x, bins = points.copy(), table.shape[1] - 1
-    gaps, slopes = np.empty(d), np.empty(d)
-    for step in range(table.shape[0]):
-        push, pull = np.zeros((n, d)), np.zeros((n, d))
-        for i in range(n):
-            for j in range(i):
-                squared, kernel = 0.0, 1.0
-                for k in range(d):
-                    gap = x[i, k] - x[j, k]
-                    gap -= np.rint(gap)
-                    gaps[k] = gap
-                    squared += gap * gap
-                    size = abs(gap)
-                    factor = 1.5 - size * (1.0 - size)
-                    kernel *= factor
-                    slopes[k] = (1.0 - 2.0 * size) * (1.0 if gap > 0.0 else -1.0) / factor
-                length = math.sqrt(squared) + 1e-12
-                at = int(length / radius * (bins / REACH))
-                force = table[step, at] / length if at < bins else 0.0
-                for k in range(d):
-                    one, other = force * gaps[k], kernel * slopes[k]
-                    push[i, k] += one
-                    push[j, k] -= one
-                    pull[i, k] += other
-                    pull[j, k] -= other
-        total = 0.0
-        for i in range(n):
-            for k in range(d):
-                total += pull[i, k] ** 2
-        scale = table[step, bins] * radius * 0.1 / (math.sqrt(total / (n * d)) + 1e-12)
-        for i in range(n):
-            for k in range(d):
-                new = x[i, k] + radius * push[i, k] + scale * pull[i, k]
-                x[i, k] = new - math.floor(new)
+    for forces, scale in zip(table[:, :bins], table[:, bins], strict=True):
+        gaps = x[:, np.newaxis] - x
+        gaps -= np.rint(gaps)
+        size = np.abs(gaps)
+        factors = 1.5 - size * (1.0 - size)
+        length = np.sqrt((gaps * gaps).sum(axis=-1)) + 1e-12
+        at = (length / radius * (bins / REACH)).astype(int)
+        force = np.append(forces, 0.0)[np.minimum(at, bins)] / length
+        np.fill_diagonal(force, 0.0)
+        push = (force[..., np.newaxis] * gaps).sum(axis=1)
+        slopes = (1.0 - 2.0 * size) * np.sign(gaps) / factors
+        pull = (factors.prod(axis=-1, keepdims=True) * slopes).sum(axis=1)
+        x += radius * push + scale * radius * 0.1 / (np.sqrt((pull * pull).mean()) + 1e-12) * pull
+        x -= np.floor(x)
     return x
 
 

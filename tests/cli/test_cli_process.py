@@ -97,7 +97,7 @@ set_handler = signal.signal
 
 
 @pytest.mark.parametrize("run", [
-    # While numba compiles, LLVM calls Python, and drops what that raises.
+    # Compiled code that calls Python drops what that raises.
     IN_A_CALLBACK.format("while True: time.sleep(0.01)"),
     IN_A_CALLBACK.format("raise RuntimeError('no compiled object yet')"),
     # SciPy's Sobol points come out as zeros after it; Cython prints what it drops.

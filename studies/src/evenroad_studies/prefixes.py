@@ -6,8 +6,9 @@ over the pairs, and a pair's slope is one sum over the prefixes that hold it: tw
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue, shown
@@ -24,6 +25,8 @@ SHARPNESS = 60.0
 """How much the worst prefix counts more than others: a prefix 5 % above another one weighs e^3 times as much."""
 
 SMALLEST = 1e-300
+IN_CACHE = 10_000
+"""Number of values that are worked on at once."""
 
 
 def rooted_prefixes(points: object, name: str = "hickernell") -> Floats:
@@ -34,7 +37,8 @@ def rooted_prefixes(points: object, name: str = "hickernell") -> Floats:
     if name not in PREFIXED:
         raise InvalidValue(f"prefixes(...) takes {' or '.join(PREFIXED)}, got {shown(name)}")
     columns = np.ascontiguousarray(as_unit_points(points).T)
-    return np.sqrt(_squared(columns, _terms(name, columns)))
+    terms = _terms(name, columns)
+    return np.sqrt(_squared(terms, _pairs(columns, terms)))
 
 
 def worst_prefix(name: str, columns: Floats, level: Floats, fixed: int = 0) -> tuple[float, Floats]:
@@ -46,7 +50,8 @@ def worst_prefix(name: str, columns: Floats, level: Floats, fixed: int = 0) -> t
     """
     n = columns.shape[1]
     terms, lengths = _terms(name, columns), np.arange(1, n + 1)
-    squared = _squared(columns, terms)
+    pairs = _pairs(columns, terms)
+    squared = _squared(terms, pairs)
     counts = lengths >= max(min(SHORTEST, n), fixed + 1)
     above = np.where(counts, 0.5 * np.log(squared) - level, -np.inf)
     shares = np.where(counts, 1.0 / lengths, 0.0)
@@ -57,8 +62,7 @@ def worst_prefix(name: str, columns: Floats, level: Floats, fixed: int = 0) -> t
     # Sums over all prefixes that hold point i: from its end backwards.
     of_pairs = np.cumsum((shares / (2.0 * squared * lengths**2))[::-1])[::-1].copy()
     of_points = np.cumsum((shares / (squared * lengths))[::-1])[::-1]
-    assert isinstance(terms.pairs, MaximumPairs)
-    gradient = _weighted_slopes(columns, *terms.pairs, of_pairs, fixed)
+    gradient = _weighted_slopes(columns, terms, pairs, of_pairs)
     gradient -= of_points * (terms.linear.prod(axis=0) / terms.linear) * terms.linear_slope
     gradient[:, :fixed] = 0.0
     return float(value), gradient
@@ -68,50 +72,40 @@ def _terms(name: str, columns: Floats) -> ProductTerms:
     return PREFIXED[name](columns, np.ones(len(columns)))
 
 
-def _squared(columns: Floats, terms: ProductTerms) -> Floats:
-    """Return the squared discrepancies of all prefixes, above 0."""
+def _pairs(columns: Floats, terms: ProductTerms) -> Floats:
+    """Return the kernel K_ij of all pairs, (n, n)."""
     assert isinstance(terms.pairs, MaximumPairs)
-    lengths = np.arange(1, columns.shape[1] + 1)
+    factors = terms.pairs.ceiling[:, np.newaxis] - terms.pairs.slope[:, np.newaxis] * columns
+    pairs = np.ones((columns.shape[1],) * 2)
+    for rows in _blocks(len(pairs)):
+        for factor in factors:
+            pairs[rows] *= np.minimum(factor[rows, np.newaxis], factor)
+    return pairs
+
+
+def _blocks(n: int) -> Iterator[slice]:
+    """Yield parts of n rows that stay, n numbers each, in the processor's memory."""
+    step = max(1, IN_CACHE // n)
+    return (slice(at, at + step) for at in range(0, n, step))
+
+
+def _squared(terms: ProductTerms, pairs: Floats) -> Floats:
+    """Return the squared discrepancies of all prefixes, above 0."""
+    lengths = np.arange(1, len(pairs) + 1)
     linear = np.cumsum(terms.linear.prod(axis=0)) / lengths
-    rows = np.cumsum(_row_sums(columns, *terms.pairs)) / lengths**2
-    return np.maximum((rows - linear) - (linear - terms.constant), SMALLEST)
+    # What each point adds to the pair sum of those before it: twice its pairs with them, and its own.
+    rows = np.diagonal(pairs) + 2.0 * np.array([row[:i].sum() for i, row in enumerate(pairs)])
+    return np.maximum((np.cumsum(rows) / lengths**2 - linear) - (linear - terms.constant), SMALLEST)
 
 
-@njit(cache=True, fastmath=True)
-def _row_sums(columns, ceiling, slope):  # type: ignore[no-untyped-def]
-    """Return what each point adds to the pair sum of those before it: twice its pairs with them, and its own."""
-    d, n = columns.shape
-    sums, product = np.empty(n), np.empty(n)
-    for i in range(n):
-        product[: i + 1] = 2.0
-        product[i] = 1.0
-        for k in range(d):
-            at, top, fall, others = columns[k, i], ceiling[k], slope[k], columns[k]
-            for j in range(i + 1):
-                product[j] *= top - fall * max(at, others[j])
-        total = 0.0
-        for j in range(i + 1):
-            total += product[j]
-        sums[i] = total
-    return sums
-
-
-@njit(cache=True, fastmath=True)
-def _weighted_slopes(columns, ceiling, slope, weights, fixed):  # type: ignore[no-untyped-def]
-    """Return the slope, (d, n), of the sum of weights[max(i, j)] K_ij over all pairs; 0 for the first `fixed`."""
-    d, n = columns.shape
-    gradient, product = np.zeros((d, n)), np.empty(n)
-    for i in range(fixed, n):
-        for j in range(n):
-            product[j] = 2.0 * weights[max(i, j)]
-        product[i] = weights[i]
-        for k in range(d):
-            at, top, fall, others = columns[k, i], ceiling[k], slope[k], columns[k]
-            for j in range(n):
-                product[j] *= top - fall * max(at, others[j])
-        for k in range(d):
-            at, others, below = columns[k, i], columns[k], 0.0
-            for j in range(n):
-                below += product[j] if others[j] < at else 0.0
-            gradient[k, i] = -slope[k] * (below + product[i]) / (ceiling[k] - slope[k] * at)
-    return gradient
+def _weighted_slopes(columns: Floats, terms: ProductTerms, pairs: Floats, weights: Floats) -> Floats:
+    """Return the slope, (d, n), of the sum of weights[max(i, j)] K_ij over all pairs; the weights fall."""
+    assert isinstance(terms.pairs, MaximumPairs)
+    ceiling, slope = (each[:, np.newaxis] for each in terms.pairs)
+    # Of a pair, the one with the larger coordinate has the slope; of a point and itself, half of it.
+    sums = np.tile(weights * np.diagonal(pairs), (len(columns), 1))
+    for rows in _blocks(len(pairs)):
+        product = np.minimum(weights, weights[rows, np.newaxis]) * pairs[rows]
+        for x, total in zip(columns, sums, strict=True):
+            total[rows] += 2.0 * (product * (x < x[rows, np.newaxis])).sum(axis=1)
+    return -slope * sums / (ceiling - slope * columns)

@@ -40,7 +40,7 @@ class Sequence:
 
     The worst ratio of the Hickernell L2 discrepancy of a beginning to that of scrambled Sobol points is made small, for
     all beginnings of 8 points and more at once.  Points from index 2048 on are Sobol's as they are.  The sets of one
-    seed begin with those of fewer points.  The first set of a seed takes seconds, also a small one.
+    seed begin with those of fewer points.  The first set of a seed takes half a minute, also a small one.
     """
 
     start: int = 0

@@ -1,11 +1,11 @@
-"""The compiled passes beside a plain network with a message for every edge, and beside finite differences."""
+"""The passes beside a plain network with a message for every edge, and beside finite differences."""
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from evenroad_studies.network.layers import NORM_FLOOR, adam_step, backward, forward, multiply
+from evenroad_studies.network.layers import NORM_FLOOR, Graph, Parts, adam_step, backward, forward
 from evenroad_studies.network.train import nearest
 from tests.differences import slopes
 
@@ -20,14 +20,8 @@ def random_network(seed=0, dtype=np.float64):
     return np.hstack([starts, np.ones((N, 1))]).astype(dtype), nearest(starts, K), weights
 
 
-def room(dtype=np.float64):
-    return np.zeros((LAYERS + 1, 6, N, WIDTH), dtype), np.zeros((LAYERS, WIDTH), dtype)
-
-
 def moves_of(inputs, neighbours, weights):
-    moves = np.zeros((N, D), inputs.dtype)
-    forward(inputs, neighbours, *weights, *room(inputs.dtype), moves)
-    return moves
+    return forward(inputs, Graph.of(neighbours), Parts(*weights))[0]
 
 
 def plain_moves(inputs, neighbours, weights):
@@ -53,10 +47,9 @@ def test_the_forward_pass_is_the_network_written_plainly_in_float32_to_six_digit
 def test_the_slopes_are_those_of_finite_differences(part):
     inputs, neighbours, weights = random_network(3)
     wanted = np.random.default_rng(1).random((N, D))
-    saved, scales = room()
-    forward(inputs, neighbours, *weights, saved, scales, np.zeros((N, D)))
-    found = tuple(np.full_like(each, np.nan) for each in weights)
-    backward(inputs, neighbours, *weights, saved, scales, wanted, found)
+    graph, parts = Graph.of(neighbours), Parts(*weights)
+    found = Parts(*(np.full_like(each, np.nan) for each in weights))
+    backward(inputs, graph, parts, forward(inputs, graph, parts)[1], wanted, found)
     some = np.random.default_rng(2).choice(weights[part].size, min(25, weights[part].size), replace=False)
 
     def moved(flat):
@@ -67,13 +60,12 @@ def test_the_slopes_are_those_of_finite_differences(part):
     np.testing.assert_allclose(found[part].ravel()[some], slow[some], rtol=1e-4, atol=1e-6)
 
 
-@settings(max_examples=30)
-@given(st.integers(1, 9), st.integers(1, 9), st.integers(1, 20), st.integers(0, 99))
-def test_matrices_of_all_shapes_multiply_as_in_numpy(n, depth, m, seed):
-    draws = np.random.default_rng(seed)
-    a, b, out = draws.normal(size=(n, depth)), draws.normal(size=(depth, m)), np.full((n, m), np.nan)
-    multiply(a, b, out)
-    np.testing.assert_allclose(out, a @ b, rtol=1e-12, atol=1e-12)
+def test_a_neighbour_of_minus_one_says_nothing():
+    inputs, neighbours, weights = random_network(1)
+    fewer = neighbours.copy()
+    fewer[::2, 2:] = -1
+    listed = [row[row >= 0] for row in fewer]
+    np.testing.assert_allclose(moves_of(inputs, fewer, weights), plain_moves(inputs, listed, weights), rtol=1e-9)
 
 
 def test_a_step_of_adam_is_that_of_its_formulas():

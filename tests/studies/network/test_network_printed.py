@@ -6,7 +6,8 @@ import pytest
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.measures import MEASURES
 from evenroad_studies.network.config import NetworkConfig
-from evenroad_studies.network.printed import Printed, graph_of, train_printed
+from evenroad_studies.network.layers import Graph
+from evenroad_studies.network.printed import Printed, neighbours_of, train_printed
 from evenroad_studies.network.train import Network
 from tests.refused import refused
 
@@ -26,7 +27,7 @@ def test_a_batch_gets_better_and_its_sets_come_best_first(options):
 
 def test_a_radius_joins_all_points_within_it_and_nothing_else():
     points = np.random.default_rng(1).random((30, 2))
-    graph = graph_of(points, Printed(30, 2, radius=0.2))
+    graph = neighbours_of(points, Printed(30, 2, radius=0.2))
     near = np.linalg.norm(points[:, None] - points, axis=2) <= 0.2
     np.fill_diagonal(near, False)
     for row, others in zip(graph, near, strict=True):
@@ -37,7 +38,7 @@ def test_a_row_that_is_filled_up_sends_the_messages_of_its_beginning():
     points, graph = np.random.default_rng(2).random((12, 3)), np.tile(np.arange(3), (12, 1))
     filled = np.hstack([graph, np.full((12, 2), -1)])
     first, second = (Network(NetworkConfig(12, 3), np.random.default_rng(0)) for _ in range(2))
-    np.testing.assert_allclose(first.moves(points, graph), second.moves(points, filled), rtol=1e-4)
+    np.testing.assert_allclose(first.moves(points, Graph.of(graph)), second.moves(points, Graph.of(filled)), rtol=1e-4)
     slope = np.random.default_rng(4).random((12, 3))
     np.testing.assert_allclose(first.slope_of(slope), second.slope_of(slope), rtol=1e-3, atol=1e-3)
 

@@ -24,8 +24,7 @@ def test_bounds_are_those_of_all_boxes_at_the_origin():
     points, t = np.random.default_rng(3).random((9, 3)), 0.2
     order = np.argsort(points[:, 0])
     second, third = (np.argsort(np.argsort(points[:, axis]))[order] for axis in (1, 2))
-    low, high = np.empty(9), np.empty(9)
-    coordinate_bounds(second, third, np.sort(points[:, 1]), np.sort(points[:, 2]), t, low, high)
+    low, high = coordinate_bounds(second, third, np.sort(points[:, 1]), np.sort(points[:, 2]), t)
     for i in range(9):
         before, up_to = points[order[:i]], points[order[: i + 1]]
         boxes = [(y, z) for y in (*points[:, 1], 1.0) for z in (*points[:, 2], 1.0)]

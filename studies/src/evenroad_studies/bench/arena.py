@@ -63,7 +63,7 @@ def _write(path: Path, rows: Rows, session: Session) -> None:
     with closing(sqlite3.connect(path)) as connection:
         connection.executescript(TABLES)
         connection.executemany("INSERT INTO enums VALUES ('status', ?, ?)", STATUSES.values())
-        versions = f"python {session.python}, numpy {session.numpy}, numba {session.numba}"
+        versions = f"python {session.python}, numpy {session.numpy}"
         for number, row in enumerate(first_of_experiment, 1):
             here = experiment == number
             ran = (float(np.nansum(rows.seconds[here])), int(here.sum()))

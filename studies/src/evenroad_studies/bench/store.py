@@ -186,7 +186,8 @@ def read_sessions(path: str | os.PathLike[str]) -> tuple[Session, ...]:
 def _session() -> tuple[object, ...]:
     from importlib.metadata import version
 
-    versions = tuple(version(name) for name in ("numpy", "scipy", "numba"))
+    # Earlier versions compiled with numba: its column stays, so that one store may hold their rows, too.
+    versions = (version("numpy"), version("scipy"), "")
     session = (now(), __version__, platform.python_version(), *versions, platform.platform())
     return (*session, checksum_of(session))
 

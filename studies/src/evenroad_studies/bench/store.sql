@@ -1,6 +1,7 @@
 CREATE TABLE sessions (
     started TEXT NOT NULL,   -- UTC
-    evenroad TEXT NOT NULL, python TEXT NOT NULL, numpy TEXT NOT NULL, scipy TEXT NOT NULL, numba TEXT NOT NULL,
+    evenroad TEXT NOT NULL, python TEXT NOT NULL, numpy TEXT NOT NULL, scipy TEXT NOT NULL,
+    numba TEXT NOT NULL,     -- '' since nothing is compiled with it
     platform TEXT NOT NULL,
     checksum INTEGER NOT NULL   -- here and below: CRC-32 of the columns before, see checksum_of
 );

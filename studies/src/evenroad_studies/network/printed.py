@@ -22,6 +22,7 @@ from evenroad.errors import InvalidValue
 from evenroad.points.anneal import LOWEST
 from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
 from evenroad_studies.network.config import NetworkConfig
+from evenroad_studies.network.layers import Graph
 from evenroad_studies.network.train import Network, nearest
 from evenroad_studies.training.objective import parse_objective
 
@@ -84,7 +85,7 @@ def train_printed(
     network = Network(NetworkConfig(config.n, config.d, width=config.width, layers=config.layers), draws)
     network.begin_anywhere(draws)
     starts = draws.random((config.sets, config.n, config.d))
-    graphs = [graph_of(each, config) for each in starts]
+    graphs = [Graph.of(neighbours_of(each, config)) for each in starts]
     best, points, curve = np.full(config.sets, np.inf), starts.copy(), np.empty(config.steps)
     for step in range(config.steps):
         total, loss = np.zeros_like(network.slopes), 0.0
@@ -107,16 +108,16 @@ def train_printed(
     return tuple(sets), curve
 
 
-def graph_of(points: Floats, config: Printed) -> Ints:
+def neighbours_of(points: Floats, config: Printed) -> Ints:
     """Return the points that send each point messages, (n, most), filled up with -1 where a radius has fewer."""
     if config.radius is None:
         return nearest(points, config.k)
     found = cKDTree(points).query_ball_point(points, config.radius)
     others = [[j for j in row if j != i] for i, row in enumerate(found)]
-    graph = np.full((len(points), max(1, *map(len, others))), -1, dtype=np.int64)
-    for row, each in zip(graph, others, strict=True):
+    neighbours = np.full((len(points), max(1, *map(len, others))), -1, dtype=np.int64)
+    for row, each in zip(neighbours, others, strict=True):
         row[: len(each)] = each
-    return graph
+    return neighbours
 
 
 def _end(decoded: Floats, end: str) -> tuple[Floats, Floats]:

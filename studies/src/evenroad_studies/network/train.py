@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from evenroad._arrays import Floats, Ints
@@ -20,10 +18,8 @@ from evenroad.points.measures import star_discrepancy
 from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
 from evenroad.points.samplers import draw
 from evenroad_studies.network.config import NetworkConfig
-from evenroad_studies.network.layers import adam_step, backward, forward
+from evenroad_studies.network.layers import Graph, Parts, Weights, adam_step, backward, forward
 from evenroad_studies.training.objective import Objective, parse_objective
-
-Weights: TypeAlias = npt.NDArray[np.float32]
 
 STEEPEST = 1e30
 """Largest slope of an objective in a coordinate that a network is trained with: its squares are summed in float32."""
@@ -47,19 +43,14 @@ class Network:
         for part, bound in ((encoder, 1.7 / math.sqrt(d + 1)), (maps, 1.0), (biases, 1.0), (decoder, 0.1)):
             scale = bound if part is encoder else bound / math.sqrt(width)
             part[:] = draws.uniform(-scale, scale, part.shape)
-        self._rooms: dict[int, tuple[Weights, ...]] = {}
         self._step = 0
 
-    def moves(self, starts: Floats, neighbours: Ints) -> Floats:
+    def moves(self, starts: Floats, graph: Graph) -> Floats:
         """Return by how much to move each start, (n, d), in the logit of its coordinates."""
-        (n, d), (layers, _, width, _) = starts.shape, self._parts[1].shape
-        if n not in self._rooms:
-            shapes = ((n, d + 1), (layers + 1, 6, n, width), (layers, width), (n, d))
-            self._rooms[n] = tuple(np.ones(shape, np.float32) for shape in shapes)
-        inputs, saved, scales, moves = self._rooms[n]
+        inputs = np.ones((len(starts), starts.shape[1] + 1), np.float32)
         inputs[:, :-1] = 2.0 * starts - 1.0
-        forward(inputs, neighbours, *self._parts, saved, scales, moves)
-        self._last = inputs, neighbours, saved, scales
+        moves, layers = forward(inputs, graph, self._parts)
+        self._last = inputs, graph, layers
         return moves.astype(np.float64)
 
     def learn(self, slope: Floats, rate: float) -> None:
@@ -68,9 +59,8 @@ class Network:
 
     def slope_of(self, slope: Floats) -> Weights:
         """Return the slope of every weight, given that of the objective in the last moves; the next call changes it."""
-        inputs, neighbours, saved, scales = self._last
-        slope = np.ascontiguousarray(slope, np.float32)
-        backward(inputs, neighbours, *self._parts, saved, scales, slope, self._slope_parts)
+        inputs, graph, layers = self._last
+        backward(inputs, graph, self._parts, layers, slope.astype(np.float32), self._slope_parts)
         return self.slopes
 
     def step(self, slope: Weights, rate: float) -> None:
@@ -85,10 +75,10 @@ class Network:
         decoder[:] = draws.uniform(-bound, bound, decoder.shape)
 
 
-def _split(flat: Weights, shapes: Sequence[tuple[int, ...]]) -> tuple[Weights, ...]:
+def _split(flat: Weights, shapes: Sequence[tuple[int, ...]]) -> Parts:
     """Return views of a flat array, one after the other, in these shapes."""
     ends = np.cumsum([math.prod(shape) for shape in shapes])[:-1]
-    return tuple(part.reshape(shape) for part, shape in zip(np.split(flat, ends), shapes, strict=True))
+    return Parts(*(part.reshape(shape) for part, shape in zip(np.split(flat, ends), shapes, strict=True)))
 
 
 def nearest(points: Floats, k: int) -> Ints:
@@ -127,12 +117,12 @@ def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None 
     draws = generator(rng)
     objective = parse_objective(config.objective)
     starts = np.clip(_first_points(config, draws), INSET, 1.0 - INSET)
-    network, neighbours = Network(config, draws), nearest(starts, config.k)
+    network, graph = Network(config, draws), Graph.of(nearest(starts, config.k))
     spread = config.drift * noise_over_rate(objective, config.n, config.d) * first_rate(config.n, config.d)
     best_value, best_points = math.inf, starts
     for step in range(1, config.steps + 1):
         cooling = 0.5 * (1.0 + math.cos(math.pi * (step - 1) / config.steps))
-        points = moved(starts, network.moves(starts, neighbours))
+        points = moved(starts, network.moves(starts, graph))
         value, columns = objective.of_columns(np.ascontiguousarray(points.T))
         if not (math.isfinite(value) and np.isfinite(columns).all()):
             raise InvalidValue(f"the objective '{objective}' is {value} at step {step}: the training has diverged")

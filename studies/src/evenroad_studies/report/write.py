@@ -107,7 +107,8 @@ def facts_of(store: Path, rows: Rows, sessions: Sequence[Session], command: str)
 
 def _versions(session: Session) -> str:
     parts = (f"evenroad {session.evenroad}", f"Python {session.python}", f"numpy {session.numpy}")
-    return ", ".join((*parts, f"scipy {session.scipy}", f"numba {session.numba}"))
+    numba = (f"numba {session.numba}",) if session.numba else ()
+    return ", ".join((*parts, f"scipy {session.scipy}", *numba))
 
 
 PAPER_ADDS = 3

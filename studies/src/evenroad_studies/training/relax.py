@@ -9,9 +9,8 @@ are in the plane (:mod:`evenroad_studies.training.order`), so the places are not
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
 from evenroad.points.anneal import LOWEST, Annealed, anneal
@@ -32,16 +31,16 @@ def search_in_space(n: int, *, tries: int = 1, sweeps: int = SWEEPS, rng: RngLik
 
 def relaxed(points: Floats, sweeps: int = SWEEPS) -> Annealed:
     """Return the best of what so many sweeps make of points, (n, 3), with its exact star discrepancy."""
-    now, n = points.copy(), len(points)
+    now = points.copy()
     orders = [np.argsort(now[:, axis], kind="stable") for axis in range(3)]
     ranks = [np.argsort(order) for order in orders]
     best, value = now.copy(), star_discrepancy(now)
-    reached, low, high = value, np.empty(n), np.empty(n)
+    reached = value
     for _ in range(sweeps):
         for axis in range(3):
             order, second, third = orders[axis], (axis + 1) % 3, (axis + 2) % 3
             others = (now[orders[second], second], now[orders[third], third])
-            coordinate_bounds(ranks[second][order], ranks[third][order], *others, reached, low, high)
+            low, high = coordinate_bounds(ranks[second][order], ranks[third][order], *others, reached)
             middle = np.clip(0.5 * (low + np.minimum(high, 1.0)), LOWEST, BELOW_ONE)
             now[order, axis] = np.maximum.accumulate(middle)
         reached = star_discrepancy(now)
@@ -51,33 +50,19 @@ def relaxed(points: Floats, sweeps: int = SWEEPS) -> Annealed:
     return Annealed(best, value)
 
 
-@njit(cache=True, fastmath=True)
-def coordinate_bounds(second, third, y, z, t, low, high):  # type: ignore[no-untyped-def]
-    """Write between which bounds each coordinate keeps all boxes within t, in the order of this axis.
+def coordinate_bounds(second: Ints, third: Ints, y: Floats, z: Floats, t: float) -> tuple[Floats, Floats]:
+    """Return the bounds between which each coordinate keeps all boxes within t, in the order of this axis: two (n,).
 
     `second` and `third` are the points' ranks along the other axes, y and z the sorted coordinates there, (n,).
     """
     n = second.size
-    by_y, by_z, counts = np.ones(n + 1), np.ones(n + 1), np.zeros((n + 1, n + 1))
-    for j in range(n):
-        by_y[j], by_z[j] = 1.0 / max(y[j], 1e-9), 1.0 / max(z[j], 1e-9)
+    by_y, by_z = (1.0 / np.append(np.maximum(each, 1e-9), 1.0) for each in (y, z))
+    closed = np.minimum(np.arange(n + 1) + 1, n)
+    counts, low, high = np.zeros((n + 1, n + 1)), np.empty(n), np.empty(n)
     for i in range(n):
         # The open boxes up to point i, which hold those before it ...
-        high[i] = np.inf
-        for j in range(n + 1):
-            least, row = np.inf, counts[j]
-            for k in range(n + 1):
-                least = min(least, (t + row[k]) * by_z[k])
-            high[i] = min(high[i], least * by_y[j])
-        for j in range(second[i] + 1, n + 1):
-            row = counts[j]
-            for k in range(third[i] + 1, n + 1):
-                row[k] += 1.0 / n
+        high[i] = (((t + counts) * by_z).min(axis=1) * by_y).min()
+        counts[second[i] + 1 :, third[i] + 1 :] += 1.0 / n
         # ... and the closed ones, which hold it and those on their other sides, too.
-        low[i] = 0.0
-        for j in range(n + 1):
-            row = counts[min(j + 1, n)]
-            most = row[n] - t
-            for k in range(n):
-                most = max(most, (row[k + 1] - t) * by_z[k])
-            low[i] = max(low[i], most * by_y[j])
+        low[i] = (((counts[np.ix_(closed, closed)] - t) * by_z).max(axis=1) * by_y).max()
+    return np.maximum(low, 0.0), high

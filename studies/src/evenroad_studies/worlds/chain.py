@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
+from scipy.spatial.distance import cdist
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import FlatSpace
-from evenroad_studies.worlds.bisection import next_between
-from evenroad_studies.worlds.corridor import CompiledWorld, comes_first
+from evenroad.world.bisection import between_endpoints
+from evenroad_studies.worlds.corridor import BatchWorld, in_order
 
 
 @dataclass(frozen=True)
@@ -54,50 +54,24 @@ class ChainSpace(FlatSpace):
         return _all_distances(_far_ends(first), _far_ends(second))
 
 
-@njit(cache=True, nogil=True)
-def chain_distance(a: Floats, b: Floats) -> float:
-    """Return the distance of two configurations, (joints,): compiled, for compiled callers."""
-    heading_a, heading_b, offset_x, offset_y, total = 0.0, 0.0, 0.0, 0.0, 0.0
-    for k in range(len(a)):
-        heading_a += a[k]
-        heading_b += b[k]
-        offset_x += math.cos(heading_a) - math.cos(heading_b)
-        offset_y += math.sin(heading_a) - math.sin(heading_b)
-        total += math.sqrt(offset_x * offset_x + offset_y * offset_y)
-    return total / len(a)
+def _distances(a: Floats, b: Floats) -> Floats:
+    """Return the distances of the configurations of two arrays, row by row, (n,)."""
+    first, second = np.cumsum(a, axis=1), np.cumsum(b, axis=1)
+    offset_x, offset_y = (np.cumsum(along(first) - along(second), axis=1) for along in (np.cos, np.sin))
+    return np.sqrt(offset_x * offset_x + offset_y * offset_y).sum(axis=1) / a.shape[1]
 
 
-@njit(cache=True, nogil=True)
-def _distances(a, b):  # type: ignore[no-untyped-def]
-    return np.array([chain_distance(a[row], b[row]) for row in range(len(a))])
+def _far_ends(q: Floats) -> Floats:
+    """Return ``joints p_m`` for each configuration: (n, joints, 2)."""
+    headings = np.cumsum(q, axis=1)
+    return np.cumsum(np.stack([np.cos(headings), np.sin(headings)], axis=-1), axis=1)
 
 
-@njit(cache=True, nogil=True)
-def _far_ends(q):  # type: ignore[no-untyped-def]
-    """Return ``joints p_m`` for each configuration: (n, 2 joints), the x of all links and then their y."""
-    joints = q.shape[1]
-    ends = np.empty((len(q), 2 * joints))
-    for row in range(len(q)):
-        heading, x, y = 0.0, 0.0, 0.0
-        for k in range(joints):
-            heading += q[row, k]
-            x, y = x + math.cos(heading), y + math.sin(heading)
-            ends[row, k], ends[row, joints + k] = x, y
-    return ends
-
-
-@njit(cache=True, nogil=True)
-def _all_distances(a, b):  # type: ignore[no-untyped-def]
-    distances = np.empty((len(a), len(b)))
-    joints = a.shape[1] // 2
-    for i in range(len(a)):
-        for j in range(len(b)):
-            total = 0.0
-            for k in range(joints):
-                offset_x, offset_y = a[i, k] - b[j, k], a[i, joints + k] - b[j, joints + k]
-                total += math.sqrt(offset_x * offset_x + offset_y * offset_y)
-            distances[i, j] = total / joints
-    return distances
+def _all_distances(a: Floats, b: Floats) -> Floats:
+    distances = np.zeros((len(a), len(b)))
+    for first, second in zip(a.swapaxes(0, 1), b.swapaxes(0, 1), strict=True):
+        distances += cdist(first, second)
+    return distances / a.shape[1]
 
 
 _END_PIECE = 0.001
@@ -108,7 +82,7 @@ _REASONS = {SELF: "two links of the chain cross", WALL: "a link crosses the horn
 
 
 @dataclass(frozen=True)
-class ChainWorld(CompiledWorld):
+class ChainWorld(BatchWorld):
     """A planar chain of equal links that must cross neither itself nor the walls of :func:`horn`.
 
     OMPL's kinematic chain benchmark.  A configuration is free if no two of the segments (the links, 2 to 1000, and a
@@ -155,7 +129,17 @@ class ChainWorld(CompiledWorld):
         return verdicts(q, self.walls) == FREE
 
     def _motion_valid(self, a: Floats, b: Floats) -> Bools:
-        return motions_are_free(self.space.wrapped(a), self.space.wrapped(b), self.resolution, self.walls)
+        # States are rounded: in one fixed order a motion and its reverse have the same.
+        a, b = in_order(self.space.wrapped(a), self.space.wrapped(b))
+        # rint takes one half to zero: of two opposite ways the one that does not cross -pi is taken.
+        difference = (b - a) - 2.0 * math.pi * np.rint((b - a) / (2.0 * math.pi))
+        segments = np.ceil(_distances(a, b) / self.resolution).astype(np.int64)
+        free = self._valid(a)
+        free[free] = self._valid(b[free])
+        for motion, state in between_endpoints(segments, free):
+            states = a[motion] + (state / segments[motion])[:, np.newaxis] * difference[motion]
+            free[motion[~self._valid(states)]] = False
+        return free
 
     def explain(self, q: Floats) -> str:
         """Return in words why the configuration `q`, (links,), is not free."""
@@ -187,85 +171,35 @@ _TOUCHING = float(np.finfo(np.float32).eps)
 """How far, as a cross product, an end must be beyond the other segment for the two to cross: chain only touch."""
 
 
-@njit(cache=True, nogil=True)
 def verdicts(q: Floats, walls: Floats) -> Ints:
     """Return the verdict on each configuration, (n, links)."""
-    found = np.empty(len(q), dtype=np.int64)
-    chain = np.empty((4, q.shape[1] + 1))
-    for row in range(len(q)):
-        found[row] = _verdict(q[row], walls, chain)
+    links = q.shape[1]
+    headings = np.cumsum(q, axis=1)
+    along = np.stack([np.cos(headings), np.sin(headings)]) / links
+    along = np.concatenate([along, along[:, :, -1:] * links * _END_PIECE], axis=2)
+    starts = np.zeros_like(along)
+    np.cumsum(along[:, :, :-1], axis=2, out=starts[:, :, 1:])
+    chain = np.concatenate([starts, along])
+    found, rows = np.full(len(q), FREE), np.arange(len(q))
+    for k in range(links + 1):
+        segment = chain[:, rows, k]
+        crosses_wall = _cross_any(segment, walls[:, np.newaxis])
+        found[rows[crosses_wall]] = WALL
+        # The link before has a joint in common with this one, and no more.
+        crosses_itself = _cross_any(segment, chain[:, rows, : max(k - 1, 0)])
+        found[rows[crosses_itself]] = SELF
+        rows = rows[~(crosses_wall | crosses_itself)]
     return found
 
 
-@njit(cache=True, nogil=True)
-def motions_are_free(a: Floats, b: Floats, resolution: float, walls: Floats) -> Bools:
-    """Return which motions between angles in [-pi, pi), (m, links) each, are free at all states that are tested."""
-    free = np.empty(len(a), dtype=np.bool_)
-    links = a.shape[1]
-    chain, state, difference = np.empty((4, links + 1)), np.empty(links), np.empty(links)
-    for row in range(len(a)):
-        first, second = a[row], b[row]
-        if not comes_first(first, second):
-            # States are rounded: in one fixed order a motion and its reverse have the same.
-            first, second = second, first
-        for k in range(links):
-            angle = second[k] - first[k]
-            # rint takes one half to zero: of two opposite ways the one that does not cross -pi is taken.
-            difference[k] = angle - 2.0 * math.pi * np.rint(angle / (2.0 * math.pi))
-        segments = math.ceil(chain_distance(first, second) / resolution)
-        free[row] = (
-            _verdict(first, walls, chain) == FREE
-            and _verdict(second, walls, chain) == FREE
-            and _motion_is_free(first, difference, segments, walls, chain, state)
-        )
-    return free
-
-
-@njit(cache=True, nogil=True)
-def _motion_is_free(start, difference, segments, walls, chain, state):  # type: ignore[no-untyped-def]
-    level, multiple, number = next_between(1, -1, segments)
-    while number > 0:
-        for k in range(len(start)):
-            state[k] = start[k] + number / segments * difference[k]
-        if _verdict(state, walls, chain) != FREE:
-            return False
-        level, multiple, number = next_between(level, multiple, segments)
-    return True
-
-
-@njit(cache=True, nogil=True)
-def _verdict(q, walls, chain):  # type: ignore[no-untyped-def]
-    links = len(q)
-    heading, x, y = 0.0, 0.0, 0.0
-    for k in range(links + 1):
-        if k < links:
-            heading += q[k]
-            along_x, along_y = math.cos(heading) / links, math.sin(heading) / links
-        else:
-            along_x, along_y = along_x * links * _END_PIECE, along_y * links * _END_PIECE
-        chain[0, k], chain[1, k], chain[2, k], chain[3, k] = x, y, along_x, along_y
-        # The link before has a joint in common with this one, and no more.
-        if _crosses_any(x, y, along_x, along_y, chain, k - 1):
-            return SELF
-        if _crosses_any(x, y, along_x, along_y, walls, walls.shape[1]):
-            return WALL
-        x, y = x + along_x, y + along_y
-    return FREE
-
-
-@njit(cache=True, nogil=True)
-def _crosses_any(x, y, along_x, along_y, others, count):  # type: ignore[no-untyped-def]
-    """Return whether the segment from (x, y) by `along` crosses one of the first `count` others inside of both."""
-    crossings = 0
-    # Without branches, so that compilers can take several segments at a time.
-    for j in range(count):
-        offset_x, offset_y = others[0, j] - x, others[1, j] - y
-        other_x, other_y = others[2, j], others[3, j]
-        cross = along_x * other_y - other_x * along_y
-        # The lines meet at the shares s / cross and t / cross of the two; a positive cross product is compared.
-        size = abs(cross)
-        s = math.copysign(1.0, cross) * (offset_x * other_y - offset_y * other_x)
-        t = math.copysign(1.0, cross) * (offset_x * along_y - offset_y * along_x)
-        # Never so where the two are parallel, for then the size is about zero.
-        crossings += (s >= _TOUCHING) & (s < size - _TOUCHING) & (t >= _TOUCHING) & (t < size - _TOUCHING)
-    return crossings > 0
+def _cross_any(segment: Floats, others: Floats) -> Bools:
+    """Return which segments, (4, n), cross one of the others, (4, n or 1, m), inside of both; rows are x, y, dx, dy."""
+    x, y, along_x, along_y = segment[..., np.newaxis]
+    offset_x, offset_y, other_x, other_y = others[0] - x, others[1] - y, others[2], others[3]
+    cross = along_x * other_y - other_x * along_y
+    # The lines meet at the shares s / cross and t / cross of the two; a positive cross product is compared.
+    size = np.abs(cross)
+    sign = np.copysign(1.0, cross)
+    s, t = sign * (offset_x * other_y - offset_y * other_x), sign * (offset_x * along_y - offset_y * along_x)
+    # Never so where the two are parallel, for then the size is about zero.
+    return ((s >= _TOUCHING) & (s < size - _TOUCHING) & (t >= _TOUCHING) & (t < size - _TOUCHING)).any(axis=-1)

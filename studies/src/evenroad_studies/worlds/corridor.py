@@ -1,28 +1,29 @@
-"""What compiled worlds share; and Corridor, along edges of the unit cube of any dimension: the reference world."""
+"""What worlds of arrays share; and Corridor, along edges of the unit cube of any dimension: the reference world."""
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count, require_known, require_positive
 from evenroad.errors import InvalidValue
 from evenroad.space import BoxSpace, Space
 from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.world.bisection import between_endpoints
 
 ROUNDING = 1e-9
 """What bounds leave for rounding, so that they never decide what the exact test would decide otherwise."""
 
 
-class CompiledWorld(ABC):
-    """A world with compiled checks; a subclass gives its space and the checks of sound batches."""
+class BatchWorld(ABC):
+    """A world of arrays; a subclass gives its space and the checks of sound batches."""
 
     @property
     @abstractmethod
@@ -44,7 +45,7 @@ class CompiledWorld(ABC):
     def _motion_valid(self, a: Floats, b: Floats) -> Bools: ...
 
 
-class CubeWorld(CompiledWorld):
+class CubeWorld(BatchWorld):
     """One in the unit cube of dimension `d`."""
 
     d: int
@@ -55,25 +56,34 @@ class CubeWorld(CompiledWorld):
         return BoxSpace([0.0] * self.d, [1.0] * self.d)
 
 
-@njit(cache=True, nogil=True, inline="always")
-def comes_first(a: Floats, b: Floats) -> bool:
-    """Return whether `a` is not after `b` in the order of words.
+def in_order(a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Return both ends of motions, (m, d) each, first the one that comes first in the order of words.
 
-    Motions are tested from the end that comes first: one and its reverse then give the same bits.
+    Motions are tested from there: one and its reverse then give the same bits.
     """
-    for k in range(len(a)):
-        if a[k] != b[k]:
-            return bool(a[k] < b[k])
-    return True
+    rows, differing = np.arange(len(a)), (a != b).argmax(axis=1)
+    turned = (a[rows, differing] > b[rows, differing])[:, np.newaxis]
+    return np.where(turned, b, a), np.where(turned, a, b)
 
 
-@njit(cache=True, nogil=True)
-def is_in_cube(q: Floats) -> bool:
-    """Return whether `q`, (d,), lies in the closed unit cube."""
-    inside = True
-    for coordinate in q:
-        inside &= 0.0 <= coordinate <= 1.0
+def are_in_cube(q: Floats) -> Bools:
+    """Return which rows of `q`, (n, d), lie in the closed unit cube."""
+    inside: Bools = np.all((q >= 0.0) & (q <= 1.0), axis=1)
     return inside
+
+
+AT_ONCE = 200_000
+"""Number of values in an array that a check works on at once: few enough to stay in the processor's memory."""
+
+
+def and_in_blocks(so_far: Bools, check: Callable[..., Bools], each: int, *rows: Floats) -> Bools:
+    """Return which rows pass a check too, block by block, where one row has so many values to work on."""
+    free = so_far.copy()
+    left, step = np.flatnonzero(so_far), max(1, AT_ONCE // max(1, each))
+    for at in range(0, len(left), step):
+        block = left[at : at + step]
+        free[block] = check(*(array[block] for array in rows))
+    return free
 
 
 _SIDES = ("comment", "demo")
@@ -130,68 +140,22 @@ class Corridor(CubeWorld):
         return np.ones(self.d)
 
     def _valid(self, q: Floats) -> Bools:
-        return points_are_free(q, self.lam, self._axes)
+        return are_in_cube(q) & self._in_corridor(q)
 
     def _motion_valid(self, a: Floats, b: Floats) -> Bools:
-        return motions_are_free(a, b, self.resolution, self.lam, self._axes)
+        free = self._valid(a) & self._valid(b)
+        segments = np.zeros(len(a), dtype=np.int64)
+        segments[free] = np.ceil(np.sqrt(((b[free] - a[free]) ** 2).sum(axis=1)) / self.resolution)
+        for motion, state in between_endpoints(segments, free):
+            count = segments[motion]
+            # Two weights, not one fraction: a motion and its reverse then have the same states.
+            from_a, from_b = (((count - state) / count)[:, np.newaxis], (state / count)[:, np.newaxis])
+            free[motion[~self._in_corridor(from_a * a[motion] + from_b * b[motion])]] = False
+        return free
 
-
-@njit(cache=True, nogil=True)
-def points_are_free(q: Floats, width: float, axes: Ints) -> Bools:
-    """Return which rows of `q`, (n, d), lie in the unit cube and in the corridor along `axes`."""
-    free = np.empty(len(q), dtype=np.bool_)
-    for row in range(len(q)):
-        free[row] = is_in_cube(q[row]) and _is_in_corridor(q[row], q[row], 1.0, 0.0, width, axes)
-    return free
-
-
-@njit(cache=True, nogil=True)
-def motions_are_free(a: Floats, b: Floats, resolution: float, width: float, axes: Ints) -> Bools:
-    """Return which motions are free at both ends and at states at most `resolution` apart, in bisection order."""
-    free = np.empty(len(a), dtype=np.bool_)
-    for row in range(len(a)):
-        free[row] = (
-            is_in_cube(a[row])
-            and is_in_cube(b[row])
-            and _is_in_corridor(a[row], b[row], 1.0, 0.0, width, axes)
-            and _is_in_corridor(a[row], b[row], 0.0, 1.0, width, axes)
-            and _motion_is_free(a[row], b[row], resolution, width, axes)
-        )
-    return free
-
-
-@njit(cache=True, nogil=True)
-def _motion_is_free(a: Floats, b: Floats, resolution: float, width: float, axes: Ints) -> bool:
-    squared = 0.0
-    for k in range(len(a)):
-        squared += (b[k] - a[k]) * (b[k] - a[k])
-    segments = math.ceil(math.sqrt(squared) / resolution)
-    # As evenroad.world.bisection, but written out: a state takes so little here that a call for each shows.
-    level = 1
-    while (1 << (level - 1)) < segments:
-        before = 0
-        for multiple in range(1, 1 << level, 2):
-            state = (multiple * segments) >> level
-            after = ((multiple + 1) * segments) >> level
-            if before < state < after:
-                # Two weights, not one fraction: a motion and its reverse then have the same states.
-                from_a, from_b = (segments - state) / segments, state / segments
-                if not _is_in_corridor(a, b, from_a, from_b, width, axes):
-                    return False
-            before = after
-        level += 1
-    return True
-
-
-@njit(cache=True, nogil=True)
-def _is_in_corridor(a: Floats, b: Floats, from_a: float, from_b: float, width: float, axes: Ints) -> bool:
-    """Test ``from_a a + from_b b``: along `axes`, past the first coordinate > width none is < 1 - width."""
-    past_the_corner = False
-    for axis in axes:
-        coordinate = from_a * a[axis] + from_b * b[axis]
-        if past_the_corner:
-            if coordinate < 1.0 - width:
-                return False
-        elif coordinate > width:
-            past_the_corner = True
-    return True
+    def _in_corridor(self, q: Floats) -> Bools:
+        """Return which configurations have, along the axes, none < 1 - lam past the first coordinate > lam."""
+        q = q[:, self._axes]
+        past = np.logical_or.accumulate(q[:, :-1] > self.lam, axis=1)
+        free: Bools = np.all(~past | (q[:, 1:] >= 1.0 - self.lam), axis=1)
+        return free

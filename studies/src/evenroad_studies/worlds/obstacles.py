@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad.errors import InvalidValue
-from evenroad_studies.worlds.corridor import CubeWorld, comes_first, is_in_cube
+from evenroad_studies.worlds.corridor import CubeWorld, and_in_blocks, are_in_cube, in_order
 
 
 def _require_same_shape(**arrays: Floats | Ints) -> None:
@@ -39,43 +37,20 @@ class Boxes(CubeWorld):
         return int(self.low.shape[1])
 
     def _valid(self, q: Floats) -> Bools:
-        return _motions_miss_boxes(q, q, self.low, self.high)
+        return self._motion_valid(q, q)
 
     def _motion_valid(self, a: Floats, b: Floats) -> Bools:
-        return _motions_miss_boxes(a, b, self.low, self.high)
+        return and_in_blocks(are_in_cube(a) & are_in_cube(b), self._miss, self.low.size, *in_order(a, b))
 
-
-@njit(cache=True, nogil=True)
-def _motions_miss_boxes(a: Floats, b: Floats, low: Floats, high: Floats) -> Bools:
-    """Return which straight motions stay in the unit cube and meet no box."""
-    free = np.empty(len(a), dtype=np.bool_)
-    for row in range(len(a)):
-        first, last = (a[row], b[row]) if comes_first(a[row], b[row]) else (b[row], a[row])
-        free[row] = is_in_cube(first) and is_in_cube(last)
-        box = 0
-        while free[row] and box < len(low):
-            free[row] = _misses_box(first, last, low[box], high[box])
-            box += 1
-    return free
-
-
-@njit(cache=True, nogil=True)
-def _misses_box(a: Floats, b: Floats, low: Floats, high: Floats) -> bool:
-    """Return whether a motion never is within one open box: on each axis it is within for one span of times."""
-    begin, end = 0.0, 1.0
-    for k in range(len(a)):
-        if max(a[k], b[k]) <= low[k] or min(a[k], b[k]) >= high[k]:
-            return True
-        step = b[k] - a[k]
-        if step == 0.0:
-            continue
-        enter, leave = (low[k] - a[k]) / step, (high[k] - a[k]) / step
-        if step < 0.0:
-            enter, leave = leave, enter
-        begin, end = max(begin, enter), min(end, leave)
-        if begin >= end:
-            return True
-    return False
+    def _miss(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions never are within one box: on each axis they are within for one span of times."""
+        a, b = a[:, np.newaxis], b[:, np.newaxis]
+        apart = (np.maximum(a, b) <= self.low) | (np.minimum(a, b) >= self.high)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            times = np.stack([(self.low - a) / (b - a), (self.high - a) / (b - a)])
+        begin = np.where(a == b, 0.0, times.min(axis=0)).max(axis=-1)
+        end = np.where(a == b, 1.0, times.max(axis=0)).min(axis=-1)
+        return (apart.any(axis=-1) | (np.maximum(begin, 0.0) >= np.minimum(end, 1.0))).all(axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,41 +74,26 @@ class Rods(CubeWorld):
         set_fields(self, axes=axes, first=first, last=last)
 
     def _valid(self, q: Floats) -> Bools:
-        return _motions_miss_rods(q, q, self.axes, self.first, self.last, self.radius)
+        return self._motion_valid(q, q)
 
     def _motion_valid(self, a: Floats, b: Floats) -> Bools:
-        return _motions_miss_rods(a, b, self.axes, self.first, self.last, self.radius)
+        return and_in_blocks(are_in_cube(a) & are_in_cube(b), self._miss, 3 * self.first.size, *in_order(a, b))
+
+    def _miss(self, p: Floats, q: Floats) -> Bools:
+        """Return which motions keep off all rods, by distances of two segments (Ericson 2005, section 5.1.9)."""
+        u, v, w = (q - p)[:, self.axes], self.last - self.first, p[:, self.axes] - self.first
+        uu, vv, uv, uw, vw, ww = ((x * y).sum(axis=-1) for x, y in ((u, u), (v, v), (u, v), (u, w), (v, w), (w, w)))
+        determinant = uu * vv - uv * uv
+        s = _share(uv * vw - vv * uw, determinant, determinant > 1e-14 * uu * vv)
+        t = _share(uv * s + vw, vv, vv > 0.0)
+        s = _share(uv * t - uw, uu, uu > 0.0)
+        gap = ww + s * s * uu + t * t * vv + 2.0 * (s * uw - t * vw - s * t * uv)
+        return (np.maximum(gap, 0.0) >= self.radius * self.radius).all(axis=1)
 
 
-@njit(cache=True, nogil=True)
-def _motions_miss_rods(a: Floats, b: Floats, axes: Ints, first: Floats, last: Floats, radius: float) -> Bools:
-    """Return which straight motions stay in the unit cube and meet no rod."""
-    free = np.empty(len(a), dtype=np.bool_)
-    for row in range(len(a)):
-        p, q = (a[row], b[row]) if comes_first(a[row], b[row]) else (b[row], a[row])
-        free[row] = is_in_cube(p) and is_in_cube(q)
-        rod = 0
-        while free[row] and rod < len(axes):
-            free[row] = _squared_gap(p, q, axes[rod], first[rod], last[rod]) >= radius * radius
-            rod += 1
-    return free
-
-
-@njit(cache=True, nogil=True)
-def _squared_gap(p: Floats, q: Floats, axes: Ints, first: Floats, last: Floats) -> float:
-    """Return the squared distance of two segments (Ericson 2005, section 5.1.9), in some coordinates of the first."""
-    uu = vv = uv = uw = vw = ww = 0.0
-    for j in range(len(axes)):
-        k = axes[j]
-        u, v, w = q[k] - p[k], last[j] - first[j], p[k] - first[j]
-        uu, vv, uv, uw, vw, ww = uu + u * u, vv + v * v, uv + u * v, uw + u * w, vw + v * w, ww + w * w
-    determinant = uu * vv - uv * uv
-    s = min(max((uv * vw - vv * uw) / determinant, 0.0), 1.0) if determinant > 1e-14 * uu * vv else 0.0
-    t = (uv * s + vw) / vv if vv > 0.0 else 0.0
-    t = min(max(t, 0.0), 1.0)
-    s = min(max((uv * t - uw) / uu, 0.0), 1.0) if uu > 0.0 else 0.0
-    gap = ww + s * s * uu + t * t * vv + 2.0 * (s * uw - t * vw - s * t * uv)
-    return max(gap, 0.0)
+def _share(above: Floats, below: Floats, divides: Bools) -> Floats:
+    """Return a quotient, cut off at 0 and 1; 0 where nothing divides."""
+    return np.clip(np.divide(above, below, out=np.zeros_like(above), where=divides), 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,52 +114,28 @@ class Cave(CubeWorld):
         return int(self.centres.shape[1])
 
     def _valid(self, q: Floats) -> Bools:
-        return _motions_in_cave(q, q, self.centres, self.radii)
+        return self._motion_valid(q, q)
 
     def _motion_valid(self, a: Floats, b: Floats) -> Bools:
-        return _motions_in_cave(a, b, self.centres, self.radii)
+        return and_in_blocks(are_in_cube(a) & are_in_cube(b), self._cover, self.centres.size, *in_order(a, b))
 
-
-@njit(cache=True, nogil=True)
-def _motions_in_cave(a: Floats, b: Floats, centres: Floats, radii: Floats) -> Bools:
-    """Return which straight motions stay in the unit cube, each of their states in some ball."""
-    free = np.empty(len(a), dtype=np.bool_)
-    begin, end = np.empty(len(centres)), np.empty(len(centres))
-    for row in range(len(a)):
-        first, last = (a[row], b[row]) if comes_first(a[row], b[row]) else (b[row], a[row])
-        free[row] = is_in_cube(first) and is_in_cube(last) and _covered(first, last, centres, radii, begin, end)
-    return free
-
-
-@njit(cache=True, nogil=True)
-def _covered(a: Floats, b: Floats, centres: Floats, radii: Floats, begin: Floats, end: Floats) -> bool:
-    """Return whether the spans of times that a motion is in the balls cover [0, 1]; the last two are scratch."""
-    length = 0.0
-    for k in range(len(a)):
-        length += (b[k] - a[k]) ** 2
-    count = 0
-    for i in range(len(centres)):
-        along, apart = 0.0, -radii[i] * radii[i]
-        for k in range(len(a)):
-            offset = a[k] - centres[i, k]
-            along += offset * (b[k] - a[k])
-            apart += offset * offset
-        if length == 0.0:
-            if apart <= 0.0:
-                return True
-            continue
+    def _cover(self, a: Floats, b: Floats) -> Bools:
+        """Return of which motions the spans of times that they are in the balls cover [0, 1]."""
+        step, offset = (b - a)[:, np.newaxis], a[:, np.newaxis] - self.centres
+        length = (step * step).sum(axis=-1)
+        along, apart = (offset * step).sum(axis=-1), (offset * offset).sum(axis=-1) - self.radii**2
         under = along * along - length * apart
-        if under >= 0.0:
-            root = math.sqrt(under)
-            if along <= root and -along + root >= 0.0:
-                begin[count], end[count] = (-along - root) / length, (-along + root) / length
-                count += 1
-    reached = 0.0
-    while True:
-        furthest = -1.0
-        for i in range(count):
-            if begin[i] <= reached:
-                furthest = max(furthest, end[i])
-        if furthest >= 1.0 or furthest <= reached:
-            return furthest >= 1.0
-        reached = furthest
+        root = np.sqrt(np.maximum(under, 0.0))
+        meets = (under >= 0.0) & (along <= root) & (root >= along)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            begin = np.where(meets, (-along - root) / length, np.inf)
+            end = (-along + root) / length
+        begin, end = (
+            np.where(length == 0.0, np.where(apart <= 0.0, 0.0, np.inf), begin),
+            np.where(length == 0.0, 1.0, end),
+        )
+        reached, furthest = np.full(len(a), -np.inf), np.zeros(len(a))
+        while (furthest > reached).any():
+            reached = furthest
+            furthest = np.where(begin <= reached[:, np.newaxis], end, 0.0).max(axis=1, initial=0.0)
+        return reached >= 1.0

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_cube_batch
-from evenroad_studies.worlds.corridor import ROUNDING, CubeWorld, comes_first, is_in_cube
+from evenroad_studies.worlds.corridor import ROUNDING, CubeWorld, and_in_blocks, are_in_cube, in_order
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,110 +41,57 @@ class PeriodicBalls(CubeWorld):
         return int(self.centres.shape[1])
 
     def _valid(self, q: Floats) -> Bools:
-        return _points_miss_balls(q, self.centres, self.radius**2)
+        return and_in_blocks(are_in_cube(q), self._are_outside, self.centres.size, q)
 
     def _motion_valid(self, a: Floats, b: Floats) -> Bools:
-        return _motions_miss_balls(a, b, self.centres, self.radius**2)
+        free = self._valid(a) & self._valid(b)
+        moves = (a != b).any(axis=1)
+        return free & (~moves | and_in_blocks(free & moves, self._miss, self.centres.size, *in_order(a, b)))
 
+    def _are_outside(self, q: Floats) -> Bools:
+        offset = _from_nearest(q[:, np.newaxis] - self.centres)
+        return ((offset * offset).sum(axis=-1) >= self.radius**2).all(axis=1)
 
-@njit(cache=True, nogil=True)
-def _points_miss_balls(q: Floats, centres: Floats, squared_radius: float) -> Bools:
-    """Return which rows of `q`, (n, d), lie in the unit cube and in no ball."""
-    free = np.empty(len(q), dtype=np.bool_)
-    for row in range(len(q)):
-        free[row] = is_in_cube(q[row]) and _is_outside_balls(q[row], centres, squared_radius)
-    return free
+    def _miss(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, none of length 0, stay out of every ball.
 
-
-@njit(cache=True, nogil=True)
-def _motions_miss_balls(a: Floats, b: Floats, centres: Floats, squared_radius: float) -> Bools:
-    """Return which straight motions stay in the unit cube and meet no ball."""
-    free = np.empty(len(a), dtype=np.bool_)
-    d = a.shape[1]
-    # A step along an axis is at most 1 long: it passes at most two borders between copies.
-    step, times, axes = np.empty(d), np.empty(2 * d), np.empty(2 * d, dtype=np.int64)
-    for row in range(len(a)):
-        first, last = (a[row], b[row]) if comes_first(a[row], b[row]) else (b[row], a[row])
-        free[row] = (
-            is_in_cube(first)
-            and is_in_cube(last)
-            and _is_outside_balls(first, centres, squared_radius)
-            and _is_outside_balls(last, centres, squared_radius)
-            and _misses_balls(first, last, centres, squared_radius, step, times, axes)
-        )
-    return free
-
-
-@njit(cache=True, nogil=True)
-def _is_outside_balls(q: Floats, centres: Floats, squared_radius: float) -> bool:
-    for i in range(len(centres)):
-        squared = 0.0
-        for k in range(len(q)):
-            offset = q[k] - centres[i, k]
-            offset -= np.rint(offset)
-            squared += offset * offset
-        if squared < squared_radius:
-            return False
-    return True
-
-
-@njit(cache=True, nogil=True)
-def _misses_balls(
-    a: Floats, b: Floats, centres: Floats, squared_radius: float, step: Floats, times: Floats, axes: Ints
-) -> bool:
-    """Return whether ``a + t (b - a)``, t in [0, 1], stays out of every ball; the last three are room to work in.
-
-    The squared distance from a centre on the torus is the sum over the axes of the squared distance from its nearest
-    copy along that axis.  Between the times at which some axis changes its nearest copy it is one parabola.
-    """
-    squared_length = 0.0
-    for k in range(len(a)):
-        step[k] = b[k] - a[k]
-        squared_length += step[k] * step[k]
-    if squared_length == 0.0:
-        return True
-    in_reach = math.sqrt(squared_radius) + 0.5 * math.sqrt(squared_length) + ROUNDING
-    for i in range(len(centres)):
+        The squared distance from a centre on the torus is the sum over the axes of the squared distance from its
+        nearest copy along that axis.  Between the times at which some axis changes its nearest copy it is one parabola.
+        """
+        step = b - a
+        length = (step * step).sum(axis=1)
         # Most balls are out of reach of a short motion, wherever on it: its middle says so.
-        squared = 0.0
-        for k in range(len(a)):
-            offset = a[k] + 0.5 * step[k] - centres[i, k]
-            offset -= np.rint(offset)
-            squared += offset * offset
-        if squared > in_reach * in_reach:
-            continue
-        # The parabola squared + 2 t along + t^2 squared_length, and the changes in the order of their times.
-        squared, along, changes = 0.0, 0.0, 0
-        for k in range(len(a)):
-            offset = a[k] - centres[i, k]
-            offset -= np.rint(offset)
-            squared += offset * offset
-            along += offset * step[k]
-            sign = 1.0 if step[k] > 0.0 else -1.0
-            border = 0.5
-            while sign * (offset + step[k]) > border:
-                time = (sign * border - offset) / step[k]
-                place = changes
-                while place > 0 and times[place - 1] > time:
-                    times[place], axes[place] = times[place - 1], axes[place - 1]
-                    place -= 1
-                times[place], axes[place] = time, k
-                changes += 1
-                border += 1.0
-        begin = 0.0
-        for change in range(changes + 1):
-            end = times[change] if change < changes else 1.0
-            nearest = min(max(-along / squared_length, begin), end)
-            if squared + nearest * (2.0 * along + nearest * squared_length) < squared_radius:
-                return False
-            if change < changes:
-                # The offset that is now half a period is minus half a period from the next copy.
-                k = axes[change]
-                sign = 1.0 if step[k] > 0.0 else -1.0
-                squared += 1.0 - 2.0 * sign * (0.5 * sign - end * step[k])
-                along -= sign * step[k]
-                begin = end
-    return True
+        offset = _from_nearest((a + 0.5 * step)[:, np.newaxis] - self.centres)
+        reach = self.radius + 0.5 * np.sqrt(length) + ROUNDING
+        row, ball = np.nonzero((offset * offset).sum(axis=-1) <= (reach * reach)[:, np.newaxis])
+        begin, along, length = a[row] - self.centres[ball], step[row], length[row, np.newaxis]
+        times = _sorted_times(begin, along, (-0.5, 0.5))
+        begin, along = begin[:, np.newaxis], along[:, np.newaxis]
+        middle = 0.5 * (times[:, :-1] + times[:, 1:])[..., np.newaxis]
+        offset = begin - np.rint(begin + middle * along)
+        slope = (offset * along).sum(axis=-1)
+        nearest = np.clip(-slope / length, times[:, :-1], times[:, 1:])
+        squared = (offset * offset).sum(axis=-1) + nearest * (2.0 * slope + nearest * length)
+        free = np.ones(len(a), dtype=np.bool_)
+        free[row[(squared < self.radius**2).any(axis=1)]] = False
+        return free
+
+
+def _from_nearest(offset: Floats) -> Floats:
+    """Return offsets from the nearest copy of a centre, given those from the centre."""
+    return offset - np.rint(offset)
+
+
+def _sorted_times(begin: Floats, step: Floats, borders: Sequence[float] | Floats) -> Floats:
+    """Return the times at which ``begin + t step``, (p, d), passes borders, cut off at 0 and 1, with these, (p, m).
+
+    `borders` are the same for all axes, or (p, d, b).
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        times = (np.asarray(borders) - begin[..., np.newaxis]) / step[..., np.newaxis]
+    ends = np.tile((0.0, 1.0), (len(begin), 1))
+    times = np.clip(np.nan_to_num(times, nan=0.0), 0.0, 1.0)
+    return np.sort(np.concatenate([ends, *times.transpose(1, 0, 2)], axis=1), axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,10 +127,34 @@ class PeriodicBoxes(CubeWorld):
             raise InvalidValue(f"half_extents must be in (0, 0.5], got {float(outside[0])!r}")
 
     def _valid(self, q: Floats) -> Bools:
-        return _points_miss_boxes(q, self.axes, self.centres, self.half_extents)
+        return and_in_blocks(are_in_cube(q), self._are_outside, self.centres.size, q)
 
     def _motion_valid(self, a: Floats, b: Floats) -> Bools:
-        return _motions_miss_boxes(a, b, self.axes, self.centres, self.half_extents)
+        free = self._valid(a) & self._valid(b)
+        return and_in_blocks(free, self._miss, self.centres.size, *in_order(a, b))
+
+    def _are_outside(self, q: Floats) -> Bools:
+        offset = _from_nearest(q[:, self.axes] - self.centres)
+        outside: Bools = np.all(np.any(np.abs(offset) >= self.half_extents, axis=-1), axis=1)
+        return outside
+
+    def _miss(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions are never within one box: not in the middle between two times at which they pass a face
+        along some axis.
+        """
+        step, begin = (b - a)[:, self.axes], a[:, self.axes] - self.centres
+        # Most boxes are out of reach along some axis: the middle of the motion says so.
+        middle = np.abs(_from_nearest(begin + 0.5 * step))
+        row, box = np.nonzero((middle <= self.half_extents + 0.5 * np.abs(step) + ROUNDING).all(axis=-1))
+        begin, step, half = begin[row, box], step[row, box], self.half_extents[box]
+        borders = half[..., np.newaxis] * (-1.0, 1.0)
+        times = _sorted_times(begin, step, np.concatenate([borders - 1.0, borders, borders + 1.0], axis=-1))
+        middle = 0.5 * (times[:, :-1] + times[:, 1:])[..., np.newaxis]
+        offset = _from_nearest(begin[:, np.newaxis] + middle * step[:, np.newaxis])
+        within = (np.abs(offset) < half[:, np.newaxis]).all(axis=-1) & (times[:, :-1] < times[:, 1:])
+        free = np.ones(len(a), dtype=np.bool_)
+        free[row[within.any(axis=1)]] = False
+        return free
 
 
 def _as_axes(values: npt.ArrayLike, d: int) -> Ints:
@@ -200,95 +170,3 @@ def _as_axes(values: npt.ArrayLike, d: int) -> Ints:
     if twice.any():
         raise InvalidValue(f"the axes of a box must be different, got {axes[twice][0].tolist()}")
     return np.array(axes, dtype=np.int64, order="C")
-
-
-@njit(cache=True, nogil=True)
-def _points_miss_boxes(q: Floats, axes: Ints, centres: Floats, half_extents: Floats) -> Bools:
-    """Return which rows of `q`, (n, d), lie in the unit cube and in no box."""
-    free = np.empty(len(q), dtype=np.bool_)
-    for row in range(len(q)):
-        free[row] = is_in_cube(q[row]) and _is_outside_boxes(q[row], axes, centres, half_extents)
-    return free
-
-
-@njit(cache=True, nogil=True)
-def _motions_miss_boxes(a: Floats, b: Floats, axes: Ints, centres: Floats, half_extents: Floats) -> Bools:
-    """Return which straight motions stay in the unit cube and meet no box."""
-    free = np.empty(len(a), dtype=np.bool_)
-    # Each axis can be within the box in three spans of time, and an intersection has fewer spans than both together.
-    room = 3 * axes.shape[1] + 1
-    spans, narrowed, on_axis = np.empty((room, 2)), np.empty((room, 2)), np.empty((3, 2))
-    for row in range(len(a)):
-        first, last = (a[row], b[row]) if comes_first(a[row], b[row]) else (b[row], a[row])
-        free[row] = (
-            is_in_cube(first)
-            and is_in_cube(last)
-            and _is_outside_boxes(first, axes, centres, half_extents)
-            and _is_outside_boxes(last, axes, centres, half_extents)
-        )
-        box = 0
-        while free[row] and box < len(axes):
-            free[row] = _misses_box(first, last, axes[box], centres[box], half_extents[box], spans, narrowed, on_axis)
-            box += 1
-    return free
-
-
-@njit(cache=True, nogil=True)
-def _is_outside_boxes(q: Floats, axes: Ints, centres: Floats, half_extents: Floats) -> bool:
-    for box in range(len(axes)):
-        inside = True
-        for j in range(axes.shape[1]):
-            offset = q[axes[box, j]] - centres[box, j]
-            inside &= abs(offset - np.rint(offset)) < half_extents[box, j]
-        if inside:
-            return False
-    return True
-
-
-@njit(cache=True, nogil=True)
-def _misses_box(a, b, axes, centre, half_extent, spans, narrowed, on_axis):  # type: ignore[no-untyped-def]
-    """Return whether ``a + t (b - a)``, 0 <= t <= 1, is never within one box; the last three are room to work in."""
-    for j in range(len(axes)):
-        # Most boxes are out of reach along some axis: the middle of the motion says so.
-        step = b[axes[j]] - a[axes[j]]
-        middle = a[axes[j]] + 0.5 * step - centre[j]
-        if abs(middle - np.rint(middle)) > half_extent[j] + 0.5 * abs(step) + ROUNDING:
-            return True
-    spans[0, 0], spans[0, 1] = 0.0, 1.0
-    count = 1
-    for j in range(len(axes)):
-        begin = a[axes[j]] - centre[j]
-        found = _times_within(begin, b[axes[j]] - a[axes[j]], half_extent[j], on_axis)
-        kept = 0
-        for s in range(count):
-            for t in range(found):
-                low, high = max(spans[s, 0], on_axis[t, 0]), min(spans[s, 1], on_axis[t, 1])
-                if low < high:
-                    narrowed[kept, 0], narrowed[kept, 1] = low, high
-                    kept += 1
-        if kept == 0:
-            return True
-        spans, narrowed, count = narrowed, spans, kept
-    return False
-
-
-@njit(cache=True, nogil=True)
-def _times_within(begin: float, step: float, half_extent: float, spans: Floats) -> int:
-    """Write the spans of time in which ``begin + t step`` is closer than `half_extent` to an integer; return how many.
-
-    `begin` and ``begin + step`` lie in [-1, 1], so that only -1, 0 and 1 can be near.
-    """
-    count = 0
-    for copy in range(-1, 2):
-        low, high = copy - half_extent - begin, copy + half_extent - begin
-        if step == 0.0:
-            low, high = (0.0, 1.0) if low < 0.0 < high else (1.0, 0.0)
-        elif step > 0.0:
-            low, high = low / step, high / step
-        else:
-            low, high = high / step, low / step
-        low, high = max(low, 0.0), min(high, 1.0)
-        if low < high:
-            spans[count, 0], spans[count, 1] = low, high
-            count += 1
-    return count

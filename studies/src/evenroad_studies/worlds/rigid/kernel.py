@@ -1,16 +1,17 @@
-"""Compiled checks of a body of boxes among boxes, for poses and for the states of motions."""
+"""Checks of a body of boxes among boxes, for poses and for the states of motions: all together, as arrays."""
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterator
+from typing import TypeAlias
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.space.so3 import SMALL_ANGLE
-from evenroad_studies.worlds.bisection import next_between
-from evenroad_studies.worlds.rigid.oriented_box import BoxTable, SolidTables
+from evenroad.world.bisection import between_endpoints
+from evenroad_studies.worlds.corridor import AT_ONCE
+from evenroad_studies.worlds.rigid.oriented_box import SolidTables
 
 _ROUNDING = 4e-6
 """In a proof boxes are enlarged by this share of their points' ways more: quaternions are of norm 1 up to 1e-6."""
@@ -20,54 +21,81 @@ _PARALLEL = 1e-14
 """Squared sine below which two edges count as parallel: an axis across both would be rounding alone, and the
 faces' axes separate boxes with such edges as well, but for gaps of 1e-7 of their size."""
 
+FEW_STATES = 300
+"""Number of states that are tested together: a call for each level of a motion would cost more."""
 
-@njit(cache=True, nogil=True)
-def contacts(poses: Floats, solids: SolidTables) -> Ints:
-    """Return for each pose, (n, 7), the first obstacle that the body meets, or -1."""
-    found = np.empty(len(poses), dtype=np.int64)
-    near = np.empty(len(solids.obstacles.centre), dtype=np.int64)
-    work, farthest = np.empty((4, 3, 3)), solids.reaches.max()
-    for row in range(len(poses)):
-        count = _obstacles_near(poses[row], poses[row], farthest, solids.obstacles, near)
-        found[row] = _first_contact(poses[row], solids.body, solids, near[:count], work)
+Boxes: TypeAlias = tuple[Floats, Floats, Floats]
+"""Centres, half extents and axes of boxes: (n, 3), (n, 3) and (n, 3, 3) with a column an axis."""
+
+
+def contacts(poses: Floats, solids: SolidTables, enlarged: Floats | None = None) -> Ints:
+    """Return for each pose, (n, 7), the first obstacle that the first box of the body that meets any does, or -1.
+
+    Boxes are closed: touching is meeting.  Each box is enlarged on all sides by so much, (n, boxes), if anything.
+    """
+    found = np.full(len(poses), -1, dtype=np.int64)
+    half = np.broadcast_to(solids.body.half, (len(poses), *solids.body.half.shape))
+    if enlarged is not None:
+        half = half + enlarged[..., np.newaxis]
+    step = max(1, AT_ONCE // max(1, len(solids.reaches) * len(solids.obstacles.centre)))
+    for at in range(0, len(poses), step):
+        found[at : at + step] = _contacts(poses[at : at + step], half[at : at + step], solids)
     return found
 
 
-@njit(cache=True, nogil=True)
+def _contacts(poses: Floats, half: Floats, solids: SolidTables) -> Ints:
+    body, obstacles = solids.body, solids.obstacles
+    rotation = _rotations(poses)
+    axes = rotation[:, np.newaxis] @ body.axes
+    centre = poses[:, np.newaxis, :3] + body.centre @ rotation.swapaxes(1, 2)
+    reach = (np.abs(axes) @ half[..., np.newaxis])[..., 0]
+    near = np.ones((*centre.shape[:2], len(obstacles.centre)), dtype=np.bool_)
+    for k in range(3):
+        near &= (centre + reach)[..., k, np.newaxis] >= obstacles.low[:, k]
+        near &= (centre - reach)[..., k, np.newaxis] <= obstacles.high[:, k]
+    row, part, obstacle = np.nonzero(near)
+    own = centre[row, part], half[row, part], axes[row, part]
+    others = obstacles.centre[obstacle], obstacles.half[obstacle], obstacles.axes[obstacle]
+    meets = _overlap(own, others, solids.planar)
+    rows, first = np.unique(row[meets], return_index=True)
+    found = np.full(len(poses), -1, dtype=np.int64)
+    found[rows] = obstacle[meets][first]
+    return found
+
+
 def motions_are_free(a: Floats, b: Floats, step: float, rotation_step: float, solids: SolidTables) -> Bools:
     """Return which motions between poses, (m, 7), are free at both ends and at states between, in bisection order.
 
     Neighbouring states are at most `step` and, as quaternions, `rotation_step` radians apart.
     """
-    free = np.empty(len(a), dtype=np.bool_)
-    near = np.empty(len(solids.obstacles.centre), dtype=np.int64)
-    state, work, farthest = np.empty(7), np.empty((4, 3, 3)), solids.reaches.max()
-    for row in range(len(a)):
-        # What is far from the whole motion is far from all of its states.
-        count = _obstacles_near(a[row], b[row], farthest, solids.obstacles, near)
-        free[row] = count == 0 or (
-            _first_contact(a[row], solids.body, solids, near[:count], work) < 0
-            and _first_contact(b[row], solids.body, solids, near[:count], work) < 0
-            and _motion_is_free(a[row], b[row], step, rotation_step, solids, near[:count], state, work)
-        )
+    # What is far from the whole motion is far from all of its states.
+    near = _near_any(a, b, solids)
+    free, rows = ~near, np.flatnonzero(near)
+    a, b = a[rows], b[rows]
+    angle = _angles(a, b)
+    segments = np.maximum(np.ceil(_lengths(a, b) / step), np.ceil(angle / rotation_step)).astype(np.int64)
+    left = np.ones(len(rows), dtype=np.bool_)
+    for motion, state in _states(segments, left):
+        count = np.maximum(segments[motion], 1)
+        # Two weights, not one fraction: a motion and its reverse then have the same states.
+        states = _between(a[motion], b[motion], (count - state) / count, state / count, angle[motion])
+        left[motion[contacts(states, solids) >= 0]] = False
+    free[rows] = left
     return free
 
 
-@njit(cache=True, nogil=True)
-def _motion_is_free(a, b, step, rotation_step, solids, near, state, work):  # type: ignore[no-untyped-def]
-    length, angle = _length(a, b), _angle(a, b)
-    segments = max(math.ceil(length / step), math.ceil(angle / rotation_step))
-    level, multiple, number = next_between(1, -1, segments)
-    while number > 0:
-        # Two weights, not one fraction: a motion and its reverse then have the same states.
-        _put_between(a, b, (segments - number) / segments, number / segments, angle, state)
-        if _first_contact(state, solids.body, solids, near, work) >= 0:
-            return False
-        level, multiple, number = next_between(level, multiple, segments)
-    return True
+def _states(segments: Ints, left: Bools) -> Iterator[tuple[Ints, Ints]]:
+    """Yield motions and numbers of their states, both ends among them: few all at once, many level by level."""
+    if segments.sum() <= FEW_STATES:
+        motion = np.repeat(np.arange(len(segments)), segments + 1)
+        yield motion, np.arange(len(motion)) - np.repeat(np.cumsum(segments + 1) - segments - 1, segments + 1)
+        return
+    every = np.arange(len(segments))
+    yield every, np.zeros_like(every)
+    yield every[left], segments[left]
+    yield from between_endpoints(segments, left)
 
 
-@njit(cache=True, nogil=True)
 def motions_are_proved(a: Floats, b: Floats, tolerance: float, solids: SolidTables) -> Bools:
     """Return which motions between poses, (m, 7), are proved free, with no gap between states.
 
@@ -75,178 +103,83 @@ def motions_are_proved(a: Floats, b: Floats, tolerance: float, solids: SolidTabl
     meet nothing in the whole interval; else both halves are looked at, until an interval moves points by less than
     `tolerance`.
     """
-    body, reaches = solids.body, solids.reaches
-    proved = np.empty(len(a), dtype=np.bool_)
-    near = np.empty(len(solids.obstacles.centre), dtype=np.int64)
-    state, work = np.empty(7), np.empty((4, 3, 3))
-    enlarged = BoxTable(body.centre, body.half.copy(), body.axes, body.low, body.high)
-    farthest = reaches.max()
-    for row in range(len(a)):
-        count = _obstacles_near(a[row], b[row], farthest, solids.obstacles, near)
-        if count == 0:
-            proved[row] = True
-            continue
-        length, angle = _length(a[row], b[row]), _angle(a[row], b[row])
-        most = length + 2.0 * angle * farthest
-        # The interval numbered `number` of the 2^level equal ones; a proved one is followed by the next to its right.
-        level, number = 0, 0
-        proved[row] = True
-        while number < 1 << level:
-            share = 1.0 / (1 << level)
-            at = (number + 0.5) * share
-            _put_between(a[row], b[row], 1.0 - at, at, angle, state)
-            for box in range(len(reaches)):
-                moved = (0.5 + _ROUNDING) * share * (length + 2.0 * angle * reaches[box])
-                for k in range(3):
-                    enlarged.half[box, k] = body.half[box, k] + moved
-            if _first_contact(state, enlarged, solids, near[:count], work) < 0:
-                number += 1
-                while level > 0 and number % 2 == 0:
-                    level, number = level - 1, number // 2
-            elif share * most < tolerance or _first_contact(state, body, solids, near[:count], work) >= 0:
-                proved[row] = False
-                break
-            else:
-                level, number = level + 1, 2 * number
+    length, angle = _lengths(a, b), _angles(a, b)
+    moved = length[:, np.newaxis] + 2.0 * angle[:, np.newaxis] * solids.reaches
+    proved = np.ones(len(a), dtype=np.bool_)
+    # The intervals of equal length that are still open: their motions and their numbers along these.
+    motion = np.flatnonzero(_near_any(a, b, solids))
+    number, share = np.zeros(len(motion), dtype=np.int64), 1.0
+    while len(motion):
+        at = np.asarray((number + 0.5) * share, dtype=np.float64)
+        states = _between(a[motion], b[motion], 1.0 - at, at, angle[motion])
+        left = contacts(states, solids, (0.5 + _ROUNDING) * share * moved[motion]) >= 0
+        motion, number, states = motion[left], number[left], states[left]
+        refused = (share * moved[motion].max(axis=1, initial=0.0) < tolerance) | (contacts(states, solids) >= 0)
+        proved[motion[refused]] = False
+        left = proved[motion]
+        motion, number = np.repeat(motion[left], 2), (2 * number[left, np.newaxis] + (0, 1)).ravel()
+        share *= 0.5
     return proved
 
 
-@njit(cache=True, nogil=True)
-def _length(a, b):  # type: ignore[no-untyped-def]
-    return math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
+def _lengths(a: Floats, b: Floats) -> Floats:
+    return np.sqrt(((b[:, :3] - a[:, :3]) ** 2).sum(axis=1))
 
 
-@njit(cache=True, nogil=True)
-def _put_between(a, b, from_a, from_b, angle, state):  # type: ignore[no-untyped-def]
-    """Write the pose with the weights `from_a` and `from_b`: straight, and by slerp (Shoemake 1985)."""
-    for k in range(3):
-        state[k] = from_a * a[k] + from_b * b[k]
-    if angle >= SMALL_ANGLE:
-        sine = math.sin(angle)
-        from_a, from_b = math.sin(from_a * angle) / sine, math.sin(from_b * angle) / sine
-    for k in range(3, 7):
-        state[k] = from_a * a[k] + from_b * b[k]
+def _between(a: Floats, b: Floats, from_a: Floats, from_b: Floats, angle: Floats) -> Floats:
+    """Return the poses with the weights `from_a` and `from_b`: straight, and by slerp (Shoemake 1985)."""
+    weights = np.stack([from_a, from_b])
+    position = weights[0, :, np.newaxis] * a[:, :3] + weights[1, :, np.newaxis] * b[:, :3]
+    turns = angle >= SMALL_ANGLE
+    weights[:, turns] = np.sin(weights[:, turns] * angle[turns]) / np.sin(angle[turns])
+    return np.hstack([position, weights[0, :, np.newaxis] * a[:, 3:] + weights[1, :, np.newaxis] * b[:, 3:]])
 
 
-@njit(cache=True, nogil=True)
-def _angle(a, b):  # type: ignore[no-untyped-def]
-    """Return the angle between the quaternions; unlike arccos it keeps all digits of small angles (Kahan)."""
-    difference, together = 0.0, 0.0
-    for k in range(3, 7):
-        difference += (a[k] - b[k]) ** 2
-        together += (a[k] + b[k]) ** 2
-    return 2.0 * math.atan2(math.sqrt(difference), math.sqrt(together))
+def _angles(a: Floats, b: Floats) -> Floats:
+    """Return the angles between quaternions; unlike arccos it keeps all digits of small angles (Kahan)."""
+    difference, together = (np.linalg.norm(each[:, 3:], axis=1) for each in (a - b, a + b))
+    return 2.0 * np.arctan2(difference, together)
 
 
-@njit(cache=True, nogil=True)
-def _obstacles_near(a, b, reach, obstacles, near):  # type: ignore[no-untyped-def]
-    """Write the obstacles that balls of radius `reach` on the motion from a to b might meet; return their number."""
-    count = 0
-    for i in range(len(obstacles.centre)):
-        is_near = True
-        for k in range(3):
-            is_near &= obstacles.low[i, k] - reach <= max(a[k], b[k])
-            is_near &= min(a[k], b[k]) <= obstacles.high[i, k] + reach
-        if is_near:
-            near[count] = i
-            count += 1
-    return count
+def _near_any(a: Floats, b: Floats, solids: SolidTables) -> Bools:
+    """Return which motions balls of the body's reach might meet an obstacle on."""
+    reach, obstacles = solids.reaches.max(), solids.obstacles
+    low, high = np.minimum(a, b)[:, np.newaxis, :3] - reach, np.maximum(a, b)[:, np.newaxis, :3] + reach
+    near: Bools = np.any(np.all((obstacles.low <= high) & (low <= obstacles.high), axis=-1), axis=1)
+    return near
 
 
-@njit(cache=True, nogil=True)
-def _first_contact(pose: Floats, body: BoxTable, solids: SolidTables, near: Ints, work: Floats) -> int:
-    """Return the first obstacle among `near` that a box of the `body`, perhaps enlarged, meets at a pose, (7,), or -1.
-
-    Boxes are closed: touching is meeting.  `work`, (4, 3, 3), is overwritten.
-    """
-    obstacles, planar = solids.obstacles, solids.planar
-    rotation, axes, products, vectors = work[0], work[1], work[2], work[3]
-    centre, reach = vectors[0], vectors[1]
-    _put_rotation(pose, rotation)
-    for part in range(len(body.centre)):
-        for i in range(3):
-            for j in range(3):
-                axes[i, j] = (
-                    rotation[i, 0] * body.axes[part, 0, j]
-                    + rotation[i, 1] * body.axes[part, 1, j]
-                    + rotation[i, 2] * body.axes[part, 2, j]
-                )
-            centre[i] = pose[i] + (
-                rotation[i, 0] * body.centre[part, 0]
-                + rotation[i, 1] * body.centre[part, 1]
-                + rotation[i, 2] * body.centre[part, 2]
-            )
-            reach[i] = (
-                abs(axes[i, 0]) * body.half[part, 0]
-                + abs(axes[i, 1]) * body.half[part, 1]
-                + abs(axes[i, 2]) * body.half[part, 2]
-            )
-        for obstacle in near:
-            separated = False
-            for k in range(3):
-                separated |= centre[k] + reach[k] < obstacles.low[obstacle, k]
-                separated |= obstacles.high[obstacle, k] < centre[k] - reach[k]
-            if not separated and _overlap(
-                centre, axes, body.half[part], obstacles, obstacle, planar, products, vectors[2]
-            ):
-                return obstacle
-    return -1
-
-
-@njit(cache=True, nogil=True)
-def _overlap(centre, axes, half, obstacles, obstacle, planar, products, offset):  # type: ignore[no-untyped-def]
-    """Test a box against an obstacle by separating axes (Gottschalk, Lin and Manocha, SIGGRAPH 1996, section 5)."""
-    other_axes, other_half = obstacles.axes[obstacle], obstacles.half[obstacle]
-    offset_x = obstacles.centre[obstacle, 0] - centre[0]
-    offset_y = obstacles.centre[obstacle, 1] - centre[1]
-    offset_z = obstacles.centre[obstacle, 2] - centre[2]
-    for i in range(3):
-        for j in range(3):
-            products[i, j] = (
-                axes[0, i] * other_axes[0, j] + axes[1, i] * other_axes[1, j] + axes[2, i] * other_axes[2, j]
-            )
-        # The offset in the box's own axes.
-        offset[i] = axes[0, i] * offset_x + axes[1, i] * offset_y + axes[2, i] * offset_z
-    for i in range(3):
-        other_reach = (
-            abs(products[i, 0]) * other_half[0]
-            + abs(products[i, 1]) * other_half[1]
-            + abs(products[i, 2]) * other_half[2]
-        )
-        if abs(offset[i]) > half[i] + other_reach:
-            return False
-    for j in range(3):
-        own_reach = half[0] * abs(products[0, j]) + half[1] * abs(products[1, j]) + half[2] * abs(products[2, j])
-        along = offset[0] * products[0, j] + offset[1] * products[1, j] + offset[2] * products[2, j]
-        if abs(along) > other_half[j] + own_reach:
-            return False
+def _overlap(own: Boxes, others: Boxes, planar: bool) -> Bools:
+    """Test boxes against others by separating axes (Gottschalk, Lin and Manocha, SIGGRAPH 1996, section 5)."""
+    (centre, half, axes), (other_centre, other_half, other_axes) = own, others
+    across = axes.swapaxes(1, 2)
+    products = across @ other_axes
+    sizes = np.abs(products)
+    # The offset in the box's own axes.
+    offset = (across @ (other_centre - centre)[..., np.newaxis])[..., 0]
+    apart = np.abs(offset) > half + (sizes @ other_half[..., np.newaxis])[..., 0]
+    along = (offset[:, np.newaxis] @ products)[:, 0]
+    apart |= np.abs(along) > other_half + (half[:, np.newaxis] @ sizes)[:, 0]
+    meets: Bools = ~np.any(apart, axis=1)
     if planar:
-        return True
-    for i in range(3):
-        i1, i2 = (i + 1) % 3, (i + 2) % 3
-        for j in range(3):
-            if 1.0 - products[i, j] * products[i, j] < _PARALLEL:
-                continue
-            j1, j2 = (j + 1) % 3, (j + 2) % 3
-            own_reach = half[i1] * abs(products[i2, j]) + half[i2] * abs(products[i1, j])
-            other_reach = other_half[j1] * abs(products[i, j2]) + other_half[j2] * abs(products[i, j1])
-            along = offset[i2] * products[i1, j] - offset[i1] * products[i2, j]
-            if abs(along) > own_reach + other_reach:
-                return False
-    return True
+        return meets
+    i1, i2 = np.array([1, 2, 0]), np.array([2, 0, 1])
+    own_reach = half[:, i1, np.newaxis] * sizes[:, i2] + half[:, i2, np.newaxis] * sizes[:, i1]
+    reach = other_half[:, np.newaxis, i1] * sizes[:, :, i2] + other_half[:, np.newaxis, i2] * sizes[:, :, i1]
+    along = offset[:, i2, np.newaxis] * products[:, i1] - offset[:, i1, np.newaxis] * products[:, i2]
+    parallel = 1.0 - products * products < _PARALLEL
+    overlaps = parallel | (np.abs(along) <= own_reach + reach)
+    meets &= np.all(overlaps, axis=(1, 2))
+    return meets
 
 
-@njit(cache=True, nogil=True)
-def _put_rotation(pose, rotation):  # type: ignore[no-untyped-def]
-    """Write the rotation matrix of the pose's quaternion, whatever its norm."""
-    w, x, y, z = pose[3], pose[4], pose[5], pose[6]
+def _rotations(poses: Floats) -> Floats:
+    """Return the rotation matrices of the poses' quaternions, whatever their norms, (n, 3, 3)."""
+    w, x, y, z = poses[:, 3:].T
     s = 2.0 / (w * w + x * x + y * y + z * z)
-    rotation[0, 0] = 1.0 - s * (y * y + z * z)
-    rotation[0, 1] = s * (x * y - w * z)
-    rotation[0, 2] = s * (x * z + w * y)
-    rotation[1, 0] = s * (x * y + w * z)
-    rotation[1, 1] = 1.0 - s * (x * x + z * z)
-    rotation[1, 2] = s * (y * z - w * x)
-    rotation[2, 0] = s * (x * z - w * y)
-    rotation[2, 1] = s * (y * z + w * x)
-    rotation[2, 2] = 1.0 - s * (x * x + y * y)
+    rows = (
+        (1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)),
+        (s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x)),
+        (s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y)),
+    )
+    return np.array(rows).transpose(2, 0, 1)

@@ -1,4 +1,4 @@
-"""OrientedBox: a box or rectangle with any rotation, in the plane or in space; and tables of them for compiled code."""
+"""OrientedBox: a box or rectangle with any rotation, in the plane or in space; and tables of them."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def surface_of(box: OrientedBox) -> TriangleMesh:
 
 
 class BoxTable(NamedTuple):
-    """Boxes in space for compiled code, as arrays (n, 3), axes (n, 3, 3) with a column an axis of the box.
+    """Boxes in space as arrays (n, 3), axes (n, 3, 3) with a column an axis of the box.
 
     `low` and `high` are corners of the boxes' bounding boxes.
     """
