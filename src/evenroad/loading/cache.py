@@ -41,9 +41,9 @@ _FORMAT = 28
 def key_of(
     description: RobotDescription, others: Iterable[tuple[str, Path | None]], group: str | Sequence[str] | None
 ) -> str:
-    """Return the hash of all that decides the robot: what its file says, the content of meshes and others, the group.
+    """Return the hash of a robot's description, the content of its meshes and of other files, and the group.
 
-    The others have a name for errors: BrokenFile if one is missing, as a cached robot is never returned for files that
+    Other files have a name for errors.  BrokenFile if one is missing: a cached robot is never returned for files that
     are gone.
     """
     unchecked = [
@@ -93,7 +93,7 @@ def keep(key: str, model: RobotModel) -> None:
 
 
 def _written(array: Floats) -> object:
-    """Return an array for JSON: triangles as bytes, which are sooner read."""
+    """Return an array for JSON; triangles are bytes, which are read faster."""
     if array.ndim < 3:
         return array.tolist()
     return {"shape": array.shape, "bytes": base64.b64encode(array.tobytes()).decode()}
@@ -102,12 +102,12 @@ def _written(array: Floats) -> object:
 _known: dict[object, tuple[dict[Path, tuple[int, ...]], RobotModel, RobotModel]] = {}
 """Request of this process -> its files with their times, the robot, and a copy for comparison."""
 _AT_ONCE = 100_000_000
-"""A file that was saved so shortly before it is read might be saved again without a new time [ns]."""
+"""Age below which a file might be saved again without a new time stamp [ns]."""
 _FOLDERS = ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
 
 
 def stamps(files: Iterable[object]) -> dict[Path, tuple[int, ...]]:
-    """Return when each of these files was saved, and how large it is; what is no file is left out."""
+    """Return the time, size and inode of each file; what is no file is left out."""
     found: dict[Path, tuple[int, ...]] = {}
     for path in files:
         if isinstance(path, Path):

@@ -21,11 +21,11 @@ _MOST_LINKS, _MOST_BODIES = 1000, 500
 
 @dataclass(frozen=True)
 class RobotDescription:
-    """What the file of a robot says about motion and collision.
+    """A robot as its file describes it: motion and collision.
 
-    Of the `links` the root comes first, every parent before its children; ``joints[i]`` is the joint whose child is
-    ``links[i + 1]``, and a mimic follows a joint that is no mimic, with limits that keep the mimic within its own.
-    `order` are the joints' names as the file lists them: the order of configurations.  `shapes` are the collision
+    The root is the first of the `links`, and every parent comes before its children; ``joints[i]`` is the joint whose
+    child is ``links[i + 1]``, and a mimic follows a joint that is no mimic, with limits that keep the mimic within its
+    own.  `order` are the joints' names as the file lists them: the order of configurations.  `shapes` are the collision
     geometry, each in its link's frame; `drawn_only` are links that are drawn and have none; `notes` say what was read
     otherwise than it stands in the file.  `untested` are pairs of links that the file itself lets touch, each with the
     reason; None where it does not say, as no URDF does.  `planes` are half spaces that it has around the robot, and

@@ -12,7 +12,7 @@ from evenroad.robots.joint import Joint
 from evenroad.robots.kinematics import KinematicTree, held_values
 
 EVERY = "*"
-"""What names all joints of all groups."""
+"""Name for all joints of all groups."""
 
 
 def choose_group(
@@ -21,7 +21,7 @@ def choose_group(
     """Return the joints that are planned for.
 
     `wanted` are groups of the SRDF and names of joints (as a text: with commas between them), in the order that is
-    wanted; of two groups that share a joint the first has it.  ``*`` is all joints of all groups.  None: the SRDF's
+    wanted; a joint of two groups counts for the first one.  ``*`` is all joints of all groups.  None: the SRDF's
     arm, see :func:`arm_group`, else every joint that moves, is no mimic and, by the SRDF, not passive.  None of a rigid
     body: another robot may carry it as a tool.  Raises UnknownName if there is no such group or joint; Undecided if
     none is wanted and the SRDF has several of which none is the arm; InvalidValue if a joint does not move or follows
@@ -130,7 +130,7 @@ def group_notes(
 def chosen_states(
     srdf: Srdf, chosen: tuple[str, ...], wanted: str | Sequence[str] | None
 ) -> dict[str, dict[str, float]]:
-    """Return the named states with a value for every joint chosen; of two of a name that of the wanted groups."""
+    """Return the named states with a value for every joint chosen; states of the wanted groups come first."""
     mine = _words(wanted or ())
 
     def strangeness(group_and_name: tuple[str, str]) -> tuple[bool, bool]:
@@ -150,7 +150,7 @@ def chosen_states(
 
 
 def held_states(srdf: Srdf, robot: KinematicTree) -> dict[str, float]:
-    """Return where named states have the joints that a robot holds, joint -> value; of several the first says."""
+    """Return the values of a robot's held joints in the first named state that has them, joint -> value."""
     held: dict[str, float] = {}
     joints = {joint.name: joint for joint in robot.joints}
     for values in srdf.states.values():

@@ -1,4 +1,4 @@
-"""Bodies of links: the shapes of a robot's file, or the capsules that the user gives, and what stands for them."""
+"""Bodies of links: shapes of the robot's file, or the user's capsules, and the capsules fitted to shapes."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ from evenroad.robots.pairs import SelfPairs, pairs_of, self_pairs
 from evenroad.robots.robot import Padding, Robot
 
 SHAPES, CAPSULES = "shapes", "capsules"
-"""`bodies` where the maker's shapes decide once capsules touch an obstacle, and where capsules alone do."""
+"""Values of `bodies`: the file's shapes decide where capsules touch an obstacle, or capsules alone decide."""
 PathLike = str | os.PathLike[str]
 
 
@@ -258,7 +258,7 @@ def _build(
 def _states(
     description: RobotDescription, srdf: Srdf | None, chosen: tuple[str, ...], group: str | Sequence[str] | None
 ) -> dict[str, dict[str, float]]:
-    """Return the named states with a value for every joint chosen; of two of a name that of the SRDF."""
+    """Return the named states with a value for every joint chosen; those of the SRDF replace others of their name."""
     own = {name: dict(values) for name, values in description.states.items() if set(chosen) <= set(values)}
     return own | ({} if srdf is None else chosen_states(srdf, chosen, group))
 
@@ -267,12 +267,12 @@ def _with_pairs(
     robot: Robot, description: RobotDescription, srdf: Srdf | None, pieces: dict[str, list[Piece]]
 ) -> tuple[Robot, SelfPairs]:
     """Return a robot with the pairs of links that are tested, and what is known of all pairs."""
-    # Of those that a robot's own file lets touch, each has its reason; those of an SRDF have one for all.
+    # Pairs that an MJCF lets touch have a reason each; pairs of an SRDF have one for all.
     untested = {frozenset((a, b)): why for a, b, why in description.untested or ()}
     by_srdf = srdf is not None and bool(srdf.disabled)
     if srdf is not None and by_srdf:
         untested = dict.fromkeys(srdf.disabled, "disabled in the SRDF") | untested
-        # Elsewhere pairs that touch where they are held are not tested as long as they are held there.
+        # Without an SRDF, pairs that touch at the held values are not tested while joints are held there.
         robot = replace(robot, held=held_states(srdf, robot))
         apart = held_apart(robot, pieces, pairs_of(robot, pieces, untested), srdf.states.values())
         robot = replace(robot, held={**robot.held, **apart})

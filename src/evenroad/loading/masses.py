@@ -1,4 +1,4 @@
-"""What the links of a robot weigh, and which torques its joints have, as its file says."""
+"""Masses of the links of a robot, and torques of its joints, from its file."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def read_masses(path: Path) -> tuple[tuple[Mass, ...], dict[str, float]]:
     Raises BrokenFile if it cannot be read, or a number is none, or below 0.
     """
     root = read_robot_xml(RobotFile(path))
-    # Loading a robot notes what nobody knows; here only a misspelt name matters.
+    # Unknown names are noted when the robot is loaded; here only a misspelt one matters.
     require_understood(root, ROBOT, str(path), [])
     found = [(str(link.get("name")), link.find("inertial")) for link in root.findall("link")]
     masses = tuple(_mass_of(link, inertial, path) for link, inertial in found if inertial is not None)

@@ -33,8 +33,8 @@ _KINDS: dict[str, Kind] = {"hinge": "revolute", "slide": "prismatic"}
 def read_mjcf(file: RobotFile) -> RobotDescription:
     """Read an MJCF file with MuJoCo, whose defaults, includes, frames and rules of contact are its own.
 
-    Bodies are links and keep their names; of a body with several joints, or with one whose anchor is not its origin,
-    links without a body lie between.  A free joint, or a ball, stays as it is drawn; a linear equality of two joints
+    Bodies are links and keep their names.  A body with several joints, or with one whose anchor is not its origin, has
+    links without a body before it.  A free joint, or a ball, stays as it is drawn; a linear equality of two joints
     makes a mimic.  Keyframes are named states.
 
     A mesh is its convex hull, as in MuJoCo; margins are part of what has them.  Geoms that collide with nothing are no

@@ -1,4 +1,4 @@
-"""Which geoms of a compiled MJCF collide, by MuJoCo's own rules, and by how much they are grown."""
+"""Pairs of geoms of a compiled MJCF that collide by MuJoCo's own rules, and the margins of geoms."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ALL = 0xFFFFFFFF
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """What collides: for geoms, (n, n), `collide`, and why others do not.
+    """Whether geoms collide, `collide`, (n, n), and why the others do not.
 
     `grown` is by how much every geom is larger than its size, (n,) [m]: margins of two add up.
     """

@@ -13,8 +13,8 @@ from evenroad.robots.joint import Joint, Mimic
 def with_equalities(mjcf: CompiledMjcf, joints: Sequence[Joint]) -> list[Joint]:
     """Return the joints after all equalities.
 
-    ``q1 = c0 + c1 q2`` makes a mimic, ``q1 = c0`` a locked joint.  Inactive ones, and welds to bodies of motion
-    capture, which are placed from outside, are left out with a note.  Raises BrokenFile if bodies that move on each
+    ``q1 = c0 + c1 q2`` makes a mimic, ``q1 = c0`` a locked joint.  Inactive ones are left out with a note, and so are
+    welds to bodies of motion capture, which are placed from outside.  Raises BrokenFile if bodies that move on each
     other are connected or welded, or an equality is of any other kind.
     """
     model, where = mjcf.model, mjcf.where

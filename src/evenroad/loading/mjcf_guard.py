@@ -1,4 +1,4 @@
-"""What an MJCF may cost, looked at before MuJoCo reads it: repetitions, sizes, and the files that it names."""
+"""Limits on the cost of an MJCF, checked before MuJoCo reads it: repetitions, sizes, and the files it names."""
 
 from __future__ import annotations
 

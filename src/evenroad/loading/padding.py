@@ -86,7 +86,7 @@ def _entries(document: Mapping[str, object]) -> Iterator[tuple[str, object]]:
     Raises UnknownName for one that is misspelt.
     """
     known = (*_PADDING, *_SCALE, *_OTHERS)
-    # What is another planner's parameter is left out; one that is nearly ours is meant for it.
+    # Other planners' parameters are skipped; a misspelt one of ours is refused.
     require_understood(document, Kind(known), "the file of padding", [])
     for name, value in document.items():
         if name in known:
@@ -113,8 +113,8 @@ def _by_link(
 def _farthest_from_middle(robot: Robot, link: str) -> float:
     """Return how far a link's shapes reach from their middles at most [m].
 
-    A middle is that of the box around a shape, or the mean of its corners, about which MoveIt scales meshes; of a link
-    that is its capsules, that of all of them.
+    The middle of a shape is that of the box around it, or the mean of its corners, about which MoveIt scales meshes.  A
+    link that is its capsules has one middle for all of them.
     """
     bodies = [
         (np.concatenate([spread(parts), parts.around]), max(parts.radius, parts.beyond))

@@ -1,4 +1,4 @@
-"""Values of joints at which bodies do not touch: of those outside the group, and of a posture to move to."""
+"""Collision-free values for held joints, and a default ready posture."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from evenroad.robots.kinematics import KinematicTree, held_values, poses_at, wit
 from evenroad.robots.pairs import Pieces
 
 _SHARES = (0.5, 0.25, 0.75, 1.0)
-"""Shares of the range to either limit that joints are tried at; half open first."""
+"""Fractions of the range to either limit at which joints are tried; half open first."""
 _SAMPLES = 200
-"""Number of random values of all of them that are tried next."""
+"""Number of random values that are tried after these."""
 
 
 def held_apart(
@@ -27,9 +27,9 @@ def held_apart(
 ) -> dict[str, float]:
     """Return values of held joints at which the fewest of these pairs touch, joint -> value [rad or m].
 
-    Only joints between bodies that touch where the robot holds them are returned: they stand as one of the `states`
-    has them, else a gripper closed at 0 is half opened.  Pairs that touch at all values of the held joints, or depend
-    on joints of the group, change nothing.
+    Only joints between bodies that touch at the robot's held values are returned.  Values of `states` are preferred;
+    else a gripper closed at 0 is half opened.  Pairs that touch at all values, or depend on joints of the group, are
+    ignored.
     """
     movable = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
     held = held_values(robot)

@@ -43,14 +43,14 @@ _FILE = Kind(
         "link_sphere_approximation",
     },
 )
-"""What is read of an SRDF."""
+"""Elements and attributes of an SRDF that are read."""
 _MOST_NAMED = 8
 """Largest number of names in one line."""
 
 
 @dataclass(frozen=True)
 class Srdf:
-    """What an SRDF adds to a URDF.
+    """Groups, states and pairs of links that an SRDF adds to a URDF.
 
     `groups`, by name, are the joints that can be planned for, in the order of the URDF: those that move, by
     themselves, and are not `passive`, without a motor.  `states` are named states, (group, name) -> joint -> value
@@ -98,7 +98,7 @@ def read_srdf(path: Path, urdf: RobotDescription) -> Srdf:
     states: dict[tuple[str, str], dict[str, float]] = {}
     for state in root.findall("group_state"):
         if state.get("group") is None:
-            # As a Kinova's own has it: of which joints it speaks nobody knows.
+            # Kinova's own SRDF has one; nothing says which joints it is about.
             known.missing["state of no group"][_attribute(state, "name", path)] = None
             continue
         owner = _attribute(state, "group", path)
@@ -162,19 +162,19 @@ _MISSING = {
     "link": "links that the robot lacks",
     "state of no group": "states without a group",
 }
-"""What is skipped, in words."""
+"""Kinds of skipped names, in words."""
 
 
 @dataclass(frozen=True)
 class _Model:
-    """Names of the URDF, and requested ones that it lacks."""
+    """Names of the URDF, and those of the SRDF that it lacks."""
 
     urdf: RobotDescription
     virtual: frozenset[str]
     missing: dict[str, dict[str, None]] = field(default_factory=lambda: defaultdict(dict))
 
     def joint(self, name: str) -> bool:
-        """Return whether the URDF has a joint; virtual ones are missed by nobody."""
+        """Return whether the URDF has a joint; a virtual one that it lacks is not noted."""
         return name not in self.virtual and self._has("joint", name, self.urdf.order)
 
     def links(self, names: Sequence[str]) -> bool:
@@ -184,7 +184,7 @@ class _Model:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """One line about each kind of what is skipped, where something is."""
+        """A line about each kind of skipped names, if there are any."""
         return tuple(
             f"the SRDF names {_MISSING[what]}, which are skipped: {few_of(list(names))}"
             for what, names in self.missing.items()

@@ -10,7 +10,7 @@ from evenroad.geometry.shapes import Capsule
 from evenroad.robots.joint import Joint
 
 UNLIKE = 500.0
-"""How many times the median, or the robot, a size is beyond which a file seems to have another unit."""
+"""Ratio of a size to the median, or to the robot's reach, beyond which a file seems to have another unit."""
 EXPECTED = "metres are expected"
 _LARGE = 20.0
 """Size of a link or joint beyond which a file seems to have another unit [m].

@@ -16,7 +16,7 @@ IGNORED = frozenset(
         *("self_filter", "plugin", "mujoco", "frame"),
     }
 )
-"""Elements that collision checking does not need, wherever they are."""
+"""Elements that collision checking does not need, at any place."""
 _SIMULATED = {"contact", "surface", "gravity", "kinematic", "selfCollide", "velocity_decay", "verbose", "type"}
 _LOOKS = {
     *("drake:proximity_properties", "drake:illustration_properties", "drake:perception_properties"),

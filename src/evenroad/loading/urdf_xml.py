@@ -1,7 +1,7 @@
 """The XML of a URDF, checked element by element before use.
 
-Readers of URDF take a missing number for a default and repair broken XML in silence; a planner that then finds a
-robot free of collisions has not been given its bodies.  What is read otherwise than it stands is said in notes.
+Other readers of URDFs silently replace missing numbers by defaults and repair broken XML.  A planner would then miss
+bodies, and call colliding configurations free.  Here everything that is read differently is in a note.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ _REQUIRED: dict[str, Iterable[str]] = {
 }
 _LENGTHS = ("size", "radius", "length")
 _THIN = 1e-6
-"""What a body has in place of a dimension of 0 [m]."""
+"""Size in place of a dimension of 0 [m]."""
 _SINGLE = ("origin", "axis", "limit", "safety_controller", "mimic", "parent", "child", "geometry")
-"""Of these, the first would be taken and others passed over, unless they are equal."""
+"""Elements that may stand only once, unless all are equal: readers take the first and skip the others."""
 
 
 def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
     """Return the ``<robot>`` element of a URDF or xacro without what collision checking does not need, and notes.
 
-    Numbers are rewritten with blanks between them; of a ``<visual>`` is kept that it is there.  Raises BrokenFile if
+    Numbers are rewritten with blanks between them; a ``<visual>`` is kept without its content.  Raises BrokenFile if
     the file is missing, not XML or not a URDF, or an element lacks a piece; InvalidValue if an attribute does not hold
     the numbers that it must.
     """

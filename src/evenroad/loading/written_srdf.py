@@ -16,7 +16,7 @@ from evenroad.robots.robot import pieces_of
 _REASONS = {"neighbours": "Adjacent", TOUCHING: "Always", "fixed to each other": "Never moves"}
 """Why a pair is not tested, in MoveIt's words where it has such."""
 _GRIPPER = re.compile("gripper|jaw|finger|claw", re.IGNORECASE)
-"""What the name of a joint has that opens a gripper."""
+"""Part of the name of a joint that opens a gripper."""
 
 
 def srdf_text(model: RobotModel) -> str:

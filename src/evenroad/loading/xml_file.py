@@ -1,4 +1,4 @@
-"""Reading an XML file of other people: a robot, an SRDF, an MJCF, a package."""
+"""Reading XML files: robots, SRDFs, MJCFs, packages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from evenroad.errors import BrokenFile
 
 
 def read_xml(path: Path, what: str, kind: str, tag: str | None = "robot") -> Element:
-    """Return the outermost element of a file, which is a `tag`, or any where that is None.
+    """Return the outermost element of a file, which must have this tag; None allows any.
 
     `what` and `kind` name the file in errors, each a BrokenFile.
     """
@@ -26,7 +26,7 @@ def read_xml(path: Path, what: str, kind: str, tag: str | None = "robot") -> Ele
 
 
 def _parsed(content: bytes, path: Path) -> Element:
-    """Return the root of XML as other readers of URDFs take it: with any prefixes, and blanks around it."""
+    """Return the root of an XML; prefixes may be unknown, and blanks around it, as in other readers of URDFs."""
     builder, parser = TreeBuilder(), expat.ParserCreate()
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end
@@ -39,7 +39,7 @@ def _parsed(content: bytes, path: Path) -> Element:
 
 
 def _no_xml(content: bytes, path: Path, error: Exception) -> BrokenFile:
-    """Return the error of what is no XML; a text that does not even begin as such is another kind of file."""
+    """Return the error of broken XML, or of another kind of file."""
     if content.lstrip(b" \t\r\n\0\xef\xbb\xbf").startswith(b"<"):
         return BrokenFile(f"{path} is not XML: {error}")
     return not_a("XML, as URDF, xacro, MJCF and SRDF are", path)

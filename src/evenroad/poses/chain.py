@@ -46,9 +46,9 @@ class Chain:
     """Rotation (9) and translation (3) in the frame before, multiplier and offset; last the tip's, (k + 1, 14)."""
     low: Floats
     high: Floats
-    """Limits; of a coordinate that can make a whole turn none, since turns are added later."""
+    """Limits; infinite for a coordinate that can make a whole turn, because turns are added later."""
     bounds: Floats
-    """Limits as they are, (2, dim); of those that wrap from -pi to pi."""
+    """Limits as they are, (2, dim); -pi and pi for coordinates that wrap."""
     turns: Bools
     """Which coordinates are in the same posture after a whole turn."""
 

@@ -22,7 +22,7 @@ class Constraint:
 
     @property
     def key(self) -> tuple[object, ...]:
-        """What no two constraints may share that go together."""
+        """Kind and tip, in which constraints that go together must differ."""
         return type(self), getattr(self, "tip", "")
 
     def __and__(self, other: Constraint) -> Constraint:

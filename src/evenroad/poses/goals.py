@@ -34,7 +34,7 @@ class Goals:
     seconds: float = 0.0
     """Time of inverse kinematics [s]."""
     whole: bool = True
-    """Whether the world is the same for postures that were not found: not so if contacts are allowed near them."""
+    """Whether the world stays the same for postures that were not found; allowed contacts near goals change it."""
 
     @property
     def unreached(self) -> str:

@@ -68,7 +68,7 @@ class Reached:
     reason: Callable[[], str] = str
     """Without a free one: returns why, which takes longer than to find it out."""
     spent: bool = False
-    """Whether the time was over before the search was done: then there is none."""
+    """Whether the time was over before the search was done; there are no configurations then."""
 
     @cached_property
     def why(self) -> str:

@@ -53,12 +53,12 @@ def _near(chain: Chain, a: Floats, b: Floats, same: float) -> Bools:
 def with_turns(chain: Chain, q: Floats, start: Floats, of: Ints) -> tuple[Floats, Ints]:
     """Return postures in all turns that are within limits, and of which goal they are; `of`, (n,), rises.
 
-    Those of a goal come the nearest to the start first, at most `MOST`; of every posture the nearest is there.
+    Each goal has at most `MOST`, the nearest to the start first, and at least the nearest one of each posture.
     """
     low, high = chain.bounds
     wide = chain.turns & (high - low >= TURN)
     nearest = np.where(wide, q - TURN * np.round((q - start) / TURN), q)
-    # A turn back where that is beyond a limit, which rounding alone does not reach.
+    # If the nearest turn is beyond a limit by more than rounding, one turn back is not.
     for _ in range(2):
         nearest -= np.where(wide, TURN * (nearest > high + 1e-9), 0.0)
         nearest += np.where(wide, TURN * (nearest < low - 1e-9), 0.0)

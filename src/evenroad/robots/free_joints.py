@@ -14,7 +14,7 @@ from evenroad.robots.joint import Joint
 PLANAR = ("x", "y", "theta")
 """Coordinates of a planar joint, called as MoveIt does."""
 FAR = 50.0
-"""How far such a joint slides where a scene does not limit it [m]."""
+"""Limit of such a joint's slides where a scene has none [m]."""
 _FLOATING = ("x", "y", "z", "yaw", "pitch", "roll")
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _AXES |= {"theta": _AXES["z"], "yaw": _AXES["z"], "pitch": _AXES["y"], "roll": _AXES["x"]}

@@ -30,13 +30,12 @@ class Mimic:
 class Joint:
     """How a link, the `child`, moves on its `parent`, as URDF has it.
 
-    `xyz` [m] and `rotation`, row by row, are the joint's frame in the parent link's; the child's is the joint's at 0.
-    `axis` is a unit vector in the joint's frame, of no meaning where fixed.  Limits [rad or m] are -inf and inf for
-    a continuous joint, the largest speed, `velocity` [rad/s or m/s], is inf where not given; `mimic` is the joint that
-    this one follows.  The largest `acceleration` and `deceleration` [rad/s^2 or m/s^2] and `jerk` are inf where not
-    given.  `hard` are limits around the soft ones, `lower` and `upper`, that are planned within: a robot may stand
-    beyond these.  `of` is the planar or floating joint that this one is a coordinate of; such are held, unless they are
-    named.
+    `xyz` [m] and `rotation`, row by row, are the joint's frame in the parent link's frame.  At 0 the child's frame is
+    the joint's.  `axis` is a unit vector in the joint's frame; a fixed joint ignores it.  Limits [rad or m] are -inf
+    and inf for a continuous joint.  `velocity` [rad/s or m/s], `acceleration`, `deceleration` [rad/s^2 or m/s^2] and
+    `jerk` are the largest ones, inf if not given.  `mimic` is the joint that this one follows.  `hard` are limits
+    around `lower` and `upper`, if these are soft: paths are planned within the soft ones, but a robot may stand beyond
+    them.  `of` is the planar or floating joint of which this one is a coordinate; such joints are held unless named.
     """
 
     name: str

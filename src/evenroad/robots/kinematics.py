@@ -15,7 +15,7 @@ from evenroad.robots.joint import Joint
 
 
 class Tree(Protocol):
-    """Links, the root first, and joints, of which the i-th carries link i + 1: of a robot or of what a URDF says."""
+    """Links, the root first, and joints, the i-th of which carries link i + 1."""
 
     @property
     def links(self) -> tuple[str, ...]: ...  # noqa: D102
@@ -24,7 +24,7 @@ class Tree(Protocol):
 
 
 class KinematicTree(Tree, Protocol):
-    """What kinematics needs of a robot; the attributes are those of :class:`evenroad.robot.Robot`."""
+    """The part of :class:`evenroad.robot.Robot` that kinematics needs."""
 
     @property
     def capsules(self) -> tuple[Capsule, ...]: ...  # noqa: D102

@@ -52,7 +52,7 @@ class MovingFrame:
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Where a link is fixed: a frame's number, and rotation (3, 3) and translation (3,) [m] into that frame."""
+    """The frame that a link is fixed to, by its number, and rotation (3, 3) and translation (3,) [m] into it."""
 
     frame: int
     rotation: Matrix

@@ -1,4 +1,4 @@
-"""Pairs of links that are tested against each other, and hulls that decide where capsules are too thick."""
+"""Pairs of links that are tested against each other, and hulls that decide where their capsules touch."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ HELD_TOUCHING = "touch in every sample with the other joints where they are held
 CONTAINED = "one goes into the other as drawn"
 """Reason why a third is not tested: a single joint moves one in and out of the other."""
 _MOSTLY = 0.5
-"""Share of samples in which such two touch, and of the volume that is inside in one of these."""
+"""Fraction of samples in which two such links touch, and of the volume of one that is inside the other."""
 _MOST_HULLS = 128
-"""Number of hulls from which on a link is not split."""
+"""Number of hulls of a link above which none is split."""
 _MOST_ROWS = 20
 """Number of touching samples in which the depth of one in the other is measured."""
 _ROUNDS = 12
 _LOOKED_AT = 400
 """Number of samples by which hulls are judged."""
 _RESTING = 1e-5
-"""Distance below which shapes touch if they do so in all samples [m]."""
+"""Distance below which two shapes count as touching, if they do so in all samples [m]."""
 _FEW = 0.003
 """Largest share of samples in which hulls of a pair may touch though the shapes do not."""
 Pieces = Mapping[str, Sequence[Piece]]
@@ -43,10 +43,9 @@ Pieces = Mapping[str, Sequence[Piece]]
 class SelfPairs:
     """Pairs of links that are tested, in the order of the links; and the others with bodies, each with the reason.
 
-    Pairs in `always` are tested and touch in every sample; those in `held` are dropped only for where joints outside of
-    the group are held, those in `contained` because one goes into the other as drawn.
-    `never_free` says which pair blocks most where some pair
-    touches in every sample; else it is empty.
+    Pairs in `always` are tested and touch in every sample.  Pairs in `held` are dropped only at the held values of
+    other joints, pairs in `contained` because one link goes into the other as drawn.  `never_free` is a text with the
+    pair that blocks most, if no sample is free; else it is empty.
     """
 
     tested: tuple[tuple[str, str], ...]
@@ -66,13 +65,12 @@ def self_pairs(
 ) -> SelfPairs:
     """Return the pairs of links with bodies that are tested, and hulls that hardly touch where the shapes do not.
 
-    Dropped are pairs that no joint moves on each other; those in `untested`, as an SRDF or an MJCF gives them, each
-    with its reason; without these (None) neighbours in the tree (links without bodies between them do not count where
-    only one joint between them moves).  With `drop_touching` those are, too, whose shapes touch in every one of 1000
-    configurations drawn uniformly within the limits of all joints, and of as many where the joints outside of the group
-    are held; and pairs that one joint moves on each other, which touch in most samples and in some of which most of one
-    is inside of the other, as of a bellows that its maker drew into the base.  Pairs that never touch are kept: a
-    sample cannot prove that.
+    Pairs that no joint moves on each other are dropped, and pairs in `untested`, which an SRDF or an MJCF gives with
+    reasons.  Without these (None), neighbours in the tree are dropped; links without bodies do not count if only one
+    joint moves between two links.  With `drop_touching`, pairs are dropped whose shapes touch in each of 1000
+    configurations, uniform within the limits of all joints, and in as many with the other joints held.  So are pairs on
+    the two sides of one joint that touch in most samples, where most of one link is inside the other: a bellows, drawn
+    into the base.  Pairs that never touch are kept, because samples prove nothing.
     """
     order = [link for link in robot.links if link in pieces]
     reasons = _untested(robot, pieces, untested)

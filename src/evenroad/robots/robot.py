@@ -37,7 +37,7 @@ ConfigurationLike = str | Mapping[str, float] | npt.ArrayLike
 """A configuration: numbers in the order of the group, joint -> value, or a text as
 :func:`evenroad.robot.configuration` takes it."""
 Padding = float | Mapping[str, float] | str | os.PathLike[str]
-"""What says by how much links are larger: a length of all of them, link -> length, or a file of MoveIt."""
+"""Padding of links: one length for all, link -> length, or a file of MoveIt."""
 
 
 @explains_calls

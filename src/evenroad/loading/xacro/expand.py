@@ -40,7 +40,7 @@ _ATTRIBUTES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 
 
 _ARGUMENT = re.compile(r"""<xacro:arg\s[^>]*?\bname\s*=\s*["']([^"']+)|\$\(arg\s+([^)\s]+)""")
-"""Where a xacro declares or uses an argument."""
+"""Declaration or use of an argument in a xacro."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def expanded(
 ) -> Element:
     """Return the outermost element of the XML that a xacro stands for.
 
-    No text of the file is given to Python, and what it may cost is bounded.  `find` returns the folder of a package,
+    Python evaluates no text of the file, and the cost is bounded.  `find` returns the folder of a package,
     and raises LookupError where there is none; `packages` are the folders that the user named.  Raises UnknownName for
     an argument that no file declares, BrokenFile for all that cannot be expanded.
     """
@@ -86,7 +86,7 @@ def expanded(
 
 
 def _known_arguments(files: Iterable[Path]) -> set[str]:
-    """Return the arguments that some xacros declare or use, in parts that are left out, too."""
+    """Return the arguments that some xacros declare or use, also in parts that conditions leave out."""
     text = "".join(read_bytes(each).decode(errors="replace") for each in files)
     return {declared or used for declared, used in _ARGUMENT.findall(text)}
 
@@ -157,7 +157,7 @@ class _Expander:
         if value is None:
             target.values[f"**{name}"] = Block(tuple(source))
         elif lazy and isinstance(literal(value), str):
-            # As xacro has it, quotes go before.
+            # xacro, too, removes quotes first.
             target.values[name] = Lazy(str(literal(value)))
         else:
             target.values[name] = literal(self._texts.value(value, scope))

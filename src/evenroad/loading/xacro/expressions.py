@@ -1,7 +1,7 @@
 """Expressions of a xacro, evaluated node by node: Python's ``eval`` never sees a text of a file.
 
-What is not in `_Evaluator` does not exist: no attribute of an object is ever looked up by a name of the file, and no
-function is called that `functions` does not list.
+`_Evaluator` is the whole grammar.  It never looks up an attribute of an object by a name of the file, and calls no
+function that `functions` does not list.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _OPERATORS: dict[type[ast.AST], Callable[..., object]] = {
 }
 _item: Callable[..., object] = operator.getitem
 _FAULTS = (TypeError, ValueError, LookupError, ArithmeticError, AttributeError)
-"""What operations on plain values raise."""
+"""Errors that operations on plain values raise."""
 
 
 def evaluate(text: str, names: Scope, budget: Budget) -> object:

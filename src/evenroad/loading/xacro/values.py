@@ -1,4 +1,4 @@
-"""Values of a xacro: what an expression may be, how large, under which name, and what all of it may cost."""
+"""Values of a xacro and their scopes, with limits on size and work."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Function:
 
 @dataclass(frozen=True)
 class Block:
-    """Elements under a name; those of a property, or of one that a macro takes with its content alone, have no hull."""
+    """Elements under a name: those in a property, or a block that a macro takes with or without its own element."""
 
     elements: tuple[Element, ...]
 
@@ -92,7 +92,7 @@ class Lazy:
 
 
 _BEGUN = object()
-"""In place of a text that is being evaluated."""
+"""Mark of a text that is being evaluated."""
 
 
 class Scope:
