@@ -178,7 +178,7 @@ def _check_geometry(geometry: Element | None, where: str) -> None:
 
 
 def _numbers(what: str, attribute: str, text: str, count: int) -> list[float]:
-    """Return the numbers that an attribute holds, or raise InvalidValue where they are not as they must be."""
+    """Return the numbers that an attribute holds, or raise InvalidValue if they are not as they must be."""
     allowed = "a finite number" if count == 1 else f"{count} finite numbers"
     try:
         # Commas between numbers are not in the standard, but in the wild; 1_0 is a number to Python alone.

@@ -76,12 +76,16 @@ class Chain:
         return q, self.tip_poses(q)
 
     @cached_property
+    def slides_by(self) -> Floats:
+        """Largest distance of each frame that slides from its place at 0, (k,) [m]; 0 for one that turns."""
+        extremes = [np.abs(self.bounds[:, f.coordinate] * f.multiplier + f.offset).max() for f in self.frames]
+        return np.where(self.slides, extremes, 0.0)
+
+    @cached_property
     def arms(self) -> Floats:
         """Bounds on the distance of the tip from each joint that turns, (k,) [m]; 1 for one that slides."""
         offsets = np.linalg.norm(self.rows[1:, 9:12], axis=1)
-        extremes = [np.abs(self.bounds[:, f.coordinate] * f.multiplier + f.offset).max() for f in self.frames]
-        slides = np.where(self.slides, extremes, 0.0)
-        beyond = np.cumsum((offsets + np.append(slides[1:], 0.0))[::-1])[::-1]
+        beyond = np.cumsum((offsets + np.append(self.slides_by[1:], 0.0))[::-1])[::-1]
         return np.where(self.slides, 1.0, beyond)
 
     @cached_property
@@ -140,15 +144,8 @@ class Chain:
 
     def reach(self) -> tuple[Floats, float]:
         """Return a point that no joint moves and the largest distance of the tip from it [m]."""
-        far, before = 0.0, len(self.frames)
-        for i in range(len(self.frames) - 1, -1, -1):
-            far += math.hypot(*self.rows[i + 1, 9:12])
-            frame = self.frames[i]
-            if frame.slides:
-                extremes = self.bounds[:, frame.coordinate] * frame.multiplier + frame.offset
-                far += float(np.abs(extremes).max())
-            before = i
-        return self.rows[before, 9:12], far
+        far = np.linalg.norm(self.rows[1:, 9:12], axis=1) + self.slides_by
+        return self.rows[0, 9:12], float(far.sum())
 
 
 _recent: dict[tuple[int, str], tuple[RobotTables, Chain]] = {}

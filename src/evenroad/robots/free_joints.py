@@ -21,13 +21,11 @@ _AXES |= {"theta": _AXES["z"], "yaw": _AXES["z"], "pitch": _AXES["y"], "roll": _
 
 
 def coordinates(kind: str, joint: Joint) -> list[Joint]:
-    """Return a joint of a URDF, or the joints that stand for it: ``planar`` and ``floating`` ones have several.
+    """Return the joints that stand for a ``planar`` or ``floating`` one of a URDF.
 
     A planar joint moves along x and y of a frame whose z axis is the joint's, and turns about it: ``base/x``,
     ``base/y``, ``base/theta``.  A floating one moves and turns along all axes: ``base/x`` to ``base/roll``.
     """
-    if kind not in ("planar", "floating"):
-        return [joint]
     names = PLANAR if kind == "planar" else _FLOATING
     turned = Pose((0.0, 0.0, 0.0), tuple(rotation_from_z(joint.axis).ravel().tolist()))
     # Its axis is z where the file gives none: a URDF's default, x, would let a base climb.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -79,8 +79,11 @@ def self_pairs(
     always = samples.judge(candidates)
     if drop_touching:
         reasons |= always
-        joined = joined_by_one(robot, rigid_links(robot))
-        near = [pair for pair in candidates if pair not in always and joined(*pair)]
+        rigid = rigid_links(robot)
+        over = {joint.child: rigid[joint.parent] for joint in robot.joints if joint.kind != "fixed"}
+        # A single joint moves them on each other.
+        near = [(a, b) for a, b in candidates if over.get(rigid[a]) == rigid[b] or over.get(rigid[b]) == rigid[a]]
+        near = [pair for pair in near if pair not in always]
         reasons |= dict.fromkeys(filter(samples.contains, near), CONTAINED)
     every = list(combinations(order, 2))
     tested = tuple(pair for pair in every if pair not in reasons)
@@ -133,17 +136,6 @@ def rigid_links(robot: KinematicTree) -> dict[str, str]:
     for joint in robot.joints:
         first[joint.child] = first[joint.parent] if joint.kind == "fixed" else joint.child
     return first
-
-
-def joined_by_one(robot: KinematicTree, rigid: Mapping[str, str]) -> Callable[[str, str], bool]:
-    """Return a function of two links: whether a single joint moves them on each other."""
-    over = {joint.child: rigid[joint.parent] for joint in robot.joints if joint.kind != "fixed"}
-
-    def joined(first: str, second: str) -> bool:
-        one, two = rigid[first], rigid[second]
-        return over.get(one) == two or over.get(two) == one
-
-    return joined
 
 
 def bodied_above(robot: KinematicTree, bodied: Collection[str]) -> dict[str, tuple[str, int]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from evenroad.errors import InvalidValue
 from evenroad.loading.xacro.values import Function, Scope, require_size
@@ -26,7 +26,7 @@ def _range(*bounds: int) -> list[int]:
     return list(numbers)
 
 
-def _rounded(number: float, ndigits: int | None = None) -> float:
+def _round(number: float, ndigits: int | None = None) -> float:
     # Python makes 10**ndigits first.
     if ndigits is not None and abs(ndigits) > 100:
         raise InvalidValue(f"round to {ndigits} digits; at most 100")
@@ -41,17 +41,17 @@ def _sum(entries: list[object], start: float = 0) -> float:
     return sum(numbers, start)
 
 
-def _tokens(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
+def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
     tokens = text.translate(dict.fromkeys(map(ord, sep), "\0")).split("\0")
     return [token for token in tokens if token or not skip_empty]
 
 
-def _joined(separator: str, parts: list[str]) -> str:
+def _join(separator: str, parts: list[str]) -> str:
     require_size(len(separator) * len(parts))
     return separator.join(parts)
 
 
-def _replaced(text: str, old: str, new: str, count: int = -1) -> str:
+def _replace(text: str, old: str, new: str, count: int = -1) -> str:
     require_size(text.count(old) * len(new))
     return text.replace(old, new, count)
 
@@ -63,49 +63,51 @@ def filled_by_percent(text: str, values: object) -> str:
     return text % values
 
 
-def _function(call: Callable[..., object], name: str = "") -> Function:
-    return Function(name or call.__name__, call)
+def _named(*calls: Callable[..., object]) -> dict[str, Callable[..., object]]:
+    """Return functions by their names in a xacro."""
+    return {call.__name__.removeprefix("_"): call for call in calls}
+
+
+def _functions(*calls: Callable[..., object]) -> dict[str, object]:
+    return {name: Function(name, call) for name, call in _named(*calls).items()}
+
+
+def _listing(call: Callable[..., Iterable[object]]) -> Callable[..., list[object]]:
+    """Return a function that returns a list where another one returns an iterator or a view."""
+
+    def listed(*values: object) -> list[object]:
+        return list(call(*values))
+
+    listed.__name__ = call.__name__
+    return listed
 
 
 MAP = Function("map", map)
 """The one function that takes a function; the evaluator calls it."""
 _PYTHON: dict[str, object] = {
-    **{call.__name__: _function(call) for call in (abs, all, any, bool, dict, divmod, float, int, len, list, max, min)},
-    **{call.__name__: _function(call) for call in (ord, sorted, str, tuple)},
-    **{"range": _function(_range, "range"), "round": _function(_rounded, "round"), "sum": _function(_sum, "sum")},
-    **{
-        made.__name__: _function(lambda *values, made=made: list(made(*values)), made.__name__)
-        for made in (enumerate, reversed, zip)
-    },
+    **_functions(abs, all, any, bool, dict, divmod, float, int, len, list, max, min, ord, sorted, str, tuple),
+    **_functions(_range, _round, _sum, *map(_listing, (enumerate, reversed, zip))),
     "map": MAP,
 }
-_NUMBERS: dict[str, object] = {
-    **{name: getattr(math, name) for name in _CONSTANTS},
-    **{name: _function(getattr(math, name)) for name in _MATH},
-}
-
+_NUMBERS = {name: getattr(math, name) for name in _CONSTANTS} | _functions(*(getattr(math, name) for name in _MATH))
 METHODS: Mapping[type, Mapping[str, Callable[..., object]]] = {
     str: {
-        **{call.__name__: call for call in (str.count, str.endswith, str.find, str.index, str.isdigit, str.lower)},
-        **{call.__name__: call for call in (str.lstrip, str.rstrip, str.split, str.startswith, str.strip, str.title)},
-        **{call.__name__: call for call in (str.capitalize, str.upper, str.rsplit, str.splitlines)},
-        **{"join": _joined, "replace": _replaced},
+        **_named(str.capitalize, str.count, str.endswith, str.find, str.index, str.isdigit, str.lower, str.lstrip),
+        **_named(str.rsplit, str.rstrip, str.split, str.splitlines, str.startswith, str.strip, str.title, str.upper),
+        **_named(_join, _replace),
     },
-    list: {"count": list.count, "index": list.index},
-    tuple: {"count": tuple.count, "index": tuple.index},
-    dict: {
-        "get": dict.get,
-        **{call.__name__: lambda each, call=call: list(call(each)) for call in (dict.items, dict.keys, dict.values)},
-    },
+    list: _named(list.count, list.index),
+    tuple: _named(tuple.count, tuple.index),
+    dict: _named(dict.get, *map(_listing, (dict.items, dict.keys, dict.values))),
 }
 """Type -> name -> the method: none of them changes the value."""
 
 
 def names_of(own: Mapping[str, Callable[..., object]]) -> dict[str, object]:
     """Return all names of expressions; `own` are the functions of the file that is read, as ``xacro.arg``."""
-    functions: dict[str, object] = {name: Function(name, call) for name, call in own.items()}
     silent = dict.fromkeys(("message", "warning", "error", "print_location"), Function("message", lambda *_: ""))
-    xacro = {**functions, **silent, "fatal": Function("fatal", _fatal), "tokenize": Function("tokenize", _tokens)}
+    functions: dict[str, object] = {name: Function(name, call) for name, call in own.items()}
+    xacro = functions | silent | _functions(_fatal, _tokenize)
     deprecated: dict[str, object] = {
         name: xacro[name] for name in ("load_yaml", "abs_filename", "dotify") if name in xacro
     }

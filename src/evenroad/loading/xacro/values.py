@@ -48,8 +48,7 @@ class Budget:
                 waiting.extend([*each, *each.values()] if size <= LARGEST else ())
             elif isinstance(each, int | float | None):
                 size += 1
-                if isinstance(each, int) and each.bit_length() > _BITS:
-                    raise InvalidValue(f"an integer has more than {_BITS} bits")
+                require_bits(each.bit_length() if isinstance(each, int) else 0)
             else:
                 raise InvalidValue(f"a {type(each).__name__.lower()} is not a value")
             require_size(size)
