@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,6 +10,14 @@ from evenroad._checks import require_positive
 from evenroad._yaml import numbers, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.geometry.pose import Pose
+
+
+def pose_of(xyz: Sequence[float], quaternion: Sequence[float], where: str) -> Pose:
+    """Return a pose by its position [m] and its quaternion, x y z w; InvalidValue names `where`."""
+    try:
+        return Pose.from_quaternion(xyz, xyzw=quaternion)
+    except InvalidValue as error:
+        raise InvalidValue(f"{where}: {error}") from None
 
 
 @dataclass(frozen=True)
@@ -108,8 +116,5 @@ class Entry:
         if "rpy" in self and "xyzw" in self:
             raise InvalidValue(f"{self.where} must have one of rpy and xyzw, got both")
         if "xyzw" in self:
-            try:
-                return Pose.from_quaternion(xyz, xyzw=self.row("xyzw", 4))
-            except InvalidValue as error:
-                raise InvalidValue(f"{self.where}: {error}") from None
+            return pose_of(xyz, self.row("xyzw", 4), self.where)
         return Pose.from_rpy(xyz, self.row("rpy", 3)) if "rpy" in self else Pose(xyz)

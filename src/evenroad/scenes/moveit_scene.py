@@ -8,16 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from evenroad._checks import require_known
 from evenroad._files import read_bytes
-from evenroad.errors import BrokenFile, EvenroadError, InvalidValue
+from evenroad.errors import BrokenFile
 from evenroad.geometry.pose import IDENTITY, Pose
-from evenroad.geometry.shapes import shape_of
+from evenroad.scenes.entry import pose_of
+from evenroad.scenes.planning_objects import ROOT, Frame, Object, dimensions_of, solid_of
 from evenroad.scenes.scene import Obstacle, Scene
 
 Numbers = tuple[float, ...]
-SIZES = {"box": 3, "sphere": 1, "cylinder": 2}
-"""Shapes that are read, and how many dimensions each has."""
 
 
 def read_scene_text(path: Path) -> Scene:
@@ -69,37 +67,13 @@ def _from_text(lines: list[str], path: Path) -> Iterator[Obstacle]:
         if marker != "*":
             raise BrokenFile(f"{path} must have '*' before every object and '.' at its end, got {marker!r}")
         name = " ".join(rest.pop())
-        frame = pose() if posed else IDENTITY
-        shapes = []
+        where = f"object {name!r} in {path}"
+        made = Object(Frame(ROOT, pose() if posed else IDENTITY))
         for _ in how_many("shapes"):
             kind = word("a shape")
-            shapes.append((kind, row(dimensions_of(kind, f"object {name!r} in {path}")), frame @ pose()))
+            made.shapes.append(solid_of(kind, row(dimensions_of(kind, where)), pose(), where))
             row(4)
         for _ in how_many("subframes") if posed else ():
             word("a subframe")
             pose()
-        yield from obstacles_of_shapes(name, shapes, path)
-
-
-def obstacles_of_shapes(name: str, shapes: list[tuple[str, Numbers, Pose]], path: Path) -> Iterator[Obstacle]:
-    """Yield the obstacles of an object: kind, dimensions and pose of each of its shapes."""
-    for i, (kind, size, pose) in enumerate(shapes):
-        try:
-            body = shape_of(kind, size, pose)
-        except InvalidValue as error:
-            raise InvalidValue(f"object {name!r} in {path}: {error}") from None
-        yield Obstacle(name if len(shapes) == 1 else f"{name}/{i}", body)
-
-
-def dimensions_of(kind: str, where: str) -> int:
-    """Return the number of dimensions of a shape; UnknownName, which names `where`, if it is none of these."""
-    require_known(f"shape of {where}:", kind, SIZES)
-    return SIZES[kind]
-
-
-def pose_of(xyz: Numbers, quaternion: Numbers, where: str) -> Pose:
-    """Return a pose by its position [m] and its quaternion, x y z w; InvalidValue names `where`."""
-    try:
-        return Pose.from_quaternion(xyz, xyzw=quaternion)
-    except EvenroadError as error:
-        raise InvalidValue(f"{where}: {error}") from None
+        yield from (Obstacle(own, body) for own, body in made.named(name).items())

@@ -205,10 +205,16 @@ def box_rows(size: npt.ArrayLike, xyz: npt.ArrayLike, xyzw: npt.ArrayLike | None
         raise InvalidValue(
             f"xyz must lie between -{FARTHEST:g} and {FARTHEST:g}, got {centres.flat[np.abs(centres).argmax()]}"
         )
-    turns = None if xyzw is None else as_batch("xyzw", xyzw, 4)
-    made = None if turns is not None and len(turns) != len(extents) else native.box_rows(extents, centres, turns)
-    if made is None:
-        raise InvalidValue(f"xyzw must be one quaternion a box, of a norm > 0, got {shown(xyzw)}")
+    turns = None
+    if xyzw is not None:
+        turns = as_batch("xyzw", xyzw, 4)
+        largest = np.abs(turns).max(axis=1, keepdims=True, initial=0.0)
+        if len(turns) != len(extents) or not largest.all():
+            raise InvalidValue(f"xyzw must be one quaternion a box, of a norm > 0, got {shown(xyzw)}")
+        # The squares of large or small numbers would leave the range.
+        turns = turns / largest
+    made = native.box_rows(extents, centres, turns)
+    assert made is not None  # as all that it refuses is refused above
     return made
 
 

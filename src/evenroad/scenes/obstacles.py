@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any, TypeVar, overload
+from typing import TypeVar, overload
 
 import numpy as np
 
@@ -235,6 +235,6 @@ def rows_of(obstacles: Iterable[Obstacle]) -> Floats:
     return np.frombuffer(b"".join([each.row for each in obstacles])).reshape(-1, 17)
 
 
-def named_twice(names: Sequence[Any]) -> list[Any]:
+def named_twice(names: Sequence[str]) -> list[str]:
     """Return the names that stand twice in a list, in alphabetical order."""
     return sorted({name for name in names if names.count(name) > 1}) if len(set(names)) < len(names) else []

@@ -8,19 +8,21 @@ from typing import NamedTuple
 
 import numpy as np
 
+from evenroad._checks import require_known
 from evenroad._yaml import numbers
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName, shown
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Mesh, Shape, shape_of
 from evenroad.robots.held import HeldObject
-from evenroad.scenes.entry import Entry
-from evenroad.scenes.moveit_scene import SIZES, dimensions_of, pose_of
+from evenroad.scenes.entry import Entry, pose_of
 
 ROOT = ""
 """The frame of the robot's root link."""
 PLANNING_FRAMES = (ROOT, "world")
 """Frames that are the robot's root link wherever a file does not say more."""
+SIZES = {"box": 3, "sphere": 1, "cylinder": 2}
+"""Shapes that are read, and how many dimensions each has."""
 _TYPES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone"}
 """Numbers of shape_msgs/SolidPrimitive."""
 _ADD, _REMOVE, _APPEND, _MOVE = _OPERATIONS = ("add", "remove", "append", "move")
@@ -176,14 +178,26 @@ def _object(message: Entry, frame: Frame) -> Object:
         kind = (_TYPES.get(given, "") if isinstance(given, int) else "") or str(given).lower()
         count = dimensions_of(kind, message.where)
         size = numbers(solid.get("dimensions"), count, f"dimensions of {message.where}")
-        try:
-            # Height and radius in messages, radius and length everywhere else.
-            found.shapes.append(shape_of(kind, size[::-1] if kind == "cylinder" else size, pose))
-        except InvalidValue as error:
-            raise InvalidValue(f"{message.where}: {error}") from None
+        # Height and radius in messages, radius and length everywhere else.
+        size = size[::-1] if kind == "cylinder" else size
+        found.shapes.append(solid_of(kind, size, pose, message.where))
     for mesh, pose in zip(meshes, _poses(message, "mesh", len(meshes)), strict=True):
         found.shapes.append(Mesh(_mesh(mesh.called(f"a mesh of {message.where}")), pose=pose))
     return found
+
+
+def dimensions_of(kind: str, where: str) -> int:
+    """Return the number of dimensions of a shape; UnknownName, which names `where`, if it is none of these."""
+    require_known(f"shape of {where}:", kind, SIZES)
+    return SIZES[kind]
+
+
+def solid_of(kind: str, size: tuple[float, ...], pose: Pose, where: str) -> Shape:
+    """Return a shape by its kind and dimensions; InvalidValue names `where`."""
+    try:
+        return shape_of(kind, size, pose)
+    except InvalidValue as error:
+        raise InvalidValue(f"{where}: {error}") from None
 
 
 def _poses(message: Entry, what: str, count: int) -> list[Pose]:
