@@ -7,7 +7,6 @@ from dataclasses import asdict, replace
 from functools import reduce
 from operator import and_
 from pathlib import Path
-from typing import Any
 
 from evenroad._files import require_writable_folder
 from evenroad._time_limit import within
@@ -119,7 +118,7 @@ def _certified(plan: PlanArm, result: PlanResult) -> list[tuple[str, str]]:
     return [("certificate", f"{plan.certificate}, which evenroad-verify checks")]
 
 
-def _options(plan: PlanArm, problem: Problem, result: PlanResult) -> dict[str, Any]:
+def _options(plan: PlanArm, problem: Problem, result: PlanResult) -> dict[str, object]:
     """Return the options for the record."""
     world, robot, made = problem.arm, problem.arm.robot, plan.options()
     assert problem.given is not None
@@ -177,8 +176,8 @@ def _goals(plan: PlanArm) -> list[Goal]:
         parts = [pose_goal_of(part, plan.tip, plan.frame, degrees=plan.deg) for part in text.split("&")]
         if axis is not None and any(part.position_only for part in parts):
             raise InvalidValue(f"--free-axis needs a rotation, got the goal pose {text!r} without one")
-        made: dict[str, Any] = dict(free_axis=axis, position_tolerance=near, angle_tolerance=tilt)
-        goals.append(reduce(and_, (replace(part, **made) for part in parts)))
+        parts = [replace(part, free_axis=axis, position_tolerance=near, angle_tolerance=tilt) for part in parts]
+        goals.append(reduce(and_, parts))
     return goals
 
 

@@ -53,11 +53,11 @@ def plan_disk(plan: PlanDisk) -> int:
         # Points are drawn over the rectangle, most of which may be unknown.
         gridmap = gridmap.cropped()
     world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
-    of_roadmap = dict(search="full", certify=plan.guarantees) if wants_points(plan) else {}
-    planner = chosen_planner(plan, world, **of_roadmap)
+    planner = chosen_planner(plan, world, search="full", certify=plan.guarantees)
     wanted = Wanted(budget=budget, smooth=not plan.raw, certified=plan.certified)
     with within(budget.seconds):
-        result, stopped = solve_until_stopped(read_problem(world, start, goals, Reading(), wanted), planner)
+        problem = read_problem(world, start, goals, Reading(), wanted)
+        result, stopped = solve_until_stopped(problem, planner)
     query = {
         "map": str(plan.world),
         "robot_radius": plan.robot_radius,

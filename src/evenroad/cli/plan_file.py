@@ -21,7 +21,7 @@ from evenroad.poses.constraint import Constraint, with_tip
 from evenroad.space.path import continued
 from evenroad.trajectory.files import trajectory_of
 from evenroad.trajectory.trajectory import Trajectory
-from evenroad.world import load_map
+from evenroad.world import World, load_map
 
 FILES = {
     "srdf": str | None,
@@ -75,7 +75,7 @@ def plan_file_of(record: Any, file: Path, robot: str | None = None, options: dic
         if not all(isinstance(query.get(name), kind) for name, kind in _MAP.items()):
             raise BrokenFile(f"{file} is a damaged plan: of its map, radius, clearance or unknown cells")
         grid = load_map(query["map"], unknown_is_free=query["unknown_is_free"], rules=query.get("rules"))
-        world: Any = grid.world(query["robot_radius"], clearance=query["clearance"])
+        world = grid.world(query["robot_radius"], clearance=query["clearance"])
         problem = Problem(world, result.start, result.goals)
     else:
         problem = problem_of(query, file, result.start, result.goals, robot, options)
@@ -94,7 +94,7 @@ def plan_file_of(record: Any, file: Path, robot: str | None = None, options: dic
     )
 
 
-def changed_since(kept: Any, world: Any) -> tuple[str, ...] | None:
+def changed_since(kept: object, world: World) -> tuple[str, ...] | None:
     """Return the names of what is another than when a plan was made; None for plans that do not say what it was."""
     if not isinstance(kept, dict) or not all(isinstance(each, dict) for each in kept.values()):
         return None
@@ -114,7 +114,7 @@ def problem_of(
 ) -> Problem:
     """Return the problem of an arm's plan from its query, with this start, (dim,), and these goals, (g, dim)."""
     options = dict(options or {})
-    arm: Any = robot or query.get("robot")
+    arm = robot or query.get("robot")
     if not isinstance(arm, str) or not isinstance(query.get("scene"), str):
         raise InvalidValue(f"{file} names neither a robot and its scene nor a map: evenroad plan writes such plans")
     _require_sound(file, query)

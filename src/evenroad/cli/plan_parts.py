@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
@@ -12,6 +11,7 @@ from evenroad._seal import with_digest
 from evenroad._terminal import print_table
 from evenroad.cli.plan import PlanOptions, wants_points
 from evenroad.cli.sampler import chosen_rule, chosen_sampler, draw_points, require_seed
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
 from evenroad.planning.plan import solve
@@ -44,12 +44,12 @@ KEPT = {
 """Options of what a path keeps on its way, as a plan records them, and their types there."""
 
 
-def chosen_planner(plan: PlanOptions, world: World, **of_prm: Any) -> Planner:
+def chosen_planner(plan: PlanOptions, world: World, *, search: str = "lazy", certify: bool = False) -> Planner:
     """Return the planner of the options: a roadmap of points, else the default of the world."""
     if not wants_points(plan):
         return default_planner(world, improve=plan.improve)
     points = draw_points(plan, _n(plan), world.space.cube_dim)
-    return PRM(points, rule=chosen_rule(plan.k, plan.connect_radius), **of_prm)
+    return PRM(points, rule=chosen_rule(plan.k, plan.connect_radius), search=search, certify=certify)
 
 
 def chosen_budget(plan: PlanOptions) -> Budget:
@@ -92,16 +92,23 @@ def output_files(plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[s
     return files
 
 
-def common_query(plan: PlanOptions) -> dict[str, Any]:
+def common_query(plan: PlanOptions) -> dict[str, object]:
     """Return the options that every plan has, for the record."""
     names = ("n", "improve", "certified", "sampler", "plain", "skip", "allow_fewer", "seed", "raw")
     return {name: getattr(plan, name) for name in names} | {"time": chosen_budget(plan).seconds}
 
 
-def made_of(world: Any, **names: str | None) -> dict[str, Any]:
+def made_of(world: World, **names: str | None) -> dict[str, dict[str, str | None]]:
     """Return the record of what a plan was made in: the name of each file, and the SHA-256 of what was read of it."""
-    values = {"robot": world.robot, "scene": world.scene} if hasattr(world, "robot") else {"map": world}
-    return {name: {"name": names.get(name), "sha256": value.fingerprint()} for name, value in values.items()}
+    if isinstance(world, ArmWorld):
+        digests = {"robot": world.robot.fingerprint(), "scene": world.scene.fingerprint()}
+    else:
+        # Imported late: a plan of an arm has no map.
+        from evenroad.world.gridmap.disk_world import DiskWorld
+
+        assert isinstance(world, DiskWorld), "a plan is of an arm or of a disk"
+        digests = {"map": world.fingerprint()}
+    return {name: {"name": names.get(name), "sha256": digest} for name, digest in digests.items()}
 
 
 def solve_until_stopped(problem: Problem, planner: Planner | Roadmap | None) -> tuple[PlanResult, bool]:
@@ -115,7 +122,7 @@ def solve_until_stopped(problem: Problem, planner: Planner | Roadmap | None) -> 
 def finish(
     files: dict[str, Path],
     result: PlanResult,
-    record: dict[str, Any],
+    record: dict[str, object],
     columns: Sequence[str],
     draw: Callable[[Path], None],
     more: Sequence[tuple[str, str]] = (),

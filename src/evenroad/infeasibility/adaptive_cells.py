@@ -46,7 +46,8 @@ class _Leaves:
 
     def keys(self, level: int, number: Ints) -> Ints:
         """Return one number for each cell of a level."""
-        return np.ravel_multi_index(tuple(number.T), tuple((self.cells.count << level).tolist()))
+        keys: Ints = np.ravel_multi_index(tuple(number.T), tuple((self.cells.count << level).tolist()))
+        return keys
 
     def find(self, q: Floats) -> int:
         """Return the cell that holds values, (joints,), or -1."""

@@ -48,10 +48,8 @@ def pieces_between_walls(robot: Robot, start: Floats) -> Iterator[tuple[int, Pie
             high[k] = walls[walls > start[k]].min(initial=high[k])
         count = np.full(k + 1, max(1, int((_AROUND / _ALONG) ** (1 / max(k, 1)))))
         count[k] = _ALONG
-        yield (
-            k,
-            Piece(Cells(low[: k + 1], high[: k + 1], count, period[: k + 1]), np.ones(count, dtype=np.bool_)),
-        )
+        cells = Cells(low[: k + 1], high[: k + 1], count, period[: k + 1])
+        yield k, Piece(cells, np.ones(count, dtype=np.bool_))
 
 
 def walls_of(robot: Robot) -> tuple[tuple[float, ...], ...]:
@@ -94,10 +92,8 @@ def _walls_of(
 
 def _between(robot: Robot, first: str, second: str) -> list[tuple[Joint, int]]:
     """Return the joints that move two links on each other, each with the coordinate that moves it."""
-    above, number = (
-        {joint.child: joint for joint in robot.joints},
-        {name: k for k, name in enumerate(robot.group)},
-    )
+    above = {joint.child: joint for joint in robot.joints}
+    number = {name: k for k, name in enumerate(robot.group)}
     chains = []
     for link in (first, second):
         chain = set()
@@ -199,7 +195,8 @@ def _deepest(other: Hull, still: Hull, pose: Floats) -> Floats:
 def _depths(hull: Hull, points: Floats) -> Floats:
     """Return how deep in a hull points, (n, 3), are; less than 0 outside (n,) [m]."""
     sides = _sides(hull)
-    return -(points @ sides[:, :3].T + sides[:, 3]).max(axis=1)
+    outside: Floats = (points @ sides[:, :3].T + sides[:, 3]).max(axis=1)
+    return -outside
 
 
 @lru_cache(maxsize=64)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import wraps
-from typing import Any, Concatenate, ParamSpec, TypeVar
+from typing import Concatenate, ParamSpec, TypedDict, TypeVar
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from evenroad.planning.make_result import make_result, out_of_time, path_message
 from evenroad.planning.problem import Problem
 from evenroad.planning.result import PlanResult, SearchedGraph, Status
 from evenroad.planning.shortcut import shortcut
+from evenroad.points.pointset import Origin
 from evenroad.roadmap.budget import BEFORE_REASONS
 from evenroad.roadmap.neighbours import flat_metric
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
@@ -88,7 +89,7 @@ def in_its_time(
     """Return a planner's `solve` that ends with the problem's time, and says so where it has nothing to hand out."""
 
     @wraps(solve)
-    def solved(planner: Solver, problem: Problem, *args: More.args, **more: More.kwargs) -> PlanResult:
+    def solved(planner: Solver, problem: Problem, /, *args: More.args, **more: More.kwargs) -> PlanResult:
         if problem.constraints is not None:
             raise InvalidValue("a planner knows no constraints: er.plan(..., constraints=...) divides such a problem")
         try:
@@ -254,7 +255,15 @@ def failed(attempt: Attempt, status: Status, message: str, **more: object) -> Pl
     return make_result(attempt.problem, status, message, **_made_by(attempt), **more)
 
 
-def _made_by(attempt: Attempt) -> dict[str, Any]:
+class _MadeBy(TypedDict):
+    origin: Origin
+    rule: str
+    links: int | None
+    planner: str
+    timings: dict[str, float]
+
+
+def _made_by(attempt: Attempt) -> _MadeBy:
     """Return the attributes of a result that say who searched, on which points, and for how long."""
     return dict(
         origin=attempt.origin,

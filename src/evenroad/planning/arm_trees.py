@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Protocol
-
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count, require_positive
 from evenroad._native import planning
-from evenroad._native.robot import Checker
 from evenroad._time_limit import BudgetSpent, within
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
 from evenroad.planning.connector import Connection
 from evenroad.planning.drivers import drivers, native_points
 from evenroad.points.reversed_halton import PAIRS, ball_points, cube_points, share_pairs
-from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 
 MOST_MOTIONS = 1_000_000
@@ -27,21 +23,8 @@ _SLICE = 10_000
 """Batches of sixteen checks between two looks at what interrupts: about 100 ms."""
 
 
-class PlansWithTrees(Protocol):
-    """What trees need of an arm's world; ``ArmWorld`` has these attributes."""
-
-    @property
-    def space(self) -> JointSpace: ...  # noqa: D102
-
-    @property
-    def checker(self) -> Checker: ...  # noqa: D102
-
-    @property
-    def fixed_contact(self) -> tuple[str, str] | None: ...  # noqa: D102
-
-
 def connect(
-    world: PlansWithTrees,
+    world: ArmWorld,
     start: npt.ArrayLike,
     goals: npt.ArrayLike,
     *,
@@ -68,7 +51,7 @@ def connect(
         return joined(world, terminals, samples, most)
 
 
-def joined(world: PlansWithTrees, terminals: Floats, samples: planning.Points, most_motions: int) -> Connection:
+def joined(world: ArmWorld, terminals: Floats, samples: planning.Points, most_motions: int) -> Connection:
     """Do as `connect`, for a start and goals in one array, (1 + g, dim)."""
     if world.fixed_contact is not None:
         return Connection(np.empty((0, terminals.shape[1])), -1, 0, 0, 0)
@@ -76,7 +59,7 @@ def joined(world: PlansWithTrees, terminals: Floats, samples: planning.Points, m
 
 
 def grown_trees(
-    world: PlansWithTrees, start: npt.ArrayLike, goals: npt.ArrayLike, *, seconds: float = SECONDS
+    world: ArmWorld, start: npt.ArrayLike, goals: npt.ArrayLike, *, seconds: float = SECONDS
 ) -> tuple[Floats, Ints]:
     """Return the nodes, (n, dim), of the two trees of `connect` and their links, (m, 2), for viewers.
 
@@ -100,7 +83,7 @@ def grown_trees(
 
 
 def shorten(
-    world: PlansWithTrees,
+    world: ArmWorld,
     path: npt.ArrayLike,
     *,
     pairs: int = PAIRS,
@@ -116,7 +99,7 @@ def shorten(
     return planning.shorten(checks_of(world), _as_path(world, path), shares, shortcuts)
 
 
-def smooth(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: bool = True) -> tuple[Floats, int]:
+def smooth(world: ArmWorld, path: npt.ArrayLike, *, batches: int, proved: bool = True) -> tuple[Floats, int]:
     """Return a smoothed path and the number of motions checked; it is shorter than that of `shorten` for the same
     checks.
 
@@ -147,7 +130,7 @@ def smooth_with_clearance(world: ArmWorld, path: Floats, *, batches: int) -> tup
 
 
 def improver(
-    world: PlansWithTrees,
+    world: ArmWorld,
     terminals: Floats,
     by: planning.Drivers,
     first: tuple[Floats, int, int],
@@ -161,12 +144,12 @@ def improver(
     return planning.Improver(checks_of(world), terminals, by, *first, is_smoothing)
 
 
-def checks_of(world: PlansWithTrees) -> planning.Checks:
+def checks_of(world: ArmWorld) -> planning.Checks:
     """Return the checks of a world for one planner."""
     return planning.Checks(world.checker)
 
 
-def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:
+def _as_path(world: ArmWorld, path: npt.ArrayLike) -> Floats:
     """Return a path, (p, dim), p >= 2."""
     points = as_batch("path", path, world.space.dim)
     if len(points) < 2:
@@ -175,7 +158,7 @@ def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:
 
 
 def _grown(
-    world: PlansWithTrees, terminals: Floats, samples: planning.Points, most: int
+    world: ArmWorld, terminals: Floats, samples: planning.Points, most: int
 ) -> tuple[Connection, planning.Trees]:
     """Return what two trees found, and the trees."""
     order = range(len(terminals) - 1)

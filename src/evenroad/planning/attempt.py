@@ -62,10 +62,10 @@ class Attempt:
     planner: str
     origin: Origin = NO_POINTS
     rule: str = "none"
-    _: KW_ONLY
     connector: Connector | None = None
     edge_cost: EdgeCost | None = None
     links: int | None = None
+    _: KW_ONLY
     grows: bool = False
     watch: Stopwatch = field(default_factory=Stopwatch)
     checked: int = 0
@@ -76,7 +76,7 @@ class Attempt:
 
     def __post_init__(self) -> None:
         self.began = now()
-        self.deadline = self.problem.budget.deadline()
+        self.time = Deadline.after(self.problem.budget.seconds)
         self.goals = np.arange(len(self.problem.goals))
 
     @property
@@ -93,7 +93,8 @@ class Attempt:
     @property
     def start_and_goals(self) -> Floats:
         """The start, then the goals that are free, (1 + g, dim)."""
-        return self.problem.start_and_goals[np.append(0, 1 + self.goals)]
+        terminals: Floats = self.problem.start_and_goals[np.append(0, 1 + self.goals)]
+        return terminals
 
     def valid_terminals(self) -> Bools:
         """Return which of the start and all goals are free, (1 + g,), and drop the other goals."""
@@ -113,7 +114,8 @@ class Attempt:
         except BudgetSpent:
             self.spent = True
         self.checked += states.configurations_checked
-        return states.node_states == FREE
+        free: Bools = states.node_states == FREE
+        return free
 
     def candidates(self, rule: Rule, milestones: Floats) -> EdgeStates:
         """Return the graph of milestones, start and goals: the edges of the rule, and the links besides."""
@@ -179,17 +181,12 @@ class Attempt:
         is_proof_due = not (self.grows or self.proof_tried) and isinstance(self.world, ShowsApart)
         return self.time.part(self.began, BEFORE_PROOF if is_proof_due else BEFORE_REASONS)
 
-    @property
-    def time(self) -> Deadline:
-        """The end of its time."""
-        return Deadline(self.deadline)
-
     def take(self, motions: int, seconds: float) -> None:
         """Count an earlier search: its motions, and its time."""
         self.motions_checked += motions
         self.watch.seconds["search"] = self.watch.seconds.get("search", 0.0) + seconds
         self.began -= seconds
-        self.deadline -= seconds
+        self.time = Deadline(self.time.at - seconds)
 
     def elapsed(self) -> float:
         """Return the seconds since the query began."""
@@ -198,7 +195,7 @@ class Attempt:
     def left(self) -> Budget | None:
         """Return the rest of the budget, or None if it is spent."""
         budget, motions = self.problem.budget, self.problem.budget.motions
-        seconds = self.deadline - now()
+        seconds = self.time.left
         if seconds <= 0.0 or (motions is not None and motions <= self.motions_checked):
             return None
         return replace(

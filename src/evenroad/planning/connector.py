@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
+from typing import Literal, NamedTuple, Protocol, TypeAlias
 
 from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue, shown
+from evenroad.world import World
 
 Smooth: TypeAlias = bool | Literal["quick"]
 """Whether a path is made shorter once it is found; "quick": by straight shortcuts alone."""
@@ -60,11 +61,11 @@ class Connector(Protocol):
     def searches(self, dim: int) -> Iterator[Search]:
         """Yield the searches to make in a space of this dimension, each of another variant where it `varies`."""
 
-    def connect(self, world: Any, start: Floats, goals: Floats, *, variant: int, most_motions: int) -> Connection:
+    def connect(self, world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int) -> Connection:
         """Join the start, (dim,), to one of the goals, (g, dim), within the budget; the same variant, the same path.
 
         Where the time of this thread is over it raises BudgetSpent, or returns that it is.
         """
 
-    def smooth(self, world: Any, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
+    def smooth(self, world: World, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """Return a path, (q, dim), that is not longer than `path`, (p, dim), and how many motions were checked."""

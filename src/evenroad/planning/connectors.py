@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import count
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
@@ -52,9 +52,14 @@ def smoothing_of(smooth: Smooth) -> Smoothing:
     return "quick" if smooth == "quick" else "with clearance" if smooth else "none"
 
 
+def samples_of(dim: int, variant: int) -> Points:
+    """Return the points that trees of `dim` joints grow towards; each variant >= 1 has others."""
+    return Points(shifted_cube_points(dim, variant)) if variant else native_points(cube_points, dim)
+
+
 def drivers_of(dim: int, variant: int) -> Drivers:
     """Return the sequences that drive the queries of arms with `dim` joints; each variant >= 1 has another one."""
-    return drivers_by(Points(shifted_cube_points(dim, variant)), dim) if variant else drivers(dim)
+    return drivers_by(samples_of(dim, variant), dim) if variant else drivers(dim)
 
 
 def restarts(dim: int) -> Iterator[Search]:
@@ -78,15 +83,11 @@ def luby(i: int) -> int:
 
 @dataclass(frozen=True)
 class ArmTrees:
-    """Two trees in compiled code, every motion proved free; for arms.
-
-    They grow in the arm's world `inside` where another world is queried, such as one of the robot's meshes.
-    """
+    """Two trees in compiled code, every motion proved free; for arms."""
 
     planner: ClassVar[str] = "trees"
     varies: ClassVar[bool] = True
 
-    inside: ArmWorld | None = None
     shortest: bool = False
     """Whether smoothed paths are the shortest, however near to obstacles."""
 
@@ -94,20 +95,10 @@ class ArmTrees:
         """See :func:`restarts`."""
         return restarts(dim)
 
-    def connect(
-        self,
-        world: ArmWorld,
-        start: Floats,
-        goals: Floats,
-        *,
-        variant: int,
-        most_motions: int,
-    ) -> Connection:
+    def connect(self, world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int) -> Connection:
         """See :func:`evenroad.planning.arm_trees.connect`; each variant >= 1 is driven by another even sequence."""
-        inside, terminals = self.inside or world, np.concatenate([start[np.newaxis], goals])
-        dim = len(start)
-        samples = Points(shifted_cube_points(dim, variant)) if variant else native_points(cube_points, dim)
-        return arm_trees.joined(inside, terminals, samples, most_motions)
+        terminals = np.concatenate([start[np.newaxis], goals])
+        return arm_trees.joined(_arm(world), terminals, samples_of(len(start), variant), most_motions)
 
     def answer(
         self,
@@ -124,37 +115,36 @@ class ArmTrees:
 
         Trees grow for that time at most [s].
         """
-        inside, by, smoothing = self.inside or world, drivers_of(len(start), variant), smoothing_of(smooth)
+        by, smoothing = drivers_of(len(start), variant), smoothing_of(smooth)
         if self.shortest and smoothing == "with clearance":
             smoothing = "full"
-        found = answer(inside.checker, start, goal, by, most_motions, search_seconds, smoothing)
+        found = answer(world.checker, start, goal, by, most_motions, search_seconds, smoothing)
         # Where a world is new, one with more room takes as long as a short plan.
         if smoothing == "with clearance" and found.ended == "solved" and found.nodes > 2:
             # Where there is no time to make the world with more room the path stays as trees found it.
             try:
-                found.smooth_with_clearance(inside.checker, inside.roomier.checker, by)
+                found.smooth_with_clearance(world.checker, world.roomier.checker, by)
             except BudgetSpent:
                 return found
         return found
 
     def improver(
-        self, world: Any, terminals: Floats, first: tuple[Floats, int, int], *, variant: int, is_smoothing: bool
+        self, world: World, terminals: Floats, first: tuple[Floats, int, int], *, variant: int, is_smoothing: bool
     ) -> Improver:
         """Return what makes a `first` path shorter: the path, the row of its goal, and the motions checked for it."""
         by = drivers_of(terminals.shape[1], variant)
-        return arm_trees.improver(self.inside or world, terminals, by, first, is_smoothing=is_smoothing)
+        return arm_trees.improver(_arm(world), terminals, by, first, is_smoothing=is_smoothing)
 
-    def smooth(self, world: ArmWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
+    def smooth(self, world: World, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """See :func:`evenroad.planning.arm_trees.smooth_with_clearance`; quickly by its :func:`shorten`."""
         if len(path) == 2:
             # One motion is as short as can be.
             return path, 0
-        inside = self.inside or world
         if quick:
-            return arm_trees.shorten(inside, path)
+            return arm_trees.shorten(_arm(world), path)
         if self.shortest:
-            return arm_trees.smooth(inside, path, batches=LONG_SMOOTHING)
-        return arm_trees.smooth_with_clearance(inside, path, batches=SMOOTHING)
+            return arm_trees.smooth(_arm(world), path, batches=LONG_SMOOTHING)
+        return arm_trees.smooth_with_clearance(_arm(world), path, batches=SMOOTHING)
 
 
 @dataclass(frozen=True)
@@ -170,13 +160,7 @@ class Cells:
         yield Search(NO_LIMIT, "none")
 
     def connect(
-        self,
-        world: DiskWorld,
-        start: Floats,
-        goals: Floats,
-        *,
-        variant: int = 0,
-        most_motions: int = 2**31 - 1,
+        self, world: World, start: Floats, goals: Floats, *, variant: int = 0, most_motions: int = NO_LIMIT
     ) -> Connection:
         """Find a path from a free map point, (2,), to the goal, of (g, 2), that is nearest on the lattice.
 
@@ -189,13 +173,13 @@ class Cells:
         """
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)
-        found = world.disk.find_path(first, last, most_motions)
+        found = _disk(world).disk.find_path(first, last, most_motions)
         return Connection(found.points, found.goal, found.expanded, 0, found.motions)
 
-    def smooth(self, world: DiskWorld, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
+    def smooth(self, world: World, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
         """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and the number of checks."""
         points = as_batch("path", path, 2)
-        return world.disk.straighten(points) if len(points) > 1 else (points.copy(), 0)
+        return _disk(world).disk.straighten(points) if len(points) > 1 else (points.copy(), 0)
 
 
 @dataclass(frozen=True)
@@ -221,10 +205,23 @@ class PlainTrees:
         return shortcut(world, path)
 
 
+def _arm(world: World) -> ArmWorld:
+    assert isinstance(world, ArmWorld), "these trees are an arm's"
+    return world
+
+
+def _disk(world: World) -> DiskWorld:
+    # Imported late: a plan of an arm has no map.
+    from evenroad.world.gridmap.disk_world import DiskWorld
+
+    assert isinstance(world, DiskWorld), "this search is a disk's"
+    return world
+
+
 ARM_TREES, CELLS, PLAIN_TREES = ArmTrees(), Cells(), PlainTrees()
 
 
-def connector_of(world: Any) -> Connector | None:
+def connector_of(world: World) -> Connector | None:
     """Return the compiled connector for this kind of world, or None where there is none."""
     if isinstance(world, ArmWorld):
         return ARM_TREES
@@ -234,7 +231,7 @@ def connector_of(world: Any) -> Connector | None:
     return CELLS if isinstance(world, DiskWorld) else None
 
 
-def trees_for(world: Any, *, shortest: bool = False) -> Connector:
+def trees_for(world: World, *, shortest: bool = False) -> Connector:
     """Return the trees for this kind of world: compiled ones for an arm, else plain ones."""
     if isinstance(world, ArmWorld):
         return ArmTrees(shortest=True) if shortest else ARM_TREES

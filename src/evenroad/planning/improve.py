@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import count
-from time import perf_counter as now
-from typing import Any
 
 import numpy as np
 
@@ -77,17 +75,18 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
     }
     if problem.smooth:
         counts["shortcut_motions"] += improver.smoothing_motions
-    more: dict[str, Any] = dict(counts=counts, timings=attempt.watch.seconds)
+    best = replace(first, counts=counts, timings=attempt.watch.seconds)
     if len(stages) > 1:
         path, row = improver.path, int(attempt.goals[improver.goal])
         raw = improver.along_trees
         cost = path_length(path, space)
         # The kernel sums lengths in another order: its last bit may differ.
         stages[-1] = replace(stages[-1], cost=cost)
-        more |= dict(path=path, cost=cost, goal_index=row, message=path_message(path, cost, row, len(problem.goals)))
+        message = path_message(path, cost, row, len(problem.goals))
+        best = replace(best, path=path, cost=cost, goal_index=row, message=message)
         if not np.array_equal(raw, first.path):
-            more |= dict(milestone_path=raw, milestone_cost=path_length(raw, space))
-    best = led(attempt.world, replace(first, stages=tuple(stages), **more))
+            best = replace(best, milestone_path=raw, milestone_cost=path_length(raw, space))
+    best = led(attempt.world, replace(best, stages=tuple(stages)))
     if improver.rounds:
         best = replace(best, message=f"{best.message}, the best of {improver.rounds + 1}: {_gap(best)}")
     return _unless_stopped(best, stopped)
@@ -166,7 +165,7 @@ def _goes_on(attempt: Attempt, best: PlanResult, number: int) -> bool:
     budget, start, goals = attempt.problem.budget, attempt.problem.start, attempt.free_goals
     least = float(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals).min())
     return (
-        now() < attempt.deadline
+        not attempt.time.is_over
         and (budget.rounds is None or number <= budget.rounds)
         and (budget.motions is None or attempt.motions_checked < budget.motions)
         and _cost(best) > (1.0 + NO_BETTER) * least

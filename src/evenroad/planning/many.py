@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypedDict, Unpack
+from typing import TypedDict, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +22,7 @@ from evenroad.planning.connectors import RESTART, drivers_of, smoothing_of
 from evenroad.planning.many_results import Part, PlanResults, joined
 from evenroad.planning.plan import budget_of, plan
 from evenroad.planning.planners.trees import TreesGoOn, variant_of
+from evenroad.planning.read_problem import is_world
 from evenroad.planning.result import PlanResult
 from evenroad.planning.terminals import from_start_to_goal
 from evenroad.roadmap.budget import BEFORE_PROOF, Budget
@@ -102,7 +103,10 @@ def plan_many(
     smooth, variant = options.get("smooth", True), variant_of(options.get("rng", 0))
     require_smooth(smooth)
     budget = budget_of(None, options.get("seconds"), options.get("limits"))
-    report = (lambda done: None) if progress is None else (lambda done: progress(done, count))
+
+    def report(done: int) -> None:
+        if progress is not None:
+            progress(done, count)
 
     def query(row: int) -> PlanResult:
         # Another thread may do that: its time is what the first search has left.
@@ -122,20 +126,20 @@ def plan_many(
     return joined(tuple(different), of, dim, solved, rest, others)
 
 
-def _read_worlds(worlds: Any) -> tuple[list[Any], Ints | None]:
+def _read_worlds(worlds: object) -> tuple[list[World], Ints | None]:
     """Return the different worlds, and the number of the world of each query; None where there is one for all."""
-    if hasattr(worlds, "motion_valid"):
+    if is_world(worlds):
         return [worlds], None
     if not isinstance(worlds, Sequence) or isinstance(worlds, str) or not len(worlds):
         raise InvalidValue(
             f"worlds must be a World, such as er.ArmWorld(robot, scene), or several, got {shown(worlds)}"
         )
     numbers: dict[int, int] = {}
-    different: list[Any] = []
+    different: list[World] = []
     of = np.empty(len(worlds), dtype=np.int64)
     for row, world in enumerate(worlds):
         if id(world) not in numbers:
-            if not hasattr(world, "motion_valid"):
+            if not is_world(world):
                 raise InvalidValue(
                     f"worlds must be Worlds, such as er.ArmWorld(robot, scene); row {row} is {shown(world)}"
                 )
@@ -151,7 +155,7 @@ def _read_worlds(worlds: Any) -> tuple[list[Any], Ints | None]:
 
 
 def by_compiled_code(
-    different: list[Any],
+    different: list[World],
     of: Ints,
     terminals: Floats,
     budget: Budget,
@@ -163,7 +167,7 @@ def by_compiled_code(
     """Return the answers of queries of arms by one call of compiled code each; starts and goals are (m, 2, dim)."""
     dim, is_arm = terminals.shape[2], np.array([isinstance(world, ArmWorld) for world in different])
     rows = np.flatnonzero(is_arm[of])
-    arms = [world for world, arm in zip(different, is_arm, strict=True) if arm]
+    arms = [world for world in different if isinstance(world, ArmWorld)]
     smoothing, first = smoothing_of(smooth), RESTART
     seconds = np.inf if budget.seconds is None else budget.seconds
     queries = ManyQueries(
@@ -186,7 +190,7 @@ def by_compiled_code(
     return Part(rows[solved], counts, waypoints, columns.lengths[solved], columns.seconds[solved], pathless)
 
 
-def _led(different: list[Any], of: Ints, waypoints: Floats, counts: Ints, terminals: Floats) -> tuple[Floats, Ints]:
+def _led(different: list[World], of: Ints, waypoints: Floats, counts: Ints, terminals: Floats) -> tuple[Floats, Ints]:
     """Return paths that begin at the numbers of their starts, as every result does, and how many waypoints each has."""
     if not any(world.space.flat.wraps for world in different if isinstance(world, ArmWorld)):
         return waypoints, counts

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -148,7 +148,7 @@ class PlanResults:
         arrow = require_extra("pyarrow", "parquet", "to_parquet")
         parquet = require_extra("pyarrow.parquet", "parquet", "to_parquet")
         waypoints = arrow.FixedSizeListArray.from_arrays(arrow.array(self.waypoints.ravel()), self.waypoints.shape[1])
-        columns: dict[str, Any] = {
+        columns: dict[str, object] = {
             "status": [str(status) for status in self.status],
             "cost": self.cost,
             "seconds": self.seconds,

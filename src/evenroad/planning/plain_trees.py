@@ -39,7 +39,8 @@ class _Tree:
     def nearest(self, world: World, q: Floats) -> Ints:
         """Return the node nearest to each configuration, (n, dim) -> (n,); of equals the earlier one."""
         pairs = np.repeat(q, len(self.nodes), axis=0), np.tile(self.nodes, (len(q), 1))
-        return world.space.distance(*pairs).reshape(len(q), -1).argmin(axis=1)
+        nearest: Ints = world.space.distance(*pairs).reshape(len(q), -1).argmin(axis=1)
+        return nearest
 
     def add(self, nodes: Floats, parents: Ints) -> None:
         """Add nodes, (n, dim), below these parents, (n,)."""
@@ -117,7 +118,8 @@ class _Both:
         branches = self.trees[of].branch(node)[::-1], self.trees[1 - of].branch(reached)
         path = np.concatenate([self.trees[of].nodes[branches[0]], self.trees[1 - of].nodes[branches[1]]])
         path = path if of == 0 else path[::-1]
-        return path[np.append(True, (path[1:] != path[:-1]).any(axis=1))]
+        different: Floats = path[np.append(True, (path[1:] != path[:-1]).any(axis=1))]
+        return different
 
 
 def _samples(world: World, n: int, variant: int) -> Floats:

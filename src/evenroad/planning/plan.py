@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from evenroad._rng import RngLike
 from evenroad._shared import once
@@ -19,7 +19,7 @@ from evenroad.planning.planners.prm import PRM
 from evenroad.planning.planners.trees import RRTConnect, default_planner
 from evenroad.planning.problem import Interrupted, Planner, Problem, Wanted
 from evenroad.planning.read_problem import read_problem
-from evenroad.planning.reading import Goal, Reading
+from evenroad.planning.reading import Goal, PathLike, Reading
 from evenroad.planning.result import PlanResult
 from evenroad.planning.world_roadmap import WorldRoadmap
 from evenroad.points.pointset import PointSet
@@ -27,13 +27,17 @@ from evenroad.poses.constraint import Constraint
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.roadmap import Roadmap
 from evenroad.robots.robot import ConfigurationLike
+from evenroad.scenes.scene import Scene
 from evenroad.world import World
+
+if TYPE_CHECKING:
+    from evenroad.world import GridMap
 
 _PLAIN = Reading()
 
 
 def plan(
-    world: Any,
+    world: World | GridMap | Scene | PathLike,
     start: ConfigurationLike,
     goal: Goal | Sequence[Goal],
     planner: Planner | Roadmap | PointSet | str | os.PathLike[str] | None = None,
@@ -122,7 +126,8 @@ def plan(
         "constraints": constraints,
     }
     with within(budget.seconds):
-        return solve(read_problem(world, start, goal, reading, wanted, **of_world), by)
+        problem = read_problem(world, start, goal, reading, wanted, **of_world)
+        return solve(problem, by)
 
 
 def solve(problem: Problem, planner: Planner | Roadmap | None = None) -> PlanResult:
@@ -139,21 +144,19 @@ def solve(problem: Problem, planner: Planner | Roadmap | None = None) -> PlanRes
 
     try:
         by = None if planner is None else _within(planner, problem.world)
-        if (found := unreached(problem)) is None:
-            found = plan_once(problem) if problem.constraints is None else _constrained(problem, plan_once)
+        if (found := unreached(problem)) is None and problem.constraints is None:
+            found = plan_once(problem)
+        elif found is None:
+            # Imported late: most plans have no constraints.
+            from evenroad.planning.tip_motion import plan_constrained
+
+            found = plan_constrained(problem, plan_once)
     except BudgetSpent:
         found = out_of_time(problem)
     result = finished(problem, found)
     if stopped:
         raise Interrupted(result)
     return result
-
-
-def _constrained(problem: Problem, plan_once: Callable[[Problem], PlanResult]) -> PlanResult:
-    # Imported late: most plans have no constraints.
-    from evenroad.planning.tip_motion import plan_constrained
-
-    return plan_constrained(problem, plan_once)
 
 
 def _as_planner(planner: object) -> Planner | Roadmap:

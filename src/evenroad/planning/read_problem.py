@@ -27,6 +27,7 @@ from evenroad.scenes.scan import allowed_near_ends, open_everywhere, scene_seen_
 from evenroad.scenes.scene import Scene
 from evenroad.scenes.scene_file import load_scene
 from evenroad.scenes.states import as_configuration, at_states
+from evenroad.world import World
 
 if TYPE_CHECKING:
     from evenroad.world import GridMap
@@ -39,7 +40,7 @@ OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
 
 
 def read_problem(
-    world: Any,
+    world: World | GridMap | Scene | PathLike,
     start: ConfigurationLike,
     goal: Goal | Sequence[Goal],
     reading: Reading,
@@ -82,12 +83,17 @@ def read_problem(
             makes = "ArmWorld(robot, scene" if name in ("clearance", "resolution") else "load_robot(file"
             raise InvalidValue(f"{unknown}; this world has its own: {makes}, {name}=...) takes it")
         raise InvalidValue(f"{unknown}; the time limit is seconds=5, others are limits={{'motions': 1000}}")
-    if not hasattr(world, "motion_valid"):
+    if not is_world(world):
         raise InvalidValue(
             "world must be a World, a GridMap with radius=, or a Scene with robot=; or the name or file of one, got"
             f" {shown(world)}"
         )
-    return Problem(world, *as_start_and_goals(start, goal, world.space), **wanted)  # type: ignore[arg-type]
+    return Problem(world, *as_start_and_goals(start, goal, world.space), **wanted)
+
+
+def is_world(world: object) -> TypeGuard[World]:
+    """Return whether a value checks motions."""
+    return hasattr(world, "motion_valid")
 
 
 def _is_map(world: object) -> TypeGuard[GridMap]:
@@ -99,7 +105,7 @@ def _is_map(world: object) -> TypeGuard[GridMap]:
     return isinstance(world, GridMap)
 
 
-def _require_known(given: dict[str, Any], known: Sequence[str], what: str) -> None:
+def _require_known(given: Mapping[str, object], known: Sequence[str], what: str) -> None:
     for name in given:
         if name not in known:
             hint = near(name, known) or f"known: {listed(known)}"

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from time import perf_counter as now
-from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._checks import counted, require_count
-from evenroad._native.planning import Points, answer, shorten
+from evenroad._native.planning import Drivers, Points, answer, shorten
 from evenroad._rng import RngLike
 from evenroad._shared import OwnLock, once
 from evenroad.collision.arm_world import VALIDATION_TOLERANCE, ArmWorld
@@ -25,7 +24,7 @@ from evenroad.planning.make_result import make_result, solution, unreached
 from evenroad.planning.planners.trees import variant_of
 from evenroad.planning.problem import Problem
 from evenroad.planning.read_problem import problem_in, reaching
-from evenroad.planning.reading import Reading
+from evenroad.planning.reading import Goal, Reading
 from evenroad.planning.refusal import refusal
 from evenroad.planning.result import PlanResult, Status
 from evenroad.points.reversed_halton import PAIRS, share_pairs
@@ -92,7 +91,7 @@ class Replanner:
     def __init__(
         self,
         world: ArmWorld,
-        goal: Any,
+        goal: Goal | Sequence[Goal],
         *,
         motions: int = 600,
         rng: RngLike = 0,
@@ -125,7 +124,7 @@ class Replanner:
         *,
         moved: Mapping[str, Pose] | None = None,
         added: Bodies = (),
-        removed: Any = (),
+        removed: str | Sequence[str] = (),
     ) -> PlanResult:
         """Return a path from where the arm is, free in the scene as it is now, or why there is none.
 
@@ -221,7 +220,7 @@ class Replanner:
         path, counts["shortcut_motions"] = self._shortened(answered.path)
         return self._result(start, path, goal, "trees", counts, began)
 
-    def _driver(self) -> Any:
+    def _driver(self) -> Drivers:
         """Return the sequences that drive this update's trees."""
         number = self._failures % VARIANTS
         while len(self._drivers) <= number:

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from evenroad.points.pointset import Origin
 from evenroad.roadmap.certificate import Certificate
 from evenroad.space.path import path_length, resample
 from evenroad.world import BoundsLengths, MeasuresPaths, NamesNearest, World
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 _File: TypeAlias = str | os.PathLike[str]
 NO_POINTS = Origin(family="none", method="no points")
@@ -223,7 +226,8 @@ class PlanResult:
     @property
     def goal(self) -> Floats:
         """The goal that the path ends at, (dim,); without a path the first one."""
-        return self.goals[0 if self.goal_index is None else self.goal_index]
+        goal: Floats = self.goals[0 if self.goal_index is None else self.goal_index]
+        return goal
 
     @property
     def seconds(self) -> float:
@@ -344,7 +348,7 @@ class PlanResult:
 
         return load_plan(path)[0]
 
-    def plot(self, path: str | os.PathLike[str] | None = None, *, world: World | None = None) -> Any:
+    def plot(self, path: str | os.PathLike[str] | None = None, *, world: World | None = None) -> Image:
         """Return a picture of the plan, a PIL image, which a notebook shows; save it if a file is named.
 
         Parameters

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.space import Space
 from evenroad.space.path import continued
 from evenroad.space.protocol import period_of
+from evenroad.world import World
 
 SAME = 1e-9
 """Largest difference of the numbers at which a path begins from those of the start, for numbers of 1."""
@@ -20,7 +19,7 @@ NEAR = 1e-6
 """Distance up to which the end of a path counts as the goal, for numbers of 1: rounding only."""
 
 
-def as_start_and_goals(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) -> tuple[Floats, Floats]:
+def as_start_and_goals(start: object, goal: object, space: Space) -> tuple[Floats, Floats]:
     """Return start, (dim,), and goals, (g, dim), from one start and one or more goals.
 
     Raises InvalidValue if they do not have the dimension of the space, or are not finite.
@@ -35,7 +34,7 @@ def as_start_and_goals(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) 
     return first, goals.reshape(-1, dim)
 
 
-def _finite(value: npt.ArrayLike) -> Floats:
+def _finite(value: object) -> Floats:
     """Return a copy as floats; for anything but finite numbers an array of a shape that is refused."""
     try:
         array = np.array(value, dtype=np.float64)
@@ -78,7 +77,7 @@ def from_start_to_goal(space: Space, path: Floats, start: Floats, goal: Floats) 
     return on
 
 
-def turns_at_end(world: Any, path: Floats, goal: Floats) -> str:
+def turns_at_end(world: World, path: Floats, goal: Floats) -> str:
     """Return in words which coordinates of a path's end are whole periods from the goal; nothing where none is."""
     period = period_of(world.space)
     if period is None or not (away := np.rint((path[-1] - goal) / period)).any():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +35,8 @@ from evenroad.roadmap.search import (
     StateCache,
 )
 from evenroad.world import World
+
+Entry = TypeVar("Entry", bound=np.generic)
 
 
 class WorldRoadmap:
@@ -112,15 +114,8 @@ class WorldRoadmap:
     def _solved(self, problem: Problem, search: str, links: int | None, connector: Connector | None) -> PlanResult:
         roadmap = self.roadmap
         with self._lock:
-            attempt = Attempt(
-                problem,
-                f"prm {search}",
-                roadmap.points.origin,
-                f"{roadmap.rule} of all points",
-                connector=connector,
-                edge_cost=self._edge_cost,
-                links=links,
-            )
+            how = f"{roadmap.rule} of all points", connector, self._edge_cost, links
+            attempt = Attempt(problem, f"prm {search}", roadmap.points.origin, *how)
             if (refused := refusal(attempt)) is not None:
                 return refused
             with attempt.watch("neighbours"):
@@ -202,7 +197,7 @@ class WorldRoadmap:
         return self.roadmap.edge_weights if self._edge_cost is None else self.roadmap.weighted(self._costs)
 
 
-def _with_capacity(array: npt.NDArray[Any], kept: int, more: int) -> npt.NDArray[Any]:
+def _with_capacity(array: npt.NDArray[Entry], kept: int, more: int) -> npt.NDArray[Entry]:
     """Return an array with capacity for more rows behind those that are kept: itself, or a longer copy."""
     if len(array) >= kept + more:
         return array

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from time import perf_counter as now
 
 from evenroad._checks import require_count, require_positive
-from evenroad._time_limit import Deadline
 
 BEFORE_PROOF, BEFORE_REASONS = 0.7, 0.9
 """Shares of the time after which a search leaves the rest to a proof that there is no path, where none was tried; and
@@ -51,10 +50,6 @@ class Budget:
         if self.seconds is not None:
             limits.append(f"{self.seconds:g} s")
         return ", ".join(limits)
-
-    def deadline(self) -> float:
-        """Return the deadline of a query that begins now, or the earlier one of this thread."""
-        return Deadline.after(self.seconds).at
 
 
 class Stopwatch:

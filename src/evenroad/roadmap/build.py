@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -67,9 +66,11 @@ def roadmap_of_points(space: Space, points: PointSet | int, rule: Rule | None = 
     points = as_points(points, space, rule)
     rule = KNearest(max(20, 2 * space.cube_dim)) if rule is None else rule
     # Sets of a pool come again and again, others hardly ever; a user's own space may not be hashable.
-    from_pool = points.origin.replica is not None and isinstance(space, Hashable)
-    joined: Callable[..., Any] = _joined_once if from_pool and isinstance(rule, Hashable) else _joined
-    milestones, edges = joined(space, points, rule)
+    from_pool = points.origin.replica is not None
+    if from_pool and isinstance(space, Hashable) and isinstance(rule, Hashable):
+        milestones, edges = _joined_once(space, points, rule)
+    else:
+        milestones, edges = _joined(space, points, rule)
     return Roadmap(points, rule, milestones, edges, space)
 
 

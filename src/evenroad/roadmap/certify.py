@@ -70,7 +70,7 @@ def certify_roadmap(roadmap: Roadmap, *, links: int | None = LINKS) -> Certifica
     bounds, turn = bounds_in(roadmap.points, space), _half_turn(space)
     reach = roadmap.rule.reach(roadmap.points.n, space)
     n = roadmap.points.n
-    most = n if reach == Reach() else max(_links_among(n, links), reach.k or 0)
+    most = n if reach == Reach() else max(links_among(n, links), reach.k or 0)
     to_terminals = max(reach.radius or 0.0, linked_within(roadmap.milestones, most, space, bounds.upper))
     between = _nearest_untried(roadmap.milestones, roadmap.edges, space)
     return Certificate(bounds.upper, bounds.lower, min(between, turn), min(to_terminals, turn), True)
@@ -87,11 +87,7 @@ def certify_graph(points: PointSet, space: Space, configurations: Floats, edges:
     between = _nearest_untried(configurations[:n], edges[inner], space)
     tried = np.zeros((terminals, len(configurations)), dtype=np.bool_)
     tried[edges[~inner, 1] - n, edges[~inner, 0]] = True
-    away, tried, direct = (
-        all_distances(space, configurations[n:], configurations[:n]),
-        tried[:, :n],
-        tried[1:, n],
-    )
+    away, tried, direct = all_distances(space, configurations[n:], configurations[:n]), tried[:, :n], tried[1:, n]
     to_end = SAFE * float(np.min(away[~tried], initial=math.inf))
     if n and to_end < bounds.upper and not tried[np.arange(terminals), away.argmin(axis=1)].all():
         # Under an unknown rule a terminal may not even be joined to its nearest milestone.
@@ -137,13 +133,7 @@ def _half_turn(space: Space) -> float:
 
 
 def _by_neighbours(
-    points: PointSet,
-    k: int,
-    space: Space,
-    bounds: DispersionBounds,
-    links: int | None,
-    goals: int,
-    turn: float,
+    points: PointSet, k: int, space: Space, bounds: DispersionBounds, links: int | None, goals: int, turn: float
 ) -> Certificate:
     """Return the certificate of the k nearest, symmetrised, among the valid milestones, start and goals.
 
@@ -158,16 +148,12 @@ def _by_neighbours(
     if rank >= n:
         return Certificate(bounds.upper, bounds.lower, turn, turn, False)
     reach = _ranked(q, rank, space)
-    to_terminals = max(SAFE * float(reach.min()), linked_within(q, _links_among(n, links), space, bounds.upper))
+    to_terminals = max(SAFE * float(reach.min()), linked_within(q, links_among(n, links), space, bounds.upper))
     between = math.inf
     for rows, away in _rows(q, space):
         untried = away >= np.maximum(reach[rows, np.newaxis], reach)
         between = min(between, float(np.min(away[untried], initial=math.inf)))
     return Certificate(bounds.upper, bounds.lower, min(SAFE * between, turn), min(to_terminals, turn), False)
-
-
-def _links_among(n: int, links: int | None) -> int:
-    return links_among(n, links)
 
 
 def linked_within(q: Floats, most: int, space: Space, dispersion: float) -> float:

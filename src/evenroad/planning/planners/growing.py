@@ -99,16 +99,8 @@ class GrowingPRM:
             # By name: the module of Sobol's points imports scipy.stats, half a second that nobody else needs.
             sampler = make_sampler("growing" if world.space.cube_dim <= GROWING else "sobol")
         points = _draw(sampler, min(self.first, budget.samples), problem, None)
-        attempt = Attempt(
-            problem,
-            "prm anytime",
-            points.origin,
-            str(rule),
-            connector=connector_of(world),
-            edge_cost=self.edge_cost,
-            links=self.links,
-            grows=True,
-        )
+        how = str(rule), connector_of(world), self.edge_cost, self.links
+        attempt = Attempt(problem, "prm anytime", points.origin, *how, grows=True)
         if (refused := refusal(attempt)) is not None:
             return refused
         growth = _Growth(attempt, rule, informed=self.informed)
@@ -172,7 +164,7 @@ class _Growth:
         if cost is not None and cost < min(self._costs(), default=np.inf):
             self.best = self.last
         self.stages.append(Stage(points.n, len(self.milestones), checked, cost, attempt.elapsed()))
-        return not attempt.spent and now() < attempt.deadline
+        return not attempt.spent and not attempt.time.is_over
 
     def _may_shorten(self, q: Floats) -> Bools:
         """Return by which configurations, (n, dim), a path may be shorter than the best: (n,)."""
@@ -180,7 +172,8 @@ class _Growth:
         assert self.best.cost is not None
         distance, (start, *goals) = self.attempt.world.space.distance, self.attempt.start_and_goals
         behind = [distance(q, np.broadcast_to(goal, q.shape)) for goal in goals]
-        return distance(np.broadcast_to(start, q.shape), q) + np.min(behind, axis=0) < self.best.cost
+        lengths: Floats = distance(np.broadcast_to(start, q.shape), q) + np.min(behind, axis=0)
+        return lengths < self.best.cost
 
     def is_done(self, until: str) -> bool:
         """Return whether the last stage was the final one."""
@@ -224,7 +217,8 @@ class PairCache:
 
 
 def _keys(pairs: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    return pairs.min(axis=1) << 32 | pairs.max(axis=1)
+    keys: npt.NDArray[np.int64] = pairs.min(axis=1) << 32 | pairs.max(axis=1)
+    return keys
 
 
 def _draw(sampler: Sampler, n: int, problem: Problem, before: PointSet | None) -> PointSet:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 from evenroad._call import explains_calls
 from evenroad._checks import require_count, require_known
@@ -22,9 +22,35 @@ from evenroad.roadmap.search import FINDERS, FREE, Finder, find_any, march
 from evenroad.space import Space
 
 
+@dataclass(frozen=True, repr=False)
+class OnPoints:
+    """What :class:`PRM` and :class:`FMT` share: the points, which pairs of them to try, and what a motion costs."""
+
+    seconds: ClassVar[float] = 60.0
+
+    points: PointSet | int = 512
+    _: KW_ONLY
+    k: int | None = None
+    rule: Rule | None = None
+    edge_cost: EdgeCost | None = None
+    links: int | None = LINKS
+
+    def __post_init__(self) -> None:
+        require_links(self.links)
+        if self.k is not None:
+            require_count("k", self.k)
+            if self.rule is not None:
+                raise InvalidValue("give k or rule, not both")
+
+    def __repr__(self) -> str:
+        points, rule = self.points, self.rule if self.k is None else f"k={self.k}"
+        what = f"{points.n} points" if isinstance(points, PointSet) else str(points)
+        return f"{type(self).__name__}({what}{'' if rule is None else f', {rule}'})"
+
+
 @explains_calls
-@dataclass(frozen=True)
-class PRM:
+@dataclass(frozen=True, repr=False)
+class PRM(OnPoints):
     """A roadmap on points that are drawn beforehand: Algorithm 1 of Chahine et al. (2025).
 
     Parameters
@@ -68,26 +94,16 @@ class PRM:
     <Status.SOLVED: 'solved'>
     """
 
-    seconds: ClassVar[float] = 60.0
-
-    points: PointSet | int = 512
     _: KW_ONLY
-    k: int | None = None
-    rule: Rule | None = None
     search: str = "lazy"
     success_only: bool = False
-    edge_cost: EdgeCost | None = None
-    links: int | None = LINKS
     certify: bool = False
 
     def __post_init__(self) -> None:
         require_known("search", self.search, FINDERS)
-        _require_links_and_rule(self)
+        super().__post_init__()
         if self.certify and (self.success_only or self.edge_cost is not None):
             raise InvalidValue("certify speaks of shortest paths: it goes without edge_cost and success_only")
-
-    def __repr__(self) -> str:
-        return _text(self)
 
     @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
@@ -97,8 +113,8 @@ class PRM:
 
 
 @explains_calls
-@dataclass(frozen=True)
-class FMT:
+@dataclass(frozen=True, repr=False)
+class FMT(OnPoints):
     """A tree over points that grows outwards in the order of cost: FMT* (Janson et al. 2015).
 
     Each milestone is joined to the tree over the neighbour that would be best without obstacles, and only that motion
@@ -120,21 +136,9 @@ class FMT:
     'fmt*'
     """
 
-    seconds: ClassVar[float] = 60.0
     certify: ClassVar[bool] = False
 
     points: PointSet | int = 1024
-    _: KW_ONLY
-    k: int | None = None
-    rule: Rule | None = None
-    edge_cost: EdgeCost | None = None
-    links: int | None = LINKS
-
-    def __post_init__(self) -> None:
-        _require_links_and_rule(self)
-
-    def __repr__(self) -> str:
-        return _text(self)
 
     @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
@@ -142,60 +146,22 @@ class FMT:
         return _on_points(self, problem, "fmt*", march)
 
 
-class _OnPoints(Protocol):
-    """What PRM and FMT share."""
-
-    @property
-    def points(self) -> PointSet | int: ...
-    @property
-    def k(self) -> int | None: ...
-    @property
-    def rule(self) -> Rule | None: ...
-    @property
-    def edge_cost(self) -> EdgeCost | None: ...
-    @property
-    def links(self) -> int | None: ...
-    @property
-    def certify(self) -> bool: ...
-
-
-def rule_of(planner: _OnPoints, space: Space) -> Rule:
+def rule_of(planner: OnPoints, space: Space) -> Rule:
     """Return which pairs of milestones a planner tries in a space."""
     if planner.rule is not None:
         return planner.rule
     return default_rule(space) if planner.k is None else KNearest(planner.k)
 
 
-def _require_links_and_rule(planner: _OnPoints) -> None:
-    require_links(planner.links)
-    if planner.k is not None:
-        require_count("k", planner.k)
-        if planner.rule is not None:
-            raise InvalidValue("give k or rule, not both")
-
-
-def _text(planner: _OnPoints) -> str:
-    points, rule = planner.points, planner.rule if planner.k is None else f"k={planner.k}"
-    what = f"{points.n} points" if isinstance(points, PointSet) else str(points)
-    return f"{type(planner).__name__}({what}{'' if rule is None else f', {rule}'})"
-
-
-def _on_points(planner: _OnPoints, problem: Problem, name: str, find: Finder) -> PlanResult:
+def _on_points(planner: PRM | FMT, problem: Problem, name: str, find: Finder) -> PlanResult:
     """Map the points into the space, join them by the rule, and find a path along the free motions."""
     world = problem.world
     # The points are chosen for a rule that was given.
     given = rule_of(planner, world.space) if planner.rule is not None or planner.k is not None else None
     points = as_points(planner.points, world.space, given, rng=problem.rng)
     rule = default_rule(world.space) if given is None else given
-    attempt = Attempt(
-        problem,
-        name,
-        points.origin,
-        str(rule),
-        connector=connector_of(world),
-        edge_cost=planner.edge_cost,
-        links=planner.links,
-    )
+    connector, origin = connector_of(world), points.origin
+    attempt = Attempt(problem, name, origin, str(rule), connector, planner.edge_cost, planner.links)
     if (refused := refusal(attempt)) is not None:
         return refused
     milestones = world.space.from_cube(points.points)

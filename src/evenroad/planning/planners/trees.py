@@ -6,7 +6,7 @@ Each plans until there is a path, a proof that there is none, or the budget is s
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from evenroad.planning.refusal import refusal
 from evenroad.planning.result import PlanResult
 from evenroad.roadmap.budget import BEFORE_PROOF
 from evenroad.space.path import path_length
+from evenroad.world import World
 
 _NOTHING = Connection(np.empty((0, 0)), -1, 0, 0, 0)
 """What searches found before the first."""
@@ -96,7 +97,7 @@ class GridSearch:
         return solve_by(problem, CELLS, improve=self.improve)
 
 
-def default_planner(world: Any, *, improve: bool = False) -> Planner:
+def default_planner(world: World, *, improve: bool = False) -> Planner:
     """Return the default planner of this kind of world."""
     connector = connector_of(world)
     if connector is None:
@@ -193,9 +194,8 @@ def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Ans
 def _answer(problem: Problem, connector: ArmTrees, variant: int) -> Answer:
     """Return what one call of compiled code finds, which most queries are answered by."""
     budget, most = problem.budget, RESTART
-    world: Any = problem.world
     return connector.answer(
-        world,
+        problem.arm,
         problem.start,
         problem.goals[0],
         variant=variant,
@@ -226,7 +226,7 @@ def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult
     )
 
 
-def _length(path: Floats, native: float, world: Any) -> float:
+def _length(path: Floats, native: float, world: World) -> float:
     """Return the length of a path: sums of eight numbers or more have another order in NumPy, another last bit."""
     return native if len(path) <= 8 else path_length(path, world.space)
 
