@@ -66,14 +66,17 @@ def test_triangles_are_those_that_trimesh_reads(suffix):
     data = trimesh.exchange.export.export_mesh(mesh, None, file_type=suffix)
     data = data.encode() if isinstance(data, str) else data
     shapes = read_mesh(data, f"mesh.{suffix[:3]}", np.array([2.0, 2.0, 2.0]))
-    corners = np.concatenate([shape.corners for shape in shapes])
+    corners = np.concatenate([shape.points[shape.corners] for shape in shapes])
     np.testing.assert_allclose(corners, 2.0 * mesh.triangles, atol=1e-6)
 
 
 def test_polygons_of_an_obj_are_fans():
     data = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1/1 2 3 -1\n"
     (shape,) = read_mesh(data, "square.obj", np.ones(3))
-    assert shape.corners.tolist() == [[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]]
+    assert shape.points[shape.corners].tolist() == [
+        [[0, 0, 0], [1, 0, 0], [1, 1, 0]],
+        [[0, 0, 0], [1, 1, 0], [0, 1, 0]],
+    ]
 
 
 @pytest.mark.parametrize("data", [b"", b"f 1 2 3\n", b"v 0 0 x\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", b"v 0 0 0\nf 1 1 4\n"])

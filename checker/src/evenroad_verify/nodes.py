@@ -32,13 +32,13 @@ class Nodes:
     def _add(self, frame: int, parts: list[Part]) -> int:
         low, high, reach = np.full(3, np.inf), np.full(3, -np.inf), 0.0
         for shape, rows in parts:
-            points = shape.corners[rows].reshape(-1, 3)
+            points = np.ascontiguousarray(_points(shape, rows).T)
             wide = shape.radius + shape.disc * np.sqrt(np.maximum(0.0, 1.0 - shape.axis**2))
-            low, high = np.minimum(low, points.min(0) - wide), np.maximum(high, points.max(0) + wide)
-            reach = max(reach, float(np.linalg.norm(points, axis=1).max()) + shape.radius + shape.disc)
+            low, high = np.minimum(low, points.min(1) - wide), np.maximum(high, points.max(1) + wide)
+            reach = max(reach, float(np.linalg.norm(points, axis=0).max()) + shape.radius + shape.disc)
         centre, box = 0.5 * (low + high), 0.5 * (high - low)[:, None] * np.eye(3)
         if len(parts) == 1 and parts[0][0].is_box:
-            corner, radius = parts[0][0].corners[0], parts[0][0].radius
+            corner, radius = parts[0][0].points, parts[0][0].radius
             edges = 0.5 * np.stack([corner[4] - corner[0], corner[2] - corner[0], corner[1] - corner[0]])
             length = np.linalg.norm(edges, axis=1, keepdims=True)
             centre, box = 0.5 * (corner[0] + corner[7]), edges * (1.0 + radius / np.maximum(length, 1e-12))
@@ -52,10 +52,10 @@ class Nodes:
     def halves(self, node: int) -> tuple[int, int]:
         """Return the numbers of a node's two halves; Refused where it is a single element."""
         if node not in self._halves:
-            middles = np.concatenate([shape.corners[rows].mean(1) for shape, rows in self.parts[node]])
+            middles = np.concatenate([shape.points[shape.corners[rows]].mean(1) for shape, rows in self.parts[node]])
             demand(len(middles) > 1, "a single element is halved")
             # Rounded to 2^-20 m: programs that differ in a last bit order the elements alike.
-            along = np.rint(2.0**20 * middles[:, np.ptp(middles, axis=0).argmax()])
+            along = np.rint(2.0**20 * middles[:, np.ptp(np.ascontiguousarray(middles.T), axis=1).argmax()])
             is_first = np.zeros(len(along), bool)
             is_first[np.argsort(along, kind="stable")[: len(along) // 2]] = True
             sides: tuple[list[Part], list[Part]] = ([], [])
@@ -71,7 +71,7 @@ class Nodes:
     def supports(self, node: int, along: Floats) -> Floats:
         """Return how far a node reaches along functionals, (m, 3), of its frame: (m,)."""
         if node not in self._corners:
-            self._corners[node] = [(shape, _distinct(shape.corners[rows])) for shape, rows in self.parts[node]]
+            self._corners[node] = [(shape, _points(shape, rows)) for shape, rows in self.parts[node]]
         most = np.full(len(along), -np.inf)
         for shape, points in self._corners[node]:
             step = max(1, _MOST // len(points))
@@ -84,7 +84,8 @@ class Nodes:
         return most
 
 
-def _distinct(corners: Floats) -> Floats:
-    """Return the corners that differ, (m, 3)."""
-    rows = np.ascontiguousarray(corners).reshape(-1, 3)
-    return rows[np.unique(rows.view([("", float)] * 3), return_index=True)[1]]
+def _points(shape: Shape, rows: Ints) -> Floats:
+    """Return the points that some elements have for corners, (m, 3)."""
+    used = np.zeros(len(shape.points), bool)
+    used[shape.corners[rows]] = True
+    return shape.points[used]

@@ -11,7 +11,7 @@ import numpy as np
 from evenroad_verify.errors import Pose, number, numbers, require
 from evenroad_verify.files import Files
 from evenroad_verify.meshes import read_mesh
-from evenroad_verify.shapes import DIMENSIONS, Shape, pose_of, primitive
+from evenroad_verify.shapes import DIMENSIONS, Shape, hull, pose_of, primitive
 from evenroad_verify.yaml_subset import parse_yaml
 
 GROUND = 100.0
@@ -120,7 +120,7 @@ def _obstacle(files: Files, path: Path, name: str, entry: dict[str, object]) -> 
         scales = numbers(scale if isinstance(scale, list) else [scale] * 3, 3)
         shapes = read_mesh(files.read(file), file.name, scales)
         if entry.get("convex") == "true":
-            shapes = [Shape(np.concatenate([each.corners.reshape(1, -1, 3) for each in shapes], axis=1))]
+            shapes = [hull(shapes)]
     else:
         shape = primitive(kind, entry)
         require(shape is not None, f"{name} has no size")

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
-from evenroad_verify.errors import Floats, Pose, number, numbers, require
+from evenroad_verify.errors import Floats, Ints, Pose, number, numbers, require
 
 DIMENSIONS = {
     "box": {"size": 3},
@@ -23,11 +24,12 @@ WIDEST = 1000.0
 class Shape:
     """Convex elements of one kind.
 
-    `corners`, (n, c, 3), are those of n elements in the frame of their body, each with a ball of `radius` and a disc of
-    radius `disc` about `axis` around it.  A `surface` is made of triangles.
+    `corners`, (n, c), are those of n elements, rows of `points`, (p, 3), in the frame of their body.  Each corner has a
+    ball of `radius` and a disc of radius `disc` about `axis` around it.  A `surface` is made of triangles.
     """
 
-    corners: Floats
+    points: Floats
+    corners: Ints
     radius: float = 0.0
     disc: float = 0.0
     axis: Floats = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
@@ -35,12 +37,12 @@ class Shape:
     is_box: bool = False
 
     def __post_init__(self) -> None:
-        require(len(self.corners) and np.abs(self.corners).max() < WIDEST, f"a shape is empty or beyond {WIDEST:g} m")
+        require(len(self.corners) and np.abs(self.points).max() < WIDEST, f"a shape is empty or beyond {WIDEST:g} m")
 
     def at(self, pose: Pose) -> Shape:
         """Return the shape moved by a pose."""
         rotation, shift = pose
-        return replace(self, corners=self.corners @ rotation.T + shift, axis=rotation @ self.axis)
+        return replace(self, points=self.points @ rotation.T + shift, axis=rotation @ self.axis)
 
 
 def rotation_about(axis: Floats, angles: Floats) -> Floats:
@@ -72,15 +74,30 @@ def primitive(kind: str, entry: Mapping[str, object]) -> Shape | None:
     if max(sizes) == 0.0 or (kind == "capsule" and sizes[0] == 0.0):
         return None
     if kind == "box":
-        signs = np.stack(np.meshgrid(*[[-0.5, 0.5]] * 3, indexing="ij"), axis=-1).reshape(1, 8, 3)
-        return Shape(signs * np.array(sizes), is_box=True)
+        signs = np.stack(np.meshgrid(*[[-0.5, 0.5]] * 3, indexing="ij"), axis=-1).reshape(8, 3)
+        return _element(signs * np.array(sizes), is_box=True)
     if kind == "sphere":
-        return Shape(np.zeros((1, 1, 3)), radius=sizes[0])
-    ends = sizes[1] * np.array([[[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]])
-    return Shape(ends, disc=sizes[0]) if kind == "cylinder" else Shape(ends, radius=sizes[0])
+        return _element(np.zeros((1, 3)), radius=sizes[0])
+    ends = sizes[1] * np.array([[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]])
+    return _element(ends, disc=sizes[0]) if kind == "cylinder" else _element(ends, radius=sizes[0])
+
+
+def _element(points: Floats, **around: Any) -> Shape:
+    return Shape(points, np.arange(len(points)).reshape(1, -1), **around)
 
 
 def surface(triangles: Floats, at: Pose, scale: Floats) -> Shape:
-    """Return triangles, (n, 3, 3), of a file, placed by `at` and then scaled."""
-    require(np.isfinite(triangles).all(), "a mesh has a corner that is no number")
-    return Shape((triangles @ at[0].T + at[1]) * scale, surface=True)
+    """Return triangles, (n, 3, 3), of a file, placed by `at` and then scaled; equal corners become one point."""
+    require(np.isfinite(triangles).all() and len(triangles), "a mesh is empty, or has a corner that is no number")
+    rows = ((triangles.reshape(-1, 3) @ at[0].T + at[1]) * scale) + 0.0
+    order = np.lexsort(rows.T)
+    is_new = np.ones(len(rows), bool)
+    is_new[1:] = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
+    number = np.empty(len(rows), np.int64)
+    number[order] = np.cumsum(is_new) - 1
+    return Shape(rows[order[is_new]], number.reshape(-1, 3), surface=True)
+
+
+def hull(shapes: list[Shape]) -> Shape:
+    """Return the hull of some shapes as one element."""
+    return _element(np.concatenate([each.points for each in shapes]))

@@ -46,7 +46,7 @@ def require_outside(claim: Claim, certificate: Certificate, tasks: Ints) -> int:
 
 def _points(shape: Shape, pieces: dict[int, list[tuple[Floats, bool]]]) -> list[Floats]:
     """Return corners of which the first one is a point of each connected piece of a shape."""
-    return [piece for piece, _ in _pieces(shape, pieces)] if shape.surface else [shape.corners]
+    return [piece for piece, _ in _pieces(shape, pieces)] if shape.surface else [shape.points[shape.corners]]
 
 
 def _pieces(shape: Shape, known: dict[int, list[tuple[Floats, bool]]]) -> list[tuple[Floats, bool]]:
@@ -54,10 +54,8 @@ def _pieces(shape: Shape, known: dict[int, list[tuple[Floats, bool]]]) -> list[t
     if not shape.surface:
         return []
     if id(shape) not in known:
-        triangles = shape.corners
-        _, corner = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
-        corner = corner.reshape(-1, 3)
-        label = np.arange(corner.max() + 1)
+        corner = shape.corners
+        label = np.arange(len(shape.points))
         while True:
             least = label[corner].min(axis=1)
             new = label.copy()
@@ -67,16 +65,18 @@ def _pieces(shape: Shape, known: dict[int, list[tuple[Floats, bool]]]) -> list[t
                 break
             label = new
         edges = np.sort(corner[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        edge, count = np.unique(edges[edges[:, 0] != edges[:, 1]], axis=0, return_counts=True)
-        open_ones = set(label[edge[count % 2 == 1, 0]].tolist())
+        edges = edges[edges[:, 0] != edges[:, 1]]
+        edge, count = np.unique(edges[:, 0] * len(label) + edges[:, 1], return_counts=True)
+        open_ones = set(label[edge[count % 2 == 1] // len(label)].tolist())
         of = label[corner[:, 0]]
-        known[id(shape)] = [(triangles[of == each], int(each) not in open_ones) for each in np.unique(of)]
+        known[id(shape)] = [(shape.points[corner[of == each]], int(each) not in open_ones) for each in np.unique(of)]
     return known[id(shape)]
 
 
 def _inside(points: Floats, triangles: Floats) -> bool:
     """Return whether any of some points is inside of a closed surface, by the parity of the crossings of a ray."""
-    low, high = triangles.min((0, 1)), triangles.max((0, 1))
+    corners = np.ascontiguousarray(triangles.reshape(-1, 3).T)
+    low, high = corners.min(1), corners.max(1)
     points = points[((points >= low) & (points <= high)).all(axis=1)]
     step = max(1, _MOST // len(triangles))
     return any(_odd(points[i : i + step], triangles).any() for i in range(0, len(points), step))
