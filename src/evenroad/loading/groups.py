@@ -53,7 +53,7 @@ def _wanted_joints(
             own = _not_empty(groups[word], f"group {word!r}")
             chosen += [name for name in own if name not in chosen]
         else:
-            for name in named(word, description) or [word]:
+            for name in named(word, description.joints) or [word]:
                 _require_movable(description, name, chosen)
                 chosen.append(name)
     return _not_empty(tuple(chosen), "the group")

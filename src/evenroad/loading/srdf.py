@@ -223,7 +223,7 @@ class _Groups:
         for part in self.elements[name]:
             if part.tag == "joint":
                 joint = _attribute(part, "name", self.path)
-                found.update(named(joint, self.known.urdf) or ([joint] if self.known.joint(joint) else []))
+                found.update(named(joint, self.known.urdf.joints) or ([joint] if self.known.joint(joint) else []))
             elif part.tag == "link":
                 link = _attribute(part, "name", self.path)
                 found.update([by_child[link].name] if self.known.links([link]) and link in by_child else [])
@@ -250,7 +250,7 @@ def _values(state: Element, known: _Model, path: Path) -> dict[str, float]:
     for joint in state.findall("joint"):
         name = _attribute(joint, "name", path)
         # MoveIt writes the coordinates of a planar joint as one text.
-        several, numbers = named(name, known.urdf), _attribute(joint, "value", path).split()
+        several, numbers = named(name, known.urdf.joints), _attribute(joint, "value", path).split()
         if len(several) != len(numbers):
             if not known.joint(name):
                 continue

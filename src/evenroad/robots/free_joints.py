@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Protocol
 
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.rotation import rotation_from_z
@@ -72,14 +71,6 @@ def without_moved(notes: Sequence[str], joints: Sequence[Joint], group: Sequence
     return tuple(note for note in notes if not (moved and note.startswith(moved) and "it is held at 0" in note))
 
 
-def named(joint: str, urdf: _Joints) -> list[str]:
-    """Return the coordinates of a joint, in the order of a robot's file; none where it has only itself."""
-    own = {each.name for each in urdf.joints if each.of == joint}
-    return [name for name in urdf.order if name in own] if own else []
-
-
-class _Joints(Protocol):
-    @property
-    def joints(self) -> tuple[Joint, ...]: ...
-    @property
-    def order(self) -> tuple[str, ...]: ...
+def named(joint: str, joints: Sequence[Joint]) -> list[str]:
+    """Return the coordinates of a joint among those of a robot, in their order; none where it has only itself."""
+    return [each.name for each in joints if each.of == joint]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -87,13 +87,15 @@ def self_pairs(
         reasons |= dict.fromkeys(filter(samples.contains, near), CONTAINED)
     every = list(combinations(order, 2))
     tested = tuple(pair for pair in every if pair not in reasons)
+    hulls = tuple(piece.hull for link in order for piece in samples.pieces[link])
     return SelfPairs(
         tested,
         tuple((*pair, reasons[pair]) for pair in every if pair in reasons),
         tuple(pair for pair in always if pair not in reasons),
         tuple(pair for pair, why in reasons.items() if why == HELD_TOUCHING),
         tuple(pair for pair, why in reasons.items() if why == CONTAINED),
-        _unless_round(piece.hull for link in order for piece in samples.pieces[link]),
+        # Balls and capsules need no other shapes.
+        () if all(hull.is_round for hull in hulls) else hulls,
         samples.never_free(tested),
     )
 
@@ -122,12 +124,6 @@ def _untested(
         elif untested is None and above[second] == (first, 1):
             reasons[first, second] = "neighbours"
     return reasons
-
-
-def _unless_round(hulls: Iterable[Hull]) -> tuple[Hull, ...]:
-    """Return the hulls; none where all are balls and capsules, which need no other shapes."""
-    every = tuple(hulls)
-    return () if all(hull.is_round for hull in every) else every
 
 
 def rigid_links(robot: KinematicTree) -> dict[str, str]:
