@@ -8,7 +8,9 @@ import pytest
 import evenroad as er
 from evenroad.cli import main
 from evenroad.collision.validate import MeshCheck
+from evenroad.errors import InvalidValue
 from evenroad.planning.read_problem import arm_problem
+from evenroad.planning.reading import Reading
 from evenroad.roadmap import Budget
 from evenroad.robot import Obstacle, link_poses
 from tests.refused import refused
@@ -61,7 +63,14 @@ def test_meshes_have_the_last_word(tmp_path, monkeypatch):
     result = er.plan(tmp_path / "desk.yaml", "home", "away", er.PRM(64), robot=tmp_path / "arm.urdf")
     assert result.status == "mesh_collision"
     assert not result.solved
+    assert result.meshes == MeshCheck("in collision", 7, "at (0, 0, 0)")
     assert "not for the shapes that they stand for: in collision at (0, 0, 0)" in result.message
+
+
+def test_a_planner_refuses_constraints_which_only_plan_can_keep():
+    wanted = {"constraints": er.CartesianLine(0.05)}
+    problem = arm_problem("ur5", "box-reach", "home", "inside", Reading(), wanted)
+    refused(InvalidValue, "a planner knows no constraints", er.RRTConnect().solve, problem)
 
 
 def test_without_points_trees_plan_and_the_path_is_proved():

@@ -17,11 +17,11 @@ from evenroad._time_limit import look_at_clock, require_time_for
 from evenroad.infeasibility.prefix_cells import Bodies, Cells, CellTests, cells_around, first_links
 
 COARSE = 500
-"""Number of cells at first, for each joint squared."""
+"""Number of cells at the beginning, times the square of the number of joints."""
 MORE = 8.0
-"""Cells are also split on paths that have more unknown cells than the best one, by this factor at most."""
+"""Paths with up to this many times the unknown cells of the best path are split, too."""
 CLEAR = 1e-7
-"""What a clear cell counts on a path; an unknown one counts 1."""
+"""Cost of a clear cell on a path; that of an unknown cell is 1."""
 DEEPEST = 12
 """Largest number of times a cell is split."""
 

@@ -23,11 +23,11 @@ from evenroad.robots.kinematics import link_poses
 from evenroad.robots.robot import Robot
 
 _VALUES = 128
-"""Values of a joint that are looked at."""
+"""Number of values of a joint that are tried."""
 _FIRST, _CELLS = 8, 512
-"""Cells of the other joint that moves the pair: by the first a value is chosen, by the others shown to be a wall."""
+"""Numbers of cells of the other joint that moves the pair: to choose a value, and to prove that it is a wall."""
 _MOST_POINTS = 8
-"""Points of each link that are in the other, too, each in some of these cells."""
+"""Largest number of common points of the two links that are tried; each lies in both links in some of these cells."""
 _ALONG, _AROUND = 64, 2_000
 """Cells between two walls along their joint, and all of them."""
 
@@ -179,7 +179,7 @@ class _Pair:
 def _deepest(other: Hull, still: Hull, pose: Floats) -> Floats:
     """Return the point, (1, 3), of a hull that is deepest in another, which has this pose in its frame.
 
-    What the solver says of it is not relied on.
+    The proof does not rely on the solver's answer.
     """
     require_time_for("scipy.optimize")
     from scipy.optimize import linprog

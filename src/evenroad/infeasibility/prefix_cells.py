@@ -23,16 +23,16 @@ from evenroad.robots.moving_tree import moving_tree
 from evenroad.robots.robot import Robot
 
 SLACK = 1e-4
-"""Distance by which bodies are thinner, besides four times the error of single precision [m]."""
+"""Extra shrinkage of bodies, besides four times the error of single precision [m]."""
 OF_SHAPES = 4e-4
-"""Distance by which obstacles are smaller, besides, where true shapes are tested: four times what corners left out of
-convex meshes add to these at most [m]."""
+"""Extra shrinkage of obstacles where true shapes are tested: four times the most by which convex meshes grow when
+corners are left out [m]."""
 FARTHEST = 0.5
-"""Cells that move shapes by more are never said to be clear [m]."""
+"""Largest movement of shapes within half a cell for which the cell may count as clear [m]."""
 BEYOND = 1e-4
 """Distance that cells reach beyond the limits of joints, where rounding may put a configuration [rad or m]."""
 _SLOWEST = 0.05
-"""Least speed of links by which cells are sized [m/rad]."""
+"""Smallest speed of links that the size of cells is chosen by [m/rad]."""
 _AT_ONCE = 16_384
 """Number of cells that are checked at once."""
 _LABELLED = 5e-8

@@ -22,25 +22,25 @@ from evenroad.world.protocol import Apart
 
 ONE = (1, (np.inf,), 2_000)
 QUICK = (ONE, (2, (np.inf, np.inf), 20_000))
-"""How many of the first joints are looked at, how far cells reach from an end along each [rad or m], how many cells.
-Together they take some milliseconds."""
+"""Tries of a quick proof, some milliseconds together: how many of the first joints, how far cells reach along each from
+the start or a goal [rad or m], and how many cells."""
 THOROUGH = (
     ONE,
     (2, (np.inf, np.inf), 60_000),
     (3, (np.inf, np.inf, np.inf), 500_000),
     (3, (0.35, 0.35, np.inf), 500_000),
 )
-"""These take tenths of a second."""
+"""Tries of a full proof, tenths of a second together."""
 
 SPLIT, QUICK_SPLIT, MOST_SPLIT = 2, 200_000, 1_000_000
-"""So many joints are also looked at with cells that are split where it matters, and with how many cells at most,
-quickly or not: some passages are closed by millimetres.  Where one is clear it mostly takes some milliseconds."""
+"""`SPLIT`: number of leading joints also tried with adaptive cells, since some passages are closed by millimetres.
+`QUICK_SPLIT`, `MOST_SPLIT`: largest number of cells of the quick and the full proof."""
 
 MOST_GOALS = 4
-"""Cells around a goal show what those around the start do not; around no more goals than these."""
+"""Largest number of goals that cells are laid around, too: they may show what cells around the start do not."""
 
 _NEAR = 1e-3
-"""By how much a posture may miss its pose and still be said to reach it [m]."""
+"""Distance by which a posture may miss its pose and still reach it [m]."""
 
 PROVED = "proved: there is no path"
 
@@ -129,7 +129,7 @@ def shown_by(
 ) -> tuple[tuple[str, ...], bool]:
     """Return which joints cannot reach any goal, none where that is not shown; and whether other postures of poses may.
 
-    Walls come first: they say which single joints cannot.
+    Walls come first: each shows that a single joint cannot.
     """
     group = bodies.robot.group
     used, shown = dict[str, None](), tuple[str, ...]()
