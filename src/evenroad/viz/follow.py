@@ -10,13 +10,20 @@ from evenroad.geometry.pose import Pose
 from evenroad.poses.chain import chain_of
 from evenroad.poses.pose_task import PoseTask
 
+_BESIDE = np.array([[0.0], [0.1], [-0.1]])
+"""Moves of all joints to the postures from which a pose is tried: a stretched arm bends from beside its own."""
+_REACHED = 1e-6
+"""Squared error up to which a pose is reached [m, rad]."""
 _FARTHEST = 0.3
-"""Largest move of a joint at a time [rad or m]: towards poses out of reach an arm would swing."""
+"""Largest move of a joint towards a pose out of reach, to which the arm would swing [rad or m]."""
 
 
 def follow(world: ArmWorld, q: Floats, link: str, pose: Pose) -> Floats:
     """Return the configuration near `q`, (dim,), that moves a link to a pose, or towards it, within limits."""
-    (there,), _ = chain_of(world.robot, link).reached(q[np.newaxis], PoseTask(pose).row)
+    found, errors = chain_of(world.robot, link).reached(q + _BESIDE, PoseTask(pose).row)
+    best = 0 if errors[0] < _REACHED else int(np.argmin(errors))
+    move = found[best] - q
+    if errors[best] > _REACHED:
+        move *= _FARTHEST / max(float(np.abs(move).max()), _FARTHEST)
     low, high, _ = world.bounds
-    most = float(np.abs(there - q).max())
-    return np.clip(q + min(1.0, _FARTHEST / max(most, _FARTHEST)) * (there - q), low, high)
+    return np.clip(q + move, low, high)
