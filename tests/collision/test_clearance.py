@@ -86,7 +86,7 @@ def test_what_is_nearer_than_the_clearance_is_told_so_and_what_touches_is_told_t
         if "clearance" in text:
             said, away = text.removesuffix(" m away").split(" is nearer than the clearance 0.3 to 'wall', ")
             assert said.startswith("'")
-            assert float(away) == pytest.approx(plain._distances(row[np.newaxis], to_itself=False).metres[0], rel=0.01)
+            assert float(away) == pytest.approx(plain._distances(row[np.newaxis], to_itself=False)[0][0], rel=0.01)
     nearer = np.array(["clearance" in text for text in told])
     np.testing.assert_array_equal(nearer, free & ~world.valid(q))
     assert nearer.sum() > 20
