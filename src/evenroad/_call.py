@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from inspect import Parameter, signature
 from types import FunctionType
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from evenroad.errors import EvenroadError, InvalidValue, UnknownName
 
-Called = TypeVar("Called", bound=Callable[..., Any])
+Called = TypeVar("Called", bound=Callable[..., object])
 
 
 def explains_calls(called: Called) -> Called:
@@ -26,7 +26,7 @@ def explains_calls(called: Called) -> Called:
         return called
 
     @wraps(called)
-    def explained(*given: Any, **named: Any) -> Any:
+    def explained(*given: object, **named: object) -> object:
         try:
             return called(*given, **named)
         except TypeError as error:
@@ -46,7 +46,9 @@ def require_options(name: str, given: Mapping[str, object], options: type, own: 
             raise UnknownName.among(f"keyword of {name}:", keyword, known)
 
 
-def _explained(function: Callable[..., Any], given: tuple[Any, ...], named: dict[str, Any], text: str) -> EvenroadError:
+def _explained(
+    function: Callable[..., object], given: tuple[object, ...], named: dict[str, object], text: str
+) -> EvenroadError:
     """Return the error of a call; `text` is Python's message."""
     name = function.__qualname__.rpartition(".")[2]
     if name == "__init__":

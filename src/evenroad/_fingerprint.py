@@ -6,7 +6,7 @@ import enum
 import hashlib
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from typing import Any, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -33,7 +33,7 @@ def fingerprint_of(*values: object) -> str:
     return hashlib.sha256(b"".join(map(_canonical, values))).hexdigest()
 
 
-def _canonical(value: Any) -> bytes:
+def _canonical(value: object) -> bytes:
     """Return an unambiguous text of a value."""
     if isinstance(value, enum.Enum):
         return _tagged("enum", type(value).__name__.encode(), value.name.encode())

@@ -5,10 +5,9 @@ from __future__ import annotations
 import importlib
 import sys
 from collections.abc import Callable
-from typing import Any
 
 
-def names_on_use(package: str, file: str) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
+def names_on_use(package: str, file: str) -> tuple[list[str], Callable[[str], object], Callable[[], list[str]]]:
     """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package that takes each name where its stub says.
 
     The stub beside the package's file has lines ``from MODULE import X as NAME``; type checkers read it as it is.
@@ -17,7 +16,7 @@ def names_on_use(package: str, file: str) -> tuple[list[str], Callable[[str], An
         words = [line.split() for line in stub if line.startswith("from ")]
     homes = {name: (module, there) for _, module, _, there, _, name, *_ in words}
 
-    def load(name: str) -> Any:
+    def load(name: str) -> object:
         if name not in homes:
             from evenroad.errors import near
 

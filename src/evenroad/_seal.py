@@ -7,7 +7,6 @@ import json
 import logging
 import os
 from collections.abc import Mapping
-from typing import Any
 
 from evenroad.errors import BrokenFile
 
@@ -16,12 +15,12 @@ _DIGEST = "sha256"
 """Key of the digest in a record."""
 
 
-def with_digest(record: Mapping[str, Any]) -> dict[str, Any]:
+def with_digest(record: Mapping[str, object]) -> dict[str, object]:
     """Return a record of plain JSON values with the digest of all of them."""
     return {**record, _DIGEST: _digest_of(record)}
 
 
-def has_digest(record: Mapping[str, Any], path: str | os.PathLike[str]) -> bool:
+def has_digest(record: Mapping[str, object], path: str | os.PathLike[str]) -> bool:
     """Return whether the record of a file has a digest; BrokenFile if that is of other values."""
     if _DIGEST not in record:
         return False
@@ -30,7 +29,7 @@ def has_digest(record: Mapping[str, Any], path: str | os.PathLike[str]) -> bool:
     return True
 
 
-def _digest_of(record: Mapping[str, Any]) -> str:
+def _digest_of(record: Mapping[str, object]) -> str:
     values = {key: value for key, value in record.items() if key != _DIGEST}
     return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 

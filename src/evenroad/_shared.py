@@ -16,11 +16,11 @@ def once(function: Callable[..., Made]) -> Callable[..., Made]:
 
     With ``functools.cache`` two threads at once may get two values, of which it keeps one.
     """
-    kept: dict[tuple[Any, ...], Made] = {}
+    kept: dict[tuple[object, ...], Made] = {}
     making = threading.RLock()
 
     @wraps(function)
-    def cached(*arguments: Any) -> Made:
+    def cached(*arguments: object) -> Made:
         if arguments not in kept:
             with making:
                 if arguments not in kept:
@@ -46,7 +46,7 @@ class once_property(cached_property[Made]):
         return made
 
 
-def state_without(value: object, made: Iterable[str]) -> dict[str, Any]:
+def state_without(value: object, made: Iterable[str]) -> dict[str, object]:
     """Return the state of which a copy of a value is made; what it has `made` from its fields, it makes anew."""
     return {name: each for name, each in vars(value).items() if name not in made}
 
@@ -63,7 +63,7 @@ class OwnLock:
     def __exit__(self, *_: object) -> None:
         self._lock.release()
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         return OwnLock, ()
 
 

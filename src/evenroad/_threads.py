@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import starmap
-from typing import Any, TypeVar
+from typing import TypeVar
 
 AHEAD = 32
 """Number of tasks that are drawn before the first of them is done."""
@@ -24,7 +24,7 @@ def processors() -> int:
 
 
 def in_order(
-    function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]], threads: int | None = None
+    function: Callable[..., Result], tasks: Iterable[tuple[object, ...]], threads: int | None = None
 ) -> Iterator[Result]:
     """Yield results of a function for tasks, its arguments, in their order, by default of one thread a processor."""
     threads = processors() if threads is None else threads

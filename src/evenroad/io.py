@@ -6,7 +6,7 @@ import json
 import os
 import platform
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
@@ -25,7 +25,7 @@ from evenroad.planning.result import PlanResult, Status
 from evenroad.points import Origin
 
 
-def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
+def plan_record(result: PlanResult, query: Mapping[str, object]) -> dict[str, Any]:
     """Return a plan as plain JSON values, in the units of its space.
 
     Parameters
@@ -68,7 +68,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
     return {
         "status": str(result.status),
         "message": result.message,
-        "query": terminals | query,
+        "query": {**terminals, **query},
         **{name: None if path is None else path.tolist() for name, path in paths.items()},
         **{name: getattr(result, name) for name in same},
         "seconds": round(result.seconds, 6),
@@ -156,7 +156,7 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
     return plan_of(read_json_file(as_file("a plan", path), "plan"), path)
 
 
-def plan_of(record: Any, path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]:
+def plan_of(record: object, path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]:
     """Return a plan from the record of its file, as :func:`load_plan` does.
 
     Parameters
@@ -242,7 +242,7 @@ def _version_of_scipy() -> str:
     return version
 
 
-def save_json(path: str | os.PathLike[str], record: dict[str, Any]) -> None:
+def save_json(path: str | os.PathLike[str], record: Mapping[str, object]) -> None:
     """Write a record as indented UTF-8 JSON, atomically; NaN and infinity are refused.
 
     Parameters

@@ -55,7 +55,7 @@ class _SharedEngine(QMCEngine):
     def __repr__(self) -> str:
         return f"{type(self).__name__}(d={self.d}, num_generated={self.num_generated})"
 
-    def random(self, n: Any = 1, *, workers: Any = 1) -> Floats:
+    def random(self, n: object = 1, *, workers: object = 1) -> Floats:
         """Return the next points.
 
         Parameters

@@ -161,7 +161,8 @@ def _count(lengths: Floats, turns: Floats, bent: Floats) -> Ints:
     steps = np.ceil(np.maximum.reduce([lengths / STEP, turns / TURN, np.sqrt(bent / (8.0 * SAG))]) - 1e-9)
     if steps.sum() > MOST:
         raise InvalidValue(f"the curve is {lengths.sum():.4g} m long and needs {steps.sum():.0f} poses, of {MOST}")
-    return np.maximum(steps, 1.0).astype(np.int64)
+    counts: Ints = np.maximum(steps, 1.0).astype(np.int64)
+    return counts
 
 
 def _parabolas(a: Floats, c: Floats, b: Floats) -> tuple[Floats, Ints]:

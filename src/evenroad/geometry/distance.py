@@ -17,17 +17,16 @@ def point_distance(shape: Shape, points: Floats) -> Floats:
     own = shape.pose.local(points)
     match shape:
         case Box():
-            return np.linalg.norm(np.maximum(np.abs(own) - 0.5 * np.array(shape.size), 0.0), axis=1)
+            return _length(np.maximum(np.abs(own) - 0.5 * np.array(shape.size), 0.0))
         case Sphere():
-            return np.maximum(np.linalg.norm(own, axis=1) - shape.radius, 0.0)
+            return np.maximum(_length(own) - shape.radius, 0.0)
         case Cylinder():
             aside = np.maximum(np.hypot(own[:, 0], own[:, 1]) - shape.radius, 0.0)
             return np.hypot(aside, np.maximum(np.abs(own[:, 2]) - 0.5 * shape.length, 0.0))
         case Capsule():
             a, along = np.array(shape.a), np.subtract(shape.b, shape.a)
             share = _clamped((own - a) @ along, np.full(len(own), along @ along))
-            apart = own - a - share[:, np.newaxis] * along
-            return np.maximum(np.linalg.norm(apart, axis=1) - shape.radius, 0.0)
+            return np.maximum(_length(own - a - share[:, np.newaxis] * along) - shape.radius, 0.0)
         case _:
             raise InvalidValue(f"a region must be one of {', '.join(PRIMITIVES)}, got a {shape}")
 
@@ -54,8 +53,14 @@ def segment_distance(first: Floats, second: Floats) -> Floats:
     return np.sqrt(_dot(gap, gap))
 
 
+def _length(vectors: Floats) -> Floats:
+    lengths: Floats = np.linalg.norm(vectors, axis=1)
+    return lengths
+
+
 def _dot(first: Floats, second: Floats) -> Floats:
-    return np.einsum("ni,ni->n", first, second)
+    products: Floats = np.einsum("ni,ni->n", first, second)
+    return products
 
 
 def _clamped(numerator: Floats, denominator: Floats) -> Floats:

@@ -247,7 +247,8 @@ def share_inside(body: Sequence[Piece], other: Sequence[Piece], poses: Floats) -
     if len(points) == 0:
         return np.zeros(len(poses))
     placed = np.einsum("nij,pj->npi", poses[:, :3, :3], points) + poses[:, np.newaxis, :3, 3]
-    return _inside(other, placed.reshape(-1, 3)).reshape(len(poses), -1).mean(axis=1)
+    shares: Floats = _inside(other, placed.reshape(-1, 3)).reshape(len(poses), -1).mean(axis=1)
+    return shares
 
 
 def _inside(pieces: Sequence[Piece], points: Floats) -> Bools:
@@ -269,12 +270,14 @@ def _inside_piece(piece: Piece, points: Floats) -> Bools:
     if parts.shape[1] <= 2:
         a, along = parts[0, 0], parts[0, -1] - parts[0, 0]
         share = np.clip((points - a) @ along / max(float(along @ along), 1e-300), 0.0, 1.0)
-        return np.linalg.norm(points - a - share[:, np.newaxis] * along, axis=1) <= piece.radius
+        near: Bools = np.linalg.norm(points - a - share[:, np.newaxis] * along, axis=1) <= piece.radius
+        return near
     try:
         sides = ConvexHull(parts[0]).equations
     except QhullError:
         return np.zeros(len(points), dtype=np.bool_)
-    return (points @ sides[:, :3].T + sides[:, 3]).max(axis=1) <= piece.radius
+    inside: Bools = (points @ sides[:, :3].T + sides[:, 3]).max(axis=1) <= piece.radius
+    return inside
 
 
 def winding_number(triangles: Floats, point: Floats) -> float:

@@ -8,9 +8,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
-from evenroad.geometry.fit import Fitted, divided
+from evenroad.geometry.fit import divided
 from evenroad.geometry.hulls import distances, winding_number
-from evenroad.geometry.kept import fitted_once
+from evenroad.geometry.kept import Fitted, fitted_once
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 

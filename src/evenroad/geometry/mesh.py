@@ -131,7 +131,8 @@ class TriangleMesh:
     @cached_property
     def sides(self) -> Floats:
         """The sides of the box around the corners, (3,)."""
-        return np.ptp(self.vertices, axis=0)
+        sides: Floats = np.ptp(self.vertices, axis=0)
+        return sides
 
     @cached_property
     def is_convex(self) -> bool:
@@ -160,10 +161,11 @@ def extreme(points: Floats) -> Floats:
     from scipy.spatial import ConvexHull, QhullError
 
     try:
-        return points[np.sort(ConvexHull(points).vertices)]
+        corners: Ints = np.sort(ConvexHull(points).vertices)
     except QhullError:
         # All in one plane, or fewer than four.
         return np.unique(points, axis=0)
+    return points[corners]
 
 
 def merged(meshes: tuple[TriangleMesh, ...]) -> TriangleMesh:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Unpack
+from typing import ClassVar, Unpack
 
 import numpy as np
 
@@ -59,7 +59,9 @@ class Mesh(Shape):
     source: Path | TriangleMesh
     scale: Vector
 
-    def __init__(self, source: Any, scale: float | Sequence[float] = (1.0, 1.0, 1.0), **placed: Unpack[Placed]) -> None:
+    def __init__(
+        self, source: object, scale: float | Sequence[float] = (1.0, 1.0, 1.0), **placed: Unpack[Placed]
+    ) -> None:
         row = as_row("the scale of a mesh", [scale] * 3 if np.ndim(scale) == 0 else scale, 3)  # type: ignore
         source = _surface(source)
         if isinstance(source, Path) and source.suffix.lower() in GLTF and "link" not in placed:
@@ -99,7 +101,7 @@ def gap_notes(what: str, bodies: Iterable[tuple[str, Shape]]) -> tuple[str, ...]
     return (f"the mesh of {what} {names} {said}: close it, or say that it is convex",) if names else ()
 
 
-def _surface(source: Any) -> Path | TriangleMesh:
+def _surface(source: object) -> Path | TriangleMesh:
     """Return the file or the triangles of a mesh's source."""
     if isinstance(source, TriangleMesh):
         return source
@@ -147,7 +149,7 @@ class PointCloud(Shape):
     points: Floats
     radius: float
 
-    def __init__(self, points: Any, radius: float = CLOUD_RADIUS, **placed: Unpack[Placed]) -> None:
+    def __init__(self, points: object, radius: float = CLOUD_RADIUS, **placed: Unpack[Placed]) -> None:
         points = load_cloud(points) if isinstance(points, str | os.PathLike) else points
         points = np.array(as_batch("points of a cloud", points, 3))
         if len(points) == 0:

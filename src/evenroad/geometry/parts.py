@@ -117,4 +117,5 @@ def spread(parts: Parts) -> Floats:
         / np.cos(np.pi / 8.0)
         * (np.cos(turn)[:, np.newaxis] * across[0] + np.sin(turn)[:, np.newaxis] * across[1])
     )
-    return (points[:, np.newaxis] + ring).reshape(-1, 3)
+    ringed: Floats = (points[:, np.newaxis] + ring).reshape(-1, 3)
+    return ringed

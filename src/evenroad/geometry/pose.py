@@ -247,10 +247,11 @@ class Pose:
         >>> er.Pose((0, 0, 1)).apply((1, 0, 0)).tolist()
         [1.0, 0.0, 1.0]
         """
-        p = _rows_of_three(points)
+        p: Floats = _rows_of_three(points)
         if self.rotation != NO_ROTATION:
             p = self.rotation_matrix @ p if p.ndim == 1 else p @ self.rotation_matrix.T
-        return p + np.array(self.xyz)
+        moved: Floats = p + np.array(self.xyz)
+        return moved
 
     def local(self, points: npt.ArrayLike) -> Floats:
         """Return points in the pose's own frame, the inverse of :meth:`apply`.
@@ -270,8 +271,9 @@ class Pose:
         >>> er.Pose((0, 0, 1)).local((1, 0, 1)).tolist()
         [1.0, 0.0, 0.0]
         """
-        p = _rows_of_three(points) - np.array(self.xyz)
-        return self.rotation_matrix.T @ p if p.ndim == 1 else p @ self.rotation_matrix
+        p: Floats = _rows_of_three(points) - np.array(self.xyz)
+        own: Floats = self.rotation_matrix.T @ p if p.ndim == 1 else p @ self.rotation_matrix
+        return own
 
     def inverse(self) -> Pose:
         """Return the inverse pose."""

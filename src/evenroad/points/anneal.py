@@ -134,7 +134,7 @@ def first_rate(n: int, d: int) -> float:
 
     A step of Adam is about as long as its rate: one of half a spacing, as 0.02 is at d = 2, n = 512, never settles.
     """
-    return min(LARGEST_RATE, 0.2 * n ** (-1.0 / d))
+    return min(LARGEST_RATE, float(0.2 * n ** (-1.0 / d)))
 
 
 def noise_over_rate(objective: Minimised, n: int, d: int) -> float:
@@ -144,7 +144,7 @@ def noise_over_rate(objective: Minimised, n: int, d: int) -> float:
     points a dimension there are (d = 2 .. 14, n = 16 .. 1024).
     """
     if objective.least_points == 2:
-        return min(HOTTEST, 0.02 * n ** (-1.0 / d) / first_rate(n, d))
+        return min(HOTTEST, float(0.02 * n ** (-1.0 / d)) / first_rate(n, d))
     if n <= 32:
         return HOTTEST
     return min(HOTTEST, max(0.05, max(0.02 * d, 0.1) * math.sqrt(128.0 / n)))

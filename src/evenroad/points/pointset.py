@@ -88,12 +88,12 @@ class PointSet:
     @property
     def n(self) -> int:
         """Number of points."""
-        return self.points.shape[0]
+        return len(self.points)
 
     @property
     def d(self) -> int:
         """Dimension of the cube."""
-        return self.points.shape[1]
+        return int(self.points.shape[1])
 
     @property
     def dim(self) -> int:

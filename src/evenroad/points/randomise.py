@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints
 from evenroad._rng import RngLike, generator
 from evenroad.points.pointset import BELOW_ONE, PointSet, below_one
 
@@ -48,6 +47,6 @@ def randomise(points: PointSet, symmetries: Collection[Symmetry], *, rng: RngLik
     return points
 
 
-def _moved(points: PointSet, coordinates: npt.NDArray[Any], verb: str, values: npt.NDArray[Any]) -> PointSet:
+def _moved(points: PointSet, coordinates: Floats, verb: str, values: Floats | Ints) -> PointSet:
     how = " ".join([verb, *map(str, values.tolist())])
     return PointSet(below_one(coordinates), points.origin).with_origin(method=f"{points.origin.method}, {how}")

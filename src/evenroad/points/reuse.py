@@ -182,7 +182,8 @@ def prefix_discrepancies(points: PointSet, *, measure: str = "hickernell") -> Fl
     lengths = np.arange(1, n + 1)
     linear = np.cumsum(terms.linear.prod(axis=0))
     squared = terms.constant - 2.0 * linear / lengths + np.cumsum(added) / lengths**2
-    return np.sqrt(np.maximum(squared, 0.0))
+    distances: Floats = np.sqrt(np.maximum(squared, 0.0))
+    return distances
 
 
 def _measure(name: str) -> Measure:

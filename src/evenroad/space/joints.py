@@ -58,7 +58,8 @@ class FlatSpace(Space):
         """Return for each row of `q`, (n, dim), whether its bounded axes are within their bounds: (n,)."""
         batch = as_batch("q", q, self.dim)
         within = (self._low <= batch) & (batch <= self._high)
-        return np.logical_and.reduce(within | self._flat.wrapping, axis=1)
+        inside: Bools = np.logical_and.reduce(within | self._flat.wrapping, axis=1)
+        return inside
 
     def distance(self, a: Floats, b: Floats) -> Floats:
         """Return ``sqrt(sum_k (weight_k difference_k)^2)``, shorter on wrapping axes: (n, dim) twice -> (n,)."""
@@ -224,7 +225,8 @@ class JointSpace(FlatSpace):
         """Return for each row of `q`, (n, dim), whether bounded joints are within their bounds, up to 1e-5: (n,)."""
         batch = as_batch("q", q, self.dim)
         within = (self._low - SLACK <= batch) & (batch <= self._high + SLACK)
-        return np.logical_and.reduce(within | self._flat.wrapping, axis=1)
+        inside: Bools = np.logical_and.reduce(within | self._flat.wrapping, axis=1)
+        return inside
 
 
 def _as_bools(wrapping: bool | Sequence[bool], length: int) -> tuple[bool, ...]:

@@ -93,7 +93,8 @@ class Product(Space):
     def contains(self, q: Floats) -> Bools:
         """Return for each row of `q`, (n, dim), whether every part contains its own coordinates: (n,)."""
         columns = self.split(as_batch("q", q, self.dim))
-        return np.all([part.contains(own) for part, own in zip(self.parts, columns, strict=True)], axis=0)
+        inside: Bools = np.all([part.contains(own) for part, own in zip(self.parts, columns, strict=True)], axis=0)
+        return inside
 
     def distance(self, a: Floats, b: Floats) -> Floats:
         """Return the combined, weighted distances of the rows of two (n, dim) arrays, (n,)."""

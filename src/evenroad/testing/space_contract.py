@@ -67,7 +67,8 @@ class SpaceContract:
 
     def test_from_cube_gives_one_finite_configuration_of_the_space_a_point(self) -> None:
         q = self.configurations(60)
-        assert (q.shape, q.dtype) == ((60, self.space.dim), np.float64)
+        assert q.shape == (60, self.space.dim)
+        assert q.dtype == np.float64
         assert np.isfinite(q).all()
         assert self.space.contains(q).all()
 
@@ -99,7 +100,8 @@ class SpaceContract:
         shrink = 1e-4 / np.abs(steps).max(axis=1)
         here = self.space.from_cube(np.tile(centre, (len(steps), 1)))
         there = self.space.from_cube(centre + shrink[:, np.newaxis] * steps)
-        return self.space.distance(here, there) / shrink
+        metric: Floats = self.space.distance(here, there) / shrink
+        return metric
 
     def test_distance_is_zero_to_itself_and_positive_to_others(self) -> None:
         q = self.configurations(60)

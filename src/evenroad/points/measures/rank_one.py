@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints, set_fields
 from evenroad._checks import require_count
@@ -32,7 +32,7 @@ def generating_vector(points: object) -> Ints | None:
     return z if np.abs(off).max() < EXACT else None
 
 
-def successive_minima(n: int, vector: Any, scale: Any = None) -> Floats:
+def successive_minima(n: int, vector: npt.ArrayLike, scale: npt.ArrayLike | None = None) -> Floats:
     """Return the successive minima, (d,): the i-th is the least length up to which i vectors are independent.
 
     The first is the smallest distance of two points on the torus.
@@ -42,7 +42,7 @@ def successive_minima(n: int, vector: Any, scale: Any = None) -> Floats:
     return np.array([each for each, v in zip(lengths, vectors.tolist(), strict=True) if span.add(v)])
 
 
-def minima_ratio(n: int, vector: Any, scale: Any = None) -> float:
+def minima_ratio(n: int, vector: npt.ArrayLike, scale: npt.ArrayLike | None = None) -> float:
     """Return the last successive minimum over the first: 1 at best, bounded over all n for quasi-uniform lattices."""
     minima = successive_minima(n, vector, scale)
     return float(minima[-1] / minima[0])
@@ -70,7 +70,7 @@ class Directions:
         return self.sheets == 1
 
 
-def neighbour_directions(n: int, vector: Any, k: int, scale: Any = None) -> Directions:
+def neighbour_directions(n: int, vector: npt.ArrayLike, k: int, scale: npt.ArrayLike | None = None) -> Directions:
     """Return what the k >= 1 nearest neighbours span, symmetrised: of opposite neighbours one is enough."""
     pairs = (require_count("k", k) + 1) // 2
     vectors, rank = short_vectors(n, vector, pairs, scale)
@@ -82,7 +82,7 @@ def neighbour_directions(n: int, vector: Any, k: int, scale: Any = None) -> Dire
     return Directions(vectors, span.rank, span.volume // n ** (d - 1) if span.rank == d else math.inf)
 
 
-def least_neighbours(n: int, vector: Any, scale: Any = None) -> int:
+def least_neighbours(n: int, vector: npt.ArrayLike, scale: npt.ArrayLike | None = None) -> int:
     """Return the least k whose nearest neighbours, symmetrised, generate the lattice: then they lead everywhere.
 
     Of equally near ones all count, though a graph has but some of them.
@@ -127,5 +127,5 @@ class _Span:
         return math.prod(abs(row[axis]) for axis, row in enumerate(self.rows) if row is not None)
 
 
-def _weights(vectors: Ints, scale: Any) -> Floats:
+def _weights(vectors: Ints, scale: npt.ArrayLike | None) -> Floats:
     return np.ones(vectors.shape[1]) if scale is None else np.asarray(scale, dtype=np.float64)

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from operator import mul
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count
@@ -30,7 +30,7 @@ SAME = 1e-9
 """Relative difference below which squared lengths are equal."""
 
 
-def lattice_basis(n: int, vector: Any, scale: Any = None) -> Ints:
+def lattice_basis(n: int, vector: npt.ArrayLike, scale: npt.ArrayLike | None = None) -> Ints:
     """Return a reduced basis of the lattice, (d, d) whole numbers in units of 1/n, the shortest first.
 
     Parameters
@@ -51,7 +51,9 @@ def lattice_basis(n: int, vector: Any, scale: Any = None) -> Ints:
     return reduced[np.argsort(squared_lengths(reduced, weights), kind="stable")]
 
 
-def short_vectors(n: int, vector: Any, pairs: int = 0, scale: Any = None) -> tuple[Ints, Ints]:
+def short_vectors(
+    n: int, vector: npt.ArrayLike, pairs: int = 0, scale: npt.ArrayLike | None = None
+) -> tuple[Ints, Ints]:
     """Return the shortest vectors, (m, d) in units of 1/n, and the ranks of their lengths, (m,), equal for equal ones.
 
     One of each opposite pair, at least `pairs`, and a basis among them.  `n`, `vector`, `scale` and errors are those of
@@ -81,7 +83,7 @@ def squared_lengths(vectors: Ints, weights: Floats) -> Floats:
     return np.asarray(((vectors * weights) ** 2).sum(axis=1))
 
 
-def _checked(n: int, vector: Any, scale: Any) -> tuple[Ints, Floats]:
+def _checked(n: int, vector: npt.ArrayLike, scale: npt.ArrayLike | None) -> tuple[Ints, Floats]:
     n = require_count("n", n)
     if n > LARGEST_N:
         raise InvalidValue(f"n must be at most {LARGEST_N} for short vectors, got {n}")

@@ -213,7 +213,8 @@ def _log_energies(vectors: Floats, n: int, first: int, last: int) -> Floats:
     terms = integer_power(shortest[:, np.newaxis] / squared, d)
     if 2 * last == n:
         terms[:, -1] *= 0.5
-    return np.log(terms.sum(axis=1)) - d * np.log(shortest)
+    scores: Floats = np.log(terms.sum(axis=1)) - d * np.log(shortest)
+    return scores
 
 
 def integer_power(base: Floats, exponent: int) -> Floats:

@@ -65,13 +65,15 @@ def around_cube(n: int, d: int, random: np.random.Generator) -> tuple[Floats, fl
 
 def _unit_density_basis(d: int) -> Floats:
     """Return a lower-triangular basis of A_d*: rows with the Gram matrix I - J/(d+1), scaled to determinant 1."""
-    return np.linalg.cholesky(np.eye(d) - np.full((d, d), 1.0 / (d + 1))) * (d + 1) ** (0.5 / d)
+    basis: Floats = np.linalg.cholesky(np.eye(d) - np.full((d, d), 1.0 / (d + 1))) * (d + 1) ** (0.5 / d)
+    return basis
 
 
 def _random_rotation(d: int, random: np.random.Generator) -> Floats:
     """Return a Haar-distributed orthogonal matrix: QR of a Gaussian one, signs fixed (Mezzadri 2007)."""
     q, r = np.linalg.qr(random.standard_normal((d, d)))
-    return q * np.sign(np.diagonal(r))
+    rotation: Floats = q * np.sign(np.diagonal(r))
+    return rotation
 
 
 def _points_in_ball(basis: Floats, shift: Floats, radius: float) -> Floats:
@@ -139,4 +141,4 @@ class Cover:
 
 def covering_radius(d: int) -> float:
     """Return the covering radius of A_d* with one point per unit of volume."""
-    return sqrt(d * (d + 2) / (12 * (d + 1))) * (d + 1) ** (0.5 / d)
+    return float(sqrt(d * (d + 2) / (12 * (d + 1))) * (d + 1) ** (0.5 / d))

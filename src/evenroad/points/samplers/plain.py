@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue, NotAvailable
@@ -68,8 +67,8 @@ class Sukharev:
 
 def _floor_root(n: int, d: int) -> int:
     """Return the largest integer k with k**d <= n < 2**31: the float root is off by far less than one half."""
-    nearest = round(n ** (1.0 / d))
-    return nearest - (nearest**d > n)
+    nearest: int = round(n ** (1.0 / d))
+    return nearest - int(nearest**d > n)
 
 
 @dataclass(frozen=True)
@@ -84,7 +83,7 @@ class _Sequence:
     def __post_init__(self) -> None:
         require_count("start", self.start, at_least=0)
 
-    def _set(self, points: npt.NDArray[Any], rng: RngLike) -> PointSet:
+    def _set(self, points: Floats, rng: RngLike) -> PointSet:
         method, seed = ("scrambled", seed_of(rng)) if self.scramble else ("plain", None)
         return PointSet(points, Origin(family=self.name, method=method, seed=seed, start=self.start))
 
