@@ -20,7 +20,7 @@ Positional = Annotated[_T, "positional"]
 Repeatable = Annotated[_T, "repeatable"]
 """An option that may be given several times: a tuple of its values."""
 
-READ: dict[type, tuple[str, Callable[[str], Any], str]] = {
+READ: dict[type, tuple[str, Callable[[str], object], str]] = {
     str: ("STR", str, "a text"),
     Path: ("PATH", Path, "a path"),
     int: ("INT", int, "a whole number"),
@@ -40,7 +40,7 @@ class Option(NamedTuple):
     several: bool
     """Takes all words up to the next option."""
     repeatable: bool
-    default: Any
+    default: object
     """MISSING where it is required."""
 
     @property
@@ -62,12 +62,12 @@ class Option(NamedTuple):
             return self.value if self.default is MISSING else f"[{self.value}]"
         return ", ".join(self.names if self.kind is bool else (f"{name} {self.value}" for name in self.names))
 
-    def of(self, words: Sequence[str]) -> Any:
+    def of(self, words: Sequence[str]) -> object:
         """Return the value that the words of one use say."""
         values = tuple(map(self._read, words))
         return values if self.several else values[0]
 
-    def _read(self, word: str) -> Any:
+    def _read(self, word: str) -> object:
         name = "/".join(self.names) or self.field.upper()
         if self.choices:
             if word not in self.choices:
@@ -86,7 +86,7 @@ def options_of(kind: type) -> list[Option]:
     return [_option(each.name, hints[each.name], each.default) for each in fields(kind)]
 
 
-def _option(field: str, hint: Any, default: Any) -> Option:
+def _option(field: str, hint: Any, default: object) -> Option:
     marks: tuple[str, ...] = getattr(hint, "__metadata__", ())
     kind = get_args(hint)[0] if marks else hint
     if type(None) in get_args(kind):

@@ -36,7 +36,7 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     if unknown:
         meant = near(unknown[0], known)
         raise InvalidValue(f"{program} has no use for the word {shown(unknown[0])}{meant and '; '}{meant}")
-    values: dict[str, Any] = {}
+    values: dict[str, object] = {}
     for option in options:
         uses = given.get(option.field, [])
         if option.kind is bool:

@@ -26,4 +26,5 @@ def follow(world: ArmWorld, q: Floats, link: str, pose: Pose) -> Floats:
     if errors[best] > _REACHED:
         move *= _FARTHEST / max(float(np.abs(move).max()), _FARTHEST)
     low, high, _ = world.bounds
-    return np.clip(q + move, low, high)
+    moved: Floats = np.clip(q + move, low, high)
+    return moved
