@@ -135,7 +135,7 @@ class RobotOptions:
     groups: ClassVar[dict[str, tuple[str, ...]]] = OF_ROBOTS
 
     srdf: Path | None = None
-    """The robot's SRDF, with groups, named states and pairs of links that need no test."""
+    """The robot's SRDF: groups, named states and pairs of links without a test."""
     group: Repeatable[tuple[str, ...]] = ()
     """What to plan for: a group of the SRDF, or joints separated by commas; you can give several, in this order.  Other
     joints stay where the named states of start and goal have them, else at 0, or where nothing touches."""
@@ -249,7 +249,7 @@ class PlanArm(PlanOptions, RobotOptions):
     upright: float | None = None
     """Largest tilt of an axis of the tip along the whole path, in radians."""
     upright_axis: str | None = None
-    """That axis, in the tip's frame (default: the one that is most upright at the start)."""
+    """That axis, in the tip's frame (default: the most upright one at the start)."""
     constraint: Repeatable[tuple[tuple[str, ...], ...]] = ()
     """What the whole path keeps: "orientation 0.01", "plane z", "line y", "box 0,0,0 1,1,1", "circle 0.8,0.3,0 z",
     "together LINK LINK" or "joints NAME=0,2"; then within=0.001, tip=LINK.  Or "differential-drive": a base that
@@ -276,7 +276,7 @@ class PlanArm(PlanOptions, RobotOptions):
     tip_speed: float | None = None
     """With times: largest speed of the tip, > 0, in metres per second."""
     tip_acceleration: float | None = None
-    """With times: largest acceleration of the tip, > 0, in metres per second squared."""
+    """With times: largest acceleration of the tip, > 0, in m/s^2."""
     start_velocity: str | None = None
     """With times: how fast the joints move at the start, one number per joint or name=value,..., in radians (metres)
     per second (default: at rest)."""
